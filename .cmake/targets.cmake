@@ -1,0 +1,113 @@
+# alpenglow_library, alpenglow_program, alpenglow_test, alpenglow_embed: a target is a few lines.
+
+add_library(alpenglow_warnings INTERFACE)
+target_compile_options(alpenglow_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow
+  $<$<BOOL:${ALPENGLOW_WARNINGS_AS_ERRORS}>:-Werror>
+  # Not -ffast-math: infinities and NaN mean what they mean. Contraction is off so that one source
+  # gives one result on every machine.
+  -fno-math-errno -fno-trapping-math -ffp-contract=off)
+
+set(CMAKE_CXX_FLAGS_SANITIZE
+  "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+  CACHE STRING "Flags of the Sanitize build type")
+set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}" CACHE STRING "")
+set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined" CACHE STRING "")
+
+# alpenglow_library(<folder> SOURCES a.cpp ... HEADERS a.h ...)
+function(alpenglow_library folder)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS")
+  set(target alpenglow_${folder})
+  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(alpenglow::${folder} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/alpenglow>)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
+  install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder})
+endfunction()
+
+# alpenglow_program(<name> <source> LIBRARIES ...)
+function(alpenglow_program name source)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBRARIES")
+  add_executable(${name} ${source})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} alpenglow_warnings)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# alpenglow_embed(<target> <files>...): the text of each file becomes a string in the library.
+# "data/cie.csv" of folder atmosphere is EmbeddedText("atmosphere/data/cie.csv").
+function(alpenglow_embed target)
+  set(pieces)
+  foreach(file ${ARGN})
+    get_filename_component(path ${file} ABSOLUTE)
+    file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${path})
+    string(MAKE_C_IDENTIFIER ${name} symbol)
+    set(output ${CMAKE_CURRENT_BINARY_DIR}/${symbol}.embedded.cpp)
+    add_custom_command(
+      OUTPUT ${output}
+      COMMAND ${CMAKE_COMMAND} -DINPUT=${path} -DOUTPUT=${output} -DNAME=${name} -DSYMBOL=${symbol}
+              -P ${PROJECT_SOURCE_DIR}/.cmake/embed.cmake
+      DEPENDS ${path} ${PROJECT_SOURCE_DIR}/.cmake/embed.cmake
+      VERBATIM)
+    list(APPEND pieces ${output})
+    set(declarations "${declarations}extern const std::string_view ${symbol};\n")
+    set(rows "${rows}    {\"${name}\", &${symbol}},\n")
+  endforeach()
+  string(REPLACE alpenglow_ "" folder ${target})
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp @ONLY CONTENT
+"// Written by alpenglow_embed.
+#include \"@folder@/embedded_text.h\"
+#include <string>
+#include <utility>
+#include \"atmosphere/error.h\"
+namespace alpenglow::embedded {
+@declarations@}
+namespace alpenglow::@folder@ {
+std::string_view EmbeddedText(std::string_view name) {
+  using namespace alpenglow::embedded;
+  static const std::pair<std::string_view, const std::string_view*> rows[] = {
+@rows@  };
+  for (const auto& [key, text] : rows) {
+    if (key == name) return *text;
+  }
+  throw InternalError(\"no embedded text \" + std::string(name));
+}
+}  // namespace alpenglow::@folder@
+")
+  target_sources(${target} PRIVATE ${pieces} ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp)
+endfunction()
+
+# alpenglow_test(<folder>/<subject>_test.cpp LIBRARIES ...): one program a subject, one CTest line a test.
+function(alpenglow_test source)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;SOURCES")
+  string(REGEX REPLACE "[/]" "_" name ${source})
+  string(REGEX REPLACE "\\.cpp$" "" name ${name})
+  add_executable(${name} ${source} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} alpenglow_warnings GTest::gmock GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${name} PRIVATE
+    ALPENGLOW_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    ALPENGLOW_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+endfunction()
+
+# The package that find_package(alpenglow) reads.
+function(alpenglow_install_package)
+  include(CMakePackageConfigHelpers)
+  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/alpenglow)
+  set(config ${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfig.cmake)
+  file(CONFIGURE OUTPUT ${config} CONTENT
+"include(\"\${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake\")
+include(\"\${CMAKE_CURRENT_LIST_DIR}/alpenglowTargets.cmake\")
+" @ONLY)
+  write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfigVersion.cmake
+    COMPATIBILITY SameMinorVersion)
+  install(FILES ${config} ${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfigVersion.cmake
+                ${PROJECT_SOURCE_DIR}/.cmake/dependencies.cmake
+          DESTINATION ${destination})
+  install(EXPORT alpenglow NAMESPACE alpenglow:: FILE alpenglowTargets.cmake DESTINATION ${destination})
+endfunction()

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Constants of nature and of the solar system, with their sources. SI units.
+#pragma once
+
+#include <numbers>
+
+namespace alpenglow {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kRadiansPerDegree = kPi / 180.0;
+
+/// Mean radius of the earth, (2a + b) / 3 of WGS84. Moritz (2000), J. Geodesy 74, 128-133.
+inline constexpr double kEarthMeanRadius_m = 6371008.7714;
+
+/// Astronomical unit. IAU 2012 resolution B2, exact.
+inline constexpr double kAstronomicalUnit_m = 149597870700.0;
+
+/// Nominal radius of the sun. IAU 2015 resolution B3.
+inline constexpr double kSunRadius_m = 6.957e8;
+
+/// Angular radius of the sun at 1 au [rad]: asin(radius / au).
+inline constexpr double kSunAngularRadius_rad = 4.650471e-3;
+
+/// Luminous efficacy of monochromatic radiation of 540 THz [lm/W]. CIE 018:2019; the photopic
+/// maximum with the 1931 observer is 683.002 at 555 nm.
+inline constexpr double kLuminousEfficacy_lm_per_W = 683.002;
+
+}  // namespace alpenglow

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Failures: the user's (InputError), the machine's (OutputError, DisplayError), ours
+// (InternalError). Nothing is repaired in silence, and every check stays in release builds.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace alpenglow {
+
+/// The input is wrong. The message is one line: file, line or key, value, allowed range. Exit
+/// status 3.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An output could not be written; names the file. Exit status 4.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// There is no display, or its OpenGL is too old. Exit status 5.
+class DisplayError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A fault of the program. Exit status 70.
+class InternalError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+/// Returns `value`, or throws InputError naming `name` when it is not in [low, high]; NaN is never
+/// in.
+double RequireInRange(double value, double low, double high, std::string_view name);
+
+}  // namespace alpenglow
+
+/// ALPENGLOW_ENSURE(row.size(), ==, width): throws InternalError with both values when it does not
+/// hold.
+#define ALPENGLOW_ENSURE(left, op, right)                                                     \
+  do {                                                                                        \
+    const auto& ensure_left = (left);                                                         \
+    const auto& ensure_right = (right);                                                       \
+    if (!(ensure_left op ensure_right)) {                                                     \
+      throw ::alpenglow::InternalError(fmt::format("{}:{}: expected {} {} {}, got {} and {}", \
+                                                   __FILE__, __LINE__, #left, #op, #right,    \
+                                                   ensure_left, ensure_right));               \
+    }                                                                                         \
+  } while (false)

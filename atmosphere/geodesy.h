@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// Places: geodetic <-> earth-centred earth-fixed (ECEF) <-> east-north-up (ENU), in double.
+//
+// Values remember their frame: Point<Ecef> - Point<Enu> does not compile. A difference of points is
+// a Vector of that frame. Arithmetic is GeographicLib's (Karney): error below 10 nm near the earth.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace alpenglow {
+
+struct Ecef {};  // x to longitude 0, z to the north pole
+struct Enu {};   // x east, y north, z up, at the origin of a LocalFrame
+
+template <typename Frame>
+struct Vector {
+  glm::dvec3 xyz{0.0};
+};
+
+template <typename Frame>
+struct Point {
+  glm::dvec3 xyz{0.0};  // m
+};
+
+template <typename Frame>
+[[nodiscard]] Vector<Frame> operator-(const Point<Frame>& to, const Point<Frame>& from) {
+  return {to.xyz - from.xyz};
+}
+template <typename Frame>
+[[nodiscard]] Point<Frame> operator+(const Point<Frame>& from, const Vector<Frame>& step) {
+  return {from.xyz + step.xyz};
+}
+
+/// An ellipsoid of revolution. Flattening 0 is a sphere.
+struct Ellipsoid {
+  double equatorial_radius_m;
+  double flattening;
+};
+
+/// WGS84 (NIMA TR8350.2, 2000).
+inline constexpr Ellipsoid kWgs84{6378137.0, 1.0 / 298.257223563};
+
+/// A place. Latitude in [-pi/2, pi/2], longitude any finite value, height above the ellipsoid.
+struct GeodeticPosition {
+  double latitude_rad = 0.0;
+  double longitude_rad = 0.0;
+  double height_m = 0.0;
+};
+
+/// From degrees; throws InputError naming the key when latitude is not in [-90, 90], longitude not
+/// in
+/// [-180, 360], height not finite or below -12 km.
+[[nodiscard]] GeodeticPosition PlaceFromDegrees(double latitude, double longitude, double height_m);
+
+[[nodiscard]] Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid,
+                                           const GeodeticPosition& place);
+[[nodiscard]] GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid,
+                                                const Point<Ecef>& point);
+
+/// Radius of the sphere that osculates the ellipsoid at a latitude: the mean (Gaussian) radius
+/// sqrt(M N) of the meridian and prime-vertical curvatures [m].
+[[nodiscard]] double OsculatingRadius(const Ellipsoid& ellipsoid, double latitude_rad);
+
+/// East, north, up at a place.
+class LocalFrame {
+ public:
+  LocalFrame(const Ellipsoid& ellipsoid, const GeodeticPosition& origin);
+
+  [[nodiscard]] Point<Enu> EnuFromEcef(const Point<Ecef>& point) const;
+  [[nodiscard]] Point<Ecef> EcefFromEnu(const Point<Enu>& point) const;
+  [[nodiscard]] Vector<Enu> EnuFromEcef(const Vector<Ecef>& vector) const;
+  [[nodiscard]] Vector<Ecef> EcefFromEnu(const Vector<Enu>& vector) const;
+  [[nodiscard]] Point<Enu> EnuFromGeodetic(const GeodeticPosition& place) const;
+  [[nodiscard]] GeodeticPosition GeodeticFromEnu(const Point<Enu>& point) const;
+
+  [[nodiscard]] const GeodeticPosition& origin() const { return origin_; }
+  [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
+
+ private:
+  Ellipsoid ellipsoid_;
+  GeodeticPosition origin_;
+  Point<Ecef> origin_ecef_;
+  glm::dvec3 east_, north_, up_;  // in ECEF
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// What the air is made of: three species over a spherical planet, on a wavelength set.
+//
+//   molecules   sigma(h) = rayleigh_scattering exp(-h / H_R)                scattering only
+//   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering and
+//   absorption ozone       sigma(h) = ozone_absorption    tent(h)                      absorption
+//   only
+//
+// and nothing above the top. SI units except wavelengths [nm].
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "atmosphere/phase.h"
+
+namespace alpenglow {
+
+/// Ozone's relative density: 0 at the bottom, 1 at the peak, 0 at the top, linear between.
+struct OzoneTent {
+  double bottom_m = 10000.0;
+  double peak_m = 25000.0;
+  double top_m = 40000.0;
+
+  bool operator==(const OzoneTent&) const = default;
+};
+
+/// Lists hold one value per wavelength.
+struct Medium {
+  std::string name = "earth";
+  /// The ground is the WGS84 ellipsoid: a renderer replaces planet_radius_m by the radius of the
+  /// sphere that osculates it at the viewer. False when the planet is a sphere of exactly
+  /// planet_radius_m.
+  bool follows_wgs84 = true;
+  double planet_radius_m = 6371008.7714;
+  double atmosphere_height_m = 120000.0;  // top above the ground
+
+  std::vector<double> wavelengths_nm;    // ascending, in [200, 4000]
+  std::vector<double> solar_irradiance;  // W m^-2 nm^-1 at 1 au, above the air
+  std::vector<double> ground_albedo;     // [0, 1], Lambertian
+
+  std::vector<double> rayleigh_scattering_per_m;  // at altitude 0
+  double rayleigh_scale_height_m = 8000.0;
+
+  std::vector<double> mie_scattering_per_m;  // at altitude 0
+  std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
+  double mie_scale_height_m = 1200.0;
+  PhaseFunction mie_phase;
+
+  std::vector<double> ozone_absorption_per_m;  // at the peak of the tent
+  OzoneTent ozone;
+
+  bool operator==(const Medium&) const = default;
+};
+
+/// Throws InputError naming the key, the value and the range of the first parameter out of range.
+void Validate(const Medium& medium);
+
+/// A 64-bit hash (FNV-1a over the bit patterns) of everything that a table depends on: all but the
+/// name. Stable over programs, machines and versions.
+[[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
+
+/// One of "earth", "bruneton2017", "clear-mountain", "hazy", "mars", on the preset's own
+/// wavelengths
+/// ("bruneton2017": 680, 550, 440 nm of the publication, given ascending) or, for all but
+/// "bruneton2017", on the ones given. Throws InputError for another name.
+[[nodiscard]] Medium MediumPreset(std::string_view name);
+[[nodiscard]] Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm);
+[[nodiscard]] std::vector<std::string> MediumPresetNames();
+
+/// Reads atmosphere.toml. Throws InputError "file:line: key ..." for unknown keys (with the nearest
+/// known one), wrong types, NaN, infinities, lists of unequal length, values out of range and
+/// malformed text.
+[[nodiscard]] Medium ReadMedium(const std::filesystem::path& file);
+
+/// As ReadMedium, from text; `origin` stands in messages where the file's name would.
+[[nodiscard]] Medium MediumFromToml(std::string_view text, const std::string& origin);
+
+}  // namespace alpenglow

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: MIT
+// Closes what shared_begin.h opened.
+#undef SHARED
+#undef Number
+#undef Length
+#undef Truth

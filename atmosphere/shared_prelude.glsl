@@ -1,0 +1,6 @@
+// Opens shared texts for GLSL; the C++ twin is shared_begin.h.
+#define SHARED
+#define Number float
+#define Length float
+#define Truth bool
+#define select(condition, yes, no) ((condition) ? (yes) : (no))

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Spectra on a wavelength set, published tables, and the way from bands to colour.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow {
+
+/// A published table: y over x, linear between its points.
+class SampledFunction {
+ public:
+  /// @param x strictly ascending, as long as y, at least one.
+  SampledFunction(std::vector<double> x, std::vector<double> y);
+
+  /// Linear between the points, the end value beyond them.
+  [[nodiscard]] double operator()(double x) const;
+  /// Exact mean of the broken line over [low, high], low < high.
+  [[nodiscard]] double Mean(double low, double high) const;
+
+  [[nodiscard]] std::span<const double> x() const { return x_; }
+  [[nodiscard]] std::span<const double> y() const { return y_; }
+
+ private:
+  std::vector<double> x_, y_;
+};
+
+/// Wavelengths [nm] of 3, 4, 8, 16 or 40 bands; throws InputError for another number.
+/// 3 and 4 are the optimised sets {450,540,610} and {450,500,590,650}; 8, 16 and 40 are uniform.
+[[nodiscard]] std::vector<double> WavelengthSet(int bands);
+
+/// Solar spectral irradiance at 1 au [W m^-2 nm^-1], mean over 10 nm around the wavelength.
+/// ASTM G173-03 (Gueymard). @param wavelength_nm in [300, 900], clamped to the ends of the table
+/// beyond.
+[[nodiscard]] double SolarIrradiance(double wavelength_nm);
+
+/// Rayleigh scattering coefficient of dry air at sea level, 288.15 K, 1013.25 hPa [1/m].
+/// Bodhaine et al. (1999), J. Atmos. Ocean. Tech. 16, 1854, equation 29; 360 ppm CO2.
+/// @param wavelength_nm in [250, 4000].
+[[nodiscard]] double RayleighScatteringAtSeaLevel(double wavelength_nm);
+
+/// Ozone absorption cross section at 233 K [m^2 per molecule], linear in a 10 nm table, 0 outside
+/// it.
+[[nodiscard]] double OzoneCrossSection(double wavelength_nm);
+
+/// CIE 1931 2-degree colour-matching functions at a wavelength, linear in the 5 nm table, 0
+/// outside.
+[[nodiscard]] std::array<double, 3> ColourMatching(double wavelength_nm);
+
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+/// Linear sRGB (Rec. 709 primaries, D65) from CIE XYZ, and back. IEC 61966-2-1.
+[[nodiscard]] const Matrix3& LinearSrgbFromXyz();
+[[nodiscard]] const Matrix3& XyzFromLinearSrgb();
+[[nodiscard]] std::array<double, 3> operator*(const Matrix3& matrix,
+                                              const std::array<double, 3>& vector);
+
+/// Colour of spectral radiance given in bands.
+///
+/// XYZ [cd m^-2 when radiance is W m^-2 sr^-1 nm^-1; Y is luminance] is a 3 x N matrix times the
+/// bands. With at most 12 bands the matrix is the least-squares fit, in relative XYZ, to a family
+/// of daylight spectra (sun through air, haze and ozone, and light scattered by them) on the given
+/// solar spectrum; with more it is the quadrature of the colour-matching functions over the bands.
+class BandColour {
+ public:
+  explicit BandColour(std::vector<double> wavelengths_nm);
+
+  /// @param radiance one value a band.
+  [[nodiscard]] std::array<double, 3> Xyz(std::span<const double> radiance) const;
+  [[nodiscard]] std::array<double, 3> LinearSrgb(std::span<const double> radiance) const;
+
+  /// Row-major 3 x N: linear sRGB [cd/m^2 per W m^-2 sr^-1 nm^-1] from bands.
+  [[nodiscard]] std::span<const double> linear_srgb_from_bands() const { return srgb_; }
+  [[nodiscard]] const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
+
+ private:
+  std::vector<double> wavelengths_nm_;
+  std::vector<double> xyz_, srgb_;
+};
+
+/// A spectral albedo in [0, 1] on the wavelengths whose colour under the equal-energy white is the
+/// given linear sRGB: smooth, by a sum of three fixed bell-shaped bases per primary (see
+/// spectrum.cpp).
+[[nodiscard]] std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
+                                                       std::span<const double> wavelengths_nm);
+
+/// Colour difference CIEDE2000 of two XYZ colours relative to `white` (CIE 142-2001; Sharma et al.
+/// 2005).
+[[nodiscard]] double Ciede2000(const std::array<double, 3>& xyz_a,
+                               const std::array<double, 3>& xyz_b,
+                               const std::array<double, 3>& white);
+
+}  // namespace alpenglow

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Instants: UTC on the proleptic Gregorian calendar, leap seconds included, and the scales that
+// astronomy wants (TT, UT1).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace alpenglow {
+
+/// An instant of UTC as a day and the second in it. Second 86400.x exists on days with a leap
+/// second.
+struct UtcInstant {
+  int modified_julian_day = 60000;  // day number, 0 on 1858-11-17
+  double second_of_day = 0.0;       // [0, 86400), [0, 86401) on a day that ends in a leap second
+
+  bool operator==(const UtcInstant&) const = default;
+};
+
+/// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00", fractions of a second
+/// allowed. Without Z or an offset `zone` (IANA name) is needed; a local time in a DST gap or
+/// overlap is refused and the message asks for the offset. Years 1900 to 2100. Throws InputError
+/// naming text and fault.
+[[nodiscard]] UtcInstant ParseInstant(std::string_view text,
+                                      const std::optional<std::string>& zone = std::nullopt);
+
+/// "2026-06-21T04:00:00Z"; with `decimals` digits of a second.
+[[nodiscard]] std::string FormatUtc(const UtcInstant& instant, int decimals = 0);
+
+/// As FormatUtc in a zone, with its offset: "2026-06-21T13:00:00+09:00".
+[[nodiscard]] std::string FormatInZone(const UtcInstant& instant, const std::string& zone);
+
+/// `instant` moved by seconds (any sign), counted without leap seconds as clocks do.
+[[nodiscard]] UtcInstant AddSeconds(const UtcInstant& instant, double seconds);
+
+/// Seconds from one to the other, counted without leap seconds.
+[[nodiscard]] double SecondsBetween(const UtcInstant& from, const UtcInstant& to);
+
+/// "1h30m", "90s", "-20m", "2d": seconds. Throws InputError.
+[[nodiscard]] double ParseDuration(std::string_view text);
+
+/// TT - UT1 [s]. Inside 1960-2026 from the leap seconds (|UT1 - UTC| < 0.9 s neglected), outside
+/// from the polynomial model of Espenak and Meeus (2006), joined continuously.
+[[nodiscard]] double DeltaT(const UtcInstant& instant);
+
+}  // namespace alpenglow

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Pictures: linear in memory, EXR (linear, with metadata) and PNG (exposed, tone-mapped, dithered).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace alpenglow {
+
+/// A plane of floats, row 0 at the top.
+struct Channel {
+  std::string name;  // as in the EXR file: "R", "depth.Z", ...
+  std::vector<float> values;
+};
+
+/// Linear sRGB [cd/m^2] and, optionally, more layers of the same size.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::array<float, 3>> rgb;
+  std::vector<Channel> layers;
+
+  Image() = default;
+  Image(int image_width, int image_height);
+  [[nodiscard]] std::array<float, 3>& at(int x, int y) {
+    return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x)];
+  }
+  [[nodiscard]] const std::array<float, 3>& at(int x, int y) const {
+    return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x)];
+  }
+};
+
+/// What made a picture: name and value, written into the file's header.
+using Metadata = std::map<std::string, std::string>;
+
+/// Writes float RGB and the layers, ZIP, atomically. Throws OutputError.
+void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata);
+/// Reads what WriteExr wrote (any scan-line EXR with R, G, B). Throws InputError.
+[[nodiscard]] Image ReadExr(const std::filesystem::path& file);
+[[nodiscard]] Metadata ReadExrMetadata(const std::filesystem::path& file);
+
+/// Exposure value at ISO 100. A luminance of 2^EV100 * 1.2 cd/m^2 saturates (Lagarde, de Rousiers
+/// 2014).
+[[nodiscard]] double ExposureScale(double ev100);
+
+/// EV100 that a histogram meter picks: mean log luminance between the 40th and 95th percentile
+/// mapped to middle grey by K = 12.5; pixels brighter than `ignore_above_cd_per_m2` (the sun's
+/// disk) do not count.
+[[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2);
+
+enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
+[[nodiscard]] ToneCurve ToneCurveFromName(const std::string& name);
+
+/// 8-bit sRGB of the exposed picture, dithered by blue-noise-like ordered noise of +-1/2 code (the
+/// same for every run). Out-of-gamut colours: see tone_curve.glsl.
+struct DisplayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+[[nodiscard]] DisplayImage Develop(const Image& image, double ev100, ToneCurve curve);
+
+void WritePng(const std::filesystem::path& file, const DisplayImage& image,
+              const Metadata& metadata);
+[[nodiscard]] DisplayImage ReadPng(const std::filesystem::path& file);
+
+}  // namespace alpenglow
