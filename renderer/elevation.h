@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Heights of the ground over a regular grid of geodetic coordinates (WGS84), and files that hold
+// them.
+//
+// Units: radians, metres above the ellipsoid. A void is a sample without data; it is NaN.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace alpenglow {
+
+/// Heights over a regular grid of geodetic coordinates. Row 0 is the northernmost. Longitudes may
+/// run past pi: column c lies at west_rad + c step_lon_rad, and places are compared modulo 2 pi.
+struct ElevationGrid {
+  double west_rad = 0.0;   // longitude of column 0
+  double north_rad = 0.0;  // latitude of row 0
+  double step_lon_rad = 0.0;
+  double step_lat_rad = 0.0;  // positive: rows go south
+  int columns = 0;
+  int rows = 0;
+  std::vector<float> height_m;  // rows x columns; NaN where there is no ground (a void left open)
+
+  [[nodiscard]] std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
+  [[nodiscard]] float at(int row, int column) const { return height_m[index(row, column)]; }
+  [[nodiscard]] double LatitudeOfRow(int row) const { return north_rad - row * step_lat_rad; }
+  [[nodiscard]] double LongitudeOfColumn(int column) const {
+    return west_rad + column * step_lon_rad;
+  }
+  /// Whether the columns go once around the earth, so that the last one is the first one's
+  /// neighbour.
+  [[nodiscard]] bool ClosesAroundTheEarth() const;
+  /// Bilinear height [m] at a place; nothing outside the grid or beside a void.
+  [[nodiscard]] std::optional<double> HeightAt(double latitude_rad, double longitude_rad) const;
+};
+
+enum class VoidPolicy { kFill, kLeaveOpen };
+
+struct ElevationModel {
+  ElevationGrid grid;
+  std::size_t voids = 0;         // samples without data in the file
+  std::size_t voids_filled = 0;  // of which were filled from their surroundings
+};
+
+/// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
+/// earth (resampled to geographic WGS84 unless its samples already lie on such a grid), metres or
+/// feet. Heights are taken as above the ellipsoid. Voids are the declared nodata value, NaN, and
+/// the values that are nodata by custom: -32768, -32767, -9999, the lowest float. kFill closes them
+/// with a membrane (Laplace's equation) spanned over their rims; places outside the footprint of a
+/// resampled file stay open.
+/// Throws InputError naming the file and the fault for no or a foreign coordinate system, a rotated
+/// or missing geotransform, several bands, complex samples, latitudes over 90, one row or column,
+/// no valid sample, heights that no ground on earth has, damaged or truncated files.
+[[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids);
+
+}  // namespace alpenglow
