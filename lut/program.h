@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What the three programs have in common: exit statuses, signals, progress, atomic output.
+// What the three programs have in common: exit statuses, signals, version, threads; progress and
+// atomic output have headers of their own, included here.
 #pragma once
 
-#include <chrono>
-#include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
+
+#include "lut/atomic_file.h"
+#include "lut/progress.h"
 
 namespace alpenglow {
 
 /// Runs `body` and maps failures to exit statuses, one line on standard error each: InputError 3,
-/// OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else 70.
-/// Installs handlers for SIGINT and SIGTERM that make Interrupted() true.
+/// OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else 70. Output
+/// that standard output did not take is an OutputError too.
+/// Installs handlers for SIGINT and SIGTERM that make Interrupted() true; the second signal of a
+/// kind ends the program at once. SIGXFSZ is ignored: a file over the limit is an OutputError.
 int RunProgram(const std::string& name, const std::function<int()>& body);
 
 /// True once SIGINT or SIGTERM has arrived. Long loops ask it and call ThrowIfInterrupted between
@@ -27,6 +32,7 @@ void ThrowIfInterrupted();
 /// Uses `threads` threads (0: all) from here to the end of the object.
 class ThreadLimit {
  public:
+  /// Throws InputError for a negative number.
   explicit ThreadLimit(int threads);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;
@@ -34,30 +40,7 @@ class ThreadLimit {
 
  private:
   struct State;
-  State* state_;
+  std::unique_ptr<State> state_;
 };
-
-enum class ProgressStyle { kAuto, kPlain, kJson, kQuiet };
-
-/// Progress on standard error: a bar with the time left on a terminal, one line per 5 % elsewhere,
-/// JSON lines on request. Advance() may be called from any thread.
-class Progress {
- public:
-  Progress(std::string label, std::size_t total, ProgressStyle style);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  void Advance(std::size_t steps = 1);
-
- private:
-  struct State;
-  State* state_;
-};
-
-/// Writes a file whole or not at all: `write` gets the name of a temporary in the target's folder,
-/// which is renamed to `target` when `write` returns. Creates no folders. On failure the temporary
-/// is removed and OutputError names the target.
-void WriteFileAtomically(const std::filesystem::path& target,
-                         const std::function<void(const std::filesystem::path&)>& write);
 
 }  // namespace alpenglow

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Options that every program has. Included by the one translation unit of a program that parses
+// its command line (CLI11 is slow to compile).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "lut/program.h"
+
+namespace alpenglow {
+
+struct CommonOptions {
+  int threads = 0;
+  bool quiet = false;
+  std::string progress = "auto";
+
+  [[nodiscard]] ProgressStyle progress_style() const {
+    return quiet ? ProgressStyle::kQuiet : ProgressStyleFromName(progress);
+  }
+};
+
+/// Adds --threads, --quiet, --progress and --version. `options` must outlive the parsing.
+inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOptions& options) {
+  app.add_option("--threads", options.threads, "Threads to use; 0: all")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet, "No progress and no notes on standard error");
+  app.add_option("--progress", options.progress,
+                 "Progress on standard error: auto, plain, json or quiet")
+      ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))
+      ->capture_default_str();
+  app.set_version_flag("--version", [program] { return VersionText(program); });
+}
+
+/// Parses. Gives an exit status when the program has nothing left to do: 0 after --help and
+/// --version, 2 when the command line is wrong.
+inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+}
+
+}  // namespace alpenglow
