@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/single_scattering.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/batch.h"
+#include "atmosphere/error.h"
+#include "atmosphere/quadrature.h"
+#include "atmosphere/shell.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMetresPerKilometre = 1000.0;
+
+/// The lengths of a medium in km, in the type of the evaluation.
+template <typename T>
+struct ShellLengths {
+  explicit ShellLengths(const Medium& medium)
+      : radius(Kilometres(medium.planet_radius_m)),
+        top(Kilometres(medium.atmosphere_height_m)),
+        rayleigh(Kilometres(medium.rayleigh_scale_height_m)),
+        mie(Kilometres(medium.mie_scale_height_m)),
+        ozone_bottom(Kilometres(medium.ozone.bottom_m)),
+        ozone_peak(Kilometres(medium.ozone.peak_m)),
+        ozone_top(Kilometres(medium.ozone.top_m)) {}
+
+  static T Kilometres(double metres) {
+    return T(static_cast<ScalarOf>(metres / kMetresPerKilometre));
+  }
+  using ScalarOf = std::conditional_t<std::is_same_v<T, double>, double, float>;
+
+  T radius, top, rayleigh, mie, ozone_bottom, ozone_peak, ozone_top;
+};
+
+/// Columns [km] of the three species.
+template <typename T>
+struct ColumnSet {
+  T rayleigh, mie, ozone;
+};
+
+template <typename T>
+ColumnSet<T> ColumnsUp(const ShellLengths<T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  return {
+      ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
+      ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
+      TentColumnUp<T>(h, mu, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top, shell.radius)};
+}
+
+template <typename T>
+ColumnSet<T> ColumnsTowards(const ShellLengths<T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  using std::abs;
+  // Points in the planet's shadow have perigees below the ground, whose columns nobody uses: they
+  // only have to be finite.
+  const T perigee = max(PerigeeAltitude<T>(h, mu, shell.radius),
+                        T(static_cast<typename ShellLengths<T>::ScalarOf>(-1)));
+  const ColumnSet<T> up = ColumnsUp(shell, h, T(abs(mu)));
+  const ColumnSet<T> low =
+      ColumnsUp(shell, perigee, T(static_cast<typename ShellLengths<T>::ScalarOf>(0)));
+  return {ColumnToSun<T>(mu, up.rayleigh, low.rayleigh), ColumnToSun<T>(mu, up.mie, low.mie),
+          ColumnToSun<T>(mu, up.ozone, low.ozone)};
+}
+
+template <typename T>
+ColumnSet<T> Between(const T& mu_origin, const T& mu_point, const ColumnSet<T>& origin,
+                     const ColumnSet<T>& point, const ColumnSet<T>& perigee) {
+  using namespace shared;
+  return {ColumnBetween<T>(mu_origin, mu_point, origin.rayleigh, point.rayleigh, perigee.rayleigh),
+          ColumnBetween<T>(mu_origin, mu_point, origin.mie, point.mie, perigee.mie),
+          ColumnBetween<T>(mu_origin, mu_point, origin.ozone, point.ozone, perigee.ozone)};
+}
+
+/// The observer moved to where the ray enters the air; all distances count from here.
+struct Entry {
+  double altitude_km, mu, mu_s;
+};
+
+Entry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
+  using namespace shared;
+  const double radius = medium.planet_radius_m / kMetresPerKilometre;
+  const double h = std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
+  const double d = extent.begin_m / kMetresPerKilometre;
+  if (d == 0.0) return {h, ray.mu, ray.mu_s};
+  const double altitude = medium.atmosphere_height_m / kMetresPerKilometre;
+  return {altitude, ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
+          SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius)};
+}
+
+/// A stretch of the ray on which the integrand is smooth and the altitude monotone [km from the
+/// entry].
+struct RayPanel {
+  double begin, end;
+  bool lit;
+};
+
+void AppendCrossings(double h, double mu, double z, double radius, std::vector<double>& cuts) {
+  const double a = (radius + h) * mu;
+  const double discriminant = a * a - (h - z) * (2.0 * radius + h + z);
+  if (discriminant <= 0.0) return;
+  cuts.push_back(-a - std::sqrt(discriminant));
+  cuts.push_back(-a + std::sqrt(discriminant));
+}
+
+std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent, const Entry& entry,
+                                    const Medium& medium, const Sampling& sampling) {
+  const double radius = medium.planet_radius_m / kMetresPerKilometre;
+  const double length = (extent.end_m - extent.begin_m) / kMetresPerKilometre;
+  const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
+  const double dark_begin = (shadow.dark_begin_m - extent.begin_m) / kMetresPerKilometre;
+  const double dark_end = (shadow.dark_end_m - extent.begin_m) / kMetresPerKilometre;
+  const bool any_dark = dark_begin < dark_end;
+  std::vector<double> cuts{0.0, length, -(radius + entry.altitude_km) * entry.mu};
+  if (any_dark) cuts.insert(cuts.end(), {dark_begin, dark_end});
+  if (sampling.split_ozone) {
+    for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
+      AppendCrossings(entry.altitude_km, entry.mu, z / kMetresPerKilometre, radius, cuts);
+    }
+  }
+  for (double& cut : cuts) cut = std::clamp(cut, 0.0, length);
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<RayPanel> panels;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (cuts[i + 1] - cuts[i] <= 1e-12 * length) continue;
+    const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
+    const bool lit = !(any_dark && middle > dark_begin && middle < dark_end);
+    if (lit || sampling.dark_samples) panels.push_back({cuts[i], cuts[i + 1], lit});
+  }
+  return panels;
+}
+
+double LargestExtinction(const Medium& medium) {
+  double largest = 0.0;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    largest = std::max(largest,
+                       medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
+  }
+  return largest;
+}
+
+// Strength k of the map t = length v / (1 + k (1 - v)) for a panel whose lower end has altitude z
+// and zenith cosine c > 0 upwards: half of the nodes lie below z + 20 km and within 8 optical
+// depths.
+double MapStrength(double z, double c, double length, double radius, double extinction_per_km) {
+  double half = shared::DistanceUpTo<double>(z, c, z + 20.0, radius);
+  if (extinction_per_km > 0.0) half = std::min(half, 8.0 / extinction_per_km);
+  return std::max(length / half - 2.0, 0.0);
+}
+
+// Places Gauss nodes in every panel, in the order of the panels.
+template <typename Real>
+void PlaceSamples(const std::vector<RayPanel>& panels, const Entry& entry, const Medium& medium,
+                  const Sampling& sampling, RaySamples<Real>& samples) {
+  const double radius = medium.planet_radius_m / kMetresPerKilometre;
+  const double extinction = LargestExtinction(medium) * kMetresPerKilometre;
+  std::size_t count = 0;
+  for (const RayPanel& panel : panels) {
+    const double length = panel.end - panel.begin;
+    const double z_begin =
+        shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, panel.begin, radius);
+    const double z_end =
+        shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, panel.end, radius);
+    const bool up = z_end >= z_begin;
+    const double low = std::max(std::min(z_begin, z_end), 0.0);
+    const double at = up ? panel.begin : panel.end;
+    const double cosine = std::abs(
+        shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu, at, low, radius));
+    const double k = MapStrength(low, cosine, length, radius, extinction * std::exp(-low / 8.0));
+    const GaussRule& rule = GaussLegendre(sampling.nodes);
+    ALPENGLOW_ENSURE(count + rule.node.size() + 16, <=, kMaxRaySamples);
+    for (std::size_t i = 0; i < rule.node.size(); ++i, ++count) {
+      const double v = rule.node[i];
+      const double bend = 1.0 + k * (1.0 - v);
+      const double t = length * v / bend;
+      samples.distance[count] = static_cast<Real>(up ? panel.begin + t : panel.end - t);
+      samples.weight[count] =
+          static_cast<Real>(rule.weight[i] * length * (1.0 + k) / (bend * bend));
+      samples.lit[count] = panel.lit ? Real(1) : Real(0);
+    }
+  }
+  samples.count = count;
+  constexpr std::size_t kLanes = BatchOf<Real>::kLanes;
+  samples.padded = (count + kLanes - 1) / kLanes * kLanes;
+  for (; count < samples.padded; ++count) {
+    samples.distance[count] = samples.weight[count] = samples.lit[count] = Real(0);
+  }
+}
+
+// Everything at the samples that depends on position: altitude, angles, densities, columns.
+template <typename Real>
+void FillSamples(const Medium& medium, const Entry& entry, double ray_nu,
+                 RaySamples<Real>& samples) {
+  using namespace shared;
+  using Lanes = BatchOf<Real>;
+  using T = typename Lanes::Type;
+  using std::abs;
+  using std::exp;
+  const ShellLengths<T> shell(medium);
+  const T h0(static_cast<Real>(entry.altitude_km)), mu0(static_cast<Real>(entry.mu));
+  const T mu_s0(static_cast<Real>(entry.mu_s)), nu(static_cast<Real>(ray_nu)), zero(Real(0));
+  const ColumnSet<T> origin = ColumnsUp<T>(shell, h0, T(abs(mu0)));
+  const T low = max(PerigeeAltitude<T>(h0, mu0, shell.radius), T(Real(-1)));
+  const ColumnSet<T> perigee = ColumnsUp<T>(shell, low, zero);
+  for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
+    const T d = Lanes::Load(&samples.distance[i]);
+    const T h = max(AltitudeAlongRay<T>(h0, mu0, d, shell.radius), zero);
+    const T mu = ZenithCosineAlongRay<T>(h0, mu0, d, h, shell.radius);
+    const T mu_s = SunCosineAlongRay<T>(h0, mu_s0, nu, d, h, shell.radius);
+    const ColumnSet<T> point = ColumnsUp<T>(shell, h, T(abs(mu)));
+    const ColumnSet<T> view = Between<T>(mu0, mu, origin, point, perigee);
+    const ColumnSet<T> sun = ColumnsTowards<T>(shell, h, mu_s);
+    const auto put = [i](auto& row, const T& value) { Lanes::Store(&row[i], value); };
+    put(samples.altitude, h);
+    put(samples.mu, mu);
+    put(samples.mu_s, mu_s);
+    put(samples.rayleigh_density, exp(-h / shell.rayleigh));
+    put(samples.mie_density, exp(-h / shell.mie));
+    put(samples.view_rayleigh, view.rayleigh);
+    put(samples.view_mie, view.mie);
+    put(samples.view_ozone, view.ozone);
+    put(samples.sun_rayleigh, sun.rayleigh);
+    put(samples.sun_mie, sun.mie);
+    put(samples.sun_ozone, sun.ozone);
+  }
+}
+
+// Column of an exponential layer along [0, length] from the entry by 8 Gauss nodes: exact to 1e-7
+// relative while the altitudes span less than 6 scale heights, however short the segment.
+template <typename Real, typename Density>
+Real ShortColumn(const Entry& entry, double length, double radius, const Density& density) {
+  const GaussRule& rule = GaussLegendre(8);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double h = shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu,
+                                                      rule.node[i] * length, radius);
+    sum += rule.weight[i] * density(std::max(h, 0.0));
+  }
+  return static_cast<Real>(sum * length);
+}
+
+// Columns along a segment: the difference of two closed forms is good to 1e-7 of the whole column,
+// which is nothing for a short segment; those are integrated.
+template <typename Real>
+ColumnSet<Real> SegmentColumns(const Medium& medium, const Entry& entry, double length) {
+  using namespace shared;
+  const double radius = medium.planet_radius_m / kMetresPerKilometre;
+  const ShellLengths<Real> shell(medium);
+  const double h_end =
+      std::max(AltitudeAlongRay<double>(entry.altitude_km, entry.mu, length, radius), 0.0);
+  const double mu_end =
+      ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu, length, h_end, radius);
+  const double perigee = PerigeeAltitude<double>(entry.altitude_km, entry.mu, radius);
+  const bool through = entry.mu < 0.0 && mu_end > 0.0;
+  const double low = through ? perigee : std::min(entry.altitude_km, h_end);
+  const double span = std::max(entry.altitude_km, h_end) - low;
+
+  const auto real = [](double value) { return static_cast<Real>(value); };
+  const ColumnSet<Real> origin =
+      ColumnsUp<Real>(shell, real(entry.altitude_km), real(std::abs(entry.mu)));
+  const ColumnSet<Real> point = ColumnsUp<Real>(shell, real(h_end), real(std::abs(mu_end)));
+  const ColumnSet<Real> middle = ColumnsUp<Real>(shell, real(std::max(perigee, -1.0)), Real(0));
+  ColumnSet<Real> columns = Between<Real>(real(entry.mu), real(mu_end), origin, point, middle);
+  const auto exponential = [](double height) {
+    return [height](double h) { return std::exp(-h / height); };
+  };
+  const double rayleigh = medium.rayleigh_scale_height_m / kMetresPerKilometre;
+  const double mie = medium.mie_scale_height_m / kMetresPerKilometre;
+  if (span < 4.0 * rayleigh)
+    columns.rayleigh = ShortColumn<Real>(entry, length, radius, exponential(rayleigh));
+  if (span < 4.0 * mie) columns.mie = ShortColumn<Real>(entry, length, radius, exponential(mie));
+  if (span < 2.0) {
+    columns.ozone = ShortColumn<Real>(entry, length, radius, [&](double h) {
+      return TentDensity<double>(h, medium.ozone.bottom_m / kMetresPerKilometre,
+                                 medium.ozone.peak_m / kMetresPerKilometre,
+                                 medium.ozone.top_m / kMetresPerKilometre);
+    });
+  }
+  return columns;
+}
+
+}  // namespace
+
+template <typename Real>
+AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium) {
+  Validate(medium_);
+}
+
+template <typename Real>
+std::array<Real, 3> AirIntegrator<Real>::ColumnsToSpace(double altitude_m, double mu) const {
+  const ShellLengths<Real> shell(medium_);
+  const auto columns = ColumnsTowards<Real>(
+      shell, static_cast<Real>(altitude_m / kMetresPerKilometre), static_cast<Real>(mu));
+  const Real metres = static_cast<Real>(kMetresPerKilometre);
+  return {columns.rayleigh * metres, columns.mie * metres, columns.ozone * metres};
+}
+
+template <typename Real>
+Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double mu) const {
+  const ViewRay ray{altitude_m, mu, 1.0, 1.0};
+  const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+  if (extent.end == RayEnd::kGround) return Bands<Real>(bands());
+  return TransmittanceAlong(ray);
+}
+
+template <typename Real>
+Bands<Real> AirIntegrator<Real>::TransmittanceAlong(const ViewRay& ray) const {
+  const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+  const Entry entry = EntryOf(ray, extent, medium_);
+  const ColumnSet<Real> columns =
+      SegmentColumns<Real>(medium_, entry, (extent.end_m - extent.begin_m) / kMetresPerKilometre);
+  const Real metres = static_cast<Real>(kMetresPerKilometre);
+  Bands<Real> transmittance(bands());
+  for (std::size_t band = 0; band < bands(); ++band) {
+    const Real tau = static_cast<Real>(medium_.rayleigh_scattering_per_m[band]) * columns.rayleigh +
+                     static_cast<Real>(medium_.mie_extinction_per_m[band]) * columns.mie +
+                     static_cast<Real>(medium_.ozone_absorption_per_m[band]) * columns.ozone;
+    transmittance[band] = std::exp(-tau * metres);
+  }
+  return transmittance;
+}
+
+template <typename Real>
+RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling& sampling) const {
+  RaySamples<Real> samples;
+  samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+  const Entry entry = EntryOf(ray, samples.extent, medium_);
+  PlaceSamples(CutIntoPanels(ray, samples.extent, entry, medium_, sampling), entry, medium_,
+               sampling, samples);
+  FillSamples(medium_, entry, ray.nu, samples);
+  return samples;
+}
+
+template <typename Real>
+ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples) const {
+  using Lanes = BatchOf<Real>;
+  using T = typename Lanes::Type;
+  using std::exp;
+  ScatteredOnce<Real> scattered{Bands<Real>(bands()), Bands<Real>(bands()), Bands<Real>(bands())};
+  const Real metres = static_cast<Real>(kMetresPerKilometre);
+  for (std::size_t band = 0; band < bands(); ++band) {
+    const T rayleigh(metres * static_cast<Real>(medium_.rayleigh_scattering_per_m[band]));
+    const T mie(metres * static_cast<Real>(medium_.mie_extinction_per_m[band]));
+    const T ozone(metres * static_cast<Real>(medium_.ozone_absorption_per_m[band]));
+    T rayleigh_sum(Real(0)), mie_sum(Real(0));
+    for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
+      const auto at = [i](const auto& row) { return Lanes::Load(&row[i]); };
+      const T tau = rayleigh * (at(samples.view_rayleigh) + at(samples.sun_rayleigh)) +
+                    mie * (at(samples.view_mie) + at(samples.sun_mie)) +
+                    ozone * (at(samples.view_ozone) + at(samples.sun_ozone));
+      const T light = at(samples.weight) * at(samples.lit) * exp(-tau);
+      rayleigh_sum += light * at(samples.rayleigh_density);
+      mie_sum += light * at(samples.mie_density);
+    }
+    const Real mie_scattering = metres * static_cast<Real>(medium_.mie_scattering_per_m[band]);
+    scattered.rayleigh[band] = Lanes::Sum(rayleigh_sum) * metres *
+                               static_cast<Real>(medium_.rayleigh_scattering_per_m[band]);
+    scattered.mie[band] = Lanes::Sum(mie_sum) * mie_scattering;
+  }
+  return scattered;
+}
+
+template <typename Real>
+Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
+  const Real rayleigh_phase = static_cast<Real>(Phase({.kind = PhaseKind::kRayleigh}, nu));
+  const Real mie_phase = static_cast<Real>(Phase(medium_.mie_phase, nu));
+  Bands<Real> radiance(bands());
+  for (std::size_t band = 0; band < bands(); ++band) {
+    radiance[band] = rayleigh_phase * scattered.rayleigh[band] + mie_phase * scattered.mie[band];
+  }
+  return radiance;
+}
+
+template class AirIntegrator<float>;
+template class AirIntegrator<double>;
+
+}  // namespace alpenglow
