@@ -12,9 +12,13 @@
 //  root.
 //  5. Capital = ours, lower case = builtin of both languages.
 //  6. Kilometres inside the text (the range of float), metres in every public C++ signature.
+
+// Number(0.1) rounds a literal to the type that is being read: that is its purpose.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wfloat-conversion"
+
 #define SHARED             \
   template <typename Real> \
   [[nodiscard]] inline
 #define Number Real
 #define Length Real
-#define Truth auto

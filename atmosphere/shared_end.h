@@ -3,4 +3,4 @@
 #undef SHARED
 #undef Number
 #undef Length
-#undef Truth
+#pragma GCC diagnostic pop

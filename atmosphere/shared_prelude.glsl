@@ -2,5 +2,4 @@
 #define SHARED
 #define Number float
 #define Length float
-#define Truth bool
 #define select(condition, yes, no) ((condition) ? (yes) : (no))
