@@ -2,15 +2,15 @@
 // What the air is made of: three species over a spherical planet, on a wavelength set.
 //
 //   molecules   sigma(h) = rayleigh_scattering exp(-h / H_R)                scattering only
-//   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering and
-//   absorption ozone       sigma(h) = ozone_absorption    tent(h)                      absorption
-//   only
+//   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering, absorption
+//   ozone       sigma(h) = ozone_absorption    tent(h)                      absorption only
 //
 // and nothing above the top. SI units except wavelengths [nm].
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +39,7 @@ struct Medium {
   double atmosphere_height_m = 120000.0;  // top above the ground
 
   std::vector<double> wavelengths_nm;    // ascending, in [200, 4000]
-  std::vector<double> solar_irradiance;  // W m^-2 nm^-1 at 1 au, above the air
+  std::vector<double> solar_irradiance;  // W m^-2 nm^-1 above the air; at 1 au ("mars": 1.524 au)
   std::vector<double> ground_albedo;     // [0, 1], Lambertian
 
   std::vector<double> rayleigh_scattering_per_m;  // at altitude 0
@@ -56,17 +56,30 @@ struct Medium {
   bool operator==(const Medium&) const = default;
 };
 
+/// A parameter out of range: its key in atmosphere.toml, and one line with key, value and range.
+struct MediumFault {
+  std::string key;
+  std::string text;
+
+  bool operator==(const MediumFault&) const = default;
+};
+
+/// The first parameter out of range, if there is one.
+[[nodiscard]] std::optional<MediumFault> FindFault(const Medium& medium);
+
 /// Throws InputError naming the key, the value and the range of the first parameter out of range.
 void Validate(const Medium& medium);
 
-/// A 64-bit hash (FNV-1a over the bit patterns) of everything that a table depends on: all but the
-/// name. Stable over programs, machines and versions.
+/// A 64-bit hash (FNV-1a over the bit patterns, -0 read as 0) of everything that a table depends
+/// on: all but the name. Stable over programs, machines and versions.
 [[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
 
 /// One of "earth", "bruneton2017", "clear-mountain", "hazy", "mars", on the preset's own
 /// wavelengths
-/// ("bruneton2017": 680, 550, 440 nm of the publication, given ascending) or, for all but
-/// "bruneton2017", on the ones given. Throws InputError for another name.
+/// ("bruneton2017": 680, 550, 440 nm of the publication, given ascending; the others: the four
+/// optimised bands) or, for all but "bruneton2017", on the ones given, ascending in [360, 830]
+/// where the tables behind them reach. Throws InputError for another name or wavelength. Every
+/// number's source is in medium_presets.cpp.
 [[nodiscard]] Medium MediumPreset(std::string_view name);
 [[nodiscard]] Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm);
 [[nodiscard]] std::vector<std::string> MediumPresetNames();

@@ -20,10 +20,14 @@ enum class PhaseKind {
   kDraine,
 };
 
+/// Schlick's k = 1.55 g - 0.55 g^3 exceeds 1 from g = 0.938 on, where his formula is no longer a
+/// phase function: |g| must stay below this.
+inline constexpr double kLargestSchlickG = 0.938;
+
 /// Parameters of one phase function. Unused ones keep their defaults.
 struct PhaseFunction {
   PhaseKind kind = PhaseKind::kCornetteShanks;
-  double g = 0.8;            // asymmetry parameter of the (first) lobe, in (-1, 1)
+  double g = 0.8;            // asymmetry parameter of the (first) lobe, in (-1, 1); see Schlick
   double g_back = 0.0;       // second lobe of the double Henyey-Greenstein, in (-1, 1)
   double back_weight = 0.0;  // share of the second lobe, in [0, 1]
   double alpha = 1.0;        // Draine: 0 Henyey-Greenstein, 1 Cornette-Shanks; in [0, 1]
@@ -38,7 +42,8 @@ struct PhaseFunction {
 /// Mean of cos_scattering over the lobe. Exact (closed form).
 [[nodiscard]] double MeanCosine(const PhaseFunction& phase);
 
-/// A cosine drawn with the density 2 pi Phase(). @param u uniform in [0, 1).
+/// A cosine drawn with the density 2 pi Phase(). @param u uniform in [0, 1). The distribution is
+/// that of Phase() to 1e-9; for all but the double Henyey-Greenstein the cosine grows with u.
 [[nodiscard]] double SampleCosine(const PhaseFunction& phase, double u);
 
 /// "henyey-greenstein" and so on, as in atmosphere.toml; throws InputError for another name.

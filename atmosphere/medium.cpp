@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/medium.h"
+
+#include <bit>
+#include <cmath>
+
+#include "atmosphere/error.h"
+
+namespace alpenglow {
+namespace {
+
+using Fault = std::optional<MediumFault>;
+
+// Most bands a medium may have: a wavelength each nanometre from 360 to 830 nm, and some.
+constexpr std::size_t kMostWavelengths = 512;
+
+// Coefficients up to an optical depth of 1e5 in a layer of 1 m.
+constexpr double kLargestCoefficient_per_m = 1e5;
+
+Fault OutOfRange(const std::string& key, double value, double low, double high) {
+  if (value >= low && value <= high) return std::nullopt;  // written so that NaN is a fault
+  return MediumFault{key, fmt::format("{} is {}; it must lie in [{}, {}]", key, value, low, high)};
+}
+
+Fault FaultOfWavelengths(const std::vector<double>& wavelengths_nm) {
+  const std::string key = "spectrum.wavelengths_nm";
+  if (wavelengths_nm.empty() || wavelengths_nm.size() > kMostWavelengths) {
+    return MediumFault{key, fmt::format("{} has {} values; it must have 1 to {}", key,
+                                        wavelengths_nm.size(), kMostWavelengths)};
+  }
+  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
+    if (Fault fault = OutOfRange(key, wavelengths_nm[i], 200.0, 4000.0)) return fault;
+    if (i > 0 && !(wavelengths_nm[i] > wavelengths_nm[i - 1])) {
+      return MediumFault{key, fmt::format("{} has {} after {}; it must be strictly ordered", key,
+                                          wavelengths_nm[i], wavelengths_nm[i - 1])};
+    }
+  }
+  return std::nullopt;
+}
+
+struct NamedList {
+  const char* key;
+  const std::vector<double>& values;
+  double high;
+};
+
+Fault FaultOfLists(const Medium& medium) {
+  const NamedList lists[] = {
+      {"spectrum.solar_irradiance", medium.solar_irradiance, 1e6},
+      {"planet.ground_albedo", medium.ground_albedo, 1.0},
+      {"rayleigh.scattering_per_m", medium.rayleigh_scattering_per_m, kLargestCoefficient_per_m},
+      {"mie.scattering_per_m", medium.mie_scattering_per_m, kLargestCoefficient_per_m},
+      {"mie.extinction_per_m", medium.mie_extinction_per_m, kLargestCoefficient_per_m},
+      {"ozone.absorption_per_m", medium.ozone_absorption_per_m, kLargestCoefficient_per_m},
+  };
+  for (const NamedList& list : lists) {
+    if (list.values.size() != medium.wavelengths_nm.size()) {
+      return MediumFault{
+          list.key, fmt::format("{} has {} values; it must have {}, one per wavelength", list.key,
+                                list.values.size(), medium.wavelengths_nm.size())};
+    }
+    for (const double value : list.values) {
+      if (Fault fault = OutOfRange(list.key, value, 0.0, list.high)) return fault;
+    }
+  }
+  return std::nullopt;
+}
+
+Fault FaultOfExtinction(const Medium& medium) {
+  for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+    const double scattering = medium.mie_scattering_per_m[i];
+    const double extinction = medium.mie_extinction_per_m[i];
+    if (!(extinction >= scattering)) {
+      return MediumFault{
+          "mie.extinction_per_m",
+          fmt::format("mie.extinction_per_m is {} at {} nm; it must not be less than "
+                      "mie.scattering_per_m, {}",
+                      extinction, medium.wavelengths_nm[i], scattering)};
+    }
+  }
+  return std::nullopt;
+}
+
+Fault FaultOfScalars(const Medium& medium) {
+  const struct {
+    const char* key;
+    double value, low, high;
+  } scalars[] = {
+      {"planet.radius_m", medium.planet_radius_m, 1e3, 1e9},
+      {"planet.atmosphere_top_m", medium.atmosphere_height_m, 1.0, 1e7},
+      {"rayleigh.scale_height_m", medium.rayleigh_scale_height_m, 1.0, 2e5},
+      {"mie.scale_height_m", medium.mie_scale_height_m, 1.0, 2e5},
+      {"ozone.bottom_m", medium.ozone.bottom_m, 0.0, 1e7},
+      {"ozone.peak_m", medium.ozone.peak_m, 0.0, 1e7},
+      {"ozone.top_m", medium.ozone.top_m, 0.0, 1e7},
+  };
+  for (const auto& scalar : scalars) {
+    if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.low, scalar.high)) return fault;
+  }
+  const OzoneTent& ozone = medium.ozone;
+  if (!(ozone.bottom_m < ozone.peak_m && ozone.peak_m < ozone.top_m)) {
+    return MediumFault{
+        "ozone.peak_m",
+        fmt::format("ozone.peak_m is {}; it must lie between ozone.bottom_m, {}, and "
+                    "ozone.top_m, {}",
+                    ozone.peak_m, ozone.bottom_m, ozone.top_m)};
+  }
+  return std::nullopt;
+}
+
+Fault FaultOfPhase(const PhaseFunction& phase) {
+  try {
+    Validate(phase, "mie");
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    return MediumFault{text.substr(0, text.find(' ')), text};
+  }
+  return std::nullopt;
+}
+
+// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv), over little-endian bytes.
+class Fnv1a {
+ public:
+  void Add(std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte, word >>= 8) {
+      hash_ = (hash_ ^ (word & 0xffU)) * 0x100000001b3U;
+    }
+  }
+  void Add(double value) { Add(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value)); }
+  void Add(const std::vector<double>& values) {
+    Add(std::uint64_t{values.size()});
+    for (const double value : values) Add(value);
+  }
+  void Add(const std::string& text) {
+    Add(std::uint64_t{text.size()});
+    for (const char letter : text) Add(std::uint64_t{static_cast<unsigned char>(letter)});
+  }
+
+  [[nodiscard]] std::uint64_t hash() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325U;
+};
+
+}  // namespace
+
+std::optional<MediumFault> FindFault(const Medium& medium) {
+  if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm)) return fault;
+  if (Fault fault = FaultOfScalars(medium)) return fault;
+  if (Fault fault = FaultOfLists(medium)) return fault;
+  if (Fault fault = FaultOfExtinction(medium)) return fault;
+  return FaultOfPhase(medium.mie_phase);
+}
+
+void Validate(const Medium& medium) {
+  if (const Fault fault = FindFault(medium)) throw InputError(fault->text);
+}
+
+std::uint64_t MediumHash(const Medium& medium) {
+  Fnv1a fnv;
+  fnv.Add(std::uint64_t{medium.follows_wgs84});
+  fnv.Add(medium.planet_radius_m);
+  fnv.Add(medium.atmosphere_height_m);
+  fnv.Add(medium.wavelengths_nm);
+  fnv.Add(medium.solar_irradiance);
+  fnv.Add(medium.ground_albedo);
+  fnv.Add(medium.rayleigh_scattering_per_m);
+  fnv.Add(medium.rayleigh_scale_height_m);
+  fnv.Add(medium.mie_scattering_per_m);
+  fnv.Add(medium.mie_extinction_per_m);
+  fnv.Add(medium.mie_scale_height_m);
+  fnv.Add(NameOf(medium.mie_phase.kind));
+  fnv.Add(medium.mie_phase.g);
+  fnv.Add(medium.mie_phase.g_back);
+  fnv.Add(medium.mie_phase.back_weight);
+  fnv.Add(medium.mie_phase.alpha);
+  fnv.Add(medium.ozone_absorption_per_m);
+  fnv.Add(medium.ozone.bottom_m);
+  fnv.Add(medium.ozone.peak_m);
+  fnv.Add(medium.ozone.top_m);
+  return fnv.hash();
+}
+
+}  // namespace alpenglow

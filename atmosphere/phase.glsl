@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Phase functions [1/sr] of the cosine between the directions of propagation before and after
+// scattering (forward is +1). Each integrates to 1 over the sphere.
+//
+//   Rayleigh           3/(16 pi) (1 + c^2)
+//   Henyey-Greenstein  1/(4 pi) (1 - g^2) / (1 + g^2 - 2 g c)^(3/2)       Henyey, Greenstein (1941)
+//   Cornette-Shanks    3/(8 pi) (1 - g^2)/(2 + g^2) (1 + c^2) / (1 + g^2 - 2 g c)^(3/2)
+//                                                                          Cornette, Shanks (1992)
+//   Schlick            1/(4 pi) (1 - k^2) / (1 - k c)^2, k = 1.55 g - 0.55 g^3
+//                                                       Blasi, Le Saec, Schlick (1993); |g| < 0.938
+//   Draine             Henyey-Greenstein times (1 + a c^2) / (1 + a (1 + 2 g^2)/3);
+//                      Draine (2003)
+//
+// A lobe that points backwards is the mirror image of the one that points forwards, and the
+// denominators are written as a sum of two terms that are never negative,
+// 1 + g^2 - 2 g c = (1 - |g|)^2 + 2 |g| (1 - |c|_g) with |c|_g = c sign(g): nothing cancels in
+// float however sharp the lobe and however near its axis.
+
+SHARED Number PhaseClampedCosine(Number cos_scattering) {
+  return max(Number(-1.0), min(Number(1.0), cos_scattering));
+}
+
+// Of the cosine: its distance below the axis of the lobe, in [0, 2].
+SHARED Number PhaseOffAxis(Number cos_scattering, Number g) {
+  Number c = PhaseClampedCosine(cos_scattering);
+  return select(g < Number(0.0), Number(1.0) + c, Number(1.0) - c);
+}
+
+// (1 - g^2) / (1 + g^2 - 2 g c)^(3/2)
+SHARED Number PhaseLobe(Number cos_scattering, Number g) {
+  Number a = abs(g);
+  Number d =
+      (Number(1.0) - a) * (Number(1.0) - a) + Number(2.0) * a * PhaseOffAxis(cos_scattering, g);
+  return (Number(1.0) - a) * (Number(1.0) + a) / (d * sqrt(d));
+}
+
+SHARED Number PhaseRayleigh(Number cos_scattering) {
+  Number c = PhaseClampedCosine(cos_scattering);
+  return Number(0.0596831036594607509) * (Number(1.0) + c * c);
+}
+
+SHARED Number PhaseHenyeyGreenstein(Number cos_scattering, Number g) {
+  return Number(0.0795774715459476679) * PhaseLobe(cos_scattering, g);
+}
+
+SHARED Number PhaseDoubleHenyeyGreenstein(Number cos_scattering, Number g, Number g_back,
+                                          Number back_weight) {
+  return (Number(1.0) - back_weight) * PhaseHenyeyGreenstein(cos_scattering, g) +
+         back_weight * PhaseHenyeyGreenstein(cos_scattering, g_back);
+}
+
+SHARED Number PhaseDraine(Number cos_scattering, Number g, Number alpha) {
+  Number c = PhaseClampedCosine(cos_scattering);
+  return Number(0.238732414637843004) * PhaseLobe(cos_scattering, g) *
+         (Number(1.0) + alpha * c * c) /
+         (Number(3.0) + alpha * (Number(1.0) + Number(2.0) * g * g));
+}
+
+SHARED Number PhaseCornetteShanks(Number cos_scattering, Number g) {
+  Number c = PhaseClampedCosine(cos_scattering);
+  return Number(0.119366207318921502) * PhaseLobe(cos_scattering, g) * (Number(1.0) + c * c) /
+         (Number(2.0) + g * g);
+}
+
+SHARED Number PhaseSchlick(Number cos_scattering, Number g) {
+  Number a = abs(g);
+  Number k = a * (Number(1.55) - Number(0.55) * a * a);
+  Number below_one = (Number(1.0) - a) * (Number(1.0) - Number(0.55) * a * (Number(1.0) + a));
+  Number d = below_one + k * PhaseOffAxis(cos_scattering, g);
+  return Number(0.0795774715459476679) * below_one * (Number(1.0) + k) / (d * d);
+}
