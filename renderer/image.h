@@ -11,6 +11,9 @@
 
 namespace alpenglow {
 
+/// Pixels along one side of a picture, at most.
+inline constexpr int kLargestImageSide = 32768;
+
 /// A plane of floats, row 0 at the top.
 struct Channel {
   std::string name;  // as in the EXR file: "R", "depth.Z", ...
@@ -25,6 +28,7 @@ struct Image {
   std::vector<Channel> layers;
 
   Image() = default;
+  /// Black. Throws InputError unless both sides are in [1, kLargestImageSide].
   Image(int image_width, int image_height);
   [[nodiscard]] std::array<float, 3>& at(int x, int y) {
     return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -39,35 +43,50 @@ struct Image {
 /// What made a picture: name and value, written into the file's header.
 using Metadata = std::map<std::string, std::string>;
 
-/// Writes float RGB and the layers, ZIP, atomically. Throws OutputError.
+/// Writes float RGB and the layers, ZIP, atomically, with the metadata as text attributes and
+/// whiteLuminance 1 (the unit is cd/m^2). Throws OutputError.
 void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata);
-/// Reads what WriteExr wrote (any scan-line EXR with R, G, B). Throws InputError.
+/// Reads what WriteExr wrote (any scan-line EXR with R, G, B); every other channel becomes a layer.
+/// Throws InputError for a file that is missing, truncated, foreign, or has no R, G or B.
 [[nodiscard]] Image ReadExr(const std::filesystem::path& file);
+/// The text attributes of the header. Throws InputError.
 [[nodiscard]] Metadata ReadExrMetadata(const std::filesystem::path& file);
 
 /// Exposure value at ISO 100. A luminance of 2^EV100 * 1.2 cd/m^2 saturates (Lagarde, de Rousiers
 /// 2014).
 [[nodiscard]] double ExposureScale(double ev100);
 
+/// The range of the meter: from a moonless night to the sun's surroundings.
+inline constexpr double kDarkestEv100 = -10.0;
+inline constexpr double kBrightestEv100 = 20.0;
+
 /// EV100 that a histogram meter picks: mean log luminance between the 40th and 95th percentile
 /// mapped to middle grey by K = 12.5; pixels brighter than `ignore_above_cd_per_m2` (the sun's
-/// disk) do not count.
+/// disk) and pixels without light do not count. Within [kDarkestEv100, kBrightestEv100]; a picture
+/// without light gives kDarkestEv100.
 [[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2);
 
 enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
+/// "agx", "aces", "reinhard", "pbr-neutral" or "linear"; throws InputError for another name.
 [[nodiscard]] ToneCurve ToneCurveFromName(const std::string& name);
 
-/// 8-bit sRGB of the exposed picture, dithered by blue-noise-like ordered noise of +-1/2 code (the
+/// 8-bit sRGB of the exposed picture, dithered by triangular blue noise of +-1 code (dither.h; the
 /// same for every run). Out-of-gamut colours: see tone_curve.glsl.
 struct DisplayImage {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
+/// Throws InternalError for a pixel that is not finite.
 [[nodiscard]] DisplayImage Develop(const Image& image, double ev100, ToneCurve curve);
 
+/// Writes 8-bit RGB with an sRGB chunk and the metadata as text chunks, atomically. Throws
+/// OutputError.
 void WritePng(const std::filesystem::path& file, const DisplayImage& image,
               const Metadata& metadata);
+/// Throws InputError for a file that is missing, truncated or no PNG.
 [[nodiscard]] DisplayImage ReadPng(const std::filesystem::path& file);
+/// The text chunks before the pixels. Throws InputError.
+[[nodiscard]] Metadata ReadPngMetadata(const std::filesystem::path& file);
 
 }  // namespace alpenglow

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// C++ reading of tone_curve.glsl, and the curves put together for a colour.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "atmosphere/shared_math.h"
+#include "renderer/image.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/shared_begin.h"
+#include "renderer/tone_curve.glsl"
+#include "atmosphere/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
+
+namespace alpenglow {
+
+template <typename Real>
+using Rgb = std::array<Real, 3>;
+
+/// The colour without negative channels, of the same luminance (see tone_curve.glsl).
+template <typename Real>
+[[nodiscard]] Rgb<Real> InsideGamut(const Rgb<Real>& exposed) {
+  const Real y = shared::Luminance(exposed[0], exposed[1], exposed[2]);
+  const Real smallest = std::min({exposed[0], exposed[1], exposed[2]});
+  return {shared::InnerChannel(exposed[0], smallest, y),
+          shared::InnerChannel(exposed[1], smallest, y),
+          shared::InnerChannel(exposed[2], smallest, y)};
+}
+
+template <typename Real>
+[[nodiscard]] Rgb<Real> AgxLight(const Rgb<Real>& exposed) {
+  const Real share = shared::AgxWhiteShare(exposed[0], exposed[1], exposed[2]);
+  const Rgb<Real> code = {shared::AgxCode(exposed[0], share), shared::AgxCode(exposed[1], share),
+                          shared::AgxCode(exposed[2], share)};
+  const Real code_share = shared::AgxWhiteShare(code[0], code[1], code[2]);
+  return {shared::AgxLight(code[0], code_share), shared::AgxLight(code[1], code_share),
+          shared::AgxLight(code[2], code_share)};
+}
+
+template <typename Real>
+[[nodiscard]] Rgb<Real> AcesLight(const Rgb<Real>& exposed) {
+  const auto& [red, green, blue] = exposed;
+  const Rgb<Real> curved = {shared::AcesCurve(shared::AcesRed(red, green, blue)),
+                            shared::AcesCurve(shared::AcesGreen(red, green, blue)),
+                            shared::AcesCurve(shared::AcesBlue(red, green, blue))};
+  return {shared::AcesLightRed(curved[0], curved[1], curved[2]),
+          shared::AcesLightGreen(curved[0], curved[1], curved[2]),
+          shared::AcesLightBlue(curved[0], curved[1], curved[2])};
+}
+
+template <typename Real>
+[[nodiscard]] Rgb<Real> ReinhardLight(const Rgb<Real>& exposed) {
+  const Real y = shared::Luminance(exposed[0], exposed[1], exposed[2]);
+  const Real largest = std::max({exposed[0], exposed[1], exposed[2]});
+  return {shared::ReinhardLight(exposed[0], largest, y),
+          shared::ReinhardLight(exposed[1], largest, y),
+          shared::ReinhardLight(exposed[2], largest, y)};
+}
+
+template <typename Real>
+[[nodiscard]] Rgb<Real> NeutralLight(const Rgb<Real>& exposed) {
+  const Real largest = std::max({exposed[0], exposed[1], exposed[2]});
+  const Real smallest = std::min({exposed[0], exposed[1], exposed[2]});
+  return {shared::NeutralLight(exposed[0], largest, smallest),
+          shared::NeutralLight(exposed[1], largest, smallest),
+          shared::NeutralLight(exposed[2], largest, smallest)};
+}
+
+/// Linear display light in [0, 1] of a finite linear sRGB colour times `scale` (ExposureScale).
+template <typename Real>
+[[nodiscard]] Rgb<Real> DisplayLight(ToneCurve curve, const Rgb<Real>& rgb, Real scale) {
+  const Rgb<Real> exposed = InsideGamut<Real>({shared::ExposedChannel(rgb[0], scale),
+                                               shared::ExposedChannel(rgb[1], scale),
+                                               shared::ExposedChannel(rgb[2], scale)});
+  switch (curve) {
+    case ToneCurve::kAgx:
+      return AgxLight(exposed);
+    case ToneCurve::kAces:
+      return AcesLight(exposed);
+    case ToneCurve::kReinhard:
+      return ReinhardLight(exposed);
+    case ToneCurve::kPbrNeutral:
+      return NeutralLight(exposed);
+    case ToneCurve::kLinear:
+      break;
+  }
+  return {std::min(exposed[0], Real(1)), std::min(exposed[1], Real(1)),
+          std::min(exposed[2], Real(1))};
+}
+
+}  // namespace alpenglow
