@@ -47,13 +47,21 @@ struct GeodeticPosition {
   double height_m = 0.0;
 };
 
+/// The same meridian in (-pi, pi]: -pi becomes pi, everything inside is returned unchanged. Throws
+/// InputError when it is not finite.
+[[nodiscard]] double WrappedLongitude(double longitude_rad);
+
 /// From degrees; throws InputError naming the key when latitude is not in [-90, 90], longitude not
-/// in
-/// [-180, 360], height not finite or below -12 km.
+/// in [-180, 360], height not finite or below -12 km. The longitude is wrapped, so 180 and -180 are
+/// one place, and so are 190 and -170.
 [[nodiscard]] GeodeticPosition PlaceFromDegrees(double latitude, double longitude, double height_m);
 
+/// Throws InputError when the latitude is outside [-pi/2, pi/2] or a coordinate is not finite, or
+/// when the ellipsoid is none.
 [[nodiscard]] Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid,
                                            const GeodeticPosition& place);
+/// The nearest point of the ellipsoid; at the centre of the earth, where many are as near, the
+/// north pole. NaN gives NaN.
 [[nodiscard]] GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid,
                                                 const Point<Ecef>& point);
 

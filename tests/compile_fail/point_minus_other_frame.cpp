@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Must not compile: points of two frames have no difference. With ALPENGLOW_CONTROL the frames are
+// the same and it must compile, which proves that nothing else is wrong with this file.
+#include "atmosphere/geodesy.h"
+
+#ifdef ALPENGLOW_CONTROL
+using OtherFrame = alpenglow::Ecef;
+#else
+using OtherFrame = alpenglow::Enu;
+#endif
+
+auto Difference(const alpenglow::Point<alpenglow::Ecef>& to,
+                const alpenglow::Point<OtherFrame>& from) {
+  return to - from;
+}
