@@ -305,19 +305,27 @@ Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double 
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::TransmittanceAlong(const ViewRay& ray) const {
+Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   const Entry entry = EntryOf(ray, extent, medium_);
   const ColumnSet<Real> columns =
       SegmentColumns<Real>(medium_, entry, (extent.end_m - extent.begin_m) / kMetresPerKilometre);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
-  Bands<Real> transmittance(bands());
+  Bands<Real> depth(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
-    const Real tau = static_cast<Real>(medium_.rayleigh_scattering_per_m[band]) * columns.rayleigh +
-                     static_cast<Real>(medium_.mie_extinction_per_m[band]) * columns.mie +
-                     static_cast<Real>(medium_.ozone_absorption_per_m[band]) * columns.ozone;
-    transmittance[band] = std::exp(-tau * metres);
+    depth[band] =
+        metres * (static_cast<Real>(medium_.rayleigh_scattering_per_m[band]) * columns.rayleigh +
+                  static_cast<Real>(medium_.mie_extinction_per_m[band]) * columns.mie +
+                  static_cast<Real>(medium_.ozone_absorption_per_m[band]) * columns.ozone);
   }
+  return depth;
+}
+
+template <typename Real>
+Bands<Real> AirIntegrator<Real>::TransmittanceAlong(const ViewRay& ray) const {
+  const Bands<Real> depth = OpticalDepthAlong(ray);
+  Bands<Real> transmittance(bands());
+  for (std::size_t band = 0; band < bands(); ++band) transmittance[band] = std::exp(-depth[band]);
   return transmittance;
 }
 

@@ -21,7 +21,9 @@
 namespace alpenglow {
 
 inline constexpr std::size_t kMaxBands = 40;
-inline constexpr std::size_t kMaxRaySamples = 192;
+/// Nine lit panels (a ray through the tent's six edges, perigee and the planet's shadow) and a dark
+/// one, of 32 nodes, and room for the last SIMD lanes.
+inline constexpr std::size_t kMaxRaySamples = 336;
 
 /// One value a wavelength.
 template <typename Real>
@@ -81,6 +83,9 @@ class AirIntegrator {
 
   /// Transmittance from a point to space along mu; 0 where the ground is in the way.
   [[nodiscard]] Bands<Real> TransmittanceToSpace(double altitude_m, double mu) const;
+
+  /// Optical depth between the observer and the end of the ray.
+  [[nodiscard]] Bands<Real> OpticalDepthAlong(const ViewRay& ray) const;
 
   /// Transmittance between the observer and the end of the ray.
   [[nodiscard]] Bands<Real> TransmittanceAlong(const ViewRay& ray) const;
