@@ -104,6 +104,23 @@ void AppendCrossings(double h, double mu, double z, double radius, std::vector<d
   cuts.push_back(-a + std::sqrt(discriminant));
 }
 
+// Where the sunbeam that meets the ray at distance t has its perigee at altitude z: a cylinder of
+// radius R + z around the axis from the planet's centre to the sun. Only beams that come from below
+// the horizontal count.
+void AppendSunPerigees(const Entry& entry, double nu, double z, double radius,
+                       std::vector<double>& cuts) {
+  const double r = radius + entry.altitude_km;
+  const double a = (1.0 - nu) * (1.0 + nu);
+  const double b = r * (entry.mu - entry.mu_s * nu);
+  const double c = (entry.altitude_km - z) * (2.0 * radius + entry.altitude_km + z) -
+                   r * r * entry.mu_s * entry.mu_s;
+  const double discriminant = b * b - a * c;
+  if (a < 1e-12 || discriminant <= 0.0) return;
+  for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
+    if (r * entry.mu_s + t * nu < 0.0) cuts.push_back(t);
+  }
+}
+
 std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent, const Entry& entry,
                                     const Medium& medium, const Sampling& sampling) {
   const double radius = medium.planet_radius_m / kMetresPerKilometre;
@@ -117,6 +134,7 @@ std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent,
   if (sampling.split_ozone) {
     for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
       AppendCrossings(entry.altitude_km, entry.mu, z / kMetresPerKilometre, radius, cuts);
+      AppendSunPerigees(entry, ray.nu, z / kMetresPerKilometre, radius, cuts);
     }
   }
   for (double& cut : cuts) cut = std::clamp(cut, 0.0, length);

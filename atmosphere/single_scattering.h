@@ -21,9 +21,9 @@
 namespace alpenglow {
 
 inline constexpr std::size_t kMaxBands = 40;
-/// Nine lit panels (a ray through the tent's six edges, perigee and the planet's shadow) and a dark
-/// one, of 32 nodes, and room for the last SIMD lanes.
-inline constexpr std::size_t kMaxRaySamples = 336;
+/// Sixteen panels (a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee and the
+/// planet's shadow) of 32 nodes, and room for the last SIMD lanes.
+inline constexpr std::size_t kMaxRaySamples = 528;
 
 /// One value a wavelength.
 template <typename Real>
@@ -40,7 +40,7 @@ struct Bands {
 /// How finely a ray is sampled.
 struct Sampling {
   int nodes = 12;             // Gauss nodes of a panel that starts in dense air, in [1, 32]
-  bool split_ozone = false;   // cut panels at the edges of the ozone tent: for errors below 1e-3
+  bool split_ozone = false;   // cut panels where ozone bends the integrand: for errors below 1e-3
   bool dark_samples = false;  // sample the air in the planet's shadow too (light of higher orders)
 };
 

@@ -34,8 +34,9 @@ CubicTaps TapsAt(double coordinate, int n) {
   const double position = std::clamp(coordinate, 0.0, 1.0) * (n - 1);
   const int cell = std::min(static_cast<int>(position), n - 2);
   const double t = position - cell;
-  const std::array<double, 4> weight{0.5 * (-t + 2 * t * t - t * t * t), 0.5 * (2 - 5 * t * t + 3 * t * t * t),
-                                     0.5 * (t + 4 * t * t - 3 * t * t * t), 0.5 * (-t * t + t * t * t)};
+  const std::array<double, 4> weight{
+      0.5 * (-t + 2 * t * t - t * t * t), 0.5 * (2 - 5 * t * t + 3 * t * t * t),
+      0.5 * (t + 4 * t * t - 3 * t * t * t), 0.5 * (-t * t + t * t * t)};
   CubicTaps taps{};
   std::array<double, 4> adjusted = weight;
   if (cell == 0) {  // node -1 is 2 f0 - f1
@@ -64,7 +65,8 @@ struct HarmonicNorms {
       for (int m = 0; m <= l; ++m, ++index) {
         double ratio = 1.0;  // (l - m)! / (l + m)!
         for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
-        norm[index] = static_cast<float>(std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio));
+        norm[index] =
+            static_cast<float>(std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio));
       }
     }
   }
@@ -105,7 +107,8 @@ std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine) {
 
 // Cosine of the azimuth between view and sun from the three cosines; any value at the poles.
 float AzimuthCosine(float mu, float mu_s, float nu) {
-  const float sines = std::sqrt(std::max((1.0F - mu) * (1.0F + mu) * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
+  const float sines =
+      std::sqrt(std::max((1.0F - mu) * (1.0F + mu) * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
   return std::clamp((nu - mu * mu_s) / sines, -1.0F, 1.0F);
 }
 
@@ -123,7 +126,8 @@ std::vector<Direction> DirectionsAt(double altitude_km, double radius_km, int no
   for (const double end : {-1.0, 1.0}) {
     for (std::size_t k = 0; k < rule.node.size(); ++k) {
       const double v = rule.node[k];
-      directions.push_back({horizon + (end - horizon) * v * v, std::abs(end - horizon) * 2.0 * v * rule.weight[k]});
+      directions.push_back(
+          {horizon + (end - horizon) * v * v, std::abs(end - horizon) * 2.0 * v * rule.weight[k]});
     }
   }
   return directions;
@@ -141,12 +145,14 @@ std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree)
   for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const double x = edges[panel] + (edges[panel + 1] - edges[panel]) * rule.node[i];
-      const double weight = 2.0 * kPi * rule.weight[i] * (edges[panel + 1] - edges[panel]) * Phase(phase, x);
+      const double weight =
+          2.0 * kPi * rule.weight[i] * (edges[panel + 1] - edges[panel]) * Phase(phase, x);
       double before = 0.0, now = 1.0;
       for (std::size_t l = 0; l < chi.size(); ++l) {
         chi[l] += weight * now;
-        const double next = ((2.0 * static_cast<double>(l) + 1.0) * x * now - static_cast<double>(l) * before) /
-                            (static_cast<double>(l) + 1.0);
+        const double next =
+            ((2.0 * static_cast<double>(l) + 1.0) * x * now - static_cast<double>(l) * before) /
+            (static_cast<double>(l) + 1.0);
         before = now;
         now = next;
       }
@@ -190,8 +196,8 @@ class DiffuseLightSolver {
   // Moments and sky irradiance at every node: [(altitude * sun_angles + sun) * channels + channel].
   using Field = std::vector<Light>;
 
-  // What the march along one direction of one altitude needs, whatever the sun: at each sample the taps in
-  // altitude, the source's factors, and the geometry of the local angles.
+  // What the march along one direction of one altitude needs, whatever the sun: at each sample the
+  // taps in altitude, the source's factors, and the geometry of the local angles.
   struct MarchSample {
     CubicTaps altitude;
     Light rayleigh, mie;  // sigma T weight
@@ -211,8 +217,8 @@ class DiffuseLightSolver {
   March PrepareMarch(std::size_t altitude, const Direction& direction) const;
   void FirstOrder(std::size_t altitude, Field& field) const;
   void NextOrder(std::size_t altitude, const Field& previous, Field& field) const;
-  void Project(std::size_t altitude, std::size_t sun, const March& march, float cos_azimuth, const Light& radiance,
-               Field& field) const;
+  void Project(std::size_t altitude, std::size_t sun, const March& march, float cos_azimuth,
+               const Light& radiance, Field& field) const;
   Light GroundRadiance(const March& march, const Field& field, double mu_s_ground) const;
   double LargestShare(const Field& part, const Field& whole) const;
 
@@ -241,19 +247,21 @@ DiffuseLightSolver::DiffuseLightSolver(DiffuseLight& result, std::size_t first_b
       radius_km_(result.medium_.planet_radius_m / 1000.0),
       albedo_(BlockOf(result.medium_.ground_albedo)) {
   for (int k = 0; k < result.options_.azimuth_nodes; ++k) {
-    azimuth_cosines_.push_back(
-        static_cast<float>(std::cos((k + 0.5) * kPi / static_cast<double>(result.options_.azimuth_nodes))));
+    azimuth_cosines_.push_back(static_cast<float>(
+        std::cos((k + 0.5) * kPi / static_cast<double>(result.options_.azimuth_nodes))));
   }
   for (std::size_t i = 0; i < altitudes_; ++i) {
     const double u = static_cast<double>(i) / static_cast<double>(altitudes_ - 1);
     altitude_km_.push_back(medium_.atmosphere_height_m / 1000.0 * u * u);
   }
   for (std::size_t j = 0; j < suns_; ++j) {
-    mu_s_.push_back(DiffuseLight::MuSFromCoordinate(static_cast<double>(j) / static_cast<double>(suns_ - 1)));
+    mu_s_.push_back(
+        DiffuseLight::MuSFromCoordinate(static_cast<double>(j) / static_cast<double>(suns_ - 1)));
   }
   marches_.resize(altitudes_);
   for (std::size_t i = 0; i < altitudes_; ++i) {
-    for (const Direction& direction : DirectionsAt(altitude_km_[i], radius_km_, result.options_.zenith_nodes)) {
+    for (const Direction& direction :
+         DirectionsAt(altitude_km_[i], radius_km_, result.options_.zenith_nodes)) {
       marches_[i].push_back(PrepareMarch(i, direction));
     }
   }
@@ -275,12 +283,14 @@ DiffuseLightSolver::Light DiffuseLightSolver::BlockOf(const std::vector<double>&
   return block;
 }
 
-DiffuseLightSolver::March DiffuseLightSolver::PrepareMarch(std::size_t altitude, const Direction& direction) const {
-  March march{direction.mu, direction.weight * kPi / static_cast<double>(azimuth_cosines_.size()), {}};
+DiffuseLightSolver::March DiffuseLightSolver::PrepareMarch(std::size_t altitude,
+                                                           const Direction& direction) const {
+  March march{
+      direction.mu, direction.weight * kPi / static_cast<double>(azimuth_cosines_.size()), {}};
   // With the sun in the zenith no part of the ray is in shadow: one set of panels serves every sun.
   const ViewRay ray{altitude_km_[altitude] * 1000.0, direction.mu, 1.0, direction.mu};
-  const RaySamples<float> samples =
-      air_.Sample(ray, {.nodes = result_.options_.ray_nodes, .split_ozone = false, .dark_samples = true});
+  const RaySamples<float> samples = air_.Sample(
+      ray, {.nodes = result_.options_.ray_nodes, .split_ozone = false, .dark_samples = true});
   const Light rayleigh = BlockOf(medium_.rayleigh_scattering_per_m) * 1000.0F;
   const Light mie_scattering = BlockOf(medium_.mie_scattering_per_m) * 1000.0F;
   const Light mie_extinction = BlockOf(medium_.mie_extinction_per_m) * 1000.0F;
@@ -288,9 +298,12 @@ DiffuseLightSolver::March DiffuseLightSolver::PrepareMarch(std::size_t altitude,
   for (std::size_t s = 0; s < samples.count; ++s) {
     const Light tau = rayleigh * samples.view_rayleigh[s] + mie_extinction * samples.view_mie[s] +
                       ozone * samples.view_ozone[s];
-    const Light light = samples.weight[s] * glm::vec4(std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z), std::exp(-tau.w));
-    const double u = std::sqrt(samples.altitude[s] * 1000.0 / medium_.atmosphere_height_m);
-    march.samples.push_back({TapsAt(u, result_.options_.altitudes), light * rayleigh * samples.rayleigh_density[s],
+    const Light light = samples.weight[s] * glm::vec4(std::exp(-tau.x), std::exp(-tau.y),
+                                                      std::exp(-tau.z), std::exp(-tau.w));
+    const double u =
+        std::sqrt(static_cast<double>(samples.altitude[s]) * 1000.0 / medium_.atmosphere_height_m);
+    march.samples.push_back({TapsAt(u, result_.options_.altitudes),
+                             light * rayleigh * samples.rayleigh_density[s],
                              light * mie_scattering * samples.mie_density[s], samples.distance[s],
                              static_cast<float>(radius_km_) + samples.altitude[s], samples.mu[s]});
   }
@@ -302,8 +315,8 @@ DiffuseLightSolver::March DiffuseLightSolver::PrepareMarch(std::size_t altitude,
   return march;
 }
 
-void DiffuseLightSolver::Project(std::size_t altitude, std::size_t sun, const March& march, float cos_azimuth,
-                                 const Light& radiance, Field& field) const {
+void DiffuseLightSolver::Project(std::size_t altitude, std::size_t sun, const March& march,
+                                 float cos_azimuth, const Light& radiance, Field& field) const {
   const auto harmonics = SphericalHarmonics(degree_, static_cast<float>(march.mu), cos_azimuth);
   // Azimuth runs over half a turn; the other half is its mirror image.
   const Light light = radiance * static_cast<float>(2.0 * march.weight);
@@ -312,19 +325,23 @@ void DiffuseLightSolver::Project(std::size_t altitude, std::size_t sun, const Ma
   if (march.mu > 0.0) node[channels_ - 1] += light * static_cast<float>(march.mu);
 }
 
-// Sunlight scattered once, and reflected by the ground, in every direction at the nodes of one altitude.
+// Sunlight scattered once, and reflected by the ground, in every direction at the nodes of one
+// altitude.
 void DiffuseLightSolver::FirstOrder(std::size_t altitude, Field& field) const {
-  const Sampling sampling{.nodes = result_.options_.ray_nodes, .split_ozone = false, .dark_samples = false};
+  const Sampling sampling{
+      .nodes = result_.options_.ray_nodes, .split_ozone = false, .dark_samples = false};
   const double r = radius_km_ + altitude_km_[altitude];
   for (std::size_t j = 0; j < suns_; ++j) {
     const double sun_sine = std::sqrt((1.0 - mu_s_[j]) * (1.0 + mu_s_[j]));
     for (const March& march : marches_[altitude]) {
       const double sine = std::sqrt((1.0 - march.mu) * (1.0 + march.mu));
       for (const float cosine : azimuth_cosines_) {
-        const double nu = std::clamp(march.mu * mu_s_[j] + sine * sun_sine * static_cast<double>(cosine), -1.0, 1.0);
+        const double nu = std::clamp(
+            march.mu * mu_s_[j] + sine * sun_sine * static_cast<double>(cosine), -1.0, 1.0);
         const ViewRay ray{altitude_km_[altitude] * 1000.0, march.mu, mu_s_[j], nu};
         Light radiance = BlockOf(air_.Inscatter(air_.Scatter(air_.Sample(ray, sampling)), nu));
-        const double mu_s_ground = (r * mu_s_[j] + static_cast<double>(march.ground_distance_km) * nu) / radius_km_;
+        const double mu_s_ground =
+            (r * mu_s_[j] + static_cast<double>(march.ground_distance_km) * nu) / radius_km_;
         if (march.hits_ground && mu_s_ground > 0.0) {
           radiance += march.ground_transmittance * albedo_ *
                       static_cast<float>(std::min(mu_s_ground, 1.0) / kPi) *
@@ -339,18 +356,21 @@ void DiffuseLightSolver::FirstOrder(std::size_t altitude, Field& field) const {
 // Light of the previous order that the ground reflects into the march.
 DiffuseLightSolver::Light DiffuseLightSolver::GroundRadiance(const March& march, const Field& field,
                                                              double mu_s_ground) const {
-  const CubicTaps taps = TapsAt(DiffuseLight::SunCoordinate(mu_s_ground), result_.options_.sun_angles);
+  const CubicTaps taps =
+      TapsAt(DiffuseLight::SunCoordinate(mu_s_ground), result_.options_.sun_angles);
   Light irradiance(0.0F);
   for (std::size_t tap = 0; tap < 4; ++tap) {
     irradiance += taps.weight[tap] * field[taps.node[tap] * channels_ + channels_ - 1];
   }
-  return march.ground_transmittance * albedo_ * glm::max(irradiance, Light(0.0F)) * static_cast<float>(1.0 / kPi);
+  return march.ground_transmittance * albedo_ * glm::max(irradiance, Light(0.0F)) *
+         static_cast<float>(1.0 / kPi);
 }
 
-void DiffuseLightSolver::NextOrder(std::size_t altitude, const Field& previous, Field& field) const {
+void DiffuseLightSolver::NextOrder(std::size_t altitude, const Field& previous,
+                                   Field& field) const {
   const auto orders = static_cast<std::size_t>(degree_) + 1;
   const std::size_t azimuths = azimuth_cosines_.size();
-  std::vector<Light> rows(suns_ * orders);                 // source per cos(m phi') at every sun node
+  std::vector<Light> rows(suns_ * orders);  // source per cos(m phi') at every sun node
   std::vector<Light> radiance(suns_ * azimuths);
   const double r = radius_km_ + altitude_km_[altitude];
   for (const March& march : marches_[altitude]) {
@@ -387,12 +407,16 @@ void DiffuseLightSolver::NextOrder(std::size_t altitude, const Field& previous, 
       for (std::size_t j = 0; j < suns_; ++j) {
         const double sun_sine = std::sqrt((1.0 - mu_s_[j]) * (1.0 + mu_s_[j]));
         for (std::size_t k = 0; k < azimuths; ++k) {
-          const double nu = march.mu * mu_s_[j] + sine * sun_sine * static_cast<double>(azimuth_cosines_[k]);
-          const double mu_s = std::clamp((r * mu_s_[j] + static_cast<double>(sample.distance_km) * nu) /
-                                             static_cast<double>(sample.radius_km), -1.0, 1.0);
+          const double nu =
+              march.mu * mu_s_[j] + sine * sun_sine * static_cast<double>(azimuth_cosines_[k]);
+          const double mu_s =
+              std::clamp((r * mu_s_[j] + static_cast<double>(sample.distance_km) * nu) /
+                             static_cast<double>(sample.radius_km),
+                         -1.0, 1.0);
           const auto cosines = CosineMultiples(
               degree_, AzimuthCosine(sample.mu, static_cast<float>(mu_s), static_cast<float>(nu)));
-          const CubicTaps taps = TapsAt(DiffuseLight::SunCoordinate(mu_s), result_.options_.sun_angles);
+          const CubicTaps taps =
+              TapsAt(DiffuseLight::SunCoordinate(mu_s), result_.options_.sun_angles);
           Light source(0.0F);
           for (std::size_t tap = 0; tap < 4; ++tap) {
             const Light* row = &rows[taps.node[tap] * orders];
@@ -407,11 +431,13 @@ void DiffuseLightSolver::NextOrder(std::size_t altitude, const Field& previous, 
     for (std::size_t j = 0; j < suns_; ++j) {
       const double sun_sine = std::sqrt((1.0 - mu_s_[j]) * (1.0 + mu_s_[j]));
       for (std::size_t k = 0; k < azimuths; ++k) {
-        const double nu = march.mu * mu_s_[j] + sine * sun_sine * static_cast<double>(azimuth_cosines_[k]);
+        const double nu =
+            march.mu * mu_s_[j] + sine * sun_sine * static_cast<double>(azimuth_cosines_[k]);
         Light light = radiance[j * azimuths + k];
         if (march.hits_ground) {
-          light += GroundRadiance(march, previous,
-                                  (r * mu_s_[j] + static_cast<double>(march.ground_distance_km) * nu) / radius_km_);
+          light += GroundRadiance(
+              march, previous,
+              (r * mu_s_[j] + static_cast<double>(march.ground_distance_km) * nu) / radius_km_);
         }
         Project(altitude, j, march, azimuth_cosines_[k], light, field);
       }
@@ -426,7 +452,8 @@ double DiffuseLightSolver::LargestShare(const Field& part, const Field& whole) c
     for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
       const auto all = static_cast<double>(whole[node * channels_][lane]);
       // Nodes in deep night hold no light worth a further order.
-      if (all > 1e-9) largest = std::max(largest, static_cast<double>(part[node * channels_][lane]) / all);
+      if (all > 1e-9)
+        largest = std::max(largest, static_cast<double>(part[node * channels_][lane]) / all);
     }
   }
   return largest;
@@ -472,8 +499,10 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   Validate(medium_);
   moments_ = MomentCount(options.degree);
   chi_mie_ = LegendreCoefficients(medium.mie_phase, options.degree);
-  values_.assign(static_cast<std::size_t>(options.altitudes * options.sun_angles) * channels() * bands_, 0.0F);
-  for (std::size_t first = 0; first < bands_; first += kLanes) DiffuseLightSolver(*this, first).Solve();
+  values_.assign(
+      static_cast<std::size_t>(options.altitudes * options.sun_angles) * channels() * bands_, 0.0F);
+  for (std::size_t first = 0; first < bands_; first += kLanes)
+    DiffuseLightSolver(*this, first).Solve();
 }
 
 namespace {
@@ -486,7 +515,8 @@ void VisitTaps(const DiffuseLightOptions& options, double u, double v, const Vis
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t s = 0; s < 4; ++s) {
       const float weight = row.weight[a] * column.weight[s];
-      if (weight != 0.0F) visit(row.node[a] * static_cast<std::size_t>(options.sun_angles) + column.node[s], weight);
+      if (weight != 0.0F)
+        visit(row.node[a] * static_cast<std::size_t>(options.sun_angles) + column.node[s], weight);
     }
   }
 }
@@ -496,8 +526,9 @@ void VisitTaps(const DiffuseLightOptions& options, double u, double v, const Vis
 Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu) const {
   Bands<float> sum(bands_);
   for (std::size_t s = 0; s < samples.count; ++s) {
-    const auto harmonics = SphericalHarmonics(
-        options_.degree, samples.mu[s], AzimuthCosine(samples.mu[s], samples.mu_s[s], static_cast<float>(nu)));
+    const auto harmonics =
+        SphericalHarmonics(options_.degree, samples.mu[s],
+                           AzimuthCosine(samples.mu[s], samples.mu_s[s], static_cast<float>(nu)));
     std::array<float, kMaxMoments> mie_factor{};
     for (int l = 0; l <= options_.degree; ++l) {
       for (int m = 0; m <= l; ++m) {
@@ -506,13 +537,16 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
       }
     }
     std::array<float, kMaxBands> rayleigh{}, mie{};
-    const double u = std::sqrt(static_cast<double>(samples.altitude[s]) * 1000.0 / medium_.atmosphere_height_m);
+    const double u =
+        std::sqrt(static_cast<double>(samples.altitude[s]) * 1000.0 / medium_.atmosphere_height_m);
     const double v = SunCoordinate(static_cast<double>(samples.mu_s[s]));
     VisitTaps(options_, u, v, [&](std::size_t node, float weight) {
       const float* values = &values_[node * channels() * bands_];
       for (std::size_t i = 0; i < moments_; ++i) {
         // Molecules see l = 0 and l = 2 only (indices 0 and 3, 4, 5).
-        const float rayleigh_factor = i == 0 ? harmonics[0] : (i >= 3 && i <= 5) ? 0.1F * harmonics[i] : 0.0F;
+        const float rayleigh_factor = i == 0               ? harmonics[0]
+                                      : (i >= 3 && i <= 5) ? 0.1F * harmonics[i]
+                                                           : 0.0F;
         for (std::size_t band = 0; band < bands_; ++band) {
           const float moment = weight * values[i * bands_ + band];
           rayleigh[band] += rayleigh_factor * moment;
@@ -521,13 +555,16 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
       }
     });
     for (std::size_t band = 0; band < bands_; ++band) {
-      const auto coefficient = [&](const std::vector<double>& per_m) { return static_cast<float>(per_m[band] * 1000.0); };
+      const auto coefficient = [&](const std::vector<double>& per_m) {
+        return static_cast<float>(per_m[band] * 1000.0);
+      };
       const float tau = coefficient(medium_.rayleigh_scattering_per_m) * samples.view_rayleigh[s] +
                         coefficient(medium_.mie_extinction_per_m) * samples.view_mie[s] +
                         coefficient(medium_.ozone_absorption_per_m) * samples.view_ozone[s];
-      const float source =
-          coefficient(medium_.rayleigh_scattering_per_m) * samples.rayleigh_density[s] * std::max(rayleigh[band], 0.0F) +
-          coefficient(medium_.mie_scattering_per_m) * samples.mie_density[s] * std::max(mie[band], 0.0F);
+      const float source = coefficient(medium_.rayleigh_scattering_per_m) *
+                               samples.rayleigh_density[s] * std::max(rayleigh[band], 0.0F) +
+                           coefficient(medium_.mie_scattering_per_m) * samples.mie_density[s] *
+                               std::max(mie[band], 0.0F);
       sum[band] += samples.weight[s] * std::exp(-tau) * source;
     }
   }
@@ -537,9 +574,10 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
 Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double normal_mu,
                                       double normal_cos_azimuth) const {
   // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients.
-  constexpr std::array<double, kMaxDegree + 1> kCosine{kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
-  const auto harmonics =
-      SphericalHarmonics(options_.degree, static_cast<float>(normal_mu), static_cast<float>(normal_cos_azimuth));
+  constexpr std::array<double, kMaxDegree + 1> kCosine{
+      kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
+  const auto harmonics = SphericalHarmonics(options_.degree, static_cast<float>(normal_mu),
+                                            static_cast<float>(normal_cos_azimuth));
   Bands<float> irradiance(bands_);
   const double u = std::sqrt(std::clamp(altitude_m / medium_.atmosphere_height_m, 0.0, 1.0));
   VisitTaps(options_, u, SunCoordinate(mu_s), [&](std::size_t node, float weight) {
@@ -547,12 +585,15 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
     for (int l = 0; l <= options_.degree; ++l) {
       for (int m = 0; m <= l; ++m) {
         const std::size_t i = MomentIndex(l, m);
-        const float factor = weight * harmonics[i] * static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
-        for (std::size_t band = 0; band < bands_; ++band) irradiance[band] += factor * values[i * bands_ + band];
+        const float factor =
+            weight * harmonics[i] * static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
+        for (std::size_t band = 0; band < bands_; ++band)
+          irradiance[band] += factor * values[i * bands_ + band];
       }
     }
   });
-  for (std::size_t band = 0; band < bands_; ++band) irradiance[band] = std::max(irradiance[band], 0.0F);
+  for (std::size_t band = 0; band < bands_; ++band)
+    irradiance[band] = std::max(irradiance[band], 0.0F);
   return irradiance;
 }
 
@@ -563,7 +604,8 @@ Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
     const float* values = &values_[(node * channels() + moments_) * bands_];
     for (std::size_t band = 0; band < bands_; ++band) irradiance[band] += weight * values[band];
   });
-  for (std::size_t band = 0; band < bands_; ++band) irradiance[band] = std::max(irradiance[band], 0.0F);
+  for (std::size_t band = 0; band < bands_; ++band)
+    irradiance[band] = std::max(irradiance[band], 0.0F);
   return irradiance;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Light scattered more than once, as spherical-harmonic moments of the diffuse radiance.
 //
-// By symmetry the diffuse radiance at a point depends on altitude h, sun zenith cosine mu_s and direction.
-// Its moments on real spherical harmonics around the local vertical, azimuth counted from the sun,
+// By symmetry the diffuse radiance at a point depends on altitude h, sun zenith cosine mu_s and
+// direction. Its moments on real spherical harmonics around the local vertical, azimuth counted
+// from the sun,
 //
 //   L_lm(h, mu_s) = integral of L(w) Y_lm(w) dw,   0 <= m <= l <= degree    (cos(m phi) terms only)
 //
@@ -11,12 +12,14 @@
 //
 //   J(w) = sigma_R sum_lm chi^R_l L_lm Y_lm(w) + sigma_M sum_lm chi^M_l L_lm Y_lm(w),
 //
-// exact for molecules (chi^R = 1, 0, 1/10) with l <= 2. The moments of all orders are found by successive
-// orders: radiance of one order along directions of a Gauss grid split at the horizon, projected, gives the
-// source of the next. Light reflected by the (Lambertian) ground is part of every order.
+// exact for molecules (chi^R = 1, 0, 1/10) with l <= 2. The moments of all orders are found by
+// successive orders: radiance of one order along directions of a Gauss grid split at the horizon,
+// projected, gives the source of the next. Light reflected by the (Lambertian) ground is part of
+// every order.
 //
-// Per unit solar irradiance throughout. Successive orders: e.g. Herman, Ben-David, Thome (1994), Appl. Opt.
-// 33, 1760; the moments over (altitude, sun angle) as a rendering table are this project's.
+// Per unit solar irradiance throughout. Successive orders: e.g. Herman, Ben-David, Thome (1994),
+// Appl. Opt. 33, 1760; the moments over (altitude, sun angle) as a rendering table are this
+// project's.
 #pragma once
 
 #include <array>
@@ -32,21 +35,21 @@ inline constexpr int kMaxDegree = 6;
 inline constexpr std::size_t kMaxMoments = (kMaxDegree + 1) * (kMaxDegree + 2) / 2;
 
 struct DiffuseLightOptions {
-  int altitudes = 20;        // nodes, quadratic in altitude, >= 4
-  int sun_angles = 40;       // nodes, dense around the terminator, >= 4
-  int degree = 4;            // largest l, in [2, kMaxDegree]
-  int zenith_nodes = 10;     // directions above and below the horizon, each
-  int azimuth_nodes = 8;     // over half a turn
-  int ray_nodes = 10;        // Gauss nodes along each direction
+  int altitudes = 20;     // nodes, quadratic in altitude, >= 4
+  int sun_angles = 40;    // nodes, dense around the terminator, >= 4
+  int degree = 4;         // largest l, in [2, kMaxDegree]
+  int zenith_nodes = 10;  // directions above and below the horizon, each
+  int azimuth_nodes = 8;  // over half a turn
+  int ray_nodes = 10;     // Gauss nodes along each direction
   int max_orders = 200;
-  double tolerance = 1e-4;   // of the last order against the sum, after extrapolation
+  double tolerance = 1e-4;  // of the last order against the sum, after extrapolation
 };
 
 /// Diffuse light of all orders. Immutable; lookups are safe from many threads.
 class DiffuseLight {
  public:
-  /// Solves for the medium. Deterministic for any number of threads. Thick or conservative air may need
-  /// more than max_orders: converged() then says false.
+  /// Solves for the medium. Deterministic for any number of threads. Thick or conservative air may
+  /// need more than max_orders: converged() then says false.
   explicit DiffuseLight(const Medium& medium, const DiffuseLightOptions& options = {});
 
   [[nodiscard]] bool converged() const { return converged_; }
@@ -55,8 +58,9 @@ class DiffuseLight {
   [[nodiscard]] std::size_t bands() const { return bands_; }
   [[nodiscard]] std::size_t moments() const { return moments_; }
 
-  /// In-scattered light of orders two and up along a sampled ray [1/sr]. The samples must include the dark
-  /// ones (Sampling::dark_samples). Does not include light from the ground at the end of the ray.
+  /// In-scattered light of orders two and up along a sampled ray [1/sr]. The samples must include
+  /// the dark ones (Sampling::dark_samples). Does not include light from the ground at the end of
+  /// the ray.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu) const;
 
   /// Diffuse (sky and ground) irradiance on a surface [1], per unit solar irradiance.
@@ -66,16 +70,18 @@ class DiffuseLight {
   [[nodiscard]] Bands<float> Irradiance(double altitude_m, double mu_s, double normal_mu,
                                         double normal_cos_azimuth) const;
 
-  /// Diffuse irradiance that falls on a horizontal plane from above [1]: integrated over directions, not
-  /// from the moments.
+  /// Diffuse irradiance that falls on a horizontal plane from above [1]: integrated over
+  /// directions, not from the moments.
   [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
 
   /// Node values, for files and graphics cards: index ((altitude * sun_angles + sun) * channels() +
-  /// channel) * bands() + band. Channels: the moments, l major (00, 10, 11, 20, ...), then SkyIrradiance.
+  /// channel) * bands() + band. Channels: the moments, l major (00, 10, 11, 20, ...), then
+  /// SkyIrradiance.
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] std::size_t channels() const { return moments_ + 1; }
 
-  /// Node coordinates: altitude = top u^2; mu_s = centre + width sinh(a + (b - a) v), u and v in [0, 1].
+  /// Node coordinates: altitude = top u^2; mu_s = centre + width sinh(a + (b - a) v), u and v in
+  /// [0, 1].
   static constexpr double kSunCentre = -0.05;
   static constexpr double kSunWidth = 0.06;
   static constexpr double kLowestMuS = -0.55;
@@ -98,7 +104,9 @@ class DiffuseLight {
 /// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
 [[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
 
-/// Real spherical harmonics Y_lm(mu, phi), m >= 0, l major, orthonormal over the sphere; cos_azimuth = cos(phi).
-[[nodiscard]] std::array<float, kMaxMoments> SphericalHarmonics(int degree, float mu, float cos_azimuth);
+/// Real spherical harmonics Y_lm(mu, phi), m >= 0, l major, orthonormal over the sphere;
+/// cos_azimuth = cos(phi).
+[[nodiscard]] std::array<float, kMaxMoments> SphericalHarmonics(int degree, float mu,
+                                                                float cos_azimuth);
 
 }  // namespace alpenglow

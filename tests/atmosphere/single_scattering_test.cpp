@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/single_scattering.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/judge.h"
+#include "tests/stored_cases.h"
+
+namespace alpenglow {
+namespace {
+
+template <typename Real>
+Bands<Real> Inscatter(const AirIntegrator<Real>& air, const ViewRay& ray,
+                      const Sampling& sampling) {
+  return air.Inscatter(air.Scatter(air.Sample(ray, sampling)), ray.nu);
+}
+
+// Rays that an observer near the ground looks along, sun from high to 8 degrees below the horizon.
+std::vector<ViewRay> RaysUnderSun(double sun_elevation_deg) {
+  std::vector<ViewRay> rays;
+  for (const double altitude : {2.0, 1500.0, 10000.0}) {
+    for (const double view : {5.0, 40.0, 70.0, 85.0, 89.0}) {
+      for (const double azimuth : {0.0, 60.0, 180.0}) {
+        rays.push_back(RayFromAngles(altitude, view, azimuth, 90.0 - sun_elevation_deg));
+      }
+    }
+  }
+  return rays;
+}
+
+double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const AirIntegrator<float> air(medium);
+  double largest = 0.0;
+  for (const ViewRay& ray : RaysUnderSun(sun_elevation_deg)) {
+    const auto fast = Inscatter(air, ray, sampling);
+    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      if (truth.inscatter[band] < 1e-12) continue;
+      largest = std::max(largest,
+                         std::abs(static_cast<double>(fast[band]) / truth.inscatter[band] - 1.0));
+    }
+  }
+  return largest;
+}
+
+constexpr Sampling kFine{.nodes = 16, .split_ozone = true, .dark_samples = false};
+
+TEST(SingleScattering, DayAgreesWithTheJudge) {
+  for (const double sun : {60.0, 20.0, 6.0}) {
+    EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4)
+        << "sun at " << sun << " degrees; 16 nodes a panel, tent split";
+  }
+}
+
+TEST(SingleScattering, SunsetAgreesWithTheJudge) {
+  for (const double sun : {4.0, 1.0, 0.0}) EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
+}
+
+TEST(SingleScattering, TwilightAgreesWithTheJudge) {
+  for (const double sun : {-1.0, -4.0, -6.0})
+    EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
+}
+
+TEST(SingleScattering, StoredCasesThatAreNotLimbRaysAgreeToOnePartInTenThousand) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  const auto media = stored::Media();
+  const auto results = stored::Results("single_results.csv");
+  int compared = 0;
+  for (const stored::Row& row : stored::Read("single.csv")) {
+    const ViewRay ray = stored::RayOf(row);
+    const Medium& medium = media.at(row.at("set"));
+    const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+    const bool limb = ray.mu < 0.0 && extent.end == RayEnd::kSpace;
+    if (limb) continue;
+    const AirIntegrator<float> air(medium);
+    const auto fast = Inscatter(air, ray, kFine);
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const double truth = stored::Number(expected, "inscatter");
+      EXPECT_NEAR(static_cast<double>(fast[stored::Band(medium, expected)]), truth,
+                  1e-4 * truth + 1e-13)
+          << row.at("id") << " " << row.at("tag");
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 300);
+}
+
+TEST(SingleScattering, FloatAgreesWithDouble) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> single(medium);
+  const AirIntegrator<double> twice(medium);
+  for (const double sun : {60.0, 6.0, 1.0, -3.0}) {
+    for (const ViewRay& ray : RaysUnderSun(sun)) {
+      const auto f = Inscatter(single, ray, kFine);
+      const auto d = Inscatter(twice, ray, kFine);
+      for (std::size_t band = 0; band < single.bands(); ++band) {
+        EXPECT_NEAR(static_cast<double>(f[band]), d[band], 2e-5 * d[band] + 1e-13)
+            << "float floor of the pipeline: exp of optical depths up to 30 in float";
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
+  const AirIntegrator<float> air(MediumPreset("earth"));
+  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
+  const auto scattered = air.Scatter(air.Sample(ray, {}));
+  const auto transmittance = air.TransmittanceAlong(ray);
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    EXPECT_EQ(scattered.rayleigh[band], 0.0F);
+    EXPECT_EQ(scattered.mie[band], 0.0F);
+    EXPECT_EQ(transmittance[band], 1.0F);
+  }
+}
+
+TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
+  const auto fast = Inscatter(air, ray, {});
+  const auto truth = judge::SingleScatteringAlong(medium, ray);
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    EXPECT_NEAR(static_cast<double>(fast[band]) / truth.inscatter[band], 1.0, 2e-5) << "not noise";
+  }
+}
+
+TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
+  // The difference of two closed forms would have no right digit here; the integral has.
+  const Medium medium = MediumPreset("bruneton2017");
+  const AirIntegrator<double> air(medium);
+  for (const double length : {1.0, 100.0, 10000.0}) {
+    const ViewRay ray{500.0, 0.05, 0.5, 0.3, length};
+    const auto truth = judge::OpticalDepthAlong(medium, ray);
+    const auto fast = air.TransmittanceAlong(ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(-std::log(fast[band]) / truth.tau[band], 1.0, 1e-5) << length << " m";
+    }
+  }
+}
+
+TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheJudgeAtEveryAngle) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  for (const double altitude : {0.0, 10.0, 3000.0, 30000.0, 80000.0}) {
+    for (double mu = -0.3; mu <= 1.0; mu += 0.01) {
+      const auto truth = judge::OpticalDepthAlong(medium, {altitude, mu, 1.0, mu});
+      const auto fast = air.TransmittanceToSpace(altitude, mu);
+      for (std::size_t band = 0; band < air.bands(); ++band) {
+        const double expected = truth.blocked ? 0.0 : std::exp(-truth.tau[band]);
+        EXPECT_NEAR(static_cast<double>(fast[band]), expected, 1e-5) << altitude << " m, mu " << mu;
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
+  const AirIntegrator<float> air(MediumPreset("earth"));
+  for (const double view : {0.0, 180.0}) {
+    const auto one = Inscatter(air, RayFromAngles(5000.0, view, 0.0, 50.0), kFine);
+    const auto other = Inscatter(air, RayFromAngles(5000.0, view, 137.0, 50.0), kFine);
+    for (std::size_t band = 0; band < air.bands(); ++band)
+      EXPECT_NEAR(one[band], other[band], 1e-6F * one[band]);
+  }
+}
+
+TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  const double top = medium.atmosphere_height_m;
+  for (const double view : {95.0, 100.0, 120.0, 180.0}) {
+    const auto below = Inscatter(air, RayFromAngles(top - 1e-6, view, 40.0, 60.0), kFine);
+    const auto above = Inscatter(air, RayFromAngles(top + 1e-6, view, 40.0, 60.0), kFine);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(below[band], above[band], 1e-4F * below[band]) << view;
+    }
+  }
+}
+
+TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
+  Medium medium = MediumPreset("earth");
+  medium.mie_phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};
+  const AirIntegrator<float> air(medium);
+  for (const double nu : {1.0, -1.0}) {
+    const ViewRay ray{2.0, nu * 0.5, 0.5, nu};
+    const auto light = Inscatter(air, ray, kFine);
+    for (std::size_t band = 0; band < air.bands(); ++band) EXPECT_TRUE(std::isfinite(light[band]));
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

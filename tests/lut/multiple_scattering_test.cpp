@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "lut/multiple_scattering.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/quadrature.h"
+#include "tests/stored_cases.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr DiffuseLightOptions kSmall{.altitudes = 8,
+                                     .sun_angles = 12,
+                                     .degree = 2,
+                                     .zenith_nodes = 6,
+                                     .azimuth_nodes = 4,
+                                     .ray_nodes = 6};
+
+TEST(LegendreCoefficients, OfMoleculesAreOneZeroOneTenth) {
+  const auto chi = LegendreCoefficients({.kind = PhaseKind::kRayleigh}, 4);
+  const std::vector<double> expected{1.0, 0.0, 0.1, 0.0, 0.0};
+  for (std::size_t l = 0; l < chi.size(); ++l) EXPECT_NEAR(chi[l], expected[l], 1e-12) << l;
+}
+
+TEST(LegendreCoefficients, OfHenyeyGreensteinArePowersOfG) {
+  for (const double g : {-0.6, 0.3, 0.8, 0.99}) {
+    const auto chi = LegendreCoefficients({.kind = PhaseKind::kHenyeyGreenstein, .g = g}, 6);
+    for (std::size_t l = 0; l < chi.size(); ++l)
+      EXPECT_NEAR(chi[l], std::pow(g, static_cast<double>(l)), 1e-6) << g;
+  }
+}
+
+TEST(SphericalHarmonics, AreOrthonormalOverTheSphere) {
+  const GaussRule& rule = GaussLegendre(16);
+  constexpr int kAzimuths = 32;
+  std::array<std::array<double, kMaxMoments>, kMaxMoments> product{};
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double phi = 2.0 * kPi * (k + 0.5) / kAzimuths;
+      const auto y = SphericalHarmonics(kMaxDegree, static_cast<float>(2.0 * rule.node[i] - 1.0),
+                                        static_cast<float>(std::cos(phi)));
+      for (std::size_t a = 0; a < kMaxMoments; ++a) {
+        for (std::size_t b = 0; b < kMaxMoments; ++b) {
+          product[a][b] += static_cast<double>(y[a]) * static_cast<double>(y[b]) * 2.0 *
+                           rule.weight[i] * 2.0 * kPi / kAzimuths;
+        }
+      }
+    }
+  }
+  for (std::size_t a = 0; a < kMaxMoments; ++a) {
+    for (std::size_t b = 0; b < kMaxMoments; ++b) {
+      EXPECT_NEAR(product[a][b], a == b ? 1.0 : 0.0, 2e-6) << a << " " << b << ": float harmonics";
+    }
+  }
+}
+
+TEST(DiffuseLight, SunCoordinateAndItsInverseAgree) {
+  for (double v = 0.0; v <= 1.0; v += 0.01) {
+    EXPECT_NEAR(DiffuseLight::SunCoordinate(DiffuseLight::MuSFromCoordinate(v)), v, 1e-12);
+  }
+}
+
+TEST(DiffuseLight, EmptyAirOverABlackPlanetIsDark) {
+  Medium medium = MediumPreset("bruneton2017");
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    medium.rayleigh_scattering_per_m[band] = medium.mie_scattering_per_m[band] = 0.0;
+    medium.mie_extinction_per_m[band] = medium.ozone_absorption_per_m[band] =
+        medium.ground_albedo[band] = 0.0;
+  }
+  const DiffuseLight light(medium, kSmall);
+  EXPECT_TRUE(light.converged());
+  for (const float value : light.values()) EXPECT_EQ(value, 0.0F);
+}
+
+TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
+  const Medium medium = MediumPreset("bruneton2017");
+  std::vector<std::vector<float>> values;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    values.push_back(DiffuseLight(medium, kSmall).values());
+  }
+  EXPECT_EQ(values[0], values[1]);
+  EXPECT_EQ(values[0], values[2]);
+}
+
+TEST(DiffuseLight, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
+  Medium medium = MediumPreset("bruneton2017");
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] =
+        5.0 / medium.mie_scale_height_m;
+    medium.ground_albedo[band] = 1.0;
+    medium.ozone_absorption_per_m[band] = 0.0;
+  }
+  DiffuseLightOptions few = kSmall;
+  few.max_orders = 5;
+  EXPECT_FALSE(DiffuseLight(medium, few).converged());
+  DiffuseLightOptions many = kSmall;
+  many.max_orders = 2000;
+  const DiffuseLight light(medium, many);
+  EXPECT_TRUE(light.converged());
+  for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
+}
+
+// The share of diffuse light in the stored path-traced totals, by regime.
+void ExpectStoredTotals(const std::string& tag_filter, double relative_tolerance, int at_least) {
+  const auto media = stored::Media();
+  const auto results = stored::Results("multiple_results.csv");
+  std::map<std::string, DiffuseLight> lights;
+  int compared = 0;
+  double squares = 0.0;
+  for (const stored::Row& row : stored::Read("multiple.csv")) {
+    const std::string set = row.at("set");
+    if (row.at("tag") != tag_filter || (set != "earth" && set != "earth_a03" && set != "rayleigh"))
+      continue;
+    const Medium& medium = media.at(set);
+    const DiffuseLight& light = lights.try_emplace(set, medium).first->second;
+    const AirIntegrator<float> air(medium);
+    const ViewRay ray = stored::RayOf(row);
+    const auto samples = air.Sample(ray, {.nodes = 16, .split_ozone = true, .dark_samples = true});
+    if (samples.extent.end == RayEnd::kGround) continue;
+    const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
+    const auto more = light.InscatterAlong(samples, ray.nu);
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const std::size_t band = stored::Band(medium, expected);
+      const double error =
+          static_cast<double>(once[band] + more[band]) / stored::Number(expected, "total") - 1.0;
+      squares += error * error;
+      ++compared;
+    }
+  }
+  EXPECT_GE(compared, at_least);
+  EXPECT_LT(std::sqrt(squares / compared), relative_tolerance) << tag_filter;
+}
+
+TEST(DiffuseLight, DaylightAgreesWithPathTracingToAThirdOfAPercent) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  ExpectStoredTotals("day", 3e-3, 9);
+}
+
+TEST(DiffuseLight, TwilightAgreesWithPathTracing) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  // Includes two hazy rays with the sun 10 degrees down, where the stored sigma is 0.6 %.
+  ExpectStoredTotals("twilight", 3e-2, 9);
+}
+
+TEST(DiffuseLight, SkyIrradianceAgreesWithPathTracing) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  const auto media = stored::Media();
+  const auto results = stored::Results("irradiance_results.csv");
+  std::map<std::string, DiffuseLight> lights;
+  int compared = 0;
+  for (const stored::Row& row : stored::Read("irradiance.csv")) {
+    if (row.at("quantity") != "irradiance_down") continue;
+    const std::string set = row.at("set");
+    const Medium& medium = media.at(set);
+    const DiffuseLight& light = lights.try_emplace(set, medium).first->second;
+    const auto irradiance = light.SkyIrradiance(
+        stored::Number(row, "h_m"), std::cos(stored::Number(row, "sza_deg") * kRadiansPerDegree));
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const double truth = stored::Number(expected, "irradiance");
+      EXPECT_NEAR(static_cast<double>(irradiance[stored::Band(medium, expected)]), truth,
+                  0.01 * truth)
+          << row.at("id");
+      ++compared;
+    }
+  }
+  EXPECT_GE(compared, 9);
+}
+
+}  // namespace
+}  // namespace alpenglow
