@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Names that OpenGL gives out, owned. Each lives no longer than the context it was made in.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <utility>
+
+namespace alpenglow {
+
+/// A name made by Kind::Make and given back by Kind::Free; moves, never copies.
+template <typename Kind>
+class GlObject {
+ public:
+  GlObject() : id_(Kind::Make()) {}
+  ~GlObject() {
+    if (id_ != 0) Kind::Free(id_);
+  }
+  GlObject(GlObject&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+
+  [[nodiscard]] GLuint id() const { return id_; }
+
+ private:
+  GLuint id_;
+};
+
+namespace gl_kind {
+
+struct Buffer {
+  static GLuint Make() {
+    GLuint id = 0;
+    glGenBuffers(1, &id);
+    return id;
+  }
+  static void Free(GLuint id) { glDeleteBuffers(1, &id); }
+};
+
+struct VertexArray {
+  static GLuint Make() {
+    GLuint id = 0;
+    glGenVertexArrays(1, &id);
+    return id;
+  }
+  static void Free(GLuint id) { glDeleteVertexArrays(1, &id); }
+};
+
+struct Texture {
+  static GLuint Make() {
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    return id;
+  }
+  static void Free(GLuint id) { glDeleteTextures(1, &id); }
+};
+
+struct Framebuffer {
+  static GLuint Make() {
+    GLuint id = 0;
+    glGenFramebuffers(1, &id);
+    return id;
+  }
+  static void Free(GLuint id) { glDeleteFramebuffers(1, &id); }
+};
+
+struct Program {
+  static GLuint Make() { return glCreateProgram(); }
+  static void Free(GLuint id) { glDeleteProgram(id); }
+};
+
+}  // namespace gl_kind
+
+using GlBuffer = GlObject<gl_kind::Buffer>;
+using GlVertexArray = GlObject<gl_kind::VertexArray>;
+using GlTexture = GlObject<gl_kind::Texture>;
+using GlFramebuffer = GlObject<gl_kind::Framebuffer>;
+using GlProgram = GlObject<gl_kind::Program>;
+
+}  // namespace alpenglow

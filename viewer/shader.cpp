@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/shader.h"
+
+#include <fmt/format.h>
+
+#include <regex>
+
+#include "atmosphere/embedded_text.h"
+#include "atmosphere/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kLinesOfAPiece = 100000;  // more than any piece has
+
+std::string LogOfShader(GLuint shader) {
+  GLint length = 0;
+  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetShaderInfoLog(shader, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+std::string LogOfProgram(GLuint program) {
+  GLint length = 0;
+  glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetProgramInfoLog(program, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+/// A compiled stage; the program keeps it alive once it is attached.
+class Stage {
+ public:
+  Stage(GLenum kind, const std::vector<ShaderPiece>& pieces) : id_(glCreateShader(kind)) {
+    const std::string text = ComposeShader(pieces);
+    const char* source = text.c_str();
+    glShaderSource(id_, 1, &source, nullptr);
+    glCompileShader(id_);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(id_, GL_COMPILE_STATUS, &compiled);
+    if (compiled == GL_TRUE) return;
+    const std::string log = NamePieces(LogOfShader(id_), pieces);
+    glDeleteShader(id_);
+    throw InternalError(fmt::format("a shader did not compile:\n{}", log));
+  }
+  ~Stage() { glDeleteShader(id_); }
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  [[nodiscard]] GLuint id() const { return id_; }
+
+ private:
+  GLuint id_;
+};
+
+}  // namespace
+
+std::vector<ShaderPiece> SharedTexts() {
+  std::vector<ShaderPiece> pieces;
+  for (const char* name : {"atmosphere/shared_prelude.glsl", "atmosphere/shell.glsl",
+                           "atmosphere/optical_depth.glsl", "atmosphere/phase.glsl"}) {
+    pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
+  }
+  return pieces;
+}
+
+std::string ComposeShader(std::span<const ShaderPiece> pieces) {
+  std::string text = "#version 330 core\n";
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    text += fmt::format("#line {}\n{}\n", i * kLinesOfAPiece + 1, pieces[i].text);
+  }
+  return text;
+}
+
+std::string NamePieces(std::string_view log, std::span<const ShaderPiece> pieces) {
+  static const std::regex place(R"((^|\n)((?:ERROR: |WARNING: )?)0[:(](\d+)\)?(?:\(\d+\))?)");
+  const std::string text(log);
+  std::string named;
+  auto copied = text.begin();
+  for (std::sregex_iterator match(text.begin(), text.end(), place), end; match != end; ++match) {
+    const std::size_t line = std::stoul((*match)[3]);
+    if (line / kLinesOfAPiece >= pieces.size()) continue;
+    named.append(copied, (*match)[0].first);
+    named += fmt::format("{}{}{}:{}", (*match)[1].str(), (*match)[2].str(),
+                         pieces[line / kLinesOfAPiece].name, line % kLinesOfAPiece);
+    copied = (*match)[0].second;
+  }
+  named.append(copied, text.end());
+  return named;
+}
+
+ShaderProgram::ShaderProgram(const std::vector<ShaderPiece>& vertex,
+                             const std::vector<ShaderPiece>& fragment) {
+  Attach(GL_VERTEX_SHADER, vertex);
+  Attach(GL_FRAGMENT_SHADER, fragment);
+  Link();
+}
+
+ShaderProgram ShaderProgram::ForTransformFeedback(const std::vector<ShaderPiece>& vertex,
+                                                  const std::vector<std::string>& outputs) {
+  ShaderProgram made;
+  made.Attach(GL_VERTEX_SHADER, vertex);
+  std::vector<const char*> names;
+  for (const std::string& output : outputs) names.push_back(output.c_str());
+  glTransformFeedbackVaryings(made.program_.id(), static_cast<GLsizei>(names.size()), names.data(),
+                              GL_INTERLEAVED_ATTRIBS);
+  made.Link();
+  return made;
+}
+
+void ShaderProgram::Attach(GLenum kind, const std::vector<ShaderPiece>& pieces) {
+  const Stage stage(kind, pieces);
+  glAttachShader(program_.id(), stage.id());
+}
+
+void ShaderProgram::Link() {
+  glLinkProgram(program_.id());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program_.id(), GL_LINK_STATUS, &linked);
+  if (linked != GL_TRUE) {
+    throw InternalError(fmt::format("shaders did not link:\n{}", LogOfProgram(program_.id())));
+  }
+}
+
+GLint ShaderProgram::Uniform(const char* name) const {
+  return glGetUniformLocation(program_.id(), name);
+}
+
+void ShaderProgram::BindBlock(const char* block, GLuint binding) const {
+  const GLuint index = glGetUniformBlockIndex(program_.id(), block);
+  if (index != GL_INVALID_INDEX) glUniformBlockBinding(program_.id(), index, binding);
+}
+
+void ShaderProgram::BindSampler(const char* sampler, int unit) const {
+  Use();
+  glUniform1i(Uniform(sampler), unit);
+}
+
+}  // namespace alpenglow
