@@ -20,18 +20,23 @@ struct UtcInstant {
 
 /// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00", fractions of a second
 /// allowed. Without Z or an offset `zone` (IANA name) is needed; a local time in a DST gap or
-/// overlap is refused and the message asks for the offset. Years 1900 to 2100. Throws InputError
-/// naming text and fault.
+/// overlap is refused and the message asks for the offset. Where the text says the offset, `zone`
+/// is not asked. Years 1900 to 2100. Throws InputError naming text and fault.
 [[nodiscard]] UtcInstant ParseInstant(std::string_view text,
                                       const std::optional<std::string>& zone = std::nullopt);
 
-/// "2026-06-21T04:00:00Z"; with `decimals` digits of a second.
+/// "2026-06-21T04:00:00Z"; rounded to `decimals` digits of a second, 0 to 9.
 [[nodiscard]] std::string FormatUtc(const UtcInstant& instant, int decimals = 0);
 
-/// As FormatUtc in a zone, with its offset: "2026-06-21T13:00:00+09:00".
+/// As FormatUtc in a zone, with its offset: "2026-06-21T13:00:00+09:00". Throws InputError when
+/// there is no such zone.
 [[nodiscard]] std::string FormatInZone(const UtcInstant& instant, const std::string& zone);
 
-/// `instant` moved by seconds (any sign), counted without leap seconds as clocks do.
+/// Length of a day of UTC [s]: 86401 when it ends in a leap second, else 86400.
+[[nodiscard]] double DayLength(int modified_julian_day);
+
+/// `instant` moved by seconds (any sign), counted without leap seconds as clocks do: a leap second
+/// is the first second of the next day. 0 moves nothing.
 [[nodiscard]] UtcInstant AddSeconds(const UtcInstant& instant, double seconds);
 
 /// Seconds from one to the other, counted without leap seconds.
