@@ -10,6 +10,7 @@
 
 #include "atmosphere/embedded_text.h"
 #include "atmosphere/error.h"
+#include "atmosphere/solar_table.h"
 
 namespace alpenglow {
 namespace {
@@ -116,8 +117,13 @@ std::vector<double> WavelengthSet(int bands) {
   }
 }
 
-double SolarIrradiance(double wavelength_nm) {
+const SampledFunction& SolarTable() {
   static const SampledFunction table = ReadTable(kSolarFile, 1);
+  return table;
+}
+
+double SolarIrradiance(double wavelength_nm) {
+  const SampledFunction& table = SolarTable();
   const double centre = std::clamp(wavelength_nm, table.x().front(), table.x().back());
   return table.Mean(centre - 5.0, centre + 5.0);
 }

@@ -59,9 +59,16 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 /// Colour of spectral radiance given in bands.
 ///
 /// XYZ [cd m^-2 when radiance is W m^-2 sr^-1 nm^-1; Y is luminance] is a 3 x N matrix times the
-/// bands. With at most 12 bands the matrix is the least-squares fit, in relative XYZ, to a family
-/// of daylight spectra (sun through air, haze and ozone, and light scattered by them) on the given
-/// solar spectrum; with more it is the quadrature of the colour-matching functions over the bands.
+/// bands: the integral of the colour-matching functions over radiance, taken as the solar spectrum
+/// times a line broken at the bands. With at most 16 bands the matrix is corrected to the
+/// least-squares fit, in relative XYZ, to a family of daylight spectra (sun through air, haze and
+/// ozone, and light scattered by them). The sun above the air has the same XYZ on every wavelength
+/// set, to 1e-4 (bands of the solar spectrum being those of SolarIrradiance).
+///
+/// Error against integration in 0.5 nm steps, over 513 skies and suns of three atmospheres with the
+/// sun from 60 degrees down to -5 (none of them in the family; tests/atmosphere/spectrum_test.cpp),
+/// CIEDE2000 at equal exposure, bounds of the mean and of the 95th percentile: 3 bands 1.4 and 5.5,
+/// 4 bands 0.7 and 1.3, 8 bands 0.05 and 0.1, 16 bands 0.03 and 0.05, 40 bands 0.08 and 0.2.
 class BandColour {
  public:
   explicit BandColour(std::vector<double> wavelengths_nm);
@@ -79,9 +86,11 @@ class BandColour {
   std::vector<double> xyz_, srgb_;
 };
 
-/// A spectral albedo in [0, 1] on the wavelengths whose colour under the equal-energy white is the
-/// given linear sRGB: smooth, by a sum of three fixed bell-shaped bases per primary (see
-/// spectrum.cpp).
+/// A spectral albedo in [0, 1] on the wavelengths whose colour under equal-energy light, its white
+/// scaled to (1, 1, 1), is the given linear sRGB: a mixture of a red, a green and a blue surface
+/// with smooth edges that together reflect everything (see colour.cpp). Greys come out flat. A
+/// colour more saturated than those surfaces is moved to the nearest mixture by clamping the shares
+/// to [0, 1].
 [[nodiscard]] std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
                                                        std::span<const double> wavelengths_nm);
 
