@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/provenance.h"
+
+#include <fstream>
+#include <vector>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "lut/program.h"
+
+namespace alpenglow {
+namespace {
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo).
+class Hash {
+ public:
+  void Add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+    }
+  }
+  [[nodiscard]] std::string Text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+std::string HashOfFile(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Hash hash;
+  std::vector<char> block(1U << 20U);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
+         stream.gcount() > 0) {
+    hash.Add({block.data(), static_cast<std::size_t>(stream.gcount())});
+  }
+  if (!stream.eof()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  return hash.Text();
+}
+
+std::string Degrees(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
+
+std::string HeightText(const Height& height) {
+  return fmt::format("{} m above the {}", height.value_m,
+                     height.above_ground ? "ground" : "ellipsoid");
+}
+
+std::string TerrainText(const TerrainSource& terrain) {
+  switch (terrain.kind) {
+    case TerrainSource::Kind::kBuiltInRange:
+      return "built-in range";
+    case TerrainSource::Kind::kElevationModel:
+      return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
+                         HashOfFile(terrain.file),
+                         terrain.voids == VoidPolicy::kFill ? "filled" : "open");
+    case TerrainSource::Kind::kMesh:
+      return fmt::format("{}, hash {}", terrain.file.filename().string(), HashOfFile(terrain.file));
+    case TerrainSource::Kind::kNone:
+      return "none";
+  }
+  throw InternalError("unknown kind of terrain");
+}
+
+std::string LightText(const Light& light) {
+  std::string text = fmt::format("{} at {}, {}, {}: {} cd, {} K",
+                                 light.type == Light::Type::kSpot ? "spot" : "point",
+                                 Degrees(light.latitude_rad), Degrees(light.longitude_rad),
+                                 HeightText(light.height), light.intensity_cd, light.temperature_k);
+  if (light.type == Light::Type::kPoint) return text;
+  return text + fmt::format(", heading {}, pitch {}, cone {} to {}", Degrees(light.heading_rad),
+                            Degrees(light.pitch_rad), Degrees(light.inner_rad),
+                            Degrees(light.outer_rad));
+}
+
+}  // namespace
+
+Metadata SceneMetadata(const Scene& scene) {
+  const Camera& camera = scene.camera;
+  Metadata metadata = {
+      {"Software", ProducerText()},
+      {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
+      {"alpenglow.atmosphere", scene.medium.name},
+      {"alpenglow.atmosphere_hash", fmt::format("{:016x}", MediumHash(scene.medium))},
+      {"alpenglow.latitude_deg", Degrees(scene.place.latitude_rad)},
+      {"alpenglow.longitude_deg", Degrees(scene.place.longitude_rad)},
+      {"alpenglow.camera_height", HeightText(camera.height)},
+      {"alpenglow.heading_deg", Degrees(camera.heading_rad)},
+      {"alpenglow.pitch_deg", Degrees(camera.pitch_rad)},
+      {"alpenglow.roll_deg", Degrees(camera.roll_rad)},
+      {"alpenglow.fov_deg", Degrees(camera.fov_rad)},
+      {"alpenglow.terrain", TerrainText(scene.terrain)}};
+  if (camera.lens) {
+    metadata["alpenglow.lens"] = fmt::format("f/{}, {} m, focus {} m", camera.lens->f_number,
+                                             camera.lens->focal_length_m, camera.lens->focus_m);
+  }
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
+  }
+  return metadata;
+}
+
+std::string Fingerprint(const Metadata& metadata) {
+  Hash hash;
+  for (const auto& [name, value] : metadata) {
+    hash.Add(name);
+    hash.Add({"\0", 1});
+    hash.Add(value);
+    hash.Add({"\0", 1});
+  }
+  return hash.Text();
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene.h"
+
+#include <cmath>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "atmosphere/toml_table.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kHighestEye_m = 1e9;
+constexpr double kDeepestPlace_m = -12000.0;  // as PlaceFromDegrees
+
+double Radians(double degrees) { return degrees * kRadiansPerDegree; }
+
+double Required(const TomlTable& table, const std::string& key, double low, double high) {
+  const std::optional<double> value = table.Number(key, low, high);
+  if (!value) table.Fail(key, table.FullName(key) + " is missing");
+  return *value;
+}
+
+/// Calls `read` and puts file and line of `key` before the message of its InputError.
+template <typename Read>
+auto At(const TomlTable& table, const std::string& key, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    table.Fail(key, fmt::format("{}: {}", table.FullName(key), error.what()));
+  }
+}
+
+Height HeightOf(const TomlTable& table, const Height& fallback) {
+  const std::optional<double> height = table.Number("height_m", kDeepestPlace_m, kHighestEye_m);
+  const std::optional<double> above = table.Number("above_ground_m", 0.0, kHighestEye_m);
+  if (height && above) {
+    table.Fail("above_ground_m",
+               fmt::format("{} and {} are both given; give one", table.FullName("height_m"),
+                           table.FullName("above_ground_m")));
+  }
+  if (height) return {*height, false};
+  if (above) return {*above, true};
+  return fallback;
+}
+
+struct Place {
+  GeodeticPosition position;
+  std::optional<std::string> zone;
+};
+
+Place PlaceOf(const TomlTable& document) {
+  const std::optional<TomlTable> table = document.Table("place");
+  if (!table) document.Fail("place", "[place] with latitude and longitude is missing");
+  table->AllowOnly({"latitude", "longitude", "zone"});
+  const double latitude = Required(*table, "latitude", -90.0, 90.0);
+  const double longitude = Required(*table, "longitude", -180.0, 360.0);
+  const std::optional<std::string> zone = table->Text("zone");
+  if (zone) At(*table, "zone", [&] { return FormatInZone(UtcInstant{}, *zone); });
+  return {PlaceFromDegrees(latitude, longitude, 0.0), zone};
+}
+
+std::optional<UtcInstant> TimeOf(const TomlTable& document,
+                                 const std::optional<std::string>& zone) {
+  const std::optional<TomlTable> table = document.Table("time");
+  if (!table) return std::nullopt;
+  table->AllowOnly({"utc", "local"});
+  const std::optional<std::string> utc = table->Text("utc");
+  const std::optional<std::string> local = table->Text("local");
+  if (utc && local) table->Fail("local", "time.utc and time.local are both given; give one");
+  if (utc) return At(*table, "utc", [&] { return ParseInstant(*utc); });
+  if (!local) table->Fail("utc", "time.utc is missing");
+  if (!zone) table->Fail("local", "time.local needs place.zone");
+  return At(*table, "local", [&] { return ParseInstant(*local, zone); });
+}
+
+std::optional<ThinLens> LensOf(const TomlTable& table) {
+  const double f_number = table.Number("f_number", 0.0, 1000.0).value_or(0.0);
+  const std::optional<double> focal_length_mm = table.Number("focal_length_mm", 0.1, 10000.0);
+  const std::optional<double> focus_m = table.Number("focus_m", 0.01, 1e9);
+  if (f_number == 0.0) return std::nullopt;
+  for (const auto& [key, value] :
+       {std::pair{"focal_length_mm", focal_length_mm}, std::pair{"focus_m", focus_m}}) {
+    if (!value) {
+      table.Fail(
+          key, fmt::format("{} is missing; a lens with an f_number needs it", table.FullName(key)));
+    }
+  }
+  if (!(*focus_m > 1e-3 * *focal_length_mm)) {
+    table.Fail("focus_m",
+               fmt::format("camera.focus_m is {}; it must be beyond the focal length", *focus_m));
+  }
+  return ThinLens{f_number, 1e-3 * *focal_length_mm, *focus_m};
+}
+
+Camera CameraOf(const TomlTable& document) {
+  const std::optional<TomlTable> table = document.Table("camera");
+  if (!table) return {};
+  table->AllowOnly({"height_m", "above_ground_m", "heading", "pitch", "roll", "fov", "f_number",
+                    "focal_length_mm", "focus_m"});
+  const double heading = table->Number("heading", -360.0, 360.0).value_or(0.0);
+  const double pitch = table->Number("pitch", -90.0, 90.0).value_or(0.0);
+  const double roll = table->Number("roll", -180.0, 180.0).value_or(0.0);
+  const double fov = table->Number("fov", 0.1, 360.0).value_or(60.0);
+  const Height height = HeightOf(*table, Height{});
+  Camera camera =
+      At(*table, "fov", [&] { return CameraFromDegrees(height, heading, pitch, roll, fov); });
+  camera.lens = LensOf(*table);
+  return camera;
+}
+
+Medium MediumOf(const TomlTable& document, const fs::path& folder) {
+  const std::optional<TomlTable> table = document.Table("atmosphere");
+  if (!table) return MediumPreset("earth");
+  table->AllowOnly({"file", "preset"});
+  const std::optional<std::string> file = table->Text("file");
+  const std::optional<std::string> preset = table->Text("preset");
+  if (file && preset) {
+    table->Fail("preset", "atmosphere.file and atmosphere.preset are both given; give one");
+  }
+  if (preset) return At(*table, "preset", [&] { return MediumPreset(*preset); });
+  if (!file) table->Fail("file", "atmosphere.file is missing");
+  return ReadMedium(folder / *file);
+}
+
+TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
+  const std::optional<TomlTable> table = document.Table("terrain");
+  if (!table) return {};
+  table->AllowOnly({"dem", "mesh", "none", "voids"});
+  const std::optional<std::string> dem = table->Text("dem");
+  const std::optional<std::string> mesh = table->Text("mesh");
+  const bool none = table->Truth("none").value_or(false);
+  if (int{dem.has_value()} + int{mesh.has_value()} + int{none} > 1) {
+    table->Fail(mesh ? "mesh" : "none", "give one of terrain.dem, terrain.mesh and terrain.none");
+  }
+  const std::string voids = table->Text("voids").value_or("fill");
+  if (voids != "fill" && voids != "open") {
+    table->Fail("voids",
+                fmt::format("terrain.voids is \"{}\"; it must be \"fill\" or \"open\"", voids));
+  }
+  if (table->Has("voids") && !dem) table->Fail("voids", "terrain.voids needs terrain.dem");
+  TerrainSource source;
+  source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
+  if (none) source.kind = TerrainSource::Kind::kNone;
+  if (dem) {
+    source.kind = TerrainSource::Kind::kElevationModel;
+    source.file = folder / *dem;
+  }
+  if (mesh) {
+    source.kind = TerrainSource::Kind::kMesh;
+    source.file = folder / *mesh;
+  }
+  return source;
+}
+
+Light::Type LightTypeOf(const TomlTable& table) {
+  const std::string type = table.Text("type").value_or("point");
+  if (type == "point") return Light::Type::kPoint;
+  if (type == "spot") return Light::Type::kSpot;
+  table.Fail("type", fmt::format("{} is \"{}\"; it must be \"point\" or \"spot\"",
+                                 table.FullName("type"), type));
+}
+
+void ReadCone(const TomlTable& table, Light& light) {
+  light.heading_rad = Radians(table.Number("heading", -360.0, 360.0).value_or(0.0));
+  light.pitch_rad = Radians(table.Number("pitch", -90.0, 90.0).value_or(0.0));
+  const std::optional<std::vector<double>> cone = table.Numbers("cone", 0.0, 180.0);
+  if (!cone || cone->size() != 2 || !((*cone)[0] < (*cone)[1])) {
+    table.Fail("cone", fmt::format("{} must be two half angles, the smaller one first",
+                                   table.FullName("cone")));
+  }
+  light.inner_rad = Radians((*cone)[0]);
+  light.outer_rad = Radians((*cone)[1]);
+}
+
+Light LightOf(const TomlTable& table) {
+  table.AllowOnly({"type", "latitude", "longitude", "height_m", "above_ground_m", "intensity_cd",
+                   "temperature_k", "heading", "pitch", "cone"});
+  Light light;
+  light.type = LightTypeOf(table);
+  light.latitude_rad = Radians(Required(table, "latitude", -90.0, 90.0));
+  light.longitude_rad = Radians(Required(table, "longitude", -180.0, 360.0));
+  light.height = HeightOf(table, Height{});
+  light.intensity_cd = Required(table, "intensity_cd", 0.0, 1e12);
+  light.temperature_k = table.Number("temperature_k", 500.0, 50000.0).value_or(3000.0);
+  if (light.type == Light::Type::kSpot) {
+    ReadCone(table, light);
+    return light;
+  }
+  for (const char* key : {"heading", "pitch", "cone"}) {
+    if (table.Has(key)) {
+      table.Fail(key, fmt::format("{} is for a spot; this is a point", table.FullName(key)));
+    }
+  }
+  return light;
+}
+
+}  // namespace
+
+bool Camera::IsPanorama() const { return fov_rad > kPi; }
+
+Camera CameraFromDegrees(const Height& height, double heading, double pitch, double roll,
+                         double fov, const std::string& prefix) {
+  Camera camera;
+  camera.height = height;
+  camera.heading_rad = Radians(RequireInRange(heading, -360.0, 360.0, prefix + "heading"));
+  camera.pitch_rad = Radians(RequireInRange(pitch, -90.0, 90.0, prefix + "pitch"));
+  camera.roll_rad = Radians(RequireInRange(roll, -180.0, 180.0, prefix + "roll"));
+  if (fov != 360.0 && !(fov >= 0.1 && fov <= 179.0)) {
+    throw InputError(
+        fmt::format("{}fov is {}; it must lie in [0.1, 179] or be 360, a panorama", prefix, fov));
+  }
+  camera.fov_rad = Radians(fov);
+  return camera;
+}
+
+Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder) {
+  const TomlTable document(text, origin);
+  document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "light"});
+  const Place place = PlaceOf(document);
+  Scene scene;
+  scene.place = place.position;
+  scene.zone = place.zone;
+  scene.time = TimeOf(document, place.zone);
+  scene.camera = CameraOf(document);
+  scene.medium = MediumOf(document, folder);
+  scene.terrain = TerrainOf(document, folder);
+  for (const TomlTable& light : document.Tables("light")) scene.lights.push_back(LightOf(light));
+  return scene;
+}
+
+Scene ReadScene(const fs::path& file) {
+  return SceneFromToml(ReadTextFile(file), file.string(), file.parent_path());
+}
+
+}  // namespace alpenglow

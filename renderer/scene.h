@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// What a picture is of: place, time, camera, air, ground, lamps; and the file that says so.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "atmosphere/geodesy.h"
+#include "atmosphere/medium.h"
+#include "atmosphere/time.h"
+#include "renderer/elevation.h"
+
+namespace alpenglow {
+
+/// A height over the ellipsoid or over the ground below.
+struct Height {
+  double value_m = 2.0;
+  bool above_ground = true;
+
+  bool operator==(const Height&) const = default;
+};
+
+/// The lens, when it is more than a pinhole.
+struct ThinLens {
+  double f_number;
+  double focal_length_m;
+  double focus_m;  // distance of what is sharp
+};
+
+/// The eye stands at the scene's place.
+struct Camera {
+  Height height;
+  double heading_rad = 0.0;             // clockwise from north
+  double pitch_rad = 0.0;               // up is positive
+  double roll_rad = 0.0;                // clockwise seen from behind
+  double fov_rad = 1.0471975511965976;  // horizontal, 60 degrees; over 179 degrees: see below
+  std::optional<ThinLens> lens;
+
+  /// 2 pi: a panorama, all directions; else a perspective of at most 179 degrees.
+  [[nodiscard]] bool IsPanorama() const;
+};
+
+/// Where the ground comes from.
+struct TerrainSource {
+  enum class Kind {
+    kBuiltInRange,    // BuiltInRange, centred on the scene's place
+    kElevationModel,  // file, see ReadElevation
+    kMesh,            // file, see ReadObj
+    kNone,            // the ellipsoid alone
+  };
+  Kind kind = Kind::kBuiltInRange;
+  std::filesystem::path file;
+  VoidPolicy voids = VoidPolicy::kFill;
+};
+
+/// A lamp.
+struct Light {
+  enum class Type { kPoint, kSpot };
+  Type type = Type::kPoint;
+  double latitude_rad = 0.0;
+  double longitude_rad = 0.0;
+  Height height;
+  double intensity_cd = 0.0;
+  double temperature_k = 3000.0;  // of the black body whose colour it has
+  double heading_rad = 0.0;       // of a spot's axis
+  double pitch_rad = 0.0;
+  double inner_rad = 0.0;  // half angles of a spot: full inside the first, none outside the second
+  double outer_rad = 0.0;
+};
+
+struct Scene {
+  GeodeticPosition place;           // height 0
+  std::optional<std::string> zone;  // IANA name
+  std::optional<UtcInstant> time;
+  Camera camera;
+  Medium medium;  // "earth" when nothing is said
+  TerrainSource terrain;
+  std::vector<Light> lights;
+};
+
+/// Reads scene.toml. Names of files in it are relative to it. Throws InputError "file:line: key
+/// ..." for unknown keys (with the nearest known one), wrong types, values out of range, a missing
+/// place, malformed text, and what ReadMedium refuses. Files of the terrain are not opened here.
+[[nodiscard]] Scene ReadScene(const std::filesystem::path& file);
+
+/// As ReadScene, from text; `origin` stands in messages where the file's name would, and names of
+/// files are relative to `folder`.
+[[nodiscard]] Scene SceneFromToml(std::string_view text, const std::string& origin,
+                                  const std::filesystem::path& folder);
+
+/// Checked values of a camera: heading [-360, 360], pitch [-90, 90], roll [-180, 180], fov [0.1,
+/// 179] or 360, all in degrees. Throws InputError naming the value as `prefix`heading and so on.
+[[nodiscard]] Camera CameraFromDegrees(const Height& height, double heading, double pitch,
+                                       double roll, double fov, const std::string& prefix = "");
+
+}  // namespace alpenglow

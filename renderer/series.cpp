@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series.h"
+
+#include <map>
+#include <system_error>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "atmosphere/sun.h"
+#include "lut/program.h"
+#include "renderer/contact_sheet.h"
+#include "renderer/provenance.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
+constexpr char kFingerprint[] = "alpenglow.fingerprint";
+constexpr char kEv100[] = "alpenglow.ev100";
+
+// Brighter than sunlit snow and the sun's surroundings, darker than its disk.
+constexpr double kSunDiskAbove_cd_per_m2 = 1e6;
+
+std::string CurveName(ToneCurve curve) {
+  switch (curve) {
+    case ToneCurve::kAgx:
+      return "agx";
+    case ToneCurve::kAces:
+      return "aces";
+    case ToneCurve::kReinhard:
+      return "reinhard";
+    case ToneCurve::kPbrNeutral:
+      return "pbr-neutral";
+    case ToneCurve::kLinear:
+      return "linear";
+  }
+  throw InternalError("unknown tone curve");
+}
+
+std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
+  return source.zone ? FormatInZone(instant, *source.zone) : "";
+}
+
+/// Settings, instant and their fingerprint: what the pixels of a frame depend on.
+Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
+  Metadata metadata = source.settings;
+  metadata["alpenglow.utc"] = FormatUtc(frame.instant, 3);
+  metadata[kRenderFingerprint] = Fingerprint(metadata);
+  return metadata;
+}
+
+/// A value of a file's header, or "" when there is no such file or value.
+std::string HeaderValue(const std::function<Metadata()>& read, const std::string& name) {
+  try {
+    const Metadata metadata = read();
+    const auto found = metadata.find(name);
+    return found == metadata.end() ? "" : found->second;
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+std::string ExrValue(const fs::path& file, const std::string& name) {
+  return HeaderValue([&] { return ReadExrMetadata(file); }, name);
+}
+
+/// The picture, when it is whole and was made with these settings.
+std::optional<Image> KeptImage(const fs::path& file, const std::string& render_fingerprint) {
+  if (ExrValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
+  try {
+    return ReadExr(file);
+  } catch (const InputError&) {
+    return std::nullopt;  // damaged: to be rendered again
+  }
+}
+
+bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
+  if (HeaderValue([&] { return ReadPngMetadata(file); }, kFingerprint) != fingerprint) return false;
+  try {
+    (void)ReadPng(file);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Everything that a frame's header says.
+Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
+                       double ev100) {
+  Metadata metadata = RenderMetadata(source, frame);
+  const SunPosition sun = SunAt(source.place, frame.instant);
+  metadata["alpenglow.frame"] = fmt::format("{}", frame.number);
+  metadata["alpenglow.sun_azimuth_deg"] =
+      fmt::format("{:.6f}", sun.azimuth_rad / kRadiansPerDegree);
+  metadata["alpenglow.sun_elevation_deg"] =
+      fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
+  metadata[kEv100] = fmt::format("{:.4f}", ev100);
+  metadata["alpenglow.exposure"] = output.ev100 ? "fixed" : "metered";
+  metadata["alpenglow.tone_curve"] = CurveName(output.curve);
+  if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
+  metadata[kFingerprint] = Fingerprint(metadata);
+  return metadata;
+}
+
+class Series {
+ public:
+  Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
+      : source_(source), frames_(frames), output_(output) {}
+
+  /// @return whether the frame had to be rendered.
+  bool Make(const Frame& frame) {
+    const fs::path exr = output_.name.Exr(frame.number);
+    const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
+    std::optional<Image> image;
+    if (output_.resume) image = KeptImage(exr, wanted);
+    const bool rendered = !image;
+    if (rendered) image = source_.render(frame.instant);
+    const double ev100 = output_.ev100.value_or(MeterEv100(*image, kSunDiskAbove_cd_per_m2));
+    Write(frame, *image, ev100, rendered);
+    if (output_.contact_sheet) AddThumbnail(frame, *image, ev100);
+    return rendered;
+  }
+
+  void WriteManifest() const {
+    std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100\n";
+    for (const Frame& frame : frames_) text += ManifestLine(frame);
+    WriteTextAtomically(output_.name.Manifest(), text);
+  }
+
+  void WriteContactSheet() const {
+    if (output_.contact_sheet) {
+      WritePng(*output_.contact_sheet, ContactSheet(thumbnails_), source_.settings);
+    }
+  }
+
+  [[nodiscard]] const SeriesSummary& summary() const { return summary_; }
+
+ private:
+  void Write(const Frame& frame, const Image& image, double ev100, bool rendered) {
+    const Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
+    const fs::path exr = output_.name.Exr(frame.number);
+    const fs::path png = output_.name.Png(frame.number);
+    const bool keep_exr = !rendered && ExrValue(exr, kFingerprint) == metadata.at(kFingerprint);
+    const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
+    if (!keep_exr) WriteExr(exr, image, metadata);
+    if (!keep_png) WritePng(png, Develop(image, ev100, output_.curve), metadata);
+    (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
+    ev100_of_[frame.number] = metadata.at(kEv100);
+  }
+
+  void AddThumbnail(const Frame& frame, const Image& image, double ev100) {
+    const std::string local = LocalTime(source_, frame.instant);
+    const std::string time = (local.empty() ? FormatUtc(frame.instant) : local).substr(11, 5);
+    const double elevation_deg =
+        SunAt(source_.place, frame.instant).elevation_rad / kRadiansPerDegree;
+    thumbnails_.push_back({Develop(Reduced(image, kThumbnailWidth), ev100, output_.curve),
+                           fmt::format("{} {:+.1f}", time, elevation_deg)});
+  }
+
+  /// Frames of other runs (or machines) are looked up in their files.
+  [[nodiscard]] std::string Ev100Text(const Frame& frame) const {
+    const auto found = ev100_of_.find(frame.number);
+    if (found != ev100_of_.end()) return found->second;
+    const fs::path exr = output_.name.Exr(frame.number);
+    const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
+    return ExrValue(exr, kRenderFingerprint) == wanted ? ExrValue(exr, kEv100) : "";
+  }
+
+  [[nodiscard]] std::string ManifestLine(const Frame& frame) const {
+    const SunPosition sun = SunAt(source_.place, frame.instant);
+    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}\n", frame.number,
+                       output_.name.Exr(frame.number).filename().string(), FormatUtc(frame.instant),
+                       LocalTime(source_, frame.instant), sun.azimuth_rad / kRadiansPerDegree,
+                       sun.elevation_rad / kRadiansPerDegree, Ev100Text(frame));
+  }
+
+  const SeriesSource& source_;
+  const std::vector<Frame>& frames_;
+  const SeriesOutput& output_;
+  SeriesSummary summary_;
+  std::map<int, std::string> ev100_of_;
+  std::vector<Thumbnail> thumbnails_;
+};
+
+void CreateFolder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw OutputError(fmt::format("{}: {}", folder.string(), error.message()));
+}
+
+}  // namespace
+
+SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
+                        const std::vector<Frame>& selected, const SeriesOutput& output) {
+  if (frames.size() > 1 && !output.name.HasNumber()) {
+    throw InputError(
+        fmt::format("--out has no frame number (%04d), but there are {} frames", frames.size()));
+  }
+  CreateFolder(output.name.Folder());
+  if (output.contact_sheet) CreateFolder(output.contact_sheet->parent_path());
+  Series series(source, frames, output);
+  series.WriteManifest();  // before the work, so that a folder that takes no files is found out
+  Progress progress("frames", selected.size(), output.progress);
+  try {
+    for (const Frame& frame : selected) {
+      ThrowIfInterrupted();
+      if (series.Make(frame)) {
+        progress.Advance();
+      } else {
+        progress.Skip();
+      }
+    }
+  } catch (...) {
+    try {
+      series.WriteManifest();
+    } catch (const OutputError&) {
+      // The first failure is the one to report.
+    }
+    throw;
+  }
+  series.WriteManifest();
+  series.WriteContactSheet();
+  return series.summary();
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// A series of pictures: rendered, exposed, written one by one, and taken up again where it stopped.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "atmosphere/geodesy.h"
+#include "lut/progress.h"
+#include "renderer/frame_name.h"
+#include "renderer/frame_times.h"
+#include "renderer/image.h"
+
+namespace alpenglow {
+
+/// What makes the pictures of a series.
+struct SeriesSource {
+  std::function<Image(const UtcInstant&)> render;
+  /// Everything that the pixels depend on but the instant (SceneMetadata, size, samples, layers).
+  Metadata settings;
+  GeodeticPosition place;
+  std::optional<std::string> zone;
+};
+
+/// How the pictures are exposed and where they go.
+struct SeriesOutput {
+  FrameName name;
+  bool png = false;                            // a developed picture beside every EXR
+  std::optional<double> ev100 = std::nullopt;  // nothing: every frame is metered
+  ToneCurve curve = ToneCurve::kAgx;
+  bool resume = false;
+  std::optional<std::filesystem::path> contact_sheet = std::nullopt;
+  ProgressStyle progress = ProgressStyle::kAuto;
+};
+
+/// What was done for the selected frames.
+struct SeriesSummary {
+  int rendered = 0;
+  int kept = 0;       // intact, with the same settings
+  int developed = 0;  // pixels kept, exposure or curve changed: written again
+};
+
+/// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
+/// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
+/// sun_elevation_deg (without refraction), ev100 (empty until the frame exists).
+///
+/// Files are written atomically, in folders that are created when they are missing. With `resume`
+/// a frame is rendered only if its file is missing, unreadable, or made with other settings: each
+/// file carries a fingerprint of its settings. Stops between frames when a signal has come
+/// (ThrowIfInterrupted), finished frames and the manifest kept.
+///
+/// Throws OutputError; InputError for several frames under a name without a number.
+SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
+                        const std::vector<Frame>& selected, const SeriesOutput& output);
+
+}  // namespace alpenglow

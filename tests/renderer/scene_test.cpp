@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "tests/renderer/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kPlace = "[place]\nlatitude = 35.3606\nlongitude = 138.7274\n";
+
+Scene Read(const std::string& text) { return SceneFromToml(text, "s.toml", "folder"); }
+
+std::string FaultOf(const std::string& text) {
+  try {
+    (void)Read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no fault";
+}
+
+TEST(Scene, EverythingThatTheFileSaysArrives) {
+  const Scene scene = Read(R"(
+[place]
+latitude = 35.3606
+longitude = 138.7274
+zone = "Asia/Tokyo"
+[time]
+utc = "2026-06-21T04:00:00Z"
+[camera]
+height_m = 2500.0
+heading = 270.0
+pitch = -2.0
+roll = 1.5
+fov = 45.0
+f_number = 2.8
+focal_length_mm = 50.0
+focus_m = 1000.0
+[atmosphere]
+preset = "hazy"
+[terrain]
+dem = "N35E138.hgt"
+voids = "open"
+[[light]]
+type = "spot"
+latitude = 35.36
+longitude = 138.73
+above_ground_m = 20.0
+intensity_cd = 20000.0
+temperature_k = 2700.0
+heading = 90.0
+pitch = -5.0
+cone = [10.0, 25.0]
+[[light]]
+latitude = 35.37
+longitude = 138.73
+height_m = 700.0
+intensity_cd = 0
+)");
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 35.3606 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.place.longitude_rad, 138.7274 * kRadiansPerDegree);
+  EXPECT_EQ(scene.zone, "Asia/Tokyo");
+  EXPECT_EQ(FormatUtc(scene.time.value()), "2026-06-21T04:00:00Z");
+  EXPECT_EQ(scene.camera.height, (Height{2500.0, false}));
+  EXPECT_DOUBLE_EQ(scene.camera.heading_rad, 1.5 * kPi);
+  EXPECT_DOUBLE_EQ(scene.camera.pitch_rad, -2.0 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.camera.roll_rad, 1.5 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.camera.fov_rad, 0.25 * kPi);
+  ASSERT_TRUE(scene.camera.lens.has_value());
+  EXPECT_DOUBLE_EQ(scene.camera.lens->focal_length_m, 0.05);
+  EXPECT_EQ(scene.medium.name, "hazy");
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kElevationModel);
+  EXPECT_EQ(scene.terrain.file, "folder/N35E138.hgt");
+  EXPECT_EQ(scene.terrain.voids, VoidPolicy::kLeaveOpen);
+  ASSERT_EQ(scene.lights.size(), 2U);
+  EXPECT_EQ(scene.lights[0].type, Light::Type::kSpot);
+  EXPECT_DOUBLE_EQ(scene.lights[0].outer_rad, 25.0 * kRadiansPerDegree);
+  EXPECT_EQ(scene.lights[1].type, Light::Type::kPoint);
+  EXPECT_EQ(scene.lights[1].height, (Height{700.0, false}));
+}
+
+TEST(Scene, APlaceIsEnough) {
+  const Scene scene = Read(kPlace);
+  EXPECT_EQ(scene.medium.name, "earth");
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  EXPECT_EQ(scene.time, std::nullopt);
+  EXPECT_EQ(scene.camera.height, (Height{2.0, true})) << "eye level";
+  EXPECT_FALSE(scene.camera.lens.has_value());
+  EXPECT_TRUE(scene.lights.empty());
+}
+
+TEST(Scene, LocalTimeIsReadInThePlacesZone) {
+  const std::string seconds =
+      kPlace + "zone = \"Asia/Tokyo\"\n[time]\nlocal = \"2026-06-21T13:00:00\"\n";
+  EXPECT_EQ(FormatUtc(Read(seconds).time.value()), "2026-06-21T04:00:00Z");
+  EXPECT_THAT(FaultOf(kPlace + "[time]\nlocal = \"2026-06-21T13:00:00\"\n"),
+              HasSubstr("time.local needs place.zone"));
+}
+
+TEST(Scene, PanoramasAndSteepRollsAreCameras) {
+  EXPECT_TRUE(Read(kPlace + "[camera]\nfov = 360\nroll = 90\n").camera.IsPanorama());
+  EXPECT_FALSE(Read(kPlace + "[camera]\nfov = 179\n").camera.IsPanorama());
+  EXPECT_NO_THROW((void)Read(kPlace + "[camera]\nfov = 1\nheading = -90\n"));
+}
+
+TEST(Scene, LatitudeNinetyAndLongitudes180ArePlacesOnEarth) {
+  for (const char* place : {"latitude = 90\nlongitude = 0\n", "latitude = -90\nlongitude = -180\n",
+                            "latitude = 0\nlongitude = 180\n"}) {
+    EXPECT_EQ(FaultOf(std::string("[place]\n") + place), "no fault");
+  }
+}
+
+struct Bad {
+  std::string text, message;
+};
+
+TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
+  const std::vector<Bad> cases = {
+      {"", "s.toml:1: [place] with latitude and longitude is missing"},
+      {"[place]\nlatitude = 3\n", "place.longitude is missing"},
+      {"[place]\nlatitude = 90.0000001\nlongitude = 0\n", "s.toml:2: place.latitude is 90.0000001"},
+      {"[place]\nlatitude = 0\nlongitude = 540\n", "s.toml:3: place.longitude is 540"},
+      {"[place]\nlatitude = 138.7\nlongitude = 35.4\n", "place.latitude is 138.7"},
+      {"[place]\nlatitude = \"46d33N\"\nlongitude = 0\n", "place.latitude is the text \"46d33N\""},
+      {"[place]\nlatitude = nan\nlongitude = 0\n", "place.latitude is nan"},
+      {"[place]\nlatitud = 3\n", "unknown key place.latitud; did you mean latitude?"},
+      {kPlace + "zone = \"Asia/Tokio\"\n", "s.toml:4: place.zone"},
+      {kPlace + "[camer]\n", "unknown key camer; did you mean camera?"},
+      {kPlace + "[camera]\nfov = 0\n", "s.toml:5: camera.fov is 0"},
+      {kPlace + "[camera]\nfov = 200\n", "[0.1, 179] or be 360"},
+      {kPlace + "[camera]\nfov = inf\n", "camera.fov is inf"},
+      {kPlace + "[camera]\nheight_m = 1e999\n", "s.toml:5"},
+      {kPlace + "[camera]\nheight_m = -20000\n", "camera.height_m is -20000"},
+      {kPlace + "[camera]\nheight_m = 1\nabove_ground_m = 1\n", "both given"},
+      {kPlace + "[camera]\nabove_ground_m = -1\n", "camera.above_ground_m is -1"},
+      {kPlace + "[camera]\nf_number = 2\n", "camera.focal_length_mm is missing"},
+      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 0.05\n", "beyond the"},
+      {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
+      {kPlace + "[camera]\nfov = 3\nfov = 4\n", "s.toml:6: not valid TOML"},
+      {kPlace + "[time]\nutc = \"2024-02-30T00:00:00Z\"\n", "s.toml:5: time.utc"},
+      {kPlace + "[time]\nutc = \"2026-06-21T04:00:00\"\n", "s.toml:5: time.utc"},
+      {kPlace + "[time]\nutc = 2026-06-21T04:00:00Z\n", "must be text in quotes"},
+      {kPlace + "[time]\n", "time.utc is missing"},
+      {kPlace + "[terrain]\ndem = 5\n", "terrain.dem is 5; it must be text"},
+      {kPlace + "[terrain]\ndem = \"a\"\nmesh = \"b\"\n", "give one of"},
+      {kPlace + "[terrain]\ndem = \"a\"\nvoids = \"sometimes\"\n", "\"fill\" or \"open\""},
+      {kPlace + "[terrain]\nvoids = \"fill\"\n", "terrain.voids needs terrain.dem"},
+      {kPlace + "[atmosphere]\npreset = \"venus\"\n", "s.toml:5: atmosphere.preset"},
+      {kPlace + "[atmosphere]\nfile = \"none.toml\"\n", "folder/none.toml"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\n", "light[0].intensity_cd is missing"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = -1\n",
+       "s.toml:7: light[0].intensity_cd is -1"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = inf\n", "is inf"},
+      {kPlace + "[[light]]\ntype = \"tube\"\n", "\"point\" or \"spot\""},
+      {kPlace + "[[light]]\ntype = \"spot\"\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\n",
+       "light[0].cone must be two half angles"},
+      {kPlace + "[[light]]\ntype = \"spot\"\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\n"
+                "cone = [25, 10]\n",
+       "s.toml:9: light[0].cone"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\ncone = [1, 2]\n",
+       "is for a spot"},
+      {kPlace + "light = 3\n", "unknown key place.light"},
+      {"light = 3\n" + kPlace, "must be a list of tables"},
+      {"place = 3\n", "place is 3; it must be a table"},
+      {"not a scene", "s.toml:1: not valid TOML"},
+  };
+  for (const Bad& bad : cases) {
+    const std::string fault = FaultOf(bad.text);
+    EXPECT_THAT(fault, HasSubstr(bad.message)) << bad.text;
+    EXPECT_EQ(fault.find('\n'), std::string::npos) << "one line: " << fault;
+  }
+}
+
+using SceneFile = TemporaryFolder;
+
+TEST_F(SceneFile, NamesOfFilesAreRelativeToTheScene) {
+  WriteText(folder_ / "air.toml", "preset = \"mars\"\n");
+  WriteText(folder_ / "scene.toml",
+            kPlace + "[atmosphere]\nfile = \"air.toml\"\n[terrain]\nmesh = \"x.obj\"\n");
+  const Scene scene = ReadScene(folder_ / "scene.toml");
+  EXPECT_EQ(scene.medium.name, "mars");
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kMesh);
+  EXPECT_EQ(scene.terrain.file, folder_ / "x.obj");
+  EXPECT_THROW((void)ReadScene(folder_ / "missing.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow
