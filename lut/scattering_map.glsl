@@ -18,12 +18,12 @@ SHARED Number UnitFromGroundCosine(Length h, Number mu, Length R) {
   return select(h > Length(0.0), min(max(x, Number(0.0)), Number(1.0)), Number(0.0));
 }
 
-//   1 + mu = (d - h) (2 r - d - h) / (2 r d)
+// The law of cosines, -mu = (rho^2 + d^2) / (2 r d): nothing cancels. On the ground itself straight down.
 SHARED Number GroundCosineFromUnit(Number x, Length h, Length R) {
-  Length excess = x * (HorizonDistance(h, R) - h);
-  Length d = h + excess;
-  Number rise = excess * (Number(2.0) * (R + h) - d - h) / (Number(2.0) * (R + h) * max(d, Length(1e-30)));
-  return min(Number(-1.0) + rise, Number(0.0));
+  Length rho = HorizonDistance(h, R);
+  Length d = h + x * (rho - h);
+  Number down = (rho / max(d, Length(1e-30)) * rho + d) / (Number(2.0) * (R + h));
+  return select(h > Length(0.0), max(-down, Number(-1.0)), Number(-1.0));
 }
 
 // Texture coordinate on the mu axis of n texels (even, >= 4) from the unit of its half: 1 for ground.

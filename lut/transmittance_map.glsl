@@ -28,12 +28,14 @@ SHARED Length SkyDistanceRange(Length h, Length top, Length R) {
 }
 
 // Zenith cosine of the ray from altitude h that covers `excess` more than the shortest distance to the top.
-// From the law of cosines with the leading terms cancelled by hand:
-//   1 - mu = excess (2 r + d + d_min) / (2 r d).
+// The law of cosines, with a the distance to the top of the horizontal ray:
+//   mu = (a^2 - d^2) / (2 r d),  a^2 = (top - h) (2 R + top + h)
+// which keeps the small cosines of rays near the horizontal. On the top itself d = 0 is straight up.
 SHARED Number ZenithCosineFromSkyExcess(Length excess, Length h, Length top, Length R) {
   Length d = top - h + excess;
-  Number fall = excess * (Number(2.0) * (R + h) + d + (top - h)) / (Number(2.0) * (R + h) * max(d, Length(1e-30)));
-  return max(Number(1.0) - fall, Number(-1.0));
+  Length a = sqrt(max((top - h) * (Number(2.0) * R + top + h), Length(0.0)));
+  Number mu = (a - d) * (a + d) / (Number(2.0) * (R + h) * max(d, Length(1e-30)));
+  return select(d > Length(0.0), min(max(mu, Number(-1.0)), Number(1.0)), Number(1.0));
 }
 
 // For rays that miss the ground; 0 straight up, 1 towards the horizon. On the top itself every ray upwards

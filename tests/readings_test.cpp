@@ -31,7 +31,7 @@ TEST(Readings, TheNaiveFormulaOfTheAltitudeFails) {
       [](const testing::Arguments<float>& a) {
         return std::sqrt((a[2] + a[0]) * (a[2] + a[0]) - a[2] * a[2]);
       },
-      testing::grid::Rays()};
+      testing::grid::Rays(), 0.0};
   for (const auto& a : naive.points) {
     const double exact = shared::HorizonDistance<double>(static_cast<double>(a[0]), 6371.0);
     const double error = std::abs(static_cast<double>(naive.in_float(a)) - exact);

@@ -13,6 +13,9 @@
 
 #include "atmosphere/phase_text.h"
 #include "atmosphere/shell.h"
+#include "lut/scattering_map.h"
+#include "lut/transmittance_map.h"
+#include "renderer/tone_curve.h"
 
 namespace alpenglow::testing {
 
@@ -26,6 +29,7 @@ struct SharedTextCase {
   std::function<double(const Arguments<double>&)> in_double;
   std::function<float(const Arguments<float>&)> in_float;
   std::vector<Arguments<float>> points;
+  double full_scale;  // of a coordinate, a code or a cosine that a map gives; else 0
 };
 
 inline Arguments<double> Widen(const Arguments<float>& a) {
@@ -38,11 +42,13 @@ inline Arguments<double> Widen(const Arguments<float>& a) {
 /// 1e-5 of the value, plus what one unit in the last place of each argument changes. The second
 /// term is the conditioning of the question, not of the formula: near the top of the atmosphere, or
 /// where a descending ray has come back to low altitude, an argument rounded to float fixes the
-/// answer no better. Values below 1e-30, where GPUs may flush to 0, agree when both are.
+/// answer no better. Coordinates in a table and codes of a display may differ by 1e-6 of full scale
+/// (a texel is 4e-3 of it, the step of an 8-bit picture too). Values below 1e-30, where GPUs may
+/// flush to 0, agree when both are.
 inline double Allowance(const SharedTextCase& c, const Arguments<float>& a) {
   const Arguments<double> exact = Widen(a);
   const double value = c.in_double(exact);
-  double allowance = 1e-5 * std::abs(value) + 1e-30;
+  double allowance = 1e-5 * std::abs(value) + 1e-6 * c.full_scale + 1e-30;
   for (std::size_t i = 0; i < kArguments; ++i) {
     double largest = 0.0;
     for (const float towards : {-1e30F, 1e30F}) {
@@ -167,6 +173,42 @@ inline std::vector<Arguments<float>> Scattering(float sharpest = 1.0F) {
   return points;
 }
 
+/// (h, x, R, top) with x in [0, 1], for altitudes up to the top.
+inline std::vector<Arguments<float>> UnitsAtAltitudes() {
+  std::vector<Arguments<float>> points;
+  for (const float h : Altitudes()) {
+    if (h > kTop_km) continue;
+    for (const float x : {0.0F, 1e-6F, 1e-3F, 0.1F, 0.25F, 0.5F, 0.77F, 0.999F, 1.0F}) {
+      points.push_back({h, x, kRadius_km, kTop_km});
+    }
+  }
+  return points;
+}
+
+/// (h, mu, R, top) of rays that meet the ground, for altitudes up to the top.
+inline std::vector<Arguments<float>> RaysToGround() {
+  std::vector<Arguments<float>> points;
+  for (const Arguments<float>& ray : Rays(kTop_km)) {
+    const Arguments<double> a = Widen(ray);
+    const double perigee = shared::PerigeeAltitude(a[0], a[1], a[2]);
+    if (a[1] < 0.0 && perigee < -1e-3) points.push_back(ray);
+  }
+  return points;
+}
+
+/// Exposed colours (red, green, blue) and a scale: black, deep shade, the sun's disk, saturated,
+/// out of gamut.
+inline std::vector<Arguments<float>> Colours() {
+  std::vector<Arguments<float>> points;
+  for (const float y : {0.0F, 1e-5F, 0.003F, 0.04F, 0.18F, 0.5F, 1.0F, 4.0F, 60.0F, 1e5F}) {
+    points.push_back({y, y, y, 1.0F});
+    points.push_back({y, 0.7F * y, 0.2F * y, 0.01F});
+    points.push_back({0.05F * y, 0.3F * y, y, 7.0F});
+    points.push_back({y, -0.1F * y, 0.2F * y, 1.0F});
+  }
+  return points;
+}
+
 }  // namespace grid
 
 // The macro reads its expression twice: as C++ for double and float, and as text for GLSL.
@@ -185,7 +227,7 @@ template <typename Function>
 SharedTextCase MakeSharedTextCase(const char* glsl, Function f,
                                   std::vector<Arguments<float>> points) {
   return {glsl, [f](const Arguments<double>& a) { return f(a); },
-          [f](const Arguments<float>& a) { return f(a); }, std::move(points)};
+          [f](const Arguments<float>& a) { return f(a); }, std::move(points), 0.0};
 }
 
 inline std::vector<SharedTextCase> ShellCases() {
@@ -258,10 +300,79 @@ inline std::vector<SharedTextCase> PhaseCases() {
   };
 }
 
+inline std::vector<SharedTextCase> TableMapCases() {
+  return {
+      ALPENGLOW_SHARED_CASE(TexelFromUnit(a[1], Number(32.0)), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(UnitFromTexel(a[1], Number(32.0)), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(UnitFromAltitude(a[0], a[3], a[2]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(AltitudeFromUnit(a[1], a[3], a[2]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(SkyDistanceRange(a[0], a[3], a[2]) / Number(1000.0),
+                            grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(
+          ZenithCosineFromSkyExcess(a[1] * Number(1000.0), a[0], Number(125.0), a[2]),
+          grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(UnitFromSkyCosine(a[0], a[1], Number(125.0), a[2]),
+                            grid::RaysToSpace(grid::kTop_km)),
+      ALPENGLOW_SHARED_CASE(SkyCosineFromUnit(a[1], a[0], Number(125.0), a[2]),
+                            grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(UnitFromGroundCosine(a[0], a[1], a[2]), grid::RaysToGround()),
+      ALPENGLOW_SHARED_CASE(GroundCosineFromUnit(a[1], a[0], a[2]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(MuTexelFromUnit(a[1], Number(1.0), Number(128.0)),
+                            grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(MuTexelFromUnit(a[1], Number(0.0), Number(128.0)),
+                            grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(GroundFromMuTexel(a[1]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(UnitFromMuTexel(a[1], Number(128.0)), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(SunbeamExcess(a[1], a[3], a[2]), grid::Rays()),
+      ALPENGLOW_SHARED_CASE(UnitFromSunCosine(a[1], Number(-0.3), a[3], a[2]), grid::Rays()),
+      ALPENGLOW_SHARED_CASE(SunCosineFromUnit(a[1], Number(-0.3), a[3], a[2]),
+                            grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(UnitFromScatteringCosine(a[1]), grid::Rays()),
+      ALPENGLOW_SHARED_CASE(ScatteringCosineFromUnit(a[1]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(PossibleScatteringCosine(Number(0.4), a[1], Number(0.3)), grid::Rays()),
+  };
+}
+
+inline std::vector<SharedTextCase> ToneCurveCases() {
+  return {
+      ALPENGLOW_SHARED_CASE(Luminance(a[0], a[1], a[2]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(ExposedChannel(a[0], a[3]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(InnerChannel(a[0], min(a[0], min(a[1], a[2])), abs(a[0])),
+                            grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AgxWhiteShare(a[0], a[1], a[2]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AgxLogCode(AgxInset(a[0], AgxWhiteShare(a[0], a[1], a[2]))),
+                            grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AgxSigmoid(a[1]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(AgxCode(a[0], AgxWhiteShare(a[0], a[1], a[2])), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AgxLight(a[1], Number(0.5)), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(AcesCurve(AcesRed(abs(a[0]), abs(a[1]), abs(a[2]))), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AcesCurve(AcesGreen(abs(a[0]), abs(a[1]), abs(a[2]))), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AcesCurve(AcesBlue(abs(a[0]), abs(a[1]), abs(a[2]))), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AcesLightRed(a[0], a[1], a[2]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AcesLightGreen(a[0], a[1], a[2]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(AcesLightBlue(a[0], a[1], a[2]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(ReinhardLuminance(abs(a[0])), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(
+          ReinhardLight(abs(a[0]), max(a[0], max(a[1], a[2])), Luminance(a[0], abs(a[1]), a[2])),
+          grid::Colours()),
+      ALPENGLOW_SHARED_CASE(
+          NeutralLight(abs(a[0]), max(a[0], max(abs(a[1]), a[2])), min(a[0], min(abs(a[1]), a[2]))),
+          grid::Colours()),
+      ALPENGLOW_SHARED_CASE(SrgbCode(a[1]), grid::UnitsAtAltitudes()),
+      ALPENGLOW_SHARED_CASE(SrgbLight(a[1]), grid::UnitsAtAltitudes()),
+  };
+}
+
 inline std::vector<SharedTextCase> AllSharedTextCases() {
   std::vector<SharedTextCase> all;
   for (const auto& part : {ShellCases(), OpticalDepthCases(), PhaseCases()}) {
     all.insert(all.end(), part.begin(), part.end());
+  }
+  for (const auto& part : {TableMapCases(), ToneCurveCases()}) {
+    for (const SharedTextCase& c : part) {
+      all.push_back(c);
+      all.back().full_scale = 1.0;
+    }
   }
   return all;
 }

@@ -7,6 +7,8 @@
 
 #include "atmosphere/embedded_text.h"
 #include "atmosphere/error.h"
+#include "lut/embedded_text.h"
+#include "renderer/embedded_text.h"
 
 namespace alpenglow {
 namespace {
@@ -64,6 +66,11 @@ std::vector<ShaderPiece> SharedTexts() {
                            "atmosphere/optical_depth.glsl", "atmosphere/phase.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
+  for (const char* name : {"lut/transmittance_map.glsl", "lut/scattering_map.glsl"}) {
+    pieces.push_back({name, std::string(lut::EmbeddedText(name))});
+  }
+  pieces.push_back({"renderer/tone_curve.glsl",
+                    std::string(renderer::EmbeddedText("renderer/tone_curve.glsl"))});
   return pieces;
 }
 
