@@ -499,6 +499,14 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   Validate(medium_);
   moments_ = MomentCount(options.degree);
   chi_mie_ = LegendreCoefficients(medium.mie_phase, options.degree);
+  for (std::size_t band = 0; band < bands_; ++band) {
+    const auto per_km = [band](const std::vector<double>& per_m) {
+      return static_cast<float>(per_m[band] * 1000.0);
+    };
+    coefficients_.push_back(
+        {per_km(medium.rayleigh_scattering_per_m), per_km(medium.mie_extinction_per_m),
+         per_km(medium.ozone_absorption_per_m), per_km(medium.mie_scattering_per_m)});
+  }
   values_.assign(
       static_cast<std::size_t>(options.altitudes * options.sun_angles) * channels() * bands_, 0.0F);
   for (std::size_t first = 0; first < bands_; first += kLanes)
@@ -523,48 +531,45 @@ void VisitTaps(const DiffuseLightOptions& options, double u, double v, const Vis
 
 }  // namespace
 
+void DiffuseLight::Interpolate(double altitude_m, double mu_s, std::span<float> moments) const {
+  std::fill(moments.begin(), moments.end(), 0.0F);
+  const double u = std::sqrt(std::clamp(altitude_m / medium_.atmosphere_height_m, 0.0, 1.0));
+  const std::size_t stride = channels() * bands_;
+  VisitTaps(options_, u, SunCoordinate(mu_s), [&](std::size_t node, float weight) {
+    const float* values = &values_[node * stride];
+    for (std::size_t k = 0; k < moments.size(); ++k) moments[k] += weight * values[k];
+  });
+}
+
 Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu) const {
   Bands<float> sum(bands_);
+  std::array<float, kMaxMoments * kMaxBands> storage;
+  const std::span<float> moments(storage.data(), moments_ * bands_);
   for (std::size_t s = 0; s < samples.count; ++s) {
+    Interpolate(static_cast<double>(samples.altitude[s]) * 1000.0,
+                static_cast<double>(samples.mu_s[s]), moments);
     const auto harmonics =
         SphericalHarmonics(options_.degree, samples.mu[s],
                            AzimuthCosine(samples.mu[s], samples.mu_s[s], static_cast<float>(nu)));
-    std::array<float, kMaxMoments> mie_factor{};
+    std::array<float, kMaxBands> rayleigh{}, mie{};
     for (int l = 0; l <= options_.degree; ++l) {
+      const auto mie_chi = static_cast<float>(chi_mie_[static_cast<std::size_t>(l)]);
+      const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? 0.1F : 0.0F;
       for (int m = 0; m <= l; ++m) {
         const std::size_t i = MomentIndex(l, m);
-        mie_factor[i] = harmonics[i] * static_cast<float>(chi_mie_[static_cast<std::size_t>(l)]);
-      }
-    }
-    std::array<float, kMaxBands> rayleigh{}, mie{};
-    const double u =
-        std::sqrt(static_cast<double>(samples.altitude[s]) * 1000.0 / medium_.atmosphere_height_m);
-    const double v = SunCoordinate(static_cast<double>(samples.mu_s[s]));
-    VisitTaps(options_, u, v, [&](std::size_t node, float weight) {
-      const float* values = &values_[node * channels() * bands_];
-      for (std::size_t i = 0; i < moments_; ++i) {
-        // Molecules see l = 0 and l = 2 only (indices 0 and 3, 4, 5).
-        const float rayleigh_factor = i == 0               ? harmonics[0]
-                                      : (i >= 3 && i <= 5) ? 0.1F * harmonics[i]
-                                                           : 0.0F;
         for (std::size_t band = 0; band < bands_; ++band) {
-          const float moment = weight * values[i * bands_ + band];
-          rayleigh[band] += rayleigh_factor * moment;
-          mie[band] += mie_factor[i] * moment;
+          const float light = harmonics[i] * moments[i * bands_ + band];
+          mie[band] += mie_chi * light;
+          rayleigh[band] += rayleigh_chi * light;
         }
       }
-    });
+    }
     for (std::size_t band = 0; band < bands_; ++band) {
-      const auto coefficient = [&](const std::vector<double>& per_m) {
-        return static_cast<float>(per_m[band] * 1000.0);
-      };
-      const float tau = coefficient(medium_.rayleigh_scattering_per_m) * samples.view_rayleigh[s] +
-                        coefficient(medium_.mie_extinction_per_m) * samples.view_mie[s] +
-                        coefficient(medium_.ozone_absorption_per_m) * samples.view_ozone[s];
-      const float source = coefficient(medium_.rayleigh_scattering_per_m) *
-                               samples.rayleigh_density[s] * std::max(rayleigh[band], 0.0F) +
-                           coefficient(medium_.mie_scattering_per_m) * samples.mie_density[s] *
-                               std::max(mie[band], 0.0F);
+      const std::array<float, 4>& k = coefficients_[band];
+      const float tau = k[0] * samples.view_rayleigh[s] + k[1] * samples.view_mie[s] +
+                        k[2] * samples.view_ozone[s];
+      const float source = k[0] * samples.rayleigh_density[s] * std::max(rayleigh[band], 0.0F) +
+                           k[3] * samples.mie_density[s] * std::max(mie[band], 0.0F);
       sum[band] += samples.weight[s] * std::exp(-tau) * source;
     }
   }
@@ -578,20 +583,18 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
       kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
   const auto harmonics = SphericalHarmonics(options_.degree, static_cast<float>(normal_mu),
                                             static_cast<float>(normal_cos_azimuth));
+  std::array<float, kMaxMoments * kMaxBands> storage;
+  const std::span<float> moments(storage.data(), moments_ * bands_);
+  Interpolate(altitude_m, mu_s, moments);
   Bands<float> irradiance(bands_);
-  const double u = std::sqrt(std::clamp(altitude_m / medium_.atmosphere_height_m, 0.0, 1.0));
-  VisitTaps(options_, u, SunCoordinate(mu_s), [&](std::size_t node, float weight) {
-    const float* values = &values_[node * channels() * bands_];
-    for (int l = 0; l <= options_.degree; ++l) {
-      for (int m = 0; m <= l; ++m) {
-        const std::size_t i = MomentIndex(l, m);
-        const float factor =
-            weight * harmonics[i] * static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
-        for (std::size_t band = 0; band < bands_; ++band)
-          irradiance[band] += factor * values[i * bands_ + band];
-      }
+  for (int l = 0; l <= options_.degree; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const std::size_t i = MomentIndex(l, m);
+      const float factor = harmonics[i] * static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
+      for (std::size_t band = 0; band < bands_; ++band)
+        irradiance[band] += factor * moments[i * bands_ + band];
     }
-  });
+  }
   for (std::size_t band = 0; band < bands_; ++band)
     irradiance[band] = std::max(irradiance[band], 0.0F);
   return irradiance;

@@ -24,6 +24,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "atmosphere/medium.h"
@@ -91,6 +92,9 @@ class DiffuseLight {
  private:
   friend class DiffuseLightSolver;
 
+  // The moments at a point, by cubic interpolation: moments() x bands() values.
+  void Interpolate(double altitude_m, double mu_s, std::span<float> moments) const;
+
   Medium medium_;
   DiffuseLightOptions options_;
   std::size_t bands_ = 0;
@@ -98,6 +102,8 @@ class DiffuseLight {
   int orders_ = 0;
   bool converged_ = false;
   std::vector<float> values_;
+  std::vector<std::array<float, 4>>
+      coefficients_;             // [1/km]: molecules, aerosol extinction, ozone, aerosol scattering
   std::vector<double> chi_mie_;  // Legendre coefficients of the aerosol's phase function
 };
 
