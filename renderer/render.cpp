@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/render.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "atmosphere/single_scattering.h"
+#include "atmosphere/spectrum.h"
+#include "lut/multiple_scattering.h"
+#include "lut/program.h"
+#include "renderer/camera_rays.h"
+#include "renderer/scene_ground.h"
+#include "renderer/sun_disk.h"
+#include "renderer/surface.h"
+
+namespace alpenglow {
+namespace {
+
+using BandLight = Bands<float>;
+
+BandLight operator+(const BandLight& a, const BandLight& b) {
+  BandLight sum(a.count);
+  for (std::size_t band = 0; band < a.count; ++band) sum[band] = a[band] + b[band];
+  return sum;
+}
+BandLight operator*(const BandLight& a, const BandLight& b) {
+  BandLight product(a.count);
+  for (std::size_t band = 0; band < a.count; ++band) product[band] = a[band] * b[band];
+  return product;
+}
+BandLight operator*(float scale, const BandLight& a) {
+  BandLight product(a.count);
+  for (std::size_t band = 0; band < a.count; ++band) product[band] = scale * a[band];
+  return product;
+}
+
+Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
+  if (medium.follows_wgs84) medium.planet_radius_m = OsculatingRadius(kWgs84, latitude_rad);
+  return medium;
+}
+
+/// Light in the air and on surfaces for one position of the sun.
+struct Lighting {
+  glm::dvec3 to_sun;
+  double sun_radius_rad;
+  BandLight irradiance;  // of the sun above the air, W m^-2 nm^-1
+};
+
+/// What a ray of the camera meets first.
+enum class HitKind { kSky, kTerrain, kPlanet };
+struct Hit {
+  HitKind kind = HitKind::kSky;
+  double distance_m = std::numeric_limits<double>::infinity();
+  glm::dvec3 normal{0.0, 0.0, 1.0};
+  glm::dvec3 geometric_normal{0.0, 0.0, 1.0};
+  glm::dvec3 point{0.0};
+};
+
+/// The air between the eye and a hit.
+struct Air {
+  BandLight inscatter;  // per unit solar irradiance
+  BandLight transmittance;
+  double distance_m = -1.0;  // of the hit it was computed for
+};
+
+/// One ray's contribution to a pixel.
+struct Shaded {
+  BandLight radiance;  // W m^-2 sr^-1 nm^-1
+  BandLight inscatter, transmittance, albedo;
+  Hit hit;
+  float sun_visibility = 0.0F;
+};
+
+// A number in [0, 1) from pixel and dimension, the same on every machine: the finaliser of
+// MurmurHash3 (Appleby).
+double HashedUnit(std::uint32_t x, std::uint32_t y, std::uint32_t dimension) {
+  std::uint32_t h = x * 0x9E3779B1U ^ y * 0x85EBCA77U ^ dimension * 0xC2B2AE3DU;
+  h = (h ^ (h >> 16)) * 0x85EBCA6BU;
+  h = (h ^ (h >> 13)) * 0xC2B2AE35U;
+  return static_cast<double>(h ^ (h >> 16)) / 4294967296.0;
+}
+
+}  // namespace
+
+const std::vector<std::string>& KnownLayers() {
+  static const std::vector<std::string> layers{"depth",     "normal",        "albedo",
+                                               "inscatter", "transmittance", "sun_visibility"};
+  return layers;
+}
+
+struct SceneRenderer::State {
+  explicit State(const Scene& of)
+      : scene(of),
+        ground(LoadGround(scene)),
+        air(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+        diffuse(air.medium()),
+        colour(air.medium().wavelengths_nm),
+        surface(air.medium().wavelengths_nm, CoverAtLatitude(scene.place.latitude_rad)) {}
+
+  [[nodiscard]] double radius() const { return air.medium().planet_radius_m; }
+  [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
+  [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
+  [[nodiscard]] Hit Trace(const glm::dvec3& direction) const;
+  [[nodiscard]] Air AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
+                          int nodes) const;
+  [[nodiscard]] Shaded Shade(const Hit& hit, const Air& through, const glm::dvec3& direction,
+                             const Lighting& light, std::array<double, 2> disk_sample) const;
+  [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const Air& through,
+                                  const Lighting& light) const;
+  [[nodiscard]] Lighting LightingFrom(const SunPosition& sun) const;
+
+  Scene scene;
+  SceneGround ground;
+  AirIntegrator<float> air;
+  DiffuseLight diffuse;
+  BandColour colour;
+  MountainSurface surface;
+};
+
+// |p - c| - R with the centre c at (0, 0, -R), without cancelling.
+double SceneRenderer::State::AltitudeOf(const glm::dvec3& point) const {
+  const double r = radius();
+  const double across = point.x * point.x + point.y * point.y;
+  const double q = across + point.z * (2.0 * r + point.z);
+  return q / (std::sqrt(across + (r + point.z) * (r + point.z)) + r);
+}
+
+glm::dvec3 SceneRenderer::State::UpAt(const glm::dvec3& point) const {
+  return glm::normalize(point + glm::dvec3(0.0, 0.0, radius()));
+}
+
+Hit SceneRenderer::State::Trace(const glm::dvec3& direction) const {
+  const glm::dvec3 eye(0.0, 0.0, ground.eye_height_m);
+  if (ground.terrain) {
+    if (const auto hit = ground.terrain->Intersect(eye, direction)) {
+      return {HitKind::kTerrain, hit->distance_m, hit->normal, hit->geometric_normal,
+              hit->smooth_point};
+    }
+  }
+  const RayExtent extent = ExtentOf({ground.eye_height_m, direction.z, 1.0, direction.z}, radius(),
+                                    air.medium().atmosphere_height_m);
+  if (extent.end != RayEnd::kGround) return {};
+  const glm::dvec3 point = eye + extent.end_m * direction;
+  const glm::dvec3 up = UpAt(point);
+  return {HitKind::kPlanet, extent.end_m, up, up, point};
+}
+
+Air SceneRenderer::State::AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
+                                int nodes) const {
+  const double nu = std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0);
+  ViewRay ray{ground.eye_height_m, std::clamp(direction.z, -1.0, 1.0),
+              std::clamp(light.to_sun.z, -1.0, 1.0), nu};
+  // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
+  if (hit.kind == HitKind::kTerrain) ray.length_m = hit.distance_m;
+  // Short paths are smooth: 4 nodes reach 50 km at 1e-4 (clear) and 5e-4 (haze).
+  const int needed =
+      hit.kind == HitKind::kTerrain && hit.distance_m < 50e3 ? std::min(nodes, 4) : nodes;
+  const RaySamples<float> samples =
+      air.Sample(ray, {.nodes = needed, .split_ozone = false, .dark_samples = true});
+  return {air.Inscatter(air.Scatter(samples), nu) + diffuse.InscatterAlong(samples, nu),
+          air.TransmittanceAlong(ray), hit.distance_m};
+}
+
+BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const Air& through,
+                                        const Lighting& light) const {
+  // Angle from the chord: the arc cosine of a number near 1 has no digits left.
+  const double chord = glm::length(direction - light.to_sun);
+  const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
+  if (rho >= 1.0) return BandLight(air.bands());
+  const auto scale = static_cast<float>(LimbDarkening(rho) / DiskSolidAngle(light.sun_radius_rad));
+  return scale * (light.irradiance * through.transmittance);
+}
+
+Shaded SceneRenderer::State::Shade(const Hit& hit, const Air& through, const glm::dvec3& direction,
+                                   const Lighting& light, std::array<double, 2> disk_sample) const {
+  Shaded shaded;
+  shaded.hit = hit;
+  shaded.inscatter = light.irradiance * through.inscatter;
+  shaded.transmittance = through.transmittance;
+  shaded.albedo = BandLight(air.bands());
+  shaded.radiance = shaded.inscatter;
+  if (hit.kind == HitKind::kSky) {
+    shaded.radiance = shaded.radiance + SunDisk(direction, through, light);
+    return shaded;
+  }
+  const double altitude = std::max(AltitudeOf(hit.point), 0.0);
+  const glm::dvec3 up = UpAt(hit.point);
+  const double mu_s = std::clamp(glm::dot(up, light.to_sun), -1.0, 1.0);
+  const double horizon = -std::sqrt(altitude * (2.0 * radius() + altitude)) / (radius() + altitude);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, light.sun_radius_rad);
+
+  // A point of the disk, uniform in area, is tested against the terrain: penumbrae average over
+  // rays.
+  const glm::dvec3 side = glm::normalize(glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
+  const double rho = light.sun_radius_rad * std::sqrt(disk_sample[0]);
+  const double angle = 2.0 * kPi * disk_sample[1];
+  const glm::dvec3 to_disk =
+      glm::normalize(light.to_sun + rho * (std::cos(angle) * side +
+                                           std::sin(angle) * glm::cross(light.to_sun, side)));
+  const double cosine = glm::dot(hit.normal, to_disk);
+  const bool faces =
+      cosine > 0.0 && glm::dot(hit.geometric_normal, to_disk) > 0.0 && disk.fraction > 0.0;
+  const bool occluded = faces && ground.terrain &&
+                        ground.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
+                                                 std::numeric_limits<double>::infinity());
+  BandLight irradiance(air.bands());
+  if (faces && !occluded) {
+    shaded.sun_visibility = static_cast<float>(disk.fraction);
+    irradiance = static_cast<float>(disk.fraction * cosine) *
+                 air.TransmittanceToSpace(altitude, disk.mu_s_effective);
+  }
+  const glm::dvec3 flat_sun = light.to_sun - mu_s * up;
+  const double normal_mu = std::clamp(glm::dot(hit.normal, up), -1.0, 1.0);
+  const glm::dvec3 flat_normal = hit.normal - normal_mu * up;
+  const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
+  const double azimuth =
+      lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
+  irradiance = irradiance + diffuse.Irradiance(altitude, mu_s, normal_mu, azimuth);
+
+  if (hit.kind == HitKind::kTerrain) {
+    shaded.albedo = surface.Albedo(altitude, normal_mu);
+  } else {
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      shaded.albedo[band] = static_cast<float>(air.medium().ground_albedo[band]);
+    }
+  }
+  const BandLight reflected =
+      static_cast<float>(1.0 / kPi) * (shaded.albedo * (light.irradiance * irradiance));
+  shaded.radiance = shaded.radiance + shaded.transmittance * reflected;
+  return shaded;
+}
+
+Lighting SceneRenderer::State::LightingFrom(const SunPosition& sun) const {
+  Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+                 sun.angular_radius_rad, BandLight(air.bands())};
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    light.irradiance[band] = static_cast<float>(air.medium().solar_irradiance[band] /
+                                                (sun.distance_au * sun.distance_au));
+  }
+  return light;
+}
+
+namespace {
+
+/// Accumulates the rays of a pixel into the picture.
+class PixelWriter {
+ public:
+  PixelWriter(const BandColour& colour, const RenderSettings& settings)
+      : colour_(colour), image_(settings.width, settings.height) {
+    for (const std::string& layer : settings.layers) {
+      if (std::find(KnownLayers().begin(), KnownLayers().end(), layer) == KnownLayers().end()) {
+        throw InputError(fmt::format(
+            "layer \"{}\" is not one of depth, normal, albedo, transmittance, inscatter, "
+            "sun_visibility",
+            layer));
+      }
+      for (const std::string& channel : ChannelsOf(layer)) {
+        image_.layers.push_back({channel, std::vector<float>(image_.rgb.size(), 0.0F)});
+      }
+      layers_.push_back(layer);
+    }
+  }
+
+  // Not shared between pixels: rows may be written from any thread.
+  void Write(int x, int y, const std::vector<Shaded>& rays) {
+    const auto share = 1.0F / static_cast<float>(rays.size());
+    BandLight radiance(rays.front().radiance.count);
+    for (const Shaded& ray : rays) radiance = radiance + share * ray.radiance;
+    image_.at(x, y) = Rgb(radiance);
+    const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
+                              static_cast<std::size_t>(x);
+    std::size_t channel = 0;
+    for (const std::string& layer : layers_) {
+      for (const float value : ValuesOf(layer, rays))
+        image_.layers[channel++].values[pixel] = value;
+    }
+  }
+
+  [[nodiscard]] Image Take() { return std::move(image_); }
+
+ private:
+  static std::vector<std::string> ChannelsOf(const std::string& layer) {
+    if (layer == "depth") return {"depth.Z"};
+    if (layer == "sun_visibility") return {"sun_visibility.Y"};
+    if (layer == "normal") return {"normal.X", "normal.Y", "normal.Z"};
+    return {layer + ".R", layer + ".G", layer + ".B"};
+  }
+
+  [[nodiscard]] std::array<float, 3> Rgb(const BandLight& light) const {
+    std::array<double, kMaxBands> bands{};
+    for (std::size_t band = 0; band < light.count; ++band)
+      bands[band] = static_cast<double>(light[band]);
+    const auto rgb = colour_.LinearSrgb(std::span<const double>(bands.data(), light.count));
+    return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
+  }
+
+  // Colour of a factor (albedo, transmittance) as it looks under the sun above the air.
+  [[nodiscard]] std::array<float, 3> RgbOfFactor(const BandLight& factor) const {
+    BandLight sun(factor.count);
+    for (std::size_t band = 0; band < factor.count; ++band) {
+      sun[band] = static_cast<float>(SolarIrradiance(colour_.wavelengths_nm()[band]));
+    }
+    const auto white = Rgb(sun);
+    const auto seen = Rgb(sun * factor);
+    return {seen[0] / white[0], seen[1] / white[1], seen[2] / white[2]};
+  }
+
+  [[nodiscard]] std::vector<float> ValuesOf(const std::string& layer,
+                                            const std::vector<Shaded>& rays) const {
+    const auto share = 1.0F / static_cast<float>(rays.size());
+    if (layer == "depth") return {static_cast<float>(rays.front().hit.distance_m)};
+    if (layer == "normal") {
+      const glm::dvec3 normal =
+          rays.front().hit.kind == HitKind::kSky ? glm::dvec3(0.0) : rays.front().hit.normal;
+      return {static_cast<float>(normal.x), static_cast<float>(normal.y),
+              static_cast<float>(normal.z)};
+    }
+    if (layer == "sun_visibility") {
+      float visible = 0.0F;
+      for (const Shaded& ray : rays) visible += share * ray.sun_visibility;
+      return {visible};
+    }
+    BandLight mean(rays.front().radiance.count);
+    for (const Shaded& ray : rays) {
+      mean = mean + share * (layer == "albedo"          ? ray.albedo
+                             : layer == "transmittance" ? ray.transmittance
+                                                        : ray.inscatter);
+    }
+    const auto rgb = layer == "inscatter" ? Rgb(mean) : RgbOfFactor(mean);
+    return {rgb[0], rgb[1], rgb[2]};
+  }
+
+  const BandColour& colour_;
+  Image image_;
+  std::vector<std::string> layers_;
+};
+
+// Rays of one pixel see the same air unless an edge runs through it.
+bool SameAir(const Air& air, const Hit& hit) {
+  if (std::isinf(air.distance_m) || std::isinf(hit.distance_m))
+    return air.distance_m == hit.distance_m;
+  return std::abs(air.distance_m - hit.distance_m) <= 0.01 * air.distance_m;
+}
+
+void ValidateSettings(const RenderSettings& settings) {
+  RequireInRange(settings.width, 1, 16384, "picture width");
+  RequireInRange(settings.height, 1, 16384, "picture height");
+  RequireInRange(settings.samples_per_pixel, 1, 1024, "samples per pixel");
+  RequireInRange(settings.air_nodes, 2, 32, "air nodes");
+}
+
+}  // namespace
+
+SceneRenderer::SceneRenderer(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
+SceneRenderer::~SceneRenderer() = default;
+
+const Medium& SceneRenderer::medium() const { return state_->air.medium(); }
+double SceneRenderer::eye_height_m() const { return state_->ground.eye_height_m; }
+const std::string& SceneRenderer::terrain_message() const { return state_->ground.message; }
+
+SunPosition SceneRenderer::ApparentSun(const UtcInstant& instant) const {
+  GeodeticPosition eye = state_->scene.place;
+  eye.height_m = state_->ground.eye_height_m;
+  SunPosition sun = SunAt(eye, instant);
+  sun.elevation_rad += Refraction(sun.elevation_rad);
+  return sun;
+}
+
+Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {
+  ValidateSettings(settings);
+  const Lighting light = state_->LightingFrom(ApparentSun(instant));
+  const CameraRays camera(state_->scene.camera, settings.width, settings.height);
+  PixelWriter writer(state_->colour, settings);
+  const int grid = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));
+  tbb::parallel_for(0, settings.height, [&](int y) {
+    if (Interrupted()) return;
+    std::vector<Shaded> rays;
+    for (int x = 0; x < settings.width; ++x) {
+      rays.clear();
+      std::vector<Air> airs;
+      for (int s = 0; s < grid * grid; ++s) {
+        const glm::dvec3 direction =
+            camera.Direction(x + (s % grid + 0.5) / grid, y + (s / grid + 0.5) / grid);
+        const Hit hit = state_->Trace(direction);
+        auto known =
+            std::find_if(airs.begin(), airs.end(), [&](const Air& a) { return SameAir(a, hit); });
+        if (known == airs.end()) {
+          airs.push_back(state_->AirTo(hit, direction, light, settings.air_nodes));
+          known = airs.end() - 1;
+        }
+        const auto seed = [&](std::uint32_t dimension) {
+          return HashedUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                            2U * static_cast<std::uint32_t>(s) + dimension);
+        };
+        rays.push_back(state_->Shade(hit, *known, direction, light, {seed(0), seed(1)}));
+      }
+      writer.Write(x, y, rays);
+    }
+  });
+  ThrowIfInterrupted();
+  return writer.Take();
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Pictures of a scene: terrain, sky, sun disk, and the air in front of everything.
+//
+// Frame: ENU at the foot of the eye on the ellipsoid. The atmosphere is a shell on the sphere that
+// osculates the ellipsoid there, so the altitude of a point is its distance from that sphere. The
+// sun stands where refraction shows it: disk, light on the ground and light in the air use the
+// same, apparent direction.
+//
+// Per pixel: rays against the terrain, then single scattering by the fast path and light of higher
+// orders from DiffuseLight along the ray to the hit. Air between the eye and a surface is taken as
+// lit wherever the planet does not shade it: shadows of terrain in the air are not computed by this
+// version.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "atmosphere/sun.h"
+#include "atmosphere/time.h"
+#include "renderer/image.h"
+#include "renderer/scene.h"
+
+namespace alpenglow {
+
+struct RenderSettings {
+  int width = 1280;
+  int height = 720;
+  int samples_per_pixel = 4;        // rays against the terrain, a square number
+  int air_nodes = 12;               // Gauss nodes along a ray to the sky
+  std::vector<std::string> layers;  // of KnownLayers()
+};
+
+/// "depth" [m], "normal" (ENU), "albedo", "transmittance", "inscatter" [cd/m^2] and
+/// "sun_visibility" (0 to 1): what `layers` may name.
+[[nodiscard]] const std::vector<std::string>& KnownLayers();
+
+/// A scene ready to be rendered at any time: terrain loaded, light of higher orders solved.
+/// Immutable.
+class SceneRenderer {
+ public:
+  /// Throws InputError for what the scene names and cannot be read, or an eye below the ground.
+  explicit SceneRenderer(const Scene& scene);
+  ~SceneRenderer();
+
+  /// Linear sRGB in cd/m^2. The same bytes for any number of threads. Throws InputError for a layer
+  /// that is not known or a size out of [1, 16384]; stops early when Interrupted().
+  [[nodiscard]] Image Render(const UtcInstant& instant, const RenderSettings& settings) const;
+
+  /// The sun from the scene's place with refraction: where the picture shows it.
+  [[nodiscard]] SunPosition ApparentSun(const UtcInstant& instant) const;
+
+  /// The medium on the osculating sphere.
+  [[nodiscard]] const Medium& medium() const;
+  /// Height of the eye over the ellipsoid [m].
+  [[nodiscard]] double eye_height_m() const;
+  /// What loading the terrain has to tell (voids found and filled), empty if nothing.
+  [[nodiscard]] const std::string& terrain_message() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Luminance over which the exposure meter takes a pixel for the sun's disk [cd/m^2].
+inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
+
+}  // namespace alpenglow
