@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Uses one thing of each installed library; exits 0 when they answer sensibly.
+#include "atmosphere/single_scattering.h"
+#include "lut/multiple_scattering.h"
+#include "renderer/image.h"
+
+int main() {
+  const alpenglow::AirIntegrator<float> air(alpenglow::MediumPreset("earth"));
+  const float zenith = air.TransmittanceToSpace(0.0, 1.0)[0];
+  const double rayleigh =
+      alpenglow::LegendreCoefficients({.kind = alpenglow::PhaseKind::kRayleigh}, 2)[2];
+  const bool sensible = zenith > 0.5F && zenith < 1.0F && rayleigh > 0.0999 && rayleigh < 0.1001 &&
+                        alpenglow::ExposureScale(15.0) > 0.0;
+  return sensible ? 0 : 1;
+}

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Installs packages, then builds and runs every test in the presets named as arguments
+# (default: ci, sanitize and scalar; see CMakePresets.json).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+bash .ci/install-packages.sh
+presets=("$@")
+[ "${#presets[@]}" -gt 0 ] || presets=(ci sanitize scalar)
+export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1}
+export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$PWD/tests/leaks_of_drivers.txt:print_suppressions=0}
+for preset in "${presets[@]}"; do
+  echo "== $preset: build"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset"
+  echo "== $preset: test"
+  ctest --preset "$preset" --parallel "$(nproc)"
+done
