@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Errors of tables in numbers: what the tests of the tables share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace alpenglow {
+
+/// Differences between a method and the judge on the same work.
+class ErrorStatistics {
+ public:
+  void Add(double value, double truth) {
+    absolute_.push_back(std::abs(value - truth));
+    truth_squares_ += truth * truth;
+  }
+
+  [[nodiscard]] double Max() const { return *std::max_element(absolute_.begin(), absolute_.end()); }
+  [[nodiscard]] double Rms() const {
+    double sum = 0.0;
+    for (const double error : absolute_) sum += error * error;
+    return std::sqrt(sum / static_cast<double>(absolute_.size()));
+  }
+  /// Relative to the rms of the truth.
+  [[nodiscard]] double RelativeRms() const {
+    return Rms() / std::sqrt(truth_squares_ / static_cast<double>(absolute_.size()));
+  }
+  /// The error that a share of all (0.5: the median) do not exceed.
+  [[nodiscard]] double Quantile(double share) const {
+    std::vector<double> sorted = absolute_;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  }
+
+ private:
+  std::vector<double> absolute_;
+  double truth_squares_ = 0.0;
+};
+
+}  // namespace alpenglow
