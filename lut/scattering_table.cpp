@@ -157,6 +157,11 @@ ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu)
       light.mie[band] += weight * texel[bands + band];
     }
   }
+  // Where a long ray speaks for a longer one, the sum may pass what light there is.
+  for (std::size_t band = 0; band < bands; ++band) {
+    light.rayleigh[band] = std::min(light.rayleigh[band], 1.0F);
+    light.mie[band] = std::min(light.mie[band], 1.0F);
+  }
   return light;
 }
 

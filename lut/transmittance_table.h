@@ -38,7 +38,7 @@ class TransmittanceTable {
   /// air. Observers above the top are moved to where the ray enters.
   ///
   /// Error at the default size, earth and bruneton2017, against the judge: below 4e-3 everywhere
-  /// (aerosol near the ground is the worst), 1e-4 rms.
+  /// (rays near the horizon through the aerosol), 3e-4 rms.
   [[nodiscard]] Bands<float> Lookup(double altitude_m, double mu) const;
 
   /// Transmittance from the observer to the end of the ray: a quotient of two look-ups, with their

@@ -15,33 +15,34 @@
 namespace alpenglow {
 namespace {
 
-constexpr ScatteringTableSize kSmall{.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 16};
+constexpr ScatteringTableSize kStandard{.nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
 constexpr ScatteringTableSize kTiny{.nu = 2, .mu_s = 4, .mu = 8, .altitudes = 4};
 
 // Built once: several tests look things up in it.
-const ScatteringTable& SmallTable() {
-  static const ScatteringTable table(MediumPreset("earth"), {.size = kSmall, .lowest_mu_s = {}});
+const ScatteringTable& StandardTable() {
+  static const ScatteringTable table(MediumPreset("earth"), {.size = kStandard, .lowest_mu_s = {}});
   return table;
 }
 
 TEST(ScatteringTable, LookupAtTexelsReturnsTheIntegralsOfTheirRays) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   const AirIntegrator<double> air(table.medium());
   int compared = 0;
-  for (std::size_t altitude = 0; altitude < kSmall.altitudes; altitude += 5) {
-    for (std::size_t mu = 0; mu < kSmall.mu; mu += 3) {
-      for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 5) {
-        for (std::size_t nu = 0; nu < kSmall.nu; nu += 3) {
+  for (std::size_t altitude = 0; altitude < kStandard.altitudes; altitude += 5) {
+    for (std::size_t mu = 0; mu < kStandard.mu; mu += 3) {
+      for (std::size_t mu_s = 0; mu_s < kStandard.mu_s; mu_s += 5) {
+        for (std::size_t nu = 0; nu < kStandard.nu; nu += 3) {
           const ViewRay ray = table.RayOfTexel(nu, mu_s, mu, altitude);
           const auto truth = air.Scatter(air.Sample(ray, {.nodes = 16, .split_ozone = true}));
           const float* texel =
-              &table
-                   .texels()[(((altitude * kSmall.mu + mu) * kSmall.nu + nu) * kSmall.mu_s + mu_s) *
-                             2 * air.bands()];
+              &table.texels()
+                   [(((altitude * kStandard.mu + mu) * kStandard.nu + nu) * kStandard.mu_s + mu_s) *
+                    2 * air.bands()];
           for (std::size_t band = 0; band < air.bands(); ++band) {
-            EXPECT_NEAR(texel[band], truth.rayleigh[band], 2e-5 * truth.rayleigh[band] + 1e-12)
-                << "single precision of the whole integral: 5e-6 rms";
-            EXPECT_NEAR(texel[air.bands() + band], truth.mie[band], 2e-5 * truth.mie[band] + 1e-12);
+            EXPECT_NEAR(texel[band], truth.rayleigh[band], 2e-4 * truth.rayleigh[band] + 1e-12)
+                << "a rounding of a grazing sunbeam's zenith cosine moves an optical depth of ten "
+                   "by 1e-4";
+            EXPECT_NEAR(texel[air.bands() + band], truth.mie[band], 2e-4 * truth.mie[band] + 1e-12);
             ++compared;
           }
         }
@@ -52,18 +53,19 @@ TEST(ScatteringTable, LookupAtTexelsReturnsTheIntegralsOfTheirRays) {
 }
 
 TEST(ScatteringTable, InterpolationIsExactAtTheNodes) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   const std::size_t bands = table.medium().wavelengths_nm.size();
-  for (std::size_t altitude = 1; altitude + 1 < kSmall.altitudes; altitude += 4) {
-    for (std::size_t mu = 1; mu < kSmall.mu; mu += 7) {
+  for (std::size_t altitude = 1; altitude + 1 < kStandard.altitudes; altitude += 4) {
+    for (std::size_t mu = 1; mu < kStandard.mu; mu += 7) {
       // At the horizon, the node is a nudge away from where the look-up takes the ray to be.
-      if (mu == kSmall.mu - 1) continue;
-      for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 3) {
+      if (mu == kStandard.mu - 1) continue;
+      for (std::size_t mu_s = 0; mu_s < kStandard.mu_s; mu_s += 3) {
         const ViewRay ray = table.RayOfTexel(3, mu_s, mu, altitude);
         // Only where nu was not moved: elsewhere several texels hold the same ray.
         if (std::abs(ray.nu - (2.0 * 3.0 / 7.0 - 1.0)) > 1e-15) continue;
         const float* texel =
-            &table.texels()[(((altitude * kSmall.mu + mu) * kSmall.nu + 3) * kSmall.mu_s + mu_s) *
+            &table.texels()[(((altitude * kStandard.mu + mu) * kStandard.nu + 3) * kStandard.mu_s +
+                             mu_s) *
                             2 * bands];
         const ScatteredOnce<float> light = table.Lookup(ray);
         for (std::size_t band = 0; band < bands; ++band) {
@@ -87,7 +89,7 @@ class ScatteringTableRegimes : public testing::TestWithParam<Regime> {};
 
 // Observers to 12 km, all directions; radiance with phase functions, all bands.
 TEST_P(ScatteringTableRegimes, ErrorAgainstTheJudgeIsBelowTheStatedBound) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   const AirIntegrator<float> air(table.medium());
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -103,36 +105,36 @@ TEST_P(ScatteringTableRegimes, ErrorAgainstTheJudgeIsBelowTheStatedBound) {
     for (std::size_t band = 0; band < value.count; ++band) {
       ASSERT_GE(value[band], 0.0F);
       absolute.Add(value[band], truth[band]);
-      if (truth[band] > 0.0) relative.Add(value[band] / truth[band], 1.0);
+      if (truth[band] > 0.0) relative.Add(double{value[band]} / truth[band], 1.0);
     }
   }
   RecordProperty("relative_rms", std::to_string(absolute.RelativeRms()));
   RecordProperty("median", std::to_string(relative.Quantile(0.5)));
   RecordProperty("p99", std::to_string(relative.Quantile(0.99)));
-  EXPECT_LT(absolute.RelativeRms(), GetParam().relative_rms);
-  EXPECT_LT(relative.Quantile(0.5), GetParam().median);
+  EXPECT_LT(absolute.RelativeRms(), GetParam().relative_rms) << "the bound in the header";
+  EXPECT_LT(relative.Quantile(0.5), GetParam().median) << "the bound in the header";
 }
 
 INSTANTIATE_TEST_SUITE_P(Suns, ScatteringTableRegimes,
-                         testing::Values(Regime{"Day", 0.0, 85.0, 0.02, 0.006},
-                                         Regime{"Sunset", 85.0, 90.0, 0.03, 0.02},
-                                         Regime{"CivilTwilight", 90.0, 96.0, 0.10, 0.2}),
+                         testing::Values(Regime{"Day", 0.0, 85.0, 0.01, 0.0025},
+                                         Regime{"Sunset", 85.0, 90.0, 0.015, 0.008},
+                                         Regime{"CivilTwilight", 90.0, 96.0, 0.4, 0.15}),
                          [](const auto& regime) { return std::string(regime.param.name); });
 
 TEST(ScatteringTable, SunInTheZenithIsRotationallySymmetric) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   for (const double zenith_deg : {10.0, 60.0, 89.0, 120.0}) {
     const ViewRay first = RayFromAngles(1000.0, zenith_deg, 0.0, 0.0);
     for (const double azimuth_deg : {37.0, 90.0, 180.0}) {
       const ViewRay turned = RayFromAngles(1000.0, zenith_deg, azimuth_deg, 0.0);
-      EXPECT_NEAR(table.Lookup(turned).rayleigh[0], table.Lookup(first).rayleigh[0],
-                  1e-6 * table.Lookup(first).rayleigh[0]);
+      const double same = table.Lookup(first).rayleigh[0];
+      EXPECT_NEAR(table.Lookup(turned).rayleigh[0], same, 1e-6 * same);
     }
   }
 }
 
 TEST(ScatteringTable, NeverNegativeNeverNaN) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int i = 0; i < 20000; ++i) {
@@ -151,7 +153,7 @@ TEST(ScatteringTable, NeverNegativeNeverNaN) {
 }
 
 TEST(ScatteringTable, NightIsBlackBelowTheLowestUsefulSun) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   EXPECT_NEAR(table.lowest_mu_s(), std::cos(123.1 * 0.017453292519943295), 1e-3)
@@ -164,20 +166,19 @@ TEST(ScatteringTable, NightIsBlackBelowTheLowestUsefulSun) {
 }
 
 TEST(ScatteringTable, ObserversAboveTheTopSeeWhatTheRaySeesWhereItEnters) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   EXPECT_EQ(table.Lookup(RayFromAngles(4e5, 60.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "upwards";
   EXPECT_EQ(table.Lookup(RayFromAngles(1e8, 120.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "past it";
   for (const double zenith_deg : {91.0, 100.0, 140.0, 180.0}) {
     const ViewRay above = RayFromAngles(120000.0 + 1e-6, zenith_deg, 20.0, 40.0);
     const ViewRay below = RayFromAngles(120000.0 - 1e-6, zenith_deg, 20.0, 40.0);
-    EXPECT_NEAR(table.Lookup(above).rayleigh[0], table.Lookup(below).rayleigh[0],
-                1e-5 * table.Lookup(below).rayleigh[0])
-        << zenith_deg;
+    const double inside = table.Lookup(below).rayleigh[0];
+    EXPECT_NEAR(table.Lookup(above).rayleigh[0], inside, 1e-5 * inside) << zenith_deg;
   }
 }
 
 TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   const AirIntegrator<double> air(table.medium());
   for (const double altitude_m : {0.1, 1.7, 10.0, 50.0}) {
     const ViewRay ray = RayFromAngles(altitude_m, 150.0, 60.0, 40.0);
@@ -189,7 +190,7 @@ TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
 }
 
 TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
-  const ScatteringTable& table = SmallTable();
+  const ScatteringTable& table = StandardTable();
   const AirIntegrator<double> air(table.medium());
   ViewRay ray = RayFromAngles(500.0, 80.0, 45.0, 50.0);
   ray.length_m = 0.0;
