@@ -5,31 +5,29 @@
 #include <cmath>
 
 #include "atmosphere/error.h"
+#include "atmosphere/medium_ranges.h"
 
 namespace alpenglow {
 namespace {
 
 using Fault = std::optional<MediumFault>;
+using ranges::Range;
 
-// Most bands a medium may have: a wavelength each nanometre from 360 to 830 nm, and some.
-constexpr std::size_t kMostWavelengths = 512;
-
-// Coefficients up to an optical depth of 1e5 in a layer of 1 m.
-constexpr double kLargestCoefficient_per_m = 1e5;
-
-Fault OutOfRange(const std::string& key, double value, double low, double high) {
-  if (value >= low && value <= high) return std::nullopt;  // written so that NaN is a fault
-  return MediumFault{key, fmt::format("{} is {}; it must lie in [{}, {}]", key, value, low, high)};
+Fault OutOfRange(const std::string& key, double value, const Range& range) {
+  if (value >= range.low && value <= range.high)
+    return std::nullopt;  // written so that NaN is a fault
+  return MediumFault{
+      key, fmt::format("{} is {}; it must lie in [{}, {}]", key, value, range.low, range.high)};
 }
 
 Fault FaultOfWavelengths(const std::vector<double>& wavelengths_nm) {
   const std::string key = "spectrum.wavelengths_nm";
-  if (wavelengths_nm.empty() || wavelengths_nm.size() > kMostWavelengths) {
+  if (wavelengths_nm.empty() || wavelengths_nm.size() > ranges::kMostWavelengths) {
     return MediumFault{key, fmt::format("{} has {} values; it must have 1 to {}", key,
-                                        wavelengths_nm.size(), kMostWavelengths)};
+                                        wavelengths_nm.size(), ranges::kMostWavelengths)};
   }
   for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
-    if (Fault fault = OutOfRange(key, wavelengths_nm[i], 200.0, 4000.0)) return fault;
+    if (Fault fault = OutOfRange(key, wavelengths_nm[i], ranges::kWavelength_nm)) return fault;
     if (i > 0 && !(wavelengths_nm[i] > wavelengths_nm[i - 1])) {
       return MediumFault{key, fmt::format("{} has {} after {}; it must be strictly ordered", key,
                                           wavelengths_nm[i], wavelengths_nm[i - 1])};
@@ -41,17 +39,17 @@ Fault FaultOfWavelengths(const std::vector<double>& wavelengths_nm) {
 struct NamedList {
   const char* key;
   const std::vector<double>& values;
-  double high;
+  const Range& range;
 };
 
 Fault FaultOfLists(const Medium& medium) {
   const NamedList lists[] = {
-      {"spectrum.solar_irradiance", medium.solar_irradiance, 1e6},
-      {"planet.ground_albedo", medium.ground_albedo, 1.0},
-      {"rayleigh.scattering_per_m", medium.rayleigh_scattering_per_m, kLargestCoefficient_per_m},
-      {"mie.scattering_per_m", medium.mie_scattering_per_m, kLargestCoefficient_per_m},
-      {"mie.extinction_per_m", medium.mie_extinction_per_m, kLargestCoefficient_per_m},
-      {"ozone.absorption_per_m", medium.ozone_absorption_per_m, kLargestCoefficient_per_m},
+      {"spectrum.solar_irradiance", medium.solar_irradiance, ranges::kSolarIrradiance},
+      {"planet.ground_albedo", medium.ground_albedo, ranges::kAlbedo},
+      {"rayleigh.scattering_per_m", medium.rayleigh_scattering_per_m, ranges::kCoefficient_per_m},
+      {"mie.scattering_per_m", medium.mie_scattering_per_m, ranges::kCoefficient_per_m},
+      {"mie.extinction_per_m", medium.mie_extinction_per_m, ranges::kCoefficient_per_m},
+      {"ozone.absorption_per_m", medium.ozone_absorption_per_m, ranges::kCoefficient_per_m},
   };
   for (const NamedList& list : lists) {
     if (list.values.size() != medium.wavelengths_nm.size()) {
@@ -60,7 +58,7 @@ Fault FaultOfLists(const Medium& medium) {
                                 list.values.size(), medium.wavelengths_nm.size())};
     }
     for (const double value : list.values) {
-      if (Fault fault = OutOfRange(list.key, value, 0.0, list.high)) return fault;
+      if (Fault fault = OutOfRange(list.key, value, list.range)) return fault;
     }
   }
   return std::nullopt;
@@ -71,11 +69,10 @@ Fault FaultOfExtinction(const Medium& medium) {
     const double scattering = medium.mie_scattering_per_m[i];
     const double extinction = medium.mie_extinction_per_m[i];
     if (!(extinction >= scattering)) {
-      return MediumFault{
-          "mie.extinction_per_m",
-          fmt::format("mie.extinction_per_m is {} at {} nm; it must not be less than "
-                      "mie.scattering_per_m, {}",
-                      extinction, medium.wavelengths_nm[i], scattering)};
+      return MediumFault{"mie.scattering_per_m",
+                         fmt::format("mie.scattering_per_m is {} at {} nm; it must not exceed "
+                                     "mie.extinction_per_m, {}",
+                                     scattering, medium.wavelengths_nm[i], extinction)};
     }
   }
   return std::nullopt;
@@ -84,18 +81,19 @@ Fault FaultOfExtinction(const Medium& medium) {
 Fault FaultOfScalars(const Medium& medium) {
   const struct {
     const char* key;
-    double value, low, high;
+    double value;
+    const Range& range;
   } scalars[] = {
-      {"planet.radius_m", medium.planet_radius_m, 1e3, 1e9},
-      {"planet.atmosphere_top_m", medium.atmosphere_height_m, 1.0, 1e7},
-      {"rayleigh.scale_height_m", medium.rayleigh_scale_height_m, 1.0, 2e5},
-      {"mie.scale_height_m", medium.mie_scale_height_m, 1.0, 2e5},
-      {"ozone.bottom_m", medium.ozone.bottom_m, 0.0, 1e7},
-      {"ozone.peak_m", medium.ozone.peak_m, 0.0, 1e7},
-      {"ozone.top_m", medium.ozone.top_m, 0.0, 1e7},
+      {"planet.radius_m", medium.planet_radius_m, ranges::kPlanetRadius_m},
+      {"planet.atmosphere_top_m", medium.atmosphere_height_m, ranges::kAtmosphereTop_m},
+      {"rayleigh.scale_height_m", medium.rayleigh_scale_height_m, ranges::kScaleHeight_m},
+      {"mie.scale_height_m", medium.mie_scale_height_m, ranges::kScaleHeight_m},
+      {"ozone.bottom_m", medium.ozone.bottom_m, ranges::kOzoneAltitude_m},
+      {"ozone.peak_m", medium.ozone.peak_m, ranges::kOzoneAltitude_m},
+      {"ozone.top_m", medium.ozone.top_m, ranges::kOzoneAltitude_m},
   };
   for (const auto& scalar : scalars) {
-    if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.low, scalar.high)) return fault;
+    if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.range)) return fault;
   }
   const OzoneTent& ozone = medium.ozone;
   if (!(ozone.bottom_m < ozone.peak_m && ozone.peak_m < ozone.top_m)) {

@@ -84,9 +84,16 @@ void Validate(const Medium& medium);
 [[nodiscard]] Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm);
 [[nodiscard]] std::vector<std::string> MediumPresetNames();
 
-/// Reads atmosphere.toml. Throws InputError "file:line: key ..." for unknown keys (with the nearest
-/// known one), wrong types, NaN, infinities, lists of unequal length, values out of range and
-/// malformed text.
+/// The wavelengths [nm] on which every preset but "bruneton2017" has data.
+inline constexpr double kFirstPresetWavelength_nm = 360.0;
+inline constexpr double kLastPresetWavelength_nm = 830.0;
+
+/// Reads atmosphere.toml: a preset, changed by what the file gives (keys, units and meaning in
+/// atmosphere_file.cpp). Wavelengths may ascend or descend; descending ones are stored reversed,
+/// with every list of the file. Throws InputError "file:line: key ..." for unknown keys (with the
+/// nearest known one), wrong types, NaN, infinities, lists of unequal length, values out of range,
+/// keys that contradict each other or would have no effect, and malformed text. The name is the
+/// preset's, or "custom (from PRESET)" when the file changes anything.
 [[nodiscard]] Medium ReadMedium(const std::filesystem::path& file);
 
 /// As ReadMedium, from text; `origin` stands in messages where the file's name would.

@@ -18,9 +18,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kFirstWavelength_nm = 360.0;
-constexpr double kLastWavelength_nm = 830.0;
-
 template <typename Function>
 std::vector<double> Evaluate(const std::vector<double>& wavelengths_nm, Function function) {
   std::vector<double> values;
@@ -175,7 +172,7 @@ void RequireKnownName(std::string_view name) {
 
 void RequireTablesReach(std::string_view name, const std::vector<double>& wavelengths_nm) {
   for (const double wavelength_nm : wavelengths_nm) {
-    RequireInRange(wavelength_nm, kFirstWavelength_nm, kLastWavelength_nm,
+    RequireInRange(wavelength_nm, kFirstPresetWavelength_nm, kLastPresetWavelength_nm,
                    fmt::format("a wavelength [nm] of preset {}", name));
   }
 }

@@ -41,11 +41,28 @@ std::string KindOf(const toml::node& node) {
   return "a date or time";
 }
 
+// The parser and the destructor of its tables recurse once for each part of a dotted key, without a
+// limit of their own: a hundred thousand parts overflow the stack.
+void RequireShallowKeys(std::string_view text, const std::string& origin) {
+  constexpr int kMostDots = 256;
+  int line = 1;
+  int dots = 0;
+  for (const char letter : text) {
+    if (letter == '\n') ++line;
+    if (letter == '\n' || letter == ',') dots = 0;
+    if (letter == '.' && ++dots > kMostDots) {
+      throw InputError(
+          fmt::format("{}:{}: more than {} dots in a row of keys", origin, line, kMostDots));
+    }
+  }
+}
+
 toml::table Parse(std::string_view text, const std::string& origin) {
   // A document in UTF-16, which is full of zero bytes, is not named as such by the parser.
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(fmt::format("{}:1: holds zero bytes; it must be UTF-8 text", origin));
   }
+  RequireShallowKeys(text, origin);
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {

@@ -94,6 +94,15 @@ TEST(TomlTable, WhatIsNoTomlIsRefusedWithItsLine) {
               testing::HasSubstr("s.toml:2: not valid TOML"));
 }
 
+TEST(TomlTable, KeysDeeperThanTheStackAreRefused) {
+  std::string deep = "a";
+  for (int i = 0; i < 200000; ++i) deep += ".a";
+  for (const std::string& text : {"\n" + deep + " = 1\n", "\n[" + deep + "]\n"}) {
+    EXPECT_EQ(FaultOf([&] { TomlTable(text, "s.toml"); }),
+              "s.toml:2: more than 256 dots in a row of keys");
+  }
+}
+
 TEST(TomlTable, AByteOrderMarkAndAnEmptyDocumentAreToml) {
   EXPECT_EQ(TomlTable("\xef\xbb\xbf"
                       "a = 1\n",

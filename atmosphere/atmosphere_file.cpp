@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: MIT
+// atmosphere.toml. Everything is optional; what is not given is the preset's.
+//
+//   preset = "earth"                 also clear-mountain, hazy, mars, bruneton2017
+//   [planet]    radius_m (makes the planet a sphere), follows_wgs84, atmosphere_top_m,
+//   ground_albedo [spectrum]  wavelengths_nm | bands, solar_irradiance [rayleigh] scattering_per_m,
+//   scale_height_m [mie]       scattering_per_m, extinction_per_m, scale_height_m, phase, g,
+//   g_back, back_weight, alpha [aerosol]   one of visibility_m, turbidity, optical_depth_550; with
+//   it angstrom_exponent,
+//               single_scattering_albedo. Instead of the lists of [mie].
+//   [ozone]     absorption_per_m | dobson, bottom_m, peak_m, top_m
+//
+// What people think in becomes the aerosol's extinction at 550 nm and the ground:
+//   visibility V          3.912 / V - molecules                       Koschmieder (1924), 2 %
+//   contrast turbidity T           (T - 1) (column of molecules) / H_M         McCartney (1976):
+//   optical depth of
+//                                                                     air with haze over that
+//                                                                     without
+//   optical depth tau     tau / H_M
+// and (lambda / 550 nm)^-angstrom_exponent elsewhere; scattering keeps the preset's share.
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/error.h"
+#include "atmosphere/medium.h"
+#include "atmosphere/medium_ranges.h"
+#include "atmosphere/ozone_column.h"
+#include "atmosphere/spectrum.h"
+#include "atmosphere/toml_table.h"
+
+namespace alpenglow {
+namespace {
+
+using Names = std::vector<std::string>;
+using Values = std::vector<double>;
+using ranges::Range;
+
+const Names kSections{"preset", "planet", "spectrum", "rayleigh", "mie", "aerosol", "ozone"};
+const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
+const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
+const Names kRayleighKeys{"scattering_per_m", "scale_height_m"};
+const Names kMieKeys{"scattering_per_m", "extinction_per_m", "scale_height_m", "phase", "g",
+                     "g_back",           "back_weight",      "alpha"};
+const Names kAerosolAmounts{"visibility_m", "turbidity", "optical_depth_550"};
+const Names kAerosolKeys{"visibility_m", "turbidity", "optical_depth_550", "angstrom_exponent",
+                         "single_scattering_albedo"};
+const Names kOzoneKeys{"absorption_per_m", "dobson", "bottom_m", "peak_m", "top_m"};
+
+// Refuses two keys of a table that say the same thing.
+void RequireOneOf(const TomlTable& table, const Names& keys) {
+  std::string first;
+  for (const std::string& key : keys) {
+    if (!table.Has(key)) continue;
+    if (!first.empty()) {
+      table.Fail(key, fmt::format("{} is given beside {}; give one of them", table.FullName(key),
+                                  table.FullName(first)));
+    }
+    first = key;
+  }
+}
+
+void ReadNumber(const TomlTable& table, const std::string& key, const Range& range,
+                double& target) {
+  if (const auto number = table.Number(key, range.low, range.high)) target = *number;
+}
+
+class AtmosphereFile {
+ public:
+  AtmosphereFile(std::string_view text, const std::string& origin)
+      : root_(text, origin), preset_(PresetOf(root_)) {
+    planet_ = Section("planet", kPlanetKeys);
+    spectrum_ = Section("spectrum", kSpectrumKeys);
+    rayleigh_ = Section("rayleigh", kRayleighKeys);
+    mie_ = Section("mie", kMieKeys);
+    aerosol_ = Section("aerosol", kAerosolKeys);
+    ozone_ = Section("ozone", kOzoneKeys);
+  }
+
+  Medium Read() {
+    Medium medium = OnWavelengthsOfFile();
+    const Values scattering_share = ScatteringShare(medium);
+    if (planet_) ReadPlanet(medium);
+    if (spectrum_) {
+      ReadList(*spectrum_, "solar_irradiance", ranges::kSolarIrradiance, medium.solar_irradiance,
+               medium.wavelengths_nm.size());
+    }
+    if (rayleigh_) ReadRayleigh(medium);
+    if (mie_) ReadMie(medium);
+    if (aerosol_) ReadAerosol(scattering_share, medium);
+    if (ozone_) ReadOzone(medium);
+    RequireComplete(medium);
+    RequireFaultless(medium);
+    if (medium != MediumPreset(preset_)) medium.name = fmt::format("custom (from {})", preset_);
+    return medium;
+  }
+
+ private:
+  static std::string PresetOf(const TomlTable& root) {
+    root.AllowOnly(kSections);
+    const std::string preset = root.Text("preset").value_or("earth");
+    const Names names = MediumPresetNames();
+    if (std::find(names.begin(), names.end(), preset) == names.end()) {
+      const auto nearest = NearestName(preset, names);
+      root.Fail("preset", fmt::format("preset is \"{}\"; it must be one of {}{}", preset,
+                                      fmt::join(names, ", "),
+                                      nearest ? "; did you mean " + *nearest + "?" : ""));
+    }
+    return preset;
+  }
+
+  std::optional<TomlTable> Section(const std::string& name, const Names& keys) const {
+    std::optional<TomlTable> section = root_.Table(name);
+    if (section) section->AllowOnly(keys);
+    return section;
+  }
+
+  Values SetOfBands(double bands) const {
+    for (const int count : {3, 4, 8, 16, 40}) {
+      if (bands == count) return WavelengthSet(count);
+    }
+    spectrum_->Fail("bands",
+                    fmt::format("spectrum.bands is {}; it must be one of 3, 4, 8, 16, 40", bands));
+  }
+
+  // Ascending; remembers whether the lists of the file have to be reversed.
+  std::optional<Values> Wavelengths() {
+    if (!spectrum_) return std::nullopt;
+    RequireOneOf(*spectrum_, {"wavelengths_nm", "bands"});
+    if (const auto bands = spectrum_->Number("bands", 3.0, 40.0)) return SetOfBands(*bands);
+    const std::string key = "wavelengths_nm";
+    std::optional<Values> values =
+        spectrum_->Numbers(key, ranges::kWavelength_nm.low, ranges::kWavelength_nm.high);
+    if (!values) return std::nullopt;
+    if (values->empty() || values->size() > ranges::kMostWavelengths) {
+      spectrum_->Fail(key,
+                      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}",
+                                  values->size(), ranges::kMostWavelengths));
+    }
+    reversed_ = values->front() > values->back();
+    if (reversed_) std::reverse(values->begin(), values->end());
+    for (std::size_t i = 1; i < values->size(); ++i) {
+      if ((*values)[i] > (*values)[i - 1]) continue;
+      spectrum_->Fail(key, fmt::format("spectrum.wavelengths_nm has {} beside {}; it must strictly "
+                                       "ascend or strictly descend",
+                                       (*values)[i - 1], (*values)[i]));
+    }
+    return values;
+  }
+
+  // The preset on the file's wavelengths. Where it has no data its lists are left empty, for the
+  // file to fill.
+  Medium OnWavelengthsOfFile() {
+    const std::optional<Values> wavelengths_nm = Wavelengths();
+    Medium medium = MediumPreset(preset_);
+    if (!wavelengths_nm || *wavelengths_nm == medium.wavelengths_nm) return medium;
+    if (preset_ != "bruneton2017" && wavelengths_nm->front() >= kFirstPresetWavelength_nm &&
+        wavelengths_nm->back() <= kLastPresetWavelength_nm) {
+      return MediumPreset(preset_, *wavelengths_nm);
+    }
+    medium.wavelengths_nm = *wavelengths_nm;
+    for (Values* list : {&medium.solar_irradiance, &medium.ground_albedo,
+                         &medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                         &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
+      list->clear();
+    }
+    return medium;
+  }
+
+  // `target` has one value per wavelength, or none where the preset has no data.
+  void ReadList(const TomlTable& table, const std::string& key, const Range& range, Values& target,
+                std::size_t count) const {
+    std::optional<Values> values = table.Numbers(key, range.low, range.high);
+    if (!values) return;
+    if (values->size() != count) {
+      table.Fail(key, fmt::format("{} has {} values; it must have {}, one per wavelength",
+                                  table.FullName(key), values->size(), count));
+    }
+    if (reversed_) std::reverse(values->begin(), values->end());
+    target = std::move(*values);
+  }
+
+  void ReadPlanet(Medium& medium) const {
+    const TomlTable& table = *planet_;
+    ReadNumber(table, "radius_m", ranges::kPlanetRadius_m, medium.planet_radius_m);
+    if (table.Has("radius_m")) medium.follows_wgs84 = false;
+    if (const auto follows = table.Truth("follows_wgs84")) medium.follows_wgs84 = *follows;
+    ReadNumber(table, "atmosphere_top_m", ranges::kAtmosphereTop_m, medium.atmosphere_height_m);
+    const auto albedo = table.Numbers("ground_albedo", ranges::kAlbedo.low, ranges::kAlbedo.high);
+    if (albedo && albedo->size() == 1) {
+      medium.ground_albedo.assign(medium.wavelengths_nm.size(), albedo->front());
+    } else {
+      ReadList(table, "ground_albedo", ranges::kAlbedo, medium.ground_albedo,
+               medium.wavelengths_nm.size());
+    }
+  }
+
+  void ReadRayleigh(Medium& medium) const {
+    ReadList(*rayleigh_, "scattering_per_m", ranges::kCoefficient_per_m,
+             medium.rayleigh_scattering_per_m, medium.wavelengths_nm.size());
+    ReadNumber(*rayleigh_, "scale_height_m", ranges::kScaleHeight_m,
+               medium.rayleigh_scale_height_m);
+  }
+
+  void ReadMie(Medium& medium) const {
+    const std::size_t count = medium.wavelengths_nm.size();
+    ReadList(*mie_, "scattering_per_m", ranges::kCoefficient_per_m, medium.mie_scattering_per_m,
+             count);
+    ReadList(*mie_, "extinction_per_m", ranges::kCoefficient_per_m, medium.mie_extinction_per_m,
+             count);
+    ReadNumber(*mie_, "scale_height_m", ranges::kScaleHeight_m, medium.mie_scale_height_m);
+    ReadPhase(medium.mie_phase);
+  }
+
+  void ReadPhase(PhaseFunction& phase) const {
+    if (const auto name = mie_->Text("phase")) {
+      const PhaseKind kind = KindOf(*name);
+      if (kind != phase.kind) {
+        phase = PhaseFunction{};
+        phase.kind = kind;
+        if (kind != PhaseKind::kRayleigh && !mie_->Has("g")) {
+          mie_->Fail("phase",
+                     fmt::format("mie.phase is \"{}\", not the preset's: give mie.g too, for "
+                                 "a g of one phase function is not that of another",
+                                 *name));
+        }
+      }
+    }
+    const PhaseKind kind = phase.kind;
+    ReadParameter("g", kind != PhaseKind::kRayleigh, kind, phase.g);
+    ReadParameter("g_back", kind == PhaseKind::kDoubleHenyeyGreenstein, kind, phase.g_back);
+    ReadParameter("back_weight", kind == PhaseKind::kDoubleHenyeyGreenstein, kind,
+                  phase.back_weight);
+    ReadParameter("alpha", kind == PhaseKind::kDraine, kind, phase.alpha);
+  }
+
+  PhaseKind KindOf(const std::string& name) const {
+    try {
+      return PhaseKindFromName(name);
+    } catch (const InputError& error) {
+      mie_->Fail("phase", std::string("mie.") + error.what());
+    }
+  }
+
+  void ReadParameter(const std::string& key, bool has_it, PhaseKind kind, double& target) const {
+    if (!mie_->Has(key)) return;
+    if (!has_it) {
+      mie_->Fail(
+          key, fmt::format("mie.{} has no effect: the phase function {} has no such parameter", key,
+                           NameOf(kind)));
+    }
+    ReadNumber(*mie_, key, {-1.0, 1.0}, target);
+  }
+
+  // Share of scattering in the extinction of the preset's aerosol; empty where it has no data.
+  static Values ScatteringShare(const Medium& medium) {
+    Values share;
+    for (std::size_t i = 0; i < medium.mie_extinction_per_m.size(); ++i) {
+      share.push_back(medium.mie_scattering_per_m[i] / medium.mie_extinction_per_m[i]);
+    }
+    return share;
+  }
+
+  // Interpolated between the wavelengths in the logarithm of both; beyond them as lambda^-4.
+  static double MoleculesAt550(const Medium& medium) {
+    const Values& x = medium.wavelengths_nm;
+    const Values& y = medium.rayleigh_scattering_per_m;
+    const auto above = std::upper_bound(x.begin(), x.end(), 550.0);
+    const auto i = static_cast<std::size_t>(above - x.begin());
+    if (above == x.begin()) return y.front() * std::pow(x.front() / 550.0, 4);
+    if (above == x.end()) return y.back() * std::pow(x.back() / 550.0, 4);
+    if (y[i - 1] == 0.0 || y[i] == 0.0) return 0.0;
+    const double share = std::log(550.0 / x[i - 1]) / std::log(x[i] / x[i - 1]);
+    return y[i - 1] * std::pow(y[i] / y[i - 1], share);
+  }
+
+  double AerosolAt550(const Medium& medium) const {
+    const TomlTable& table = *aerosol_;
+    if (const auto depth = table.Number("optical_depth_550", 0.0, 100.0)) {
+      return *depth / medium.mie_scale_height_m;
+    }
+    RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
+    const double molecules = MoleculesAt550(medium);
+    if (const auto turbidity = table.Number("turbidity", 1.0, 1000.0)) {
+      return (*turbidity - 1.0) * molecules * medium.rayleigh_scale_height_m /
+             medium.mie_scale_height_m;
+    }
+    constexpr double kLogOfContrast = 3.912;  // -log(0.02)
+    const double visibility_m = *table.Number("visibility_m", 1.0, 1e7);
+    const double extinction = kLogOfContrast / visibility_m - molecules;
+    if (!(extinction >= 0.0)) {
+      table.Fail("visibility_m",
+                 fmt::format("aerosol.visibility_m is {}; the molecules alone limit "
+                             "it to {:.0f}",
+                             visibility_m, kLogOfContrast / molecules));
+    }
+    return extinction;
+  }
+
+  void ReadAerosol(Values scattering_share, Medium& medium) const {
+    const TomlTable& table = *aerosol_;
+    RequireOneOf(table, kAerosolAmounts);
+    if (std::none_of(kAerosolAmounts.begin(), kAerosolAmounts.end(),
+                     [&](const std::string& key) { return table.Has(key); })) {
+      root_.Fail("aerosol",
+                 fmt::format("aerosol needs one of {}", fmt::join(kAerosolAmounts, ", ")));
+    }
+    for (const char* key : {"scattering_per_m", "extinction_per_m"}) {
+      if (mie_ && mie_->Has(key)) {
+        mie_->Fail(key, fmt::format("mie.{} is given beside [aerosol]; give one of them", key));
+      }
+    }
+    if (const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0)) {
+      scattering_share.assign(medium.wavelengths_nm.size(), *albedo);
+    }
+    RequireList(scattering_share, "aerosol.single_scattering_albedo");
+    const double exponent = table.Number("angstrom_exponent", -1.0, 4.0).value_or(1.3);
+    const double at_550 = AerosolAt550(medium);
+    medium.mie_extinction_per_m.clear();
+    medium.mie_scattering_per_m.clear();
+    for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+      const double extinction = at_550 * std::pow(medium.wavelengths_nm[i] / 550.0, -exponent);
+      medium.mie_extinction_per_m.push_back(extinction);
+      medium.mie_scattering_per_m.push_back(extinction * scattering_share[i]);
+    }
+  }
+
+  void ReadOzone(Medium& medium) const {
+    const TomlTable& table = *ozone_;
+    RequireOneOf(table, {"absorption_per_m", "dobson"});
+    ReadNumber(table, "bottom_m", ranges::kOzoneAltitude_m, medium.ozone.bottom_m);
+    ReadNumber(table, "peak_m", ranges::kOzoneAltitude_m, medium.ozone.peak_m);
+    ReadNumber(table, "top_m", ranges::kOzoneAltitude_m, medium.ozone.top_m);
+    if (!(medium.ozone.bottom_m < medium.ozone.top_m)) RequireFaultless(medium);
+    ReadList(table, "absorption_per_m", ranges::kCoefficient_per_m, medium.ozone_absorption_per_m,
+             medium.wavelengths_nm.size());
+    const auto dobson = table.Number("dobson", 0.0, 10000.0);
+    if (!dobson) return;
+    if (medium.wavelengths_nm.front() < kFirstPresetWavelength_nm) {
+      table.Fail("dobson", fmt::format("ozone.dobson needs cross sections, which are known from {} "
+                                       "nm on; give ozone.absorption_per_m",
+                                       kFirstPresetWavelength_nm));
+    }
+    medium.ozone_absorption_per_m.clear();
+    for (const double wavelength_nm : medium.wavelengths_nm) {
+      medium.ozone_absorption_per_m.push_back(
+          OzoneAbsorptionAtPeak(*dobson, medium.ozone, wavelength_nm));
+    }
+  }
+
+  void RequireList(const Values& list, const std::string& key) const {
+    if (!list.empty()) return;
+    spectrum_->Fail(
+        "wavelengths_nm",
+        fmt::format(
+            "spectrum.wavelengths_nm leaves the data of preset {} ({}); give {} "
+            "too",
+            preset_,
+            preset_ == "bruneton2017"
+                ? "440, 550 and 680 nm"
+                : fmt::format("{} to {} nm", kFirstPresetWavelength_nm, kLastPresetWavelength_nm),
+            key));
+  }
+
+  void RequireComplete(const Medium& medium) const {
+    RequireList(medium.solar_irradiance, "spectrum.solar_irradiance");
+    RequireList(medium.ground_albedo, "planet.ground_albedo");
+    RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
+    RequireList(medium.mie_scattering_per_m, "mie.scattering_per_m");
+    RequireList(medium.mie_extinction_per_m, "mie.extinction_per_m");
+    RequireList(medium.ozone_absorption_per_m, "ozone.absorption_per_m");
+  }
+
+  void RequireFaultless(const Medium& medium) const {
+    const std::optional<MediumFault> fault = FindFault(medium);
+    if (!fault) return;
+    const std::size_t dot = fault->key.find('.');
+    const std::optional<TomlTable> section = root_.Table(fault->key.substr(0, dot));
+    (section ? *section : root_).Fail(fault->key.substr(dot + 1), fault->text);
+  }
+
+  TomlTable root_;
+  std::string preset_;
+  std::optional<TomlTable> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
+  bool reversed_ = false;
+};
+
+}  // namespace
+
+Medium MediumFromToml(std::string_view text, const std::string& origin) {
+  return AtmosphereFile(text, origin).Read();
+}
+
+Medium ReadMedium(const std::filesystem::path& file) {
+  return MediumFromToml(ReadTextFile(file), file.string());
+}
+
+}  // namespace alpenglow
