@@ -35,8 +35,11 @@ struct AirAtObserver {
   double temperature_k = 288.15;
 };
 
-/// Refraction [rad], apparent minus true elevation, of the *true* elevation; smooth and bounded for
-/// every elevation in [-pi/2, pi/2] (see refraction notes in sun.cpp for model, source and error).
+/// Refraction [rad], apparent minus true elevation, of the *true* elevation, for an observer on the
+/// ground; smooth and bounded for every elevation in [-pi/2, pi/2], 34' where the body is seen at
+/// the horizontal, 0 from -6 degrees down. Model, source and error are in refraction.cpp;
+/// RefractionFromHeight (refraction.h) serves observers high above the sea. Throws InputError when
+/// the pressure is not in [0, 2e5] Pa or the temperature not in [150, 400] K.
 [[nodiscard]] double Refraction(double true_elevation_rad, const AirAtObserver& air = {});
 
 /// What the sun does on the day of `around`, local to the place.
@@ -57,8 +60,9 @@ enum class SunEvent {
 
 /// The instant of the event on the local solar day (midnight to midnight of mean solar time at the
 /// longitude) that contains `around`; nothing when it does not happen that day (polar day and
-/// night). Rise and set: upper limb, refracted, seen over the sea horizon from the place's height
-/// (dip). The twilights: true centre at -6, -12, -18 degrees. Error of the search below 0.1 s.
+/// night); the first where there are two. Rise and set: upper limb, refracted, seen over the sea
+/// horizon from the place's height (dip). The twilights: true centre at -6, -12, -18 degrees. Noon:
+/// the centre in the meridian. Error of the search below 0.1 s.
 [[nodiscard]] std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& place,
                                                      const UtcInstant& around);
 
