@@ -4,9 +4,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 
+#include "atmosphere/error.h"
 #include "lut/program.h"
 
 namespace alpenglow {
@@ -32,6 +34,20 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
       ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))
       ->capture_default_str();
   app.set_version_flag("--version", [program] { return VersionText(program); });
+}
+
+/// Refuses on the command line what `read` refuses.
+[[nodiscard]] inline CLI::Validator ReadableBy(
+    const std::function<void(const std::string&)>& read) {
+  const auto fault = [read](const std::string& text) -> std::string {
+    try {
+      read(text);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  return CLI::Validator(fault, "");
 }
 
 /// Parses. Gives an exit status when the program has nothing left to do: 0 after --help and

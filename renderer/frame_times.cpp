@@ -78,7 +78,7 @@ UtcInstant EndOf(const TimesText& times, const EventDay& day, const UtcInstant& 
 std::vector<Frame> Numbered(const std::vector<UtcInstant>& instants) {
   std::vector<Frame> frames;
   for (const UtcInstant& instant : instants) {
-    frames.push_back({static_cast<int>(frames.size()) + 1, instant});
+    frames.push_back({static_cast<int>(frames.size()), instant});
   }
   return frames;
 }
@@ -189,10 +189,11 @@ std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) 
 std::vector<Frame> SelectFrames(const std::vector<Frame>& frames, std::string_view ranges) {
   std::vector<Frame> selected;
   const std::vector<Range> wanted = RangesFromText(ranges);
-  const int last = frames.empty() ? 0 : frames.back().number;
+  ALPENGLOW_ENSURE(frames.size(), >, 0U);
   for (const Range& range : wanted) {
-    if (range.first < 1 || range.last > last) {
-      throw InputError(fmt::format("frames \"{}\": the series has 1 to {}", ranges, last));
+    if (range.last > frames.back().number) {
+      throw InputError(
+          fmt::format("frames \"{}\": the series has 0 to {}", ranges, frames.back().number));
     }
   }
   for (const Frame& frame : frames) {

@@ -12,7 +12,7 @@
 
 namespace alpenglow {
 
-/// One picture of a series. Numbers count from 1.
+/// One picture of a series. Numbers count from 0.
 struct Frame {
   int number;
   UtcInstant instant;

@@ -47,7 +47,10 @@ std::string HeightText(const Height& height) {
 std::string TerrainText(const TerrainSource& terrain) {
   switch (terrain.kind) {
     case TerrainSource::Kind::kBuiltInRange:
-      return "built-in range";
+      return !terrain.centre ? "built-in range"
+                             : fmt::format("built-in range around {}, {}",
+                                           Degrees(terrain.centre->latitude_rad),
+                                           Degrees(terrain.centre->longitude_rad));
     case TerrainSource::Kind::kElevationModel:
       return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
                          HashOfFile(terrain.file),
@@ -95,6 +98,15 @@ Metadata SceneMetadata(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
   }
+  return metadata;
+}
+
+Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
+  Metadata metadata = SceneMetadata(scene);
+  metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
+  metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
+  metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
+  metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(settings.layers, ","));
   return metadata;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "renderer/image.h"
+#include "renderer/render.h"
 #include "renderer/scene.h"
 
 namespace alpenglow {
@@ -15,6 +16,9 @@ namespace alpenglow {
 /// back exactly. The content of the terrain's file is hashed: throws InputError when it cannot be
 /// read.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene);
+
+/// SceneMetadata, and the settings that the pixels depend on.
+[[nodiscard]] Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings);
 
 /// 16 hexadecimal digits, FNV-1a over names and values: equal for equal metadata.
 [[nodiscard]] std::string Fingerprint(const Metadata& metadata);

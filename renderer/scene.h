@@ -47,7 +47,7 @@ struct Camera {
 /// Where the ground comes from.
 struct TerrainSource {
   enum class Kind {
-    kBuiltInRange,    // BuiltInRange, centred on the scene's place
+    kBuiltInRange,    // BuiltInRange
     kElevationModel,  // file, see ReadElevation
     kMesh,            // file, see ReadObj
     kNone,            // the ellipsoid alone
@@ -55,6 +55,7 @@ struct TerrainSource {
   Kind kind = Kind::kBuiltInRange;
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
+  std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
 };
 
 /// A lamp.

@@ -10,6 +10,7 @@
 #include "lut/program.h"
 #include "renderer/contact_sheet.h"
 #include "renderer/provenance.h"
+#include "renderer/render.h"
 
 namespace alpenglow {
 namespace {
@@ -19,9 +20,6 @@ namespace fs = std::filesystem;
 constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
 constexpr char kFingerprint[] = "alpenglow.fingerprint";
 constexpr char kEv100[] = "alpenglow.ev100";
-
-// Brighter than sunlit snow and the sun's surroundings, darker than its disk.
-constexpr double kSunDiskAbove_cd_per_m2 = 1e6;
 
 std::string CurveName(ToneCurve curve) {
   switch (curve) {
@@ -117,7 +115,7 @@ class Series {
     if (output_.resume) image = KeptImage(exr, wanted);
     const bool rendered = !image;
     if (rendered) image = source_.render(frame.instant);
-    const double ev100 = output_.ev100.value_or(MeterEv100(*image, kSunDiskAbove_cd_per_m2));
+    const double ev100 = output_.ev100.value_or(MeterEv100(*image, kSunDiskLuminance_cd_per_m2));
     Write(frame, *image, ev100, rendered);
     if (output_.contact_sheet) AddThumbnail(frame, *image, ev100);
     return rendered;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// skyseries: pictures of a scene through the day. A still is a series of one.
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "renderer/provenance.h"
+#include "renderer/series.h"
+#include "renderer/skyseries_options.h"
+
+namespace alpenglow {
+namespace {
+
+Scene SceneOf(const SkyseriesOptions& options) {
+  Scene scene =
+      options.scene_file.empty() ? SceneFromOptions(options.scene) : ReadScene(options.scene_file);
+  if (options.zone) scene.zone = options.zone;
+  return scene;
+}
+
+std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene) {
+  EventDay day{scene.place, scene.zone, scene.time};
+  if (options.date) day.around = DayFromText(*options.date, scene.place, scene.zone);
+  const bool typed = !options.times.at.empty() || options.times.from;
+  if (!typed && scene.time && !options.date) return {{0, *scene.time}};
+  return FramesFromTimes(options.times, day);
+}
+
+/// What the scene asks for and this version does not do is said, not passed over.
+void SayWhatIsLeftOut(const Scene& scene) {
+  if (!scene.lights.empty()) {
+    fmt::print(stderr, "skyseries: note: {} lamps of the scene are not rendered by this version\n",
+               scene.lights.size());
+  }
+  if (scene.camera.lens) {
+    fmt::print(stderr, "skyseries: note: depth of field is not rendered by this version\n");
+  }
+}
+
+std::unique_ptr<SceneRenderer> Load(const Scene& scene) {
+  auto renderer = std::make_unique<SceneRenderer>(scene);
+  if (!renderer->terrain_message().empty()) {
+    fmt::print(stderr, "skyseries: {}\n", renderer->terrain_message());
+  }
+  return renderer;
+}
+
+int Run(const SkyseriesOptions& options) {
+  const ThreadLimit threads(options.common.threads);
+  SeriesOutput output{FrameName(options.out)};
+  const Scene scene = SceneOf(options);
+  const std::vector<Frame> frames = FramesOf(options, scene);
+  const std::vector<Frame> selected =
+      options.frames ? SelectFrames(frames, *options.frames) : frames;
+  SayWhatIsLeftOut(scene);
+  output.png = options.png;
+  output.ev100 = Ev100FromText(options.exposure);
+  output.curve = ToneCurveFromName(options.tone_curve);
+  output.resume = options.resume;
+  if (options.contact_sheet) output.contact_sheet = *options.contact_sheet;
+  output.progress = options.common.progress_style();
+
+  const ImageSize size = ImageSizeFromText(options.size);
+  RenderSettings settings;
+  settings.width = size.width;
+  settings.height = size.height;
+  settings.samples_per_pixel = options.samples;
+  settings.layers = options.layers;
+  std::unique_ptr<SceneRenderer> renderer;  // built for the first frame that needs it
+  const SeriesSource source{[&](const UtcInstant& instant) {
+                              if (!renderer) renderer = Load(scene);
+                              return renderer->Render(instant, settings);
+                            },
+                            PictureMetadata(scene, settings), scene.place, scene.zone};
+  const SeriesSummary summary = RunSeries(source, frames, selected, output);
+  if (!options.common.quiet) {
+    fmt::print(stderr, "skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,
+               summary.developed, summary.kept);
+  }
+  return 0;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("skyseries: pictures of a scene through the day\n");
+  SkyseriesOptions options;
+  AddSkyseriesOptions(app, options);
+  if (const std::optional<int> status = ParseCommandLine(app, argc, argv)) return *status;
+  return Run(options);
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main(int argc, char** argv) {
+  return alpenglow::RunProgram("skyseries", [&] { return alpenglow::Main(argc, argv); });
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The command line of skyseries. Included by its one translation unit (CLI11 is slow to compile).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lut/command_line.h"
+#include "renderer/frame_times.h"
+#include "renderer/render.h"
+#include "renderer/scene_options.h"
+
+namespace alpenglow {
+
+inline constexpr char kSkyseriesFooter[] =
+    "A time is an instant (2026-06-21T04:00:00Z, with an offset, or local with --zone) or an event "
+    "with an offset: sunrise-1h, sunset+20m, noon, civil-dawn, civil-dusk, nautical-..., "
+    "astronomical-...\n\n"
+    "Example: a day over the built-in range\n"
+    "  skyseries --out 'out/frame.%04d.exr' --png --date 2026-06-21 --from sunrise-1h "
+    "--to sunset+1h --every 10m\n"
+    "Example: dawn on Mount Fuji\n"
+    "  skyseries --dem N35E138.hgt --latitude 35.50 --longitude 138.76 --heading 190 "
+    "--zone Asia/Tokyo --date 2026-01-01 --at sunrise-10m --out fuji.exr --png";
+
+/// What is typed; texts are read later, against the scene.
+struct SkyseriesOptions {
+  CommonOptions common;
+  std::string scene_file;
+  SceneOptions scene;
+  TimesText times;
+  std::optional<std::string> date, zone, frames, contact_sheet;
+  std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx";
+  int samples = 4;
+  std::vector<std::string> layers;
+  bool png = false, resume = false;
+};
+
+inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
+  CLI::Option* file = app.add_option("SCENE", options.scene_file,
+                                     "Scene file (TOML); without it, the next options:");
+  SceneOptions& scene = options.scene;
+  const auto without_file = [&](const char* name, auto& value, const char* text) {
+    return app.add_option(name, value, text)->excludes(file)->group("Instead of a scene file");
+  };
+  without_file("--latitude", scene.latitude, "Degrees north")->capture_default_str();
+  without_file("--longitude", scene.longitude, "Degrees east")->capture_default_str();
+  without_file("--heading", scene.heading, "Degrees clockwise from north");
+  without_file("--pitch", scene.pitch, "Degrees above the horizontal, -90 to 90");
+  without_file("--fov", scene.fov, "Horizontal field of view in degrees, 0.1 to 179, or 360");
+  without_file("--height", scene.height_m, "Metres above the ellipsoid");
+  without_file("--above-ground", scene.above_ground_m, "Metres above the ground");
+  without_file("--dem", scene.dem,
+               "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM (default: a "
+               "built-in mountain range, centred on the place)");
+  without_file("--atmosphere", scene.atmosphere,
+               "Atmosphere file (TOML) or preset: earth, hazy, "
+               "clear-mountain, mars, bruneton2017");
+}
+
+inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
+  TimesText& times = options.times;
+  CLI::Option* at = app.add_option("--at", times.at, "Time of the picture; may be repeated")
+                        ->allow_extra_args(false);
+  CLI::Option* from = app.add_option("--from", times.from, "First time of the series");
+  CLI::Option* to = app.add_option("--to", times.to, "Last time of the series");
+  CLI::Option* every = app.add_option("--every", times.every, "Time between frames: 10m, 90s, 1h");
+  CLI::Option* count = app.add_option("--count", times.count,
+                                      "Number of frames, first and last "
+                                      "included");
+  from->needs(to)->excludes(at);
+  to->needs(from);
+  every->needs(from)->excludes(count);
+  count->needs(from);
+  app.add_option("--date", options.date, "Day of the events, 2026-06-21 (default: the scene's)");
+  app.add_option("--zone", options.zone, "IANA zone of local times (default: the scene's)");
+  app.add_option("--frames", options.frames, "Render only these frames: A-B,C, counted from 0");
+}
+
+inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
+  app.add_option("--out", options.out, "EXR files, with %04d for the frame number")->required();
+  app.add_flag("--png", options.png, "Write a developed PNG beside every EXR");
+  app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
+      ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
+      ->capture_default_str();
+  app.add_option("--samples", options.samples, "Rays per pixel, a square number")
+      ->check(CLI::IsMember({1, 4, 9, 16, 25, 36, 49, 64, 100, 256, 1024}))
+      ->capture_default_str();
+  app.add_option("--aov", options.layers, "More layers in the EXR, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(KnownLayers()));
+  app.add_option("--exposure", options.exposure, "auto (metered, frame by frame) or EV at ISO 100")
+      ->check(ReadableBy([](const std::string& text) { (void)Ev100FromText(text); }))
+      ->capture_default_str();
+  app.add_option("--tone-map", options.tone_curve, "Curve of the PNG")
+      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear"}))
+      ->capture_default_str();
+  app.add_flag("--resume", options.resume, "Keep intact frames that were made with these settings");
+  app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small");
+}
+
+inline void AddSkyseriesOptions(CLI::App& app, SkyseriesOptions& options) {
+  AddSceneOptions(app, options);
+  AddTimeOptions(app, options);
+  AddOutputOptions(app, options);
+  AddCommonOptions(app, "skyseries", options.common);
+  app.footer(kSkyseriesFooter);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// skyseries as users meet it: the program itself, its exit statuses, files and messages.
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+
+#include "renderer/image.h"
+#include "tests/renderer/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Skyseries : public TemporaryFolder {
+ protected:
+  struct Outcome {
+    int status;
+    std::string out, error;
+  };
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    // The bare ellipsoid: these tests are about the program, not about its pictures.
+    WriteText(folder_ / "s.toml",
+              "[place]\nlatitude = 46.5\nlongitude = 8.0\nzone = \"Europe/Zurich\"\n"
+              "[time]\nutc = \"2026-06-21T10:00:00Z\"\n[terrain]\nnone = true\n");
+  }
+  [[nodiscard]] std::string InFolder(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  [[nodiscard]] std::string SmallStill() const {
+    return InFolder("s.toml") + " --size 16x9 --samples 1 --out " + InFolder("still.exr");
+  }
+  /// @param arguments as typed into a shell.
+  [[nodiscard]] Outcome Run(const std::string& arguments) const {
+    const std::string command = std::string(ALPENGLOW_SKYSERIES) + " " + arguments + " >" +
+                                InFolder("out.txt") + " 2>" + InFolder("err.txt");
+    const int status = std::system(command.c_str());
+    Outcome outcome{WEXITSTATUS(status), ContentOf(InFolder("out.txt")),
+                    ContentOf(InFolder("err.txt"))};
+    fs::remove(InFolder("out.txt"));
+    fs::remove(InFolder("err.txt"));
+    return outcome;
+  }
+  [[nodiscard]] pid_t Start(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), ALPENGLOW_SKYSERIES);
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+      execv(pointers[0], pointers.data());
+      _exit(127);
+    }
+    return child;
+  }
+  static int WaitFor(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  [[nodiscard]] std::vector<std::string> SeriesArguments() const {
+    return {InFolder("s.toml"), "--size", "64x36",
+            "--samples",        "1",      "--from",
+            "sunrise",          "--to",   "sunset",
+            "--count",          "40",     "--quiet",
+            "--resume",         "--out",  InFolder("series/f.%04d.exr")};
+  }
+};
+
+TEST_F(Skyseries, HelpIsTheManual) {
+  const Outcome outcome = Run("--help");
+  EXPECT_EQ(outcome.status, 0);
+  for (const char* option :
+       {"--at",      "--from",          "--to",       "--every",    "--count",
+        "--date",    "--zone",          "--frames",   "--out",      "--png",
+        "--size",    "--samples",       "--aov",      "--exposure", "--tone-map",
+        "--resume",  "--contact-sheet", "--latitude", "--dem",      "--atmosphere",
+        "--threads", "--quiet",         "--progress", "--version",  "Example"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(option));
+  }
+}
+
+TEST_F(Skyseries, VersionIsOnStandardOutput) {
+  const Outcome outcome = Run("--version");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("skyseries of alpenglow "));
+}
+
+TEST_F(Skyseries, AStillIsASeriesOfOne) {
+  const Outcome outcome = Run(SmallStill() + " --png --aov depth,normal");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const Image image = ReadExr(folder_ / "still.exr");
+  EXPECT_EQ(image.width, 16);
+  EXPECT_EQ(image.layers.size(), 4U) << "depth and three of the normal";
+  EXPECT_EQ(ReadPng(folder_ / "still.png").height, 9);
+  EXPECT_EQ(ReadExrMetadata(folder_ / "still.exr").at("alpenglow.utc"), "2026-06-21T10:00:00.000Z");
+  EXPECT_EQ(FileCount(), 4U) << "scene, EXR, PNG, manifest";
+  EXPECT_EQ(outcome.out, "") << "standard output is for results only";
+}
+
+TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
+  const std::string still = SmallStill();
+  for (const std::string& arguments :
+       {std::string("--nonsense"), std::string(""), InFolder("s.toml"), still + " --size 0x5",
+        still + " --size 5", still + " --exposure bright", still + " --exposure nan",
+        still + " --tone-map local", still + " --aov smell", still + " --samples 3",
+        still + " --threads -1", still + " --effects all", still + " --max-error 1%",
+        still + " --explain", still + " --from sunrise", still + " --progress loud",
+        still + " --at noon --from sunrise --to sunset",
+        still + " --from sunrise --to sunset --every 1h --count 3", still + " --latitude 3"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.error;
+  }
+  EXPECT_EQ(FileCount(), 1U) << "only the scene";
+}
+
+TEST_F(Skyseries, ABadInputExitsWith3AndOneLine) {
+  WriteText(folder_ / "bad.toml", "[place]\nlatitude = 91\nlongitude = 0\n");
+  WriteText(folder_ / "polar.toml",
+            "[place]\nlatitude = 78\nlongitude = 16\n[time]\nutc = \"2026-06-21T10:00:00Z\"\n"
+            "[terrain]\nnone = true\n");
+  const std::string out = " --out " + InFolder("still.exr");
+  const std::string still = SmallStill();
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {InFolder("missing.toml") + out, "missing.toml: cannot be read"},
+      {InFolder("bad.toml") + out, "bad.toml:2: place.latitude is 91"},
+      {InFolder("polar.toml") + out + " --at sunrise", "there is no sunrise"},
+      {still + " --at sunrize", "did you mean sunrise?"},
+      {still + " --at 2024-02-30T00:00:00Z", "2024-02-30"},
+      {still + " --frames 5", "the series has 0 to 0"},
+      {still + " --from sunrise --to sunset --count 3", "no frame number"},
+      {InFolder("s.toml") + " --out " + InFolder("f.%s.exr"), "frame number is written"},
+      {InFolder("s.toml") + " --out " + InFolder("f.png"), "must end in .exr"},
+      {"--latitude 91" + out, "latitude is 91"},
+      {"--dem " + InFolder("missing.hgt") + out, "missing.hgt"},
+      {"--fov 200 --dem x.hgt" + out, "--fov is 200"},
+      {"--atmosphere " + InFolder("missing.toml") + " --dem x.hgt" + out, "missing.toml"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments << "\n" << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(message)) << arguments;
+    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "still.exr"));
+}
+
+TEST_F(Skyseries, AnOutputThatCannotBeWrittenExitsWith4) {
+  WriteText(folder_ / "file", "in the way");
+  const Outcome outcome = Run(InFolder("s.toml") + " --size 16x9 --out " + InFolder("file/a.exr"));
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.error, HasSubstr((folder_ / "file").string()));
+}
+
+TEST_F(Skyseries, LampsOfTheSceneAreNotPassedOverInSilence) {
+  WriteText(folder_ / "s.toml", ContentOf(folder_ / "s.toml") +
+                                    "[[light]]\nlatitude = 46.51\nlongitude = 8.0\n"
+                                    "intensity_cd = 100\n");
+  const Outcome outcome = Run(SmallStill());
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error, HasSubstr("1 lamps of the scene are not rendered by this version"));
+}
+
+TEST_F(Skyseries, OneAndManyThreadsMakeTheSamePixels) {
+  ASSERT_EQ(Run(SmallStill() + " --threads 1").status, 0);
+  const Image one = ReadExr(folder_ / "still.exr");
+  ASSERT_EQ(Run(SmallStill() + " --threads 7").status, 0);
+  EXPECT_EQ(ReadExr(folder_ / "still.exr").rgb, one.rgb);
+}
+
+TEST_F(Skyseries, SigtermKeepsFinishedFramesAndTheNextRunResumes) {
+  const pid_t child = Start(SeriesArguments());
+  while (!fs::exists(folder_ / "series" / "f.0001.exr")) {
+    usleep(1000);
+    ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "it ended before the second frame";
+  }
+  kill(child, SIGTERM);
+  EXPECT_EQ(WaitFor(child), 143);
+  std::size_t frames = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "series")) {
+    if (entry.path().extension() != ".exr") continue;
+    EXPECT_NE(entry.path().filename().string().front(), '.') << "a temporary was left";
+    EXPECT_NO_THROW((void)ReadExr(entry.path()));
+    ++frames;
+  }
+  EXPECT_LT(frames, 40U) << "the signal came too late to show anything";
+  EXPECT_EQ(WaitFor(Start(SeriesArguments())), 0);
+  EXPECT_TRUE(fs::exists(folder_ / "series" / "f.0039.exr"));
+}
+
+TEST_F(Skyseries, TwoProcessesOnTheSameFramesBothSucceed) {
+  std::vector<std::string> arguments = SeriesArguments();
+  std::replace(arguments.begin(), arguments.end(), std::string("40"), std::string("5"));
+  const pid_t one = Start(arguments);
+  const pid_t other = Start(arguments);
+  EXPECT_EQ(WaitFor(one), 0);
+  EXPECT_EQ(WaitFor(other), 0);
+  for (int frame = 0; frame < 5; ++frame) {
+    EXPECT_NO_THROW((void)ReadExr(folder_ / "series" / fmt::format("f.{:04}.exr", frame)));
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
