@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// OpenEXR images that hold tables: one part of scan lines, 32-bit floats, ZIP, text attributes.
+//
+// Reading trusts nothing: what is damaged, truncated, foreign or larger than its file can hold is
+// refused with an InputError that names the file, before memory is taken.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace alpenglow {
+
+using TextAttributes = std::map<std::string, std::string>;
+
+/// What an image is made of. Values are interleaved: (row * width + column) * channels + channel.
+struct TableImage {
+  std::size_t width;
+  std::size_t height;
+  std::vector<std::string> channels;
+  std::span<const float> values;
+  TextAttributes attributes;
+};
+
+/// Writes whole or not at all (WriteFileAtomically). Throws OutputError naming the file.
+void WriteTableImage(const std::filesystem::path& file, const TableImage& image);
+
+/// An image that was opened and whose header is sound.
+class TableImageReader {
+ public:
+  /// Throws InputError for anything but an intact header of one part of scan lines at the origin.
+  explicit TableImageReader(const std::filesystem::path& file);
+  ~TableImageReader();
+  TableImageReader(const TableImageReader&) = delete;
+  TableImageReader& operator=(const TableImageReader&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] std::size_t width() const;
+  [[nodiscard]] std::size_t height() const;
+  /// The text attribute; throws InputError when it is missing or of another type.
+  [[nodiscard]] std::string Attribute(const std::string& name) const;
+  /// Reads every value of these channels, interleaved in this order. Throws InputError when one is
+  /// missing, not 32-bit float or subsampled, when there are others, and when the file is cut
+  /// short.
+  [[nodiscard]] std::vector<float> Values(const std::vector<std::string>& channels) const;
+
+ private:
+  struct State;
+  std::filesystem::path file_;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace alpenglow
