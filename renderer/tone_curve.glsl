@@ -2,8 +2,10 @@
 // From exposed linear sRGB (1 saturates) to linear light of an sRGB display in [0, 1], channel by
 // channel: each function gives one channel and is called three times.
 //
-//   scene rgb --Exposure--> exposed --Inner*--> no negative channel --curve--> display light
-//             --SrgbCode--> code value in [0, 1]
+//   scene rgb --ExposedChannel--> exposed --InnerChannel--> no negative channel
+//     --PrintedChannel--> middle grey at 0.18 --curve--> display light --SrgbCode--> code value
+//
+// "linear" alone leaves PrintedChannel out: it shows what saturates.
 //
 // Colours outside the display's gamut (a negative channel) keep their luminance and are mixed with
 // the grey of that luminance until the smallest channel is 0. All curves are finite for every
@@ -25,6 +27,13 @@ SHARED Number InnerChannel(Number value, Number smallest, Number y) {
   Number share = max(y, Number(0.0)) / max(y - smallest, Number(1.0e-30));
   Number mixed = select(y > Number(0.0), y + (value - y) * share, Number(0.0));
   return max(select(smallest < Number(0.0), mixed, value), Number(0.0));
+}
+
+// What the meter took for middle grey, 12.5/100 2^EV, is 0.104 of saturation, 1.2 2^EV. Curves with a
+// shoulder print it at 0.18, as cameras do (standard output sensitivity, ISO 12232):
+// 0.18 * 1.2 * 100 / 12.5 = 1.728.
+SHARED Number PrintedChannel(Number exposed) {
+  return Number(1.728) * exposed;
 }
 
 // ---- AgX: Sobotka (2022), https://github.com/sobotka/AgX --------------------------------------
@@ -72,7 +81,7 @@ SHARED Number AgxSigmoid(Number code) {
   return min(max(display, Number(0.0)), Number(1.0));
 }
 
-// Code value of the curve for one channel; white_share is AgxWhiteShare of the exposed colour.
+// Code value of the curve for one channel; white_share is AgxWhiteShare of the printed colour.
 SHARED Number AgxCode(Number value, Number white_share) {
   return AgxSigmoid(AgxLogCode(AgxInset(value, white_share)));
 }
@@ -138,7 +147,7 @@ SHARED Number ReinhardLuminance(Number y) {
   return min(y * (Number(1.0) + y / Number(16.0)) / (Number(1.0) + y), Number(1.0));
 }
 
-// @param y luminance of the exposed colour, largest its largest channel.
+// @param y luminance of the printed colour, largest its largest channel.
 SHARED Number ReinhardLight(Number value, Number largest, Number y) {
   Number mapped = ReinhardLuminance(y);
   Number scale = mapped / max(y, Number(1.0e-20));
@@ -157,7 +166,7 @@ SHARED Number NeutralOffset(Number smallest) {
                 Number(0.04));
 }
 
-// @param largest and smallest channel of the exposed colour.
+// @param largest and smallest channel of the printed colour.
 SHARED Number NeutralLight(Number value, Number largest, Number smallest) {
   Number offset = NeutralOffset(smallest);
   Number peak = largest - offset;

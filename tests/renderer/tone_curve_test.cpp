@@ -95,7 +95,7 @@ TEST(Agx, BrightColoursGoToWhite) {
 }
 
 TEST(PbrNeutral, KeepsColoursBelowItsKneeButForTheReflection) {
-  const Color light = DisplayLight<double>(ToneCurve::kPbrNeutral, {0.7, 0.4, 0.2}, 1.0);
+  const Color light = NeutralLight<double>({0.7, 0.4, 0.2});
   EXPECT_NEAR(light[0], 0.66, 1e-12);
   EXPECT_NEAR(light[1], 0.36, 1e-12);
   EXPECT_NEAR(light[2], 0.16, 1e-12);
@@ -103,25 +103,25 @@ TEST(PbrNeutral, KeepsColoursBelowItsKneeButForTheReflection) {
 
 TEST(PbrNeutral, PeakFollowsTheSpecifiedHyperbola) {
   // Grey 1.04: offset 0.04, peak 1, new peak 1 - 0.24^2 / (1 + 0.24 - 0.76) = 0.88.
-  const Color light = DisplayLight<double>(ToneCurve::kPbrNeutral, {1.04, 1.04, 1.04}, 1.0);
+  const Color light = NeutralLight<double>({1.04, 1.04, 1.04});
   EXPECT_NEAR(light[1], 0.88, 1e-12);
 }
 
 TEST(Aces, MiddleGreyIsATenthOfWhite) {
   // The ACES output transform shows 0.18 at 4.8 of 48 cd/m^2; the fit is within a few per cent.
-  const Color light = DisplayLight<double>(ToneCurve::kAces, {0.18, 0.18, 0.18}, 1.0);
+  const Color light = AcesLight<double>({0.18, 0.18, 0.18});
   EXPECT_NEAR(light[1], 0.10, 0.01);
 }
 
 TEST(Reinhard, WhiteIsReachedAtFour) {
-  const Color light = DisplayLight<double>(ToneCurve::kReinhard, {4.0, 4.0, 4.0}, 1.0);
+  const Color light = ReinhardLight<double>({4.0, 4.0, 4.0});
   for (const double channel : light) EXPECT_NEAR(channel, 1.0, 1e-12);
 }
 
 TEST(Reinhard, KeepsTheMappedLuminanceOfSaturatedColours) {
   const Color colour = {2.0, 0.1, 0.05};
   const double y = shared::Luminance(colour[0], colour[1], colour[2]);
-  const Color light = DisplayLight<double>(ToneCurve::kReinhard, colour, 1.0);
+  const Color light = ReinhardLight(colour);
   EXPECT_NEAR(shared::Luminance(light[0], light[1], light[2]), shared::ReinhardLuminance(y), 1e-12);
 }
 
@@ -181,6 +181,20 @@ TEST(Gamut, NegativeChannelsAreMixedAwayAtConstantLuminance) {
               shared::Luminance(colour[0], colour[1], colour[2]), 1e-12);
   EXPECT_EQ(InsideGamut(Color{-1.0, 0.1, 0.0}), (Color{0.0, 0.0, 0.0})) << "no negative light";
   EXPECT_EQ(InsideGamut(Color{0.3, 0.2, 0.1}), (Color{0.3, 0.2, 0.1}));
+}
+
+TEST(ToneCurves, WhatTheMeterTakesForGreyIsPrintedGrey) {
+  // A uniform picture of luminance 12.5 / 100 2^EV is metered at EV.
+  const double ev100 = 13.0;
+  const double metered = 0.125 * std::exp2(ev100);
+  const Color grey = {metered, metered, metered};
+  const double scale = ExposureScale(ev100);
+  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale)[1], std::pow(0.5, 2.2), 1e-5)
+      << "half the code range of AgX, shown at exponent 2.2";
+  EXPECT_NEAR(DisplayLight(ToneCurve::kPbrNeutral, grey, scale)[1], 0.18 - 0.04, 1e-9)
+      << "0.18 but for the reflection";
+  EXPECT_NEAR(DisplayLight(ToneCurve::kLinear, grey, scale)[1], 0.125 / 1.2, 1e-9)
+      << "linear shows the share of saturation";
 }
 
 TEST(Srgb, CodeAndLightAreInverse) {
