@@ -28,7 +28,8 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   app.add_option("--threads", options.threads, "Threads to use; 0: all")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  app.add_flag("--quiet", options.quiet, "No progress and no notes on standard error");
+  app.add_flag("--quiet", options.quiet,
+               "No progress and no summary on standard error; warnings stay");
   app.add_option("--progress", options.progress,
                  "Progress on standard error: auto, plain, json or quiet")
       ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))

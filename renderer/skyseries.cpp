@@ -81,7 +81,8 @@ int Run(const SkyseriesOptions& options) {
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app("skyseries: pictures of a scene through the day\n");
+  CLI::App app("Pictures of a scene through the day: sky, terrain and the air between.",
+               "skyseries");
   SkyseriesOptions options;
   AddSkyseriesOptions(app, options);
   if (const std::optional<int> status = ParseCommandLine(app, argc, argv)) return *status;

@@ -44,13 +44,18 @@ inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
   const auto without_file = [&](const char* name, auto& value, const char* text) {
     return app.add_option(name, value, text)->excludes(file)->group("Instead of a scene file");
   };
-  without_file("--latitude", scene.latitude, "Degrees north")->capture_default_str();
-  without_file("--longitude", scene.longitude, "Degrees east")->capture_default_str();
-  without_file("--heading", scene.heading, "Degrees clockwise from north");
-  without_file("--pitch", scene.pitch, "Degrees above the horizontal, -90 to 90");
-  without_file("--fov", scene.fov, "Horizontal field of view in degrees, 0.1 to 179, or 360");
-  without_file("--height", scene.height_m, "Metres above the ellipsoid");
-  without_file("--above-ground", scene.above_ground_m, "Metres above the ground");
+  without_file("--latitude", scene.latitude, "Degrees north, -90 to 90")->capture_default_str();
+  without_file("--longitude", scene.longitude, "Degrees east, -180 to 360")->capture_default_str();
+  without_file("--heading", scene.heading,
+               "Degrees clockwise from north, -360 to 360 (default: 0, or the range's view)");
+  without_file("--pitch", scene.pitch,
+               "Degrees above the horizontal, -90 to 90 (default: 0, or the range's view)");
+  without_file("--fov", scene.fov,
+               "Horizontal field of view in degrees, 0.1 to 179, or 360 for a panorama (default: "
+               "60, or the range's view)");
+  without_file("--height", scene.height_m, "Metres above the ellipsoid, -12000 to 1e9");
+  without_file("--above-ground", scene.above_ground_m,
+               "Metres above the ground, 0 to 1e9 (default: 2, or the range's view)");
   without_file("--dem", scene.dem,
                "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM (default: a "
                "built-in mountain range, centred on the place)");
@@ -73,7 +78,9 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
   to->needs(from);
   every->needs(from)->excludes(count);
   count->needs(from);
-  app.add_option("--date", options.date, "Day of the events, 2026-06-21 (default: the scene's)");
+  app.add_option(
+      "--date", options.date,
+      "Day of the events, as 2026-06-21 (default: the scene's; without a file 2026-06-21)");
   app.add_option("--zone", options.zone, "IANA zone of local times (default: the scene's)");
   app.add_option("--frames", options.frames, "Render only these frames: A-B,C, counted from 0");
 }
@@ -91,7 +98,8 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(KnownLayers()));
-  app.add_option("--exposure", options.exposure, "auto (metered, frame by frame) or EV at ISO 100")
+  app.add_option("--exposure", options.exposure,
+                 "auto (metered, frame by frame) or EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)Ev100FromText(text); }))
       ->capture_default_str();
   app.add_option("--tone-map", options.tone_curve, "Curve of the PNG")
