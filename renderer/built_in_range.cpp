@@ -21,7 +21,7 @@ namespace alpenglow {
 namespace {
 
 // U / K [m^(2 m)] of a main chain: slope 1 where this area to the power 3/8 drains.
-constexpr double kUpliftOverErodibility = 88.0;
+constexpr double kUpliftOverErodibility = 98.0;
 constexpr double kUpliftPerStep_m = 250.0;
 
 // One value a sample, of its place.
@@ -40,12 +40,16 @@ std::vector<float> Everywhere(const Land& land, Function&& value_at) {
 
 Rock RockOf(const Land& land) {
   Rock rock;
-  rock.uplift_m_per_step =
-      Everywhere(land, [](double x, double y) { return kUpliftPerStep_m * RelativeUplift(x, y); });
-  rock.erodibility_per_step = Everywhere(land, [](double x, double y) {
-    return kUpliftPerStep_m / kUpliftOverErodibility * RelativeErodibility(x, y);
-  });
-  rock.steepest_slope = Everywhere(land, SteepestSlope);
+  for (int row = 0; row < land.size; ++row) {
+    for (int column = 0; column < land.size; ++column) {
+      const auto [x, y] = land.PlaceOf(row, column);
+      const double uplift = RelativeUplift(x, y);
+      rock.uplift_m_per_step.push_back(static_cast<float>(kUpliftPerStep_m * uplift));
+      rock.erodibility_per_step.push_back(static_cast<float>(
+          kUpliftPerStep_m / kUpliftOverErodibility * RelativeErodibility(x, y)));
+      rock.steepest_slope.push_back(static_cast<float>(SteepestSlope(x, y, uplift)));
+    }
+  }
   return rock;
 }
 
@@ -75,7 +79,7 @@ Land ErodedLand() {
   Erode(land, 40, 2000);
   land = Refined(land, 30.0, 12);
   Erode(land, 20, 3000);
-  land = WithRibs(Refined(land, 15.0, 13), 160.0, 0.7, 60);
+  land = WithRibs(Bent(Refined(land, 15.0, 13), 5.0, 1.9, 40), 160.0, 0.7, 60);
   Erode(land, 8, 4000);
   return land;
 }
@@ -94,7 +98,7 @@ Land Finished(Land land) {
   FillValleys(land, 0.018F, gravel_m, 5);
   land = Softened(land, std::vector<float>(soil.size(), 0.25F));
   for (int pass = 0; pass < 3; ++pass) land = Softened(land, soil);
-  return Bent(land, 4.0, 1.9, 40);
+  return land;
 }
 
 // The whole range with its foreland, which falls to 0 at the rim.
@@ -102,6 +106,7 @@ Land RangeLand() {
   Land land = Finished(ErodedLand());
   const std::vector<float> base_m = Everywhere(land, BaseHeight);
   for (std::size_t i = 0; i < base_m.size(); ++i) land.height_m[i] += base_m[i];
+  static_cast<void>(DrainAndFill(land, 6));  // ribs and bends have left some pits
   return land;
 }
 
@@ -246,10 +251,10 @@ ElevationGrid BuiltInRange(const GeodeticPosition& centre) {
 }
 
 BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {
-  constexpr double kEast_m = 3120.0;
-  constexpr double kNorth_m = 18520.0;
+  constexpr double kEast_m = 2000.0;
+  constexpr double kNorth_m = 16560.0;
   constexpr double kAboveGround_m = 60.0;
-  BuiltInView view{{}, 166.0, 0.5, 50.0};
+  BuiltInView view{{}, 161.0, 0.5, 50.0};
   if (IsPolar(centre)) {
     const PolarMap map(centre);
     view.eye = map.At(kEast_m, kNorth_m);

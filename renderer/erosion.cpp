@@ -181,7 +181,9 @@ void FillValleys(Land& land, float floor_slope, const std::vector<float>& deepes
                               ? std::min(deepest_m[sample], kGravelPerRootArea * std::sqrt(area))
                               : deepest_m[sample];
     const float level = floor[receiver] + floor_slope * drainage.distance_m[sample];
-    floor[sample] = std::clamp(level, land.height_m[sample], land.height_m[sample] + deepest);
+    // Never below where it flows to: gravel ends gently, not in a dam.
+    const float lowest = std::max(land.height_m[sample], floor[receiver]);
+    floor[sample] = std::clamp(level, lowest, std::max(lowest, land.height_m[sample] + deepest));
   }
   land.height_m = std::move(floor);
 }

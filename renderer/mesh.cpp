@@ -64,18 +64,16 @@ class MeshBuilder {
     return vertex_of_sample_[grid_.index(row, column % grid_.columns)];
   }
 
-  // Two triangles along the diagonal whose ends are nearer in height, so that crests and gullies
-  // that run diagonally stay whole; one where a corner is a void.
+  // Two triangles along the diagonal that fits the surface better, so that crests and gullies that
+  // run diagonally stay whole; one where a corner is a void.
   void AddCell(int row, int column) {
     const std::uint32_t nw = VertexAt(row, column);
     const std::uint32_t ne = VertexAt(row, column + 1);
     const std::uint32_t sw = VertexAt(row + 1, column);
     const std::uint32_t se = VertexAt(row + 1, column + 1);
-    const bool along_nw_se = HeightStep(row, column, row + 1, column + 1) <=
-                             HeightStep(row + 1, column, row, column + 1);
-    const bool rising_diagonal = nw == kNoVertex || se == kNoVertex;
-    const bool falling_diagonal = ne == kNoVertex || sw == kNoVertex;
-    if (falling_diagonal || (!rising_diagonal && along_nw_se)) {
+    const bool void_off_falling = ne == kNoVertex || sw == kNoVertex;
+    const bool void_off_rising = nw == kNoVertex || se == kNoVertex;
+    if (void_off_falling || (!void_off_rising && FallingDiagonalFits(row, column))) {
       AddTriangle(nw, sw, se);
       AddTriangle(nw, se, ne);
     } else {
@@ -84,9 +82,28 @@ class MeshBuilder {
     }
   }
 
-  [[nodiscard]] float HeightStep(int row_a, int column_a, int row_b, int column_b) const {
-    return std::abs(grid_.at(row_a, column_a % grid_.columns) -
-                    grid_.at(row_b, column_b % grid_.columns));
+  [[nodiscard]] double HeightNear(int row, int column) const {
+    const int within_row = std::clamp(row, 0, grid_.rows - 1);
+    const int within_column = grid_.ClosesAroundTheEarth()
+                                  ? (column + grid_.columns) % grid_.columns
+                                  : std::clamp(column, 0, grid_.columns - 1);
+    return static_cast<double>(grid_.at(within_row, within_column));
+  }
+
+  // Whether the middle of the diagonal from north-west to south-east is nearer than the other's to
+  // the cubic height at the cell's centre, which the 4 x 4 samples around it give.
+  [[nodiscard]] bool FallingDiagonalFits(int row, int column) const {
+    constexpr std::array<double, 4> kWeight{-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0};
+    double centre = 0.0;
+    for (int r = 0; r < 4; ++r) {
+      for (int c = 0; c < 4; ++c) {
+        centre += kWeight[static_cast<std::size_t>(r)] * kWeight[static_cast<std::size_t>(c)] *
+                  HeightNear(row + r - 1, column + c - 1);
+      }
+    }
+    const double falling = 0.5 * (HeightNear(row, column) + HeightNear(row + 1, column + 1));
+    const double rising = 0.5 * (HeightNear(row + 1, column) + HeightNear(row, column + 1));
+    return std::abs(falling - centre) < std::abs(rising - centre);  // beside a void: false
   }
 
   // Left out: triangles at a void, and those that a row of samples at the pole has shrunk.

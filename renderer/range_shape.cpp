@@ -29,11 +29,11 @@ struct Chain {
   double uplift;
 };
 constexpr std::array<Chain, 5> kChains{{
-    {-18.0, 6.5, 0.36},
-    {-6.5, 7.0, 0.4},
-    {6.5, 8.0, 0.55},
-    {19.0, 8.0, 0.8},
-    {31.0, 7.5, 0.75},
+    {-18.0, 6.5, 0.44},
+    {-6.5, 7.0, 0.3},
+    {6.5, 8.0, 0.5},
+    {19.0, 8.0, 0.65},
+    {31.0, 7.5, 0.85},
 }};
 
 struct Summit {
@@ -43,13 +43,13 @@ struct Summit {
   double uplift;
 };
 constexpr std::array<Summit, 7> kSummits{{
-    {4.0, 6.0, 4.8, 1.8},
+    {4.0, 6.0, 4.8, 2.0},
     {-13.0, 6.5, 4.0, 0.45},
     {-12.0, -6.0, 3.5, 0.35},
     {-6.0, 18.0, 4.5, 0.35},
     {14.0, 19.0, 4.5, 0.7},
-    {3.0, 29.0, 4.5, 0.6},
-    {20.0, 28.0, 4.5, 0.7},
+    {1.0, 30.5, 4.5, 0.9},
+    {14.0, 30.0, 4.5, 1.0},
 }};
 
 // 1 in the middle, 0 from distance 1 on, smooth at both.
@@ -117,8 +117,10 @@ double RelativeErodibility(double x_km, double y_km) {
   return std::clamp(1.0 + 0.9 * FractalNoise(x_km / 6.0, y_km / 6.0, 4, 20), 0.5, 2.0);
 }
 
-double SteepestSlope(double x_km, double y_km) {
-  return std::clamp(1.0 + 0.6 * FractalNoise(x_km / 2.3, y_km / 2.3, 4, 30), 0.6, 1.5);
+double SteepestSlope(double x_km, double y_km, double relative_uplift) {
+  const double fresh = std::min(1.0, relative_uplift);
+  const double layers = FractalNoise(x_km / 2.3, y_km / 2.3, 4, 30);
+  return std::clamp(0.44 + 0.4 * fresh + 0.4 * layers, 0.35, 1.3);
 }
 
 double BaseHeight(double x_km, double y_km) { return 450.0 * RimFade(x_km, y_km, 10.0); }

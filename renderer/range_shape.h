@@ -10,15 +10,16 @@ inline constexpr double kRangeSpacing_km = 0.07;
 inline constexpr int kRangeSize = 1024;
 inline constexpr double kRangeHalfWidth_km = 0.5 * kRangeSpacing_km * (kRangeSize - 1);
 
-/// Uplift relative to that of a main chain, about 0 to 1.6: five parallel chains, foothills in the
+/// Uplift relative to that of a main chain, about 0 to 3: five parallel chains, foothills in the
 /// north, one summit above all.
 [[nodiscard]] double RelativeUplift(double x_km, double y_km);
 
 /// Erodibility relative to the mean, about 0.5 to 2.
 [[nodiscard]] double RelativeErodibility(double x_km, double y_km);
 
-/// Tangent of the angle at which the rock slides, 0.55 to 1.3.
-[[nodiscard]] double SteepestSlope(double x_km, double y_km);
+/// Tangent of the angle at which the rock slides, 0.35 to 1.3: rock that rises fast is fresh and
+/// stands steeper.
+[[nodiscard]] double SteepestSlope(double x_km, double y_km, double relative_uplift);
 
 /// Height of the outlets [m]: the foreland, which falls to 0 at the rim.
 [[nodiscard]] double BaseHeight(double x_km, double y_km);
