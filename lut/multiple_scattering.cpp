@@ -612,4 +612,13 @@ Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
   return irradiance;
 }
 
+std::vector<float> DiffuseLight::ValuesAt(double altitude_coordinate, double sun_coordinate) const {
+  std::vector<float> sum(channels() * bands_, 0.0F);
+  VisitTaps(options_, altitude_coordinate, sun_coordinate, [&](std::size_t node, float weight) {
+    const float* values = &values_[node * sum.size()];
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * values[i];
+  });
+  return sum;
+}
+
 }  // namespace alpenglow

@@ -81,6 +81,11 @@ class DiffuseLight {
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] std::size_t channels() const { return moments_ + 1; }
 
+  /// All channels [channel * bands() + band] at coordinates in [0, 1] (below), by the cubic
+  /// interpolation between nodes that every look-up uses.
+  [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
+                                            double sun_coordinate) const;
+
   /// Node coordinates: altitude = top u^2; mu_s = centre + width sinh(a + (b - a) v), u and v in
   /// [0, 1].
   static constexpr double kSunCentre = -0.05;

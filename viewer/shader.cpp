@@ -100,9 +100,13 @@ std::string NamePieces(std::string_view log, std::span<const ShaderPiece> pieces
 }
 
 ShaderProgram::ShaderProgram(const std::vector<ShaderPiece>& vertex,
-                             const std::vector<ShaderPiece>& fragment) {
+                             const std::vector<ShaderPiece>& fragment,
+                             const std::vector<VertexAttribute>& attributes) {
   Attach(GL_VERTEX_SHADER, vertex);
   Attach(GL_FRAGMENT_SHADER, fragment);
+  for (const VertexAttribute& attribute : attributes) {
+    glBindAttribLocation(program_.id(), attribute.location, attribute.name);
+  }
   Link();
 }
 

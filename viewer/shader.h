@@ -32,11 +32,18 @@ struct ShaderPiece {
 /// forms "0:300012(5): ..." (Mesa), "0(300012) : ..." (NVIDIA) and "ERROR: 0:300012: ..." (others).
 [[nodiscard]] std::string NamePieces(std::string_view log, std::span<const ShaderPiece> pieces);
 
+/// A vertex attribute and where it is bound.
+struct VertexAttribute {
+  GLuint location;
+  const char* name;
+};
+
 /// A linked program.
 class ShaderProgram {
  public:
   /// Throws InternalError with the driver's log when a stage does not compile or link.
-  ShaderProgram(const std::vector<ShaderPiece>& vertex, const std::vector<ShaderPiece>& fragment);
+  ShaderProgram(const std::vector<ShaderPiece>& vertex, const std::vector<ShaderPiece>& fragment,
+                const std::vector<VertexAttribute>& attributes = {});
 
   /// A program that only turns vertices into values, recorded by transform feedback: the outputs
   /// named, interleaved. No fragment stage.

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// What the air is made of, and the sun above it: AirBlock of uniform_blocks.h. Vectors of four hold
+// one value a band; lengths are kilometres.
+layout(std140) uniform Air {
+  vec4 rayleigh_scattering;  // per km at altitude 0
+  vec4 mie_scattering;
+  vec4 mie_extinction;
+  vec4 ozone_absorption;  // per km at the peak of the tent
+  vec4 ground_albedo;
+  vec4 red_from_bands;  // rows of the matrix to linear sRGB [cd m^-2 per W m^-2 sr^-1 nm^-1]
+  vec4 green_from_bands;
+  vec4 blue_from_bands;
+  vec4 shell;        // radius of the planet, top of the air, scale heights of molecules and aerosol
+  vec4 ozone_tent;   // bottom, peak, top
+  vec4 mie_phase;    // g, g of the second lobe, its weight, alpha
+  vec4 mie_options;  // kind of the phase function; largest extinction at altitude 0, per km
+};
+
+#define RADIUS shell.x
+#define TOP shell.y
+#define RAYLEIGH_HEIGHT shell.z
+#define MIE_HEIGHT shell.w
+
+float PhaseMie(float cosine) {
+  float g = mie_phase.x;
+  int kind = int(mie_options.x + 0.5);  // PhaseKind of phase.h
+  if (kind == 0) return PhaseRayleigh(cosine);
+  if (kind == 1) return PhaseHenyeyGreenstein(cosine, g);
+  if (kind == 2) return PhaseDoubleHenyeyGreenstein(cosine, g, mie_phase.y, mie_phase.z);
+  if (kind == 3) return PhaseCornetteShanks(cosine, g);
+  if (kind == 4) return PhaseSchlick(cosine, g);
+  return PhaseDraine(cosine, g, mie_phase.w);
+}
+
+// Columns of molecules, aerosol and ozone [km] from altitude h upwards along mu >= 0 to space.
+vec3 ColumnsUp(float h, float mu) {
+  return vec3(ExponentialColumnUp(h, mu, RAYLEIGH_HEIGHT, TOP, RADIUS),
+              ExponentialColumnUp(h, mu, MIE_HEIGHT, TOP, RADIUS),
+              TentColumnUp(h, mu, ozone_tent.x, ozone_tent.y, ozone_tent.z, RADIUS));
+}
+
+// Columns of the whole line through its lowest point. Below the ground nobody uses them: they only
+// have to be finite.
+vec3 ColumnsFromPerigee(float h, float mu) {
+  return ColumnsUp(max(PerigeeAltitude(h, mu, RADIUS), -1.0), 0.0);
+}
+
+// Columns towards a sun that the ground does not hide.
+vec3 ColumnsToSun(float h, float mu_s) {
+  vec3 up = ColumnsUp(h, abs(mu_s));
+  if (mu_s >= 0.0) return up;
+  return max(2.0 * ColumnsFromPerigee(h, mu_s) - up, vec3(0.0));
+}
+
+// Columns between the origin of a ray and a point on it, from the upward columns at both and at the
+// perigee.
+vec3 ColumnsBetween(float mu_origin, float mu_point, vec3 origin, vec3 point, vec3 perigee) {
+  return vec3(ColumnBetween(mu_origin, mu_point, origin.x, point.x, perigee.x),
+              ColumnBetween(mu_origin, mu_point, origin.y, point.y, perigee.y),
+              ColumnBetween(mu_origin, mu_point, origin.z, point.z, perigee.z));
+}
+
+vec4 OpticalDepth(vec3 columns) {
+  return rayleigh_scattering * columns.x + mie_extinction * columns.y +
+         ozone_absorption * columns.z;
+}
+
+vec3 LinearSrgb(vec4 radiance) {
+  return vec3(dot(red_from_bands, radiance), dot(green_from_bands, radiance),
+              dot(blue_from_bands, radiance));
+}

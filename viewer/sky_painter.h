@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Pictures of sky and terrain on the graphics card, by the same formulas as SceneRenderer
+// (render.h): the shared texts, the same quadrature, the same table of diffuse light.
+//
+// A frame is five passes: the terrain's shadow (when the sun has moved), distance and normal of the
+// terrain, a map of the diffuse light around the eye, the linear picture, and its development for a
+// display. Differences from SceneRenderer: shadows of terrain come from a map of
+// TerrainSurface::kShadowSize texels instead of rays, diffuse light of sky rays from the map.
+#pragma once
+
+#include <optional>
+
+#include "atmosphere/sun.h"
+#include "lut/multiple_scattering.h"
+#include "renderer/image.h"
+#include "renderer/mesh.h"
+#include "viewer/flight.h"
+#include "viewer/render_target.h"
+#include "viewer/shader.h"
+#include "viewer/terrain_surface.h"
+
+namespace alpenglow {
+
+class SkyPainter {
+ public:
+  /// @param medium  at most four wavelengths, else InputError.
+  /// @param diffuse solved for `medium`.
+  /// @param mesh    terrain in `frame`; without triangles there is the bare planet.
+  SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const TriangleMesh& mesh,
+             const LocalFrame& frame);
+
+  /// Paints the linear picture. The sphere under the eye osculates the ellipsoid there, if the
+  /// medium follows WGS84. @param sun apparent, from the eye. @param samples rays a pixel, a
+  /// square number.
+  void Paint(const Eye& eye, const SunPosition& sun, int width, int height, int samples = 1);
+
+  /// The picture painted last: linear sRGB [cd/m^2].
+  [[nodiscard]] Image Read() const;
+  /// What MeterEv100 makes of a small copy of the picture.
+  [[nodiscard]] double MeteredEv100() const;
+  /// Develops the picture into a framebuffer (0: the window) of the picture's size.
+  void Develop(double ev100, GLuint framebuffer) const;
+
+ private:
+  void UploadView(const Eye& eye, const SunPosition& sun, int width, int height);
+  void PaintDiffuseSky() const;
+  void PaintPicture(const Eye& eye, const RenderTarget& target) const;
+
+  Medium medium_;
+  Ellipsoid ellipsoid_;
+  TerrainSurface terrain_;
+  GlVertexArray no_vertices_;
+  GlBuffer air_block_, view_block_, moment_block_;
+  ShaderProgram diffuse_sky_program_, picture_program_, average_program_, develop_program_;
+  GlTexture diffuse_moments_, ground_cover_, dither_noise_, diffuse_sky_;
+  GlFramebuffer diffuse_sky_target_;
+  std::optional<RenderTarget> surface_, samples_, picture_;
+  float pixel_angle_ = 0.0F;
+};
+
+/// The sun from a place, where refraction shows it.
+[[nodiscard]] SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant);
+
+}  // namespace alpenglow

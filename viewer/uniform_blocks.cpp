@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/uniform_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "atmosphere/spectrum.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMetresPerKilometre = 1000.0;
+
+float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
+
+glm::vec4 PerKilometre(const std::vector<double>& per_m) {
+  std::vector<double> per_km(per_m);
+  for (double& value : per_km) value *= kMetresPerKilometre;
+  return GpuBandsOf(per_km);
+}
+
+// Norm of the real harmonic of degree l and order m.
+double HarmonicNorm(int l, int m) {
+  double ratio = 1.0;  // (l - m)! / (l + m)!
+  for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
+  return std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio);
+}
+
+}  // namespace
+
+glm::vec4 GpuBandsOf(const std::vector<double>& per_band) {
+  ALPENGLOW_ENSURE(per_band.size(), <=, kGpuBands);
+  std::array<float, kGpuBands> value{};
+  for (std::size_t band = 0; band < per_band.size(); ++band) {
+    value[band] = static_cast<float>(per_band[band]);
+  }
+  return {value[0], value[1], value[2], value[3]};
+}
+
+AirBlock AirBlockOf(const Medium& medium) {
+  if (medium.wavelengths_nm.size() > kGpuBands) {
+    throw InputError(fmt::format("spectrum: {} wavelengths; the viewer draws with at most {}",
+                                 medium.wavelengths_nm.size(), kGpuBands));
+  }
+  const BandColour colour(medium.wavelengths_nm);
+  const auto row = [&](std::size_t channel) {
+    const auto all = colour.linear_srgb_from_bands();
+    const std::size_t bands = medium.wavelengths_nm.size();
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(channel * bands);
+    return GpuBandsOf({first, first + static_cast<std::ptrdiff_t>(bands)});
+  };
+  double extinction = 0.0;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    extinction = std::max(
+        extinction, medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
+  }
+  const PhaseFunction& phase = medium.mie_phase;
+  AirBlock block{};
+  block.rayleigh_scattering = PerKilometre(medium.rayleigh_scattering_per_m);
+  block.mie_scattering = PerKilometre(medium.mie_scattering_per_m);
+  block.mie_extinction = PerKilometre(medium.mie_extinction_per_m);
+  block.ozone_absorption = PerKilometre(medium.ozone_absorption_per_m);
+  block.ground_albedo = GpuBandsOf(medium.ground_albedo);
+  block.red_from_bands = row(0);
+  block.green_from_bands = row(1);
+  block.blue_from_bands = row(2);
+  block.shell = {Kilometres(medium.planet_radius_m), Kilometres(medium.atmosphere_height_m),
+                 Kilometres(medium.rayleigh_scale_height_m), Kilometres(medium.mie_scale_height_m)};
+  block.ozone_tent = {Kilometres(medium.ozone.bottom_m), Kilometres(medium.ozone.peak_m),
+                      Kilometres(medium.ozone.top_m), 0.0F};
+  block.mie_phase = {phase.g, phase.g_back, phase.back_weight, phase.alpha};
+  block.mie_options = {static_cast<float>(phase.kind), extinction * kMetresPerKilometre, 0.0F,
+                       0.0F};
+  return block;
+}
+
+MomentBlock MomentBlockOf(const Medium& medium, int degree) {
+  // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients
+  // (Ramamoorthi, Hanrahan 2001).
+  constexpr std::array<double, kMaxDegree + 1> kCosine{
+      kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
+  constexpr std::array<double, kMaxDegree + 1> kRayleigh{1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> mie = LegendreCoefficients(medium.mie_phase, degree);
+  MomentBlock block;
+  for (int l = 0; l <= degree; ++l) {
+    const auto at = static_cast<std::size_t>(l);
+    for (int m = 0; m <= l; ++m) {
+      block.emplace_back(HarmonicNorm(l, m), mie[at], kRayleigh[at], kCosine[at]);
+    }
+  }
+  const double centre = DiffuseLight::kSunCentre;
+  const double width = DiffuseLight::kSunWidth;
+  block.emplace_back(centre, width, std::asinh((DiffuseLight::kLowestMuS - centre) / width),
+                     std::asinh((1.0 - centre) / width));
+  return block;
+}
+
+}  // namespace alpenglow

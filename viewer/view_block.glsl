@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Where the eye is, where it looks, where the sun stands: ViewBlock of uniform_blocks.h. Frame:
+// east, north, up at the eye.
+layout(std140) uniform View {
+  vec4 view_right;      // times the tangent of half the width of the view
+  vec4 view_up;         // times the tangent of half its height
+  vec4 view_forward;    // unit
+  vec4 sun;             // unit vector to the apparent sun; angular radius [rad]
+  vec4 sun_irradiance;  // above the air, one value a band [W m^-2 nm^-1]
+  vec4 eye;  // altitude of the eye [km]; cosine of the horizon; elevations of the horizon
+             // and of the upper end of the air [rad]
+};
+
+#define EYE_ALTITUDE eye.x
