@@ -250,7 +250,7 @@ ElevationGrid BuiltInRange(const GeodeticPosition& centre) {
   return BoxGrid(RangeLand(), wrapped);
 }
 
-BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {
+BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {
   constexpr double kEast_m = 2000.0;
   constexpr double kNorth_m = 16560.0;
   constexpr double kAboveGround_m = 60.0;
@@ -263,11 +263,17 @@ BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid
   } else {
     view.eye = BoxMap(centre).At(kEast_m, kNorth_m);
   }
+  view.eye.height_m = kAboveGround_m;
+  return view;
+}
+
+BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {
+  BuiltInView view = BuiltInRangeViewAboveGround(centre);
   const std::optional<double> ground =
       range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad);
   if (!ground)
     throw InternalError("the built-in view lies outside the range that it was asked for");
-  view.eye.height_m = *ground + kAboveGround_m;
+  view.eye.height_m += *ground;
   return view;
 }
 

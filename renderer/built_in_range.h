@@ -25,4 +25,7 @@ struct BuiltInView {
 [[nodiscard]] BuiltInView BuiltInRangeView(const GeodeticPosition& centre,
                                            const ElevationGrid& range);
 
+/// The same view without the range at hand: eye.height_m counts from the ground.
+[[nodiscard]] BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre);
+
 }  // namespace alpenglow

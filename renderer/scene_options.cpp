@@ -17,10 +17,10 @@ struct View {
 };
 
 View ViewOfTheRange(const GeodeticPosition& centre) {
-  const BuiltInView view = BuiltInRangeView(centre, BuiltInRange(centre));
+  const BuiltInView view = BuiltInRangeViewAboveGround(centre);
   GeodeticPosition place = view.eye;
   place.height_m = 0.0;
-  return {place, Height{view.eye.height_m, false}, view.heading_deg, view.pitch_deg, view.fov_deg};
+  return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
 }
 
 Height HeightFrom(const SceneOptions& options, const Height& fallback) {

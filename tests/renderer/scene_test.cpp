@@ -8,6 +8,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "renderer/scene_options.h"
 #include "tests/renderer/temporary_folder.h"
 
 namespace alpenglow {
@@ -177,6 +178,47 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
     const std::string fault = FaultOf(bad.text);
     EXPECT_THAT(fault, HasSubstr(bad.message)) << bad.text;
     EXPECT_EQ(fault.find('\n'), std::string::npos) << "one line: " << fault;
+  }
+}
+
+TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
+  const Scene scene = SceneFromOptions({});
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  ASSERT_TRUE(scene.terrain.centre.has_value());
+  EXPECT_DOUBLE_EQ(scene.terrain.centre->latitude_rad, 46.5 * kRadiansPerDegree);
+  EXPECT_NE(scene.place.latitude_rad, scene.terrain.centre->latitude_rad);
+  EXPECT_TRUE(scene.camera.height.above_ground);
+  SceneOptions turned;
+  turned.heading = 90.0;
+  turned.height_m = 4000.0;
+  EXPECT_DOUBLE_EQ(SceneFromOptions(turned).camera.heading_rad, 0.5 * kPi);
+  EXPECT_EQ(SceneFromOptions(turned).camera.height, (Height{4000.0, false}));
+  EXPECT_EQ(SceneFromOptions(turned).place.latitude_rad, scene.place.latitude_rad);
+}
+
+TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {
+  SceneOptions options;
+  options.dem = "N35E138.hgt";
+  options.latitude = 35.5;
+  options.longitude = 138.76;
+  options.atmosphere = "hazy";
+  const Scene scene = SceneFromOptions(options);
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 35.5 * kRadiansPerDegree);
+  EXPECT_EQ(scene.terrain.file, "N35E138.hgt");
+  EXPECT_EQ(scene.medium.name, "hazy");
+  EXPECT_EQ(scene.camera.height, (Height{2.0, true}));
+}
+
+TEST(SceneOptions, SizesAndExposuresAreReadWhole) {
+  EXPECT_EQ(ImageSizeFromText("1x16384").height, 16384);
+  for (const char* bad :
+       {"", "5", "5x", "x5", "0x5", "5x16385", "5x5x5", "5.5x5", " 5x5", "-5x5"}) {
+    EXPECT_THROW((void)ImageSizeFromText(bad), InputError) << bad;
+  }
+  EXPECT_EQ(Ev100FromText("auto"), std::nullopt);
+  EXPECT_EQ(Ev100FromText("-3.5"), -3.5);
+  for (const char* bad : {"", "bright", "nan", "inf", "1e3", "12,5", "5 "}) {
+    EXPECT_THROW((void)Ev100FromText(bad), InputError) << bad;
   }
 }
 
