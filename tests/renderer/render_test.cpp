@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/render.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "atmosphere/judge.h"
+#include "atmosphere/spectrum.h"
+#include "lut/multiple_scattering.h"
+#include "renderer/camera_rays.h"
+
+namespace alpenglow {
+namespace {
+
+// An eye over the bare ellipsoid.
+Scene BareScene(double height_m, double heading, double pitch, double fov) {
+  Scene scene;
+  scene.place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  scene.camera = CameraFromDegrees({height_m, false}, heading, pitch, 0.0, fov);
+  scene.medium = MediumPreset("earth");
+  scene.terrain.kind = TerrainSource::Kind::kNone;
+  return scene;
+}
+
+constexpr RenderSettings kSmall{
+    .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 16, .layers = {}};
+
+double Luminance(const std::array<float, 3>& rgb) {
+  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+         0.0722 * static_cast<double>(rgb[2]);
+}
+
+TEST(Render, SkyPixelIsSingleScatteringOfTheJudgePlusDiffuseLight) {
+  const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
+  const UtcInstant noon = ParseInstant("2026-06-21T10:00:00Z");
+  const Image image = renderer.Render(noon, kSmall);
+  const SunPosition sun = renderer.ApparentSun(noon);
+  const Medium& medium = renderer.medium();
+  const DiffuseLight diffuse(medium);
+  const AirIntegrator<float> air(medium);
+  const BandColour colour(medium.wavelengths_nm);
+  const CameraRays camera(CameraFromDegrees({1000.0, false}, 180.0, 20.0, 0.0, 40.0), 16, 9);
+  const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+  for (const int x : {0, 8, 15}) {
+    const glm::dvec3 d = camera.Direction(x + 0.5, 4.5);
+    const ViewRay ray{1000.0, d.z, to_sun.z, d.x * to_sun.x + d.y * to_sun.y + d.z * to_sun.z};
+    const auto once = judge::SingleScatteringAlong(medium, ray);
+    const auto more =
+        diffuse.InscatterAlong(air.Sample(ray, {.nodes = 16, .dark_samples = true}), ray.nu);
+    std::vector<double> radiance;
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      radiance.push_back((once.inscatter[band] + static_cast<double>(more[band])) *
+                         medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));
+    }
+    const auto expected = colour.LinearSrgb(radiance);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(static_cast<double>(image.at(x, 4)[c]) / expected[c], 1.0, 2e-3)
+          << "12 to 16 nodes without a split at the ozone tent: 1e-3";
+    }
+  }
+}
+
+TEST(Render, NoonSkyHasThePublishedOrderOfLuminance) {
+  // Clear zenith skies at high sun: 1e3 to 1e4 cd/m^2.
+  const SceneRenderer renderer(BareScene(500.0, 0.0, 60.0, 20.0));
+  const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), kSmall);
+  EXPECT_GT(Luminance(image.at(8, 4)), 1e3);
+  EXPECT_LT(Luminance(image.at(8, 4)), 1e4);
+  EXPECT_GT(image.at(8, 4)[2], image.at(8, 4)[0]) << "the sky is blue";
+}
+
+TEST(Render, NightIsNeverNegativeAndNeverNaN) {
+  const SceneRenderer renderer(BareScene(2.0, 0.0, 10.0, 360.0));
+  for (const char* time :
+       {"2026-01-01T00:00:00Z", "2026-01-01T05:00:00Z", "2026-01-01T06:00:00Z"}) {
+    for (const auto& rgb : renderer.Render(ParseInstant(time), kSmall).rgb) {
+      for (const float value : rgb) EXPECT_TRUE(std::isfinite(value));
+      EXPECT_GE(Luminance(rgb), 0.0);
+    }
+  }
+}
+
+TEST(Render, TheSameBytesForAnyNumberOfThreads) {
+  const SceneRenderer renderer(BareScene(2.0, 120.0, 5.0, 60.0));
+  const UtcInstant dawn = ParseInstant("2026-06-21T03:40:00Z");
+  std::vector<Image> images;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    images.push_back(renderer.Render(dawn, kSmall));
+  }
+  EXPECT_EQ(images[0].rgb, images[1].rgb);
+  EXPECT_EQ(images[0].rgb, images[2].rgb);
+}
+
+TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
+  // Without refraction of the line of sight the sea horizon lies acos(R / (R + h)) below the
+  // horizontal.
+  constexpr double kHeight_m = 10000.0;
+  const SceneRenderer renderer(BareScene(kHeight_m, 0.0, -3.0, 2.0));
+  RenderSettings settings{
+      .width = 8, .height = 400, .samples_per_pixel = 1, .air_nodes = 8, .layers = {"depth"}};
+  const Scene scene = BareScene(kHeight_m, 0.0, -3.0, 2.0);
+  const CameraRays camera(scene.camera, settings.width, settings.height);
+  const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), settings);
+  const double radius = renderer.medium().planet_radius_m;
+  const double dip = std::acos(radius / (radius + kHeight_m));
+  for (int y = 0; y < settings.height; ++y) {
+    const double elevation = std::asin(camera.Direction(4.5, y + 0.5).z);
+    const float depth = image.layers[0].values[static_cast<std::size_t>(y) * 8 + 4];
+    EXPECT_EQ(std::isinf(depth), elevation > -dip) << "row " << y;
+  }
+}
+
+TEST(Render, SunIrradianceInThePictureOfTheDiskIsThatOfTheSun) {
+  // Radiance over the disk's pixels sums to the direct normal illuminance.
+  const Scene at_sun = [] {
+    Scene scene = BareScene(2.0, 0.0, 0.0, 1.0);
+    const SceneRenderer probe(scene);
+    const SunPosition sun = probe.ApparentSun(ParseInstant("2026-06-21T11:30:00Z"));
+    scene.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree,
+                                     sun.elevation_rad / kRadiansPerDegree, 0.0, 1.0);
+    return scene;
+  }();
+  const SceneRenderer renderer(at_sun);
+  const RenderSettings settings{
+      .width = 100, .height = 100, .samples_per_pixel = 4, .air_nodes = 8, .layers = {}};
+  const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), settings);
+  const double pixel = std::pow(CameraRays(at_sun.camera, 100, 100).PixelAngle(), 2);
+  double illuminance = 0.0;
+  for (const auto& rgb : image.rgb) illuminance += Luminance(rgb) * pixel;
+  const AirIntegrator<float> air(renderer.medium());
+  const SunPosition sun = renderer.ApparentSun(ParseInstant("2026-06-21T11:30:00Z"));
+  const auto transmittance = air.TransmittanceToSpace(2.0, std::sin(sun.elevation_rad));
+  std::vector<double> direct;
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    direct.push_back(static_cast<double>(transmittance[band]) *
+                     renderer.medium().solar_irradiance[band] /
+                     (sun.distance_au * sun.distance_au));
+  }
+  const double expected = BandColour(renderer.medium().wavelengths_nm).Xyz(direct)[1];
+  EXPECT_NEAR(illuminance / expected, 1.0, 0.01)
+      << "edge pixels of a disk 53 pixels wide, aureole included";
+}
+
+TEST(Render, UnknownLayersAndSizesAreRefused) {
+  const SceneRenderer renderer(BareScene(2.0, 0.0, 0.0, 60.0));
+  RenderSettings settings = kSmall;
+  settings.layers = {"dept"};
+  EXPECT_THROW((void)renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), settings), InputError);
+  settings = kSmall;
+  settings.width = 0;
+  EXPECT_THROW((void)renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), settings), InputError);
+}
+
+TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
+  const auto dem = std::filesystem::path(ALPENGLOW_SHARED_DIR) / "dem" / "N35E138.hgt";
+  if (!std::filesystem::exists(dem)) GTEST_SKIP() << "no elevation model at " << dem;
+  Scene scene = BareScene(0.0, 0.0, 0.0, 8.0);
+  scene.place = PlaceFromDegrees(35.50, 138.76, 0.0);
+  scene.terrain = {TerrainSource::Kind::kElevationModel, dem, VoidPolicy::kFill, std::nullopt};
+  // Mount Fuji (35.3606, 138.7274) stands 15.7 km off, heading 191 degrees, its summit 10.5 degrees
+  // up.
+  scene.camera = CameraFromDegrees({20.0, true}, 190.8, 7.0, 0.0, 12.0);
+  const SceneRenderer renderer(scene);
+  const RenderSettings settings{.width = 60,
+                                .height = 60,
+                                .samples_per_pixel = 4,
+                                .air_nodes = 8,
+                                .layers = {"depth", "sun_visibility"}};
+  const UtcInstant sunrise =
+      *FindSunEvent(SunEvent::kSunrise, scene.place, ParseInstant("2026-01-01T03:00:00Z"));
+  const auto lit_share = [&](double minutes, int first_row, int last_row) {
+    const Image image = renderer.Render(AddSeconds(sunrise, 60.0 * minutes), settings);
+    double lit = 0.0, ground = 0.0;
+    for (int y = first_row; y < last_row; ++y) {
+      for (int x = 0; x < 60; ++x) {
+        const std::size_t pixel = static_cast<std::size_t>(y) * 60 + static_cast<std::size_t>(x);
+        if (std::isinf(image.layers[0].values[pixel])) continue;
+        ground += 1.0;
+        lit += static_cast<double>(image.layers[1].values[pixel]);
+      }
+    }
+    return ground > 0.0 ? lit / ground : 0.0;
+  };
+  EXPECT_GT(lit_share(0.0, 0, 30), 0.02) << "the summit catches the sun";
+  EXPECT_EQ(lit_share(0.0, 40, 60), 0.0) << "the foot lies in shadow";
+  EXPECT_EQ(lit_share(-10.0, 0, 60), 0.0) << "ten minutes before, nothing is lit";
+}
+
+}  // namespace
+}  // namespace alpenglow
