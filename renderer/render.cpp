@@ -11,6 +11,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/refraction.h"
 #include "atmosphere/single_scattering.h"
 #include "atmosphere/spectrum.h"
 #include "lut/multiple_scattering.h"
@@ -61,6 +62,7 @@ struct Hit {
   glm::dvec3 normal{0.0, 0.0, 1.0};
   glm::dvec3 geometric_normal{0.0, 0.0, 1.0};
   glm::dvec3 point{0.0};
+  double footprint_m = 0.0;  // width of a pixel there
 };
 
 /// The air between the eye and a hit.
@@ -107,7 +109,8 @@ struct SceneRenderer::State {
   [[nodiscard]] double radius() const { return air.medium().planet_radius_m; }
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
-  [[nodiscard]] Hit Trace(const glm::dvec3& direction) const;
+  [[nodiscard]] GroundPoint GroundAt(const glm::dvec3& point, double footprint_m) const;
+  [[nodiscard]] Hit Trace(const glm::dvec3& direction, double pixel_angle_rad) const;
   [[nodiscard]] Air AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
                           int nodes) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const Air& through, const glm::dvec3& direction,
@@ -136,12 +139,24 @@ glm::dvec3 SceneRenderer::State::UpAt(const glm::dvec3& point) const {
   return glm::normalize(point + glm::dvec3(0.0, 0.0, radius()));
 }
 
-Hit SceneRenderer::State::Trace(const glm::dvec3& direction) const {
+GroundPoint SceneRenderer::State::GroundAt(const glm::dvec3& point, double footprint_m) const {
+  const GeodeticPosition& origin = ground.frame.origin();
+  return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius() + point.x,
+          origin.latitude_rad * radius() + point.y, std::max(AltitudeOf(point), 0.0), footprint_m};
+}
+
+Hit SceneRenderer::State::Trace(const glm::dvec3& direction, double pixel_angle_rad) const {
   const glm::dvec3 eye(0.0, 0.0, ground.eye_height_m);
   if (ground.terrain) {
     if (const auto hit = ground.terrain->Intersect(eye, direction)) {
-      return {HitKind::kTerrain, hit->distance_m, hit->normal, hit->geometric_normal,
-              hit->smooth_point};
+      Hit found{HitKind::kTerrain,     hit->distance_m,   hit->normal,
+                hit->geometric_normal, hit->smooth_point, hit->distance_m * pixel_angle_rad};
+      // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
+      if (scene.terrain.kind != TerrainSource::Kind::kMesh) {
+        found.normal =
+            MountainSurface::DetailedNormal(GroundAt(found.point, found.footprint_m), found.normal);
+      }
+      return found;
     }
   }
   const RayExtent extent = ExtentOf({ground.eye_height_m, direction.z, 1.0, direction.z}, radius(),
@@ -149,7 +164,7 @@ Hit SceneRenderer::State::Trace(const glm::dvec3& direction) const {
   if (extent.end != RayEnd::kGround) return {};
   const glm::dvec3 point = eye + extent.end_m * direction;
   const glm::dvec3 up = UpAt(point);
-  return {HitKind::kPlanet, extent.end_m, up, up, point};
+  return {HitKind::kPlanet, extent.end_m, up, up, point, extent.end_m * pixel_angle_rad};
 }
 
 Air SceneRenderer::State::AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
@@ -225,7 +240,8 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const Air& through, const glm
   irradiance = irradiance + diffuse.Irradiance(altitude, mu_s, normal_mu, azimuth);
 
   if (hit.kind == HitKind::kTerrain) {
-    shaded.albedo = surface.Albedo(altitude, normal_mu);
+    shaded.albedo =
+        surface.Albedo(GroundAt(hit.point, hit.footprint_m), glm::dot(hit.geometric_normal, up));
   } else {
     for (std::size_t band = 0; band < air.bands(); ++band) {
       shaded.albedo[band] = static_cast<float>(air.medium().ground_albedo[band]);
@@ -369,7 +385,7 @@ SunPosition SceneRenderer::ApparentSun(const UtcInstant& instant) const {
   GeodeticPosition eye = state_->scene.place;
   eye.height_m = state_->ground.eye_height_m;
   SunPosition sun = SunAt(eye, instant);
-  sun.elevation_rad += Refraction(sun.elevation_rad);
+  sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, eye.height_m);
   return sun;
 }
 
@@ -388,7 +404,7 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
       for (int s = 0; s < grid * grid; ++s) {
         const glm::dvec3 direction =
             camera.Direction(x + (s % grid + 0.5) / grid, y + (s / grid + 0.5) / grid);
-        const Hit hit = state_->Trace(direction);
+        const Hit hit = state_->Trace(direction, camera.PixelAngle());
         auto known =
             std::find_if(airs.begin(), airs.end(), [&](const Air& a) { return SameAir(a, hit); });
         if (known == airs.end()) {

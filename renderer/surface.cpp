@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/spectrum.h"
+#include "renderer/lattice_noise.h"
 
 namespace alpenglow {
 namespace {
@@ -32,6 +34,20 @@ Bands<float> Mix(const Bands<float>& a, const Bands<float>& b, float share_of_b)
   return mixed;
 }
 
+// Sum of octaves of noise from `longest_m` down, half as high with each; octaves shorter than two
+// footprints fade out, so that distant ground does not glitter.
+double DetailNoise(const GroundPoint& point, double longest_m, int octaves, std::uint32_t seed) {
+  double sum = 0.0, amplitude = 1.0, wavelength = longest_m;
+  for (int octave = 0; octave < octaves; ++octave, amplitude *= 0.5, wavelength *= 0.5) {
+    const double kept = std::clamp(wavelength / (2.0 * point.footprint_m) - 1.0, 0.0, 1.0);
+    if (kept == 0.0) break;
+    sum += kept * amplitude *
+           GradientNoise(point.east_m / wavelength, point.north_m / wavelength,
+                         seed + static_cast<std::uint32_t>(octave));
+  }
+  return sum;
+}
+
 }  // namespace
 
 // Linear sRGB of broad classes of ground, chosen within the ranges of visible albedo that Oke
@@ -44,18 +60,43 @@ MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const M
       rock_(AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm)),
       snow_(AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)) {}
 
-Bands<float> MountainSurface::Albedo(double altitude_m, double normal_up) const {
-  const float bare = SmoothStep(cover_.tree_line_m - 100.0, cover_.tree_line_m + 500.0, altitude_m);
-  const float steep = 1.0F - SmoothStep(0.62, 0.82, normal_up);
+Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up) const {
+  const double broad = DetailNoise(point, 900.0, 5, 11U);
+  const double fine = DetailNoise(point, 70.0, 4, 29U);
+  const double altitude = point.altitude_m + 260.0 * broad + 60.0 * fine;
+  const double level = normal_up + 0.05 * broad + 0.05 * fine;
+  const float bare = SmoothStep(cover_.tree_line_m - 50.0, cover_.tree_line_m + 450.0, altitude);
+  const float steep = 1.0F - SmoothStep(0.66, 0.78, level);
   const float wooded =
-      1.0F - SmoothStep(cover_.tree_line_m - 400.0, cover_.tree_line_m, altitude_m);
-  const float sloping = 1.0F - SmoothStep(0.94, 0.99, normal_up);
+      1.0F - SmoothStep(cover_.tree_line_m - 250.0, cover_.tree_line_m - 50.0, altitude);
+  const float sloping = 1.0F - SmoothStep(0.95, 0.985, level);
   const Bands<float> green = Mix(meadow_, forest_, wooded * (0.35F + 0.65F * sloping));
   const Bands<float> ground = Mix(green, rock_, std::max(bare, steep));
-  // Gentle ground keeps snow 300 m below the line; faces over about 45 degrees shed it.
-  const float cold = SmoothStep(cover_.snow_line_m - 300.0, cover_.snow_line_m + 500.0, altitude_m);
-  const float holds = SmoothStep(0.55, 0.80, normal_up);
-  return Mix(ground, snow_, cold * holds);
+  // Gentle ground keeps snow 200 m below the line; faces over about 45 degrees shed it.
+  const float cold = SmoothStep(cover_.snow_line_m - 200.0, cover_.snow_line_m + 350.0, altitude);
+  const float holds = SmoothStep(0.60, 0.76, level);
+  Bands<float> albedo = Mix(ground, snow_, cold * holds);
+  const float bare_share = 1.0F - cold * holds;  // fresh snow is even, ground is not
+  const auto tone = static_cast<float>(std::clamp(0.3 * fine + 0.15 * broad, -0.5, 0.5));
+  for (std::size_t band = 0; band < albedo.count; ++band) {
+    albedo[band] = std::min(albedo[band] * (1.0F + bare_share * tone), 1.0F);
+  }
+  return albedo;
+}
+
+glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::dvec3& normal) {
+  constexpr double kLongest_m = 220.0;
+  constexpr double kHeight_m = 14.0;  // of the longest octave
+  const double step = std::max(1.0, 0.25 * point.footprint_m);
+  const auto height = [&](double east, double north) {
+    GroundPoint moved = point;
+    moved.east_m += east;
+    moved.north_m += north;
+    return kHeight_m * DetailNoise(moved, kLongest_m, 5, 47U);
+  };
+  const double here = height(0.0, 0.0);
+  const glm::dvec3 tilt((here - height(step, 0.0)) / step, (here - height(0.0, step)) / step, 0.0);
+  return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
 }
 
 MountainCover CoverAtLatitude(double latitude_rad) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the ground is made of: albedo by slope and altitude, in bands.
+// What the ground is made of: albedo by slope and altitude in bands, and relief finer than the
+// mesh.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
@@ -15,14 +17,27 @@ struct MountainCover {
   double snow_line_m = 2700.0;
 };
 
+/// A point of the ground as its material sees it.
+struct GroundPoint {
+  double east_m, north_m;  // anchored to the planet, so that the pattern does not follow the eye
+  double altitude_m;
+  double footprint_m;  // width that one ray of the picture covers: finer detail is left out
+};
+
 /// Lambertian albedo of mountain ground: forest and meadow below the tree line, rock and scree
-/// above it and on steep slopes, snow above the snow line where the slope holds it.
+/// above it and on steep slopes, snow above the snow line where the slope holds it. Lines and
+/// slopes waver by fractal noise from 10 m to 1 km, as on real mountains.
 class MountainSurface {
  public:
   MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover);
 
   /// @param normal_up  vertical component of the unit normal, 1 on level ground.
-  [[nodiscard]] Bands<float> Albedo(double altitude_m, double normal_up) const;
+  [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up) const;
+
+  /// The normal with the relief that a mesh of 30 to 100 m spacing does not have: unit, tilted by
+  /// about 7 degrees rms where the footprint is small, unchanged where it is over 100 m.
+  [[nodiscard]] static glm::dvec3 DetailedNormal(const GroundPoint& point,
+                                                 const glm::dvec3& normal);
 
  private:
   MountainCover cover_;
