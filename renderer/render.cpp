@@ -51,7 +51,8 @@ Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
 struct Lighting {
   glm::dvec3 to_sun;
   double sun_radius_rad;
-  BandLight irradiance;  // of the sun above the air, W m^-2 nm^-1
+  BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
+  MountainSurface surface;  // as the season covers it
 };
 
 /// What a ray of the camera meets first.
@@ -59,7 +60,8 @@ enum class HitKind { kSky, kTerrain, kPlanet };
 struct Hit {
   HitKind kind = HitKind::kSky;
   double distance_m = std::numeric_limits<double>::infinity();
-  glm::dvec3 normal{0.0, 0.0, 1.0};
+  glm::dvec3 normal{0.0, 0.0, 1.0};       // with relief finer than the mesh
+  glm::dvec3 mesh_normal{0.0, 0.0, 1.0};  // interpolated between vertices
   glm::dvec3 geometric_normal{0.0, 0.0, 1.0};
   glm::dvec3 point{0.0};
   double footprint_m = 0.0;  // width of a pixel there
@@ -103,8 +105,7 @@ struct SceneRenderer::State {
         ground(LoadGround(scene)),
         air(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
         diffuse(air.medium()),
-        colour(air.medium().wavelengths_nm),
-        surface(air.medium().wavelengths_nm, CoverAtLatitude(scene.place.latitude_rad)) {}
+        colour(air.medium().wavelengths_nm) {}
 
   [[nodiscard]] double radius() const { return air.medium().planet_radius_m; }
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
@@ -117,14 +118,13 @@ struct SceneRenderer::State {
                              const Lighting& light, std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const Air& through,
                                   const Lighting& light) const;
-  [[nodiscard]] Lighting LightingFrom(const SunPosition& sun) const;
+  [[nodiscard]] Lighting LightingAt(const SunPosition& sun, const UtcInstant& instant) const;
 
   Scene scene;
   SceneGround ground;
   AirIntegrator<float> air;
   DiffuseLight diffuse;
   BandColour colour;
-  MountainSurface surface;
 };
 
 // |p - c| - R with the centre c at (0, 0, -R), without cancelling.
@@ -149,8 +149,13 @@ Hit SceneRenderer::State::Trace(const glm::dvec3& direction, double pixel_angle_
   const glm::dvec3 eye(0.0, 0.0, ground.eye_height_m);
   if (ground.terrain) {
     if (const auto hit = ground.terrain->Intersect(eye, direction)) {
-      Hit found{HitKind::kTerrain,     hit->distance_m,   hit->normal,
-                hit->geometric_normal, hit->smooth_point, hit->distance_m * pixel_angle_rad};
+      Hit found{HitKind::kTerrain,
+                hit->distance_m,
+                hit->normal,
+                hit->normal,
+                hit->geometric_normal,
+                hit->smooth_point,
+                hit->distance_m * pixel_angle_rad};
       // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
       if (scene.terrain.kind != TerrainSource::Kind::kMesh) {
         found.normal =
@@ -164,7 +169,7 @@ Hit SceneRenderer::State::Trace(const glm::dvec3& direction, double pixel_angle_
   if (extent.end != RayEnd::kGround) return {};
   const glm::dvec3 point = eye + extent.end_m * direction;
   const glm::dvec3 up = UpAt(point);
-  return {HitKind::kPlanet, extent.end_m, up, up, point, extent.end_m * pixel_angle_rad};
+  return {HitKind::kPlanet, extent.end_m, up, up, up, point, extent.end_m * pixel_angle_rad};
 }
 
 Air SceneRenderer::State::AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
@@ -241,7 +246,7 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const Air& through, const glm
 
   if (hit.kind == HitKind::kTerrain) {
     shaded.albedo =
-        surface.Albedo(GroundAt(hit.point, hit.footprint_m), glm::dot(hit.geometric_normal, up));
+        light.surface.Albedo(GroundAt(hit.point, hit.footprint_m), glm::dot(hit.mesh_normal, up));
   } else {
     for (std::size_t band = 0; band < air.bands(); ++band) {
       shaded.albedo[band] = static_cast<float>(air.medium().ground_albedo[band]);
@@ -253,9 +258,11 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const Air& through, const glm
   return shaded;
 }
 
-Lighting SceneRenderer::State::LightingFrom(const SunPosition& sun) const {
+Lighting SceneRenderer::State::LightingAt(const SunPosition& sun, const UtcInstant& instant) const {
+  const MountainCover cover = CoverInSeason(scene.place.latitude_rad, instant.modified_julian_day);
   Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-                 sun.angular_radius_rad, BandLight(air.bands())};
+                 sun.angular_radius_rad, BandLight(air.bands()),
+                 MountainSurface(air.medium().wavelengths_nm, cover)};
   for (std::size_t band = 0; band < air.bands(); ++band) {
     light.irradiance[band] = static_cast<float>(air.medium().solar_irradiance[band] /
                                                 (sun.distance_au * sun.distance_au));
@@ -391,7 +398,7 @@ SunPosition SceneRenderer::ApparentSun(const UtcInstant& instant) const {
 
 Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {
   ValidateSettings(settings);
-  const Lighting light = state_->LightingFrom(ApparentSun(instant));
+  const Lighting light = state_->LightingAt(ApparentSun(instant), instant);
   const CameraRays camera(state_->scene.camera, settings.width, settings.height);
   PixelWriter writer(state_->colour, settings);
   const int grid = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));

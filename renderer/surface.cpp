@@ -99,11 +99,15 @@ glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::
   return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
 }
 
-MountainCover CoverAtLatitude(double latitude_rad) {
+MountainCover CoverInSeason(double latitude_rad, int modified_julian_day) {
   const double latitude = std::abs(latitude_rad) / kRadiansPerDegree;
   const double beyond = std::max(latitude - 30.0, 0.0);
   const double tree_line = std::max(4000.0 - 115.0 * beyond, 0.0);
-  return {tree_line, tree_line + 800.0 + 4.0 * beyond};
+  // Coldest ground in mid February (north) or mid August (south); day 59000 is 2020-05-31.
+  const double year = (modified_julian_day - 59000 + 105.0) / 365.2425;
+  const double winter = std::cos(2.0 * kPi * year) * (latitude_rad < 0.0 ? -1.0 : 1.0);
+  const double seasonal = 1300.0 * std::clamp(latitude / 35.0, 0.0, 1.0) * winter;
+  return {tree_line, tree_line + 800.0 + 4.0 * beyond - seasonal};
 }
 
 }  // namespace alpenglow

@@ -44,9 +44,10 @@ class MountainSurface {
   Bands<float> forest_, meadow_, rock_, snow_;
 };
 
-/// Tree and snow line at a latitude: highest in the subtropics, at sea level near the poles. A
-/// smooth fit to Korner (1998), Oecologia 115, 445 (tree line) and to the mean snow line of
-/// mountains; +-400 m.
-[[nodiscard]] MountainCover CoverAtLatitude(double latitude_rad);
+/// Tree line and snow line at a latitude and season: the tree line highest in the subtropics and at
+/// sea level near the poles, a smooth fit to Korner (1998), Oecologia 115, 445; the snow line 800 m
+/// over it in the mean, 1300 m lower in late winter and as much higher in late summer beyond the
+/// tropics. +-400 m, for looks.
+[[nodiscard]] MountainCover CoverInSeason(double latitude_rad, int modified_julian_day);
 
 }  // namespace alpenglow
