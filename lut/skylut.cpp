@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// skylut: tables of the sky. Builds, describes and evaluates them.
+#include <fmt/core.h>
+
+#include <optional>
+#include <string>
+
+#include "atmosphere/medium.h"
+#include "lut/command_line.h"
+#include "lut/eval.h"
+#include "lut/program.h"
+#include "lut/table_folder.h"
+
+namespace alpenglow {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool single_scattering_only = false;
+  std::string quality = "standard";
+  std::string described;
+  std::string cases, results, method;
+  std::optional<std::string> tables;
+  std::optional<int> samples;
+  std::optional<std::string> max_error;
+};
+
+std::string FaultOfMaxError(const std::string& text) {
+  return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
+}
+
+void AddAtmosphere(CLI::App& command, Options& options) {
+  command.add_option("--atmosphere", options.atmosphere,
+                     "Atmosphere file (TOML); without it the preset earth");
+}
+
+void AddBuild(CLI::App& app, Options& options) {
+  CLI::App& build = *app.add_subcommand(
+      "build", "Build the tables of transmittance and single scattering of an atmosphere.");
+  build.add_option("--out", options.out, "Folder for the tables; made when missing")->required();
+  AddAtmosphere(build, options);
+  build
+      .add_option("--quality", options.quality,
+                  "preview (128x32; 8x24x64x16), standard (256x64; 8x32x128x32) or fine "
+                  "(512x128; 16x48x192x48): sizes of transmittance mu x r; scattering nu x mu_s "
+                  "x mu x r")
+      ->check(CLI::IsMember({"preview", "standard", "fine"}))
+      ->capture_default_str();
+  build.add_flag("--single-scattering-only", options.single_scattering_only,
+                 "States what is built: tables of single scattering, and no others");
+  build.footer("Example: skylut build --out tables --atmosphere atmosphere.toml --quality fine");
+}
+
+void AddInfo(CLI::App& app, Options& options) {
+  CLI::App& info = *app.add_subcommand(
+      "info", "Say what tables hold, units, ranges, what made them. Checks every texel.");
+  info.add_option("tables", options.described, "A table file or a folder of tables")->required();
+  info.footer("Example: skylut info tables");
+}
+
+void AddEval(CLI::App& app, Options& options) {
+  CLI::App& eval = *app.add_subcommand(
+      "eval",
+      "Evaluate cases, one a line: id,quantity,altitude_m,view_zenith_deg,"
+      "relative_azimuth_deg,sun_zenith_deg,distance_m. Quantities: transmittance, "
+      "optical_depth, single, inscatter_single, total, irradiance_sun, irradiance_sky; "
+      "radiances [1/sr] and irradiances [1] per unit solar irradiance. Results: "
+      "id,wavelength_nm,value,error.");
+  eval.add_option("--cases", options.cases, "Cases (CSV)")->required();
+  eval.add_option("--out", options.results, "Results (CSV)")->required();
+  eval.add_option("--method", options.method, "table (needs --lut) or integral")
+      ->check(CLI::IsMember({"table", "integral"}))
+      ->required();
+  AddAtmosphere(eval, options);
+  eval.add_option("--lut", options.tables,
+                  "Folder of tables; without --atmosphere, their atmosphere is taken");
+  CLI::Option* samples =
+      eval.add_option("--samples", options.samples,
+                      "integral: Gauss nodes on each smooth piece of a ray; default 16")
+          ->check(CLI::Range(kFewestSamples, kMostSamples));
+  eval.add_option("--max-error", options.max_error,
+                  "integral: relative error, 1e-8 to 1 or like 0.2%; chooses the samples")
+      ->check(FaultOfMaxError)
+      ->excludes(samples);
+  eval.footer("Example: skylut eval --cases cases.csv --out results.csv --method integral");
+}
+
+/// What CLI11 cannot say by itself: options that belong to one method.
+void CheckMethod(const CLI::App& eval, const Options& options) {
+  if (!eval.parsed() || options.method != "table") return;
+  if (!options.tables) throw CLI::ValidationError("--method table", "needs --lut");
+  if (options.samples || options.max_error) {
+    throw CLI::ValidationError("--method table", "takes neither --samples nor --max-error");
+  }
+}
+
+std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
+  std::optional<Medium> medium;
+  std::optional<std::uint64_t> hash;
+  if (options.atmosphere) hash = MediumHash(medium.emplace(ReadMedium(*options.atmosphere)));
+  if (options.tables) {
+    TableFolder tables = ReadTableFolder(*options.tables, hash);
+    if (options.method == "table") {
+      return MakeTableEvaluator(std::move(tables.transmittance),
+                                std::move(tables.single_scattering));
+    }
+    medium = tables.transmittance.medium();
+  }
+  IntegralOptions integral;
+  integral.samples = options.samples.value_or(integral.samples);
+  if (options.max_error) integral.max_error = RelativeErrorFromText(*options.max_error);
+  return MakeIntegralEvaluator(medium ? *medium : MediumPreset("earth"), integral);
+}
+
+int Run(int argc, char** argv) {
+  Options options;
+  CLI::App app("Tables of the sky: what the air does to light, ready to look up.", "skylut");
+  app.fallthrough();
+  app.require_subcommand(1);
+  AddCommonOptions(app, "skylut", options.common);
+  AddBuild(app, options);
+  AddInfo(app, options);
+  AddEval(app, options);
+  app.parse_complete_callback([&] { CheckMethod(*app.get_subcommand("eval"), options); });
+  if (const auto status = ParseCommandLine(app, argc, argv)) return *status;
+
+  const ThreadLimit threads(options.common.threads);
+  if (app.got_subcommand("build")) {
+    const Medium medium =
+        options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
+    BuildTableFolder(medium, TableQualityFromName(options.quality), options.out,
+                     options.common.progress_style());
+  } else if (app.got_subcommand("info")) {
+    fmt::print("{}", DescribeTables(options.described));
+  } else {
+    EvaluateFile(options.cases, options.results, *EvaluatorFor(options),
+                 options.common.progress_style());
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main(int argc, char** argv) {
+  return alpenglow::RunProgram("skylut", [&] { return alpenglow::Run(argc, argv); });
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// A folder of the tables of one atmosphere: made, read, described.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lut/progress.h"
+#include "lut/table_file.h"
+
+namespace alpenglow {
+
+/// How fine the tables are. Sizes and build times: skylut build --help.
+struct TableQuality {
+  TransmittanceTableSize transmittance;
+  ScatteringTableSize single_scattering;
+};
+
+/// "preview", "standard" or "fine"; throws InputError for another name.
+[[nodiscard]] TableQuality TableQualityFromName(std::string_view name);
+
+/// Builds and writes every table, each file whole or not at all; makes the folder when there is
+/// none. Throws OutputError naming what could not be written.
+void BuildTableFolder(const Medium& medium, const TableQuality& quality,
+                      const std::filesystem::path& folder, ProgressStyle style);
+
+struct TableFolder {
+  TransmittanceTable transmittance;
+  ScatteringTable single_scattering;
+};
+
+/// Reads both tables; throws InputError when one is missing or bad, or when they are not of this
+/// medium, or of the same one.
+[[nodiscard]] TableFolder ReadTableFolder(const std::filesystem::path& folder,
+                                          const std::optional<std::uint64_t>& medium_hash = {});
+
+/// DescriptionText of a table, or of every table in a folder. Throws InputError when there is none.
+[[nodiscard]] std::string DescribeTables(const std::filesystem::path& file_or_folder);
+
+}  // namespace alpenglow

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// The program as users run it: what it prints, writes and returns.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <vector>
+
+#include "tests/renderer/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+struct Outcome {
+  int status;
+  std::string out, error;
+};
+
+class Skylut : public TemporaryFolder {
+ protected:
+  /// Runs `skylut <arguments>` in the folder of the test.
+  [[nodiscard]] Outcome Run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" ALPENGLOW_SKYLUT "' " +
+                                arguments + " >.out 2>.error </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ContentOf(folder_ / ".out"),
+            ContentOf(folder_ / ".error")};
+  }
+
+  void BuildSmall(const std::string& folder) const {
+    WriteText(folder_ / "air.toml", "preset = \"bruneton2017\"\n");
+    const Outcome built =
+        Run("build --out " + folder + " --atmosphere air.toml --quality preview --quiet");
+    ASSERT_EQ(built.status, 0) << built.error;
+    ASSERT_EQ(built.error, "") << "--quiet";
+  }
+
+  void WriteCases() const {
+    WriteText(folder_ / "cases.csv",
+              "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,"
+              "distance_m\n"
+              "t,transmittance,0,60,0,30,\n"
+              "s,single,100,75,40,50,\n"
+              "i,inscatter_single,100,75,40,50,20000\n"
+              "e,irradiance_sun,0,0,0,30,\n");
+  }
+};
+
+std::vector<double> ValuesOf(const fs::path& results) {
+  std::istringstream lines(ContentOf(results));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "id,wavelength_nm,value,error");
+  std::vector<double> values;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 3; ++i) std::getline(cells, cell, ',');
+    values.push_back(std::stod(cell));
+  }
+  return values;
+}
+
+TEST_F(Skylut, AWrongCommandLineIsStatus2) {
+  for (const char* arguments :
+       {"", "frobnicate", "build", "build --out t --quality best", "build --out t --threads -1",
+        "build --out t --max-error 1%", "info", "eval --cases c --out r",
+        "eval --cases c --out r --method path-trace", "eval --cases c --out r --method table",
+        "eval --cases c --out r --method table --lut t --samples 8",
+        "eval --cases c --out r --method integral --samples 1",
+        "eval --cases c --out r --method integral --max-error much",
+        "eval --cases c --out r --method integral --samples 8 --max-error 1%"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_NE(outcome.error, "") << arguments;
+  }
+}
+
+TEST_F(Skylut, HelpAndVersionAreStatus0) {
+  EXPECT_THAT(Run("--version").out, testing::StartsWith("skylut of alpenglow "));
+  for (const char* command : {"", "build ", "info ", "eval "}) {
+    const Outcome help = Run(std::string(command) + "--help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_THAT(help.out, HasSubstr("Usage:"));
+  }
+}
+
+TEST_F(Skylut, BuiltTablesAreDescribedAndEvaluated) {
+  BuildSmall("tables");
+  const Outcome info = Run("info tables");
+  EXPECT_EQ(info.status, 0) << info.error;
+  for (const char* fact : {"transmittance", "single scattering", "bruneton2017", "every texel",
+                           "rayleigh.0550nm", "made by     alpenglow "}) {
+    EXPECT_THAT(info.out, HasSubstr(fact));
+  }
+  EXPECT_EQ(Run("info tables/transmittance.exr").status, 0);
+
+  WriteCases();
+  for (const char* method :
+       {"table --lut tables", "table --lut tables --atmosphere air.toml", "integral --lut tables",
+        "integral --atmosphere air.toml", "integral --atmosphere air.toml --max-error 0.1%"}) {
+    const Outcome eval = Run(std::string("eval --cases cases.csv --out results.csv --quiet "
+                                         "--method ") +
+                             method);
+    ASSERT_EQ(eval.status, 0) << eval.error;
+    const std::vector<double> values = ValuesOf(folder_ / "results.csv");
+    ASSERT_EQ(values.size(), 12U) << "four cases at three wavelengths";
+    // Molecules, aerosol and the tent of 15 km: the vertical columns at 550 nm.
+    const double vertical =
+        13.558e-6 * 8e3 * (1.0 - std::exp(-7.5)) + 4.44e-6 * 1.2e3 + 1.881e-6 * 15e3;
+    EXPECT_NEAR(values[1], std::exp(-2.0 * vertical), 0.003)
+        << "60 degrees from the zenith; the curvature of the shell takes 0.5 % of the path";
+  }
+}
+
+TEST_F(Skylut, WithoutAnAtmosphereFileTheEarthIsTaken) {
+  WriteCases();
+  ASSERT_EQ(Run("eval --cases cases.csv --out r.csv --method integral --quiet").status, 0);
+  EXPECT_THAT(ContentOf(folder_ / "r.csv"), HasSubstr("\nt,450,")) << "four bands";
+}
+
+TEST_F(Skylut, WrongInputsAreStatus3WithOneLineAndNoOutput) {
+  BuildSmall("tables");
+  WriteCases();
+  WriteText(folder_ / "bad.csv", "id,quantity\n");
+  WriteText(folder_ / "bad.toml", "[planet]\nradius_m = -1\n");
+  const std::string whole = ContentOf(folder_ / "tables" / "transmittance.exr");
+  WriteText(folder_ / "cut.exr", whole.substr(0, whole.size() / 2));
+  WriteText(folder_ / "earth.toml", "preset = \"earth\"\n");
+  fs::create_directory(folder_ / "empty");
+  const std::pair<const char*, const char*> runs[] = {
+      {"build --out t --atmosphere bad.toml", "bad.toml:2"},
+      {"build --out t --atmosphere none.toml", "none.toml"},
+      {"info none", "none"},
+      {"info empty", "empty"},
+      {"info cut.exr", "cut.exr"},
+      {"info cases.csv", "cases.csv"},
+      {"eval --cases bad.csv --out r.csv --method integral", "bad.csv:1"},
+      {"eval --cases none.csv --out r.csv --method integral", "none.csv"},
+      {"eval --cases cases.csv --out r.csv --method table --lut empty", "transmittance.exr"},
+      {"eval --cases cases.csv --out r.csv --method table --lut tables --atmosphere earth.toml",
+       "another atmosphere"},
+  };
+  for (const auto& [arguments, reason] : runs) {
+    const Outcome outcome = Run(std::string(arguments) + " --quiet");
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_THAT(outcome.error, testing::StartsWith("skylut: "));
+    EXPECT_THAT(outcome.error, HasSubstr(reason));
+    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "r.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "t" / "transmittance.exr"));
+}
+
+TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
+  WriteCases();
+  const Outcome build = Run("build --out cases.csv/tables --quality preview --quiet");
+  EXPECT_EQ(build.status, 4) << build.error;
+  EXPECT_THAT(build.error, HasSubstr("cases.csv/tables"));
+  const Outcome eval = Run("eval --cases cases.csv --out none/r.csv --method integral --quiet");
+  EXPECT_EQ(eval.status, 4) << eval.error;
+  EXPECT_THAT(eval.error, HasSubstr("none/r.csv"));
+}
+
+TEST_F(Skylut, ProgressIsJsonOnRequest) {
+  const Outcome outcome = Run("build --out tables --quality preview --progress json --threads 1");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error, testing::StartsWith("{\"label\":\"single scattering\",\"done\":"));
+}
+
+TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {
+  // The build is interrupted when its first line of progress is out, whenever that is.
+  const std::string script = "cd '" + folder_.string() +
+                             "' && rm -f fifo && mkfifo fifo && { '" ALPENGLOW_SKYLUT
+                             "' build --out tables --quality fine --progress json 2>fifo & } && "
+                             "pid=$! && { read line && kill -INT $pid && cat >/dev/null; } <fifo; "
+                             "wait $pid";
+  const int status = std::system(("bash -c '" +
+                                  [&] {
+                                    std::string quoted;
+                                    for (const char c : script) {
+                                      quoted +=
+                                          c == '\'' ? std::string("'\\''") : std::string(1, c);
+                                    }
+                                    return quoted;
+                                  }() +
+                                  "'")
+                                     .c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_FALSE(fs::exists(folder_ / "tables" / "single_scattering.exr"));
+  EXPECT_TRUE(fs::exists(folder_ / "tables" / "transmittance.exr")) << "finished work is kept";
+  std::size_t files = 0;
+  for (const auto& unused : fs::directory_iterator(folder_ / "tables")) {
+    static_cast<void>(unused);
+    ++files;
+  }
+  EXPECT_EQ(files, 1U) << "no temporary stays";
+}
+
+}  // namespace
+}  // namespace alpenglow
