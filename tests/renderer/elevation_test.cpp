@@ -221,6 +221,46 @@ TEST_F(ElevationFile, VoidsAreCountedAndFilledWithAMembrane) {
   EXPECT_FALSE(open.grid.HeightAt(open.grid.LatitudeOfRow(15), open.grid.LongitudeOfColumn(20)));
 }
 
+TEST_F(ElevationFile, AnSrtmTileLiesOnTheDegreesOfItsName) {
+  const fs::path tile = folder_ / "S34W071.hgt";
+  std::ofstream stream(tile, std::ios::binary);
+  for (int row = 0; row < 1201; ++row) {
+    for (int column = 0; column < 1201; ++column) {
+      const int height = row == 0 && column == 3 ? -32768 : row + column;
+      stream.put(static_cast<char>((height >> 8) & 0xff)).put(static_cast<char>(height & 0xff));
+    }
+  }
+  stream.close();
+  const ElevationModel model = ReadElevation(tile, VoidPolicy::kFill);
+  EXPECT_EQ(model.voids, 1U);
+  EXPECT_NEAR(*model.grid.HeightAt(-33.0 * kDegree, -71.0 * kDegree), 0.0, 1e-3);
+  EXPECT_NEAR(*model.grid.HeightAt(-34.0 * kDegree, -70.0 * kDegree), 2400.0, 1e-3);
+  fs::rename(tile, folder_ / "elsewhere.hgt");
+  ExpectRefused(folder_ / "elsewhere.hgt", "not a readable");
+}
+
+TEST_F(ElevationFile, AUsgsDemIsRead) {
+  Recipe recipe;
+  recipe.columns = 1201;
+  recipe.rows = 1201;
+  recipe.geotransform = {-76.0 - 0.5 * 0.25 / 1200, 0.25 / 1200, 0.0,
+                         45.25 + 0.5 * 0.25 / 1200, 0.0,         -0.25 / 1200};
+  recipe.height = [](int row, int column) { return static_cast<float>(500 + row - column / 3); };
+  const fs::path tif = Write(recipe);
+  GDALRegister_USGSDEM();
+  auto* source = static_cast<GDALDataset*>(GDALOpen(tif.c_str(), GA_ReadOnly));
+  const fs::path file = folder_ / "quad.dem";
+  GDALDataset* copy = GetGDALDriverManager()->GetDriverByName("USGSDEM")->CreateCopy(
+      file.c_str(), source, FALSE, nullptr, nullptr, nullptr);
+  GDALClose(source);
+  if (copy == nullptr) GTEST_SKIP() << "this GDAL writes no USGS DEM";
+  GDALClose(copy);
+  const ElevationGrid grid = ReadElevation(file, VoidPolicy::kFill).grid;
+  const std::optional<double> height = grid.HeightAt(45.1 * kDegree, -75.9 * kDegree);
+  ASSERT_TRUE(height.has_value());
+  EXPECT_NEAR(*height, 500.0 + 720.0 - 160.0, 1.5) << "the file holds whole metres";
+}
+
 TEST_F(ElevationFile, CustomaryNodataIsAVoidThoughUndeclared) {
   for (const float value :
        {kNan, -32768.0F, -32767.0F, -9999.0F, std::numeric_limits<float>::lowest()}) {
