@@ -29,11 +29,9 @@
 
 #include "atmosphere/medium.h"
 #include "atmosphere/single_scattering.h"
+#include "lut/spherical_harmonics.h"
 
 namespace alpenglow {
-
-inline constexpr int kMaxDegree = 6;
-inline constexpr std::size_t kMaxMoments = (kMaxDegree + 1) * (kMaxDegree + 2) / 2;
 
 struct DiffuseLightOptions {
   int altitudes = 20;     // nodes, quadratic in altitude, >= 4
@@ -43,7 +41,7 @@ struct DiffuseLightOptions {
   int azimuth_nodes = 8;  // over half a turn
   int ray_nodes = 10;     // Gauss nodes along each direction
   int max_orders = 200;
-  double tolerance = 1e-4;  // of the last order against the sum, after extrapolation
+  double tolerance = 1e-2;  // share of the light that is summed as a geometric series, not computed
 };
 
 /// Diffuse light of all orders. Immutable; lookups are safe from many threads.
@@ -95,8 +93,6 @@ class DiffuseLight {
   [[nodiscard]] static double MuSFromCoordinate(double v);
 
  private:
-  friend class DiffuseLightSolver;
-
   // The moments at a point, by cubic interpolation: moments() x bands() values.
   void Interpolate(double altitude_m, double mu_s, std::span<float> moments) const;
 
@@ -111,13 +107,5 @@ class DiffuseLight {
       coefficients_;             // [1/km]: molecules, aerosol extinction, ozone, aerosol scattering
   std::vector<double> chi_mie_;  // Legendre coefficients of the aerosol's phase function
 };
-
-/// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
-[[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
-
-/// Real spherical harmonics Y_lm(mu, phi), m >= 0, l major, orthonormal over the sphere;
-/// cos_azimuth = cos(phi).
-[[nodiscard]] std::array<float, kMaxMoments> SphericalHarmonics(int degree, float mu,
-                                                                float cos_azimuth);
 
 }  // namespace alpenglow

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Cubic interpolation on a uniform grid: four neighbours and their Catmull-Rom weights.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace alpenglow {
+
+/// The neighbours of a position; at the ends of the grid the missing neighbour continues the line
+/// through the last two, and has weight 0 here.
+struct CubicTaps {
+  std::array<std::size_t, 4> node;
+  std::array<float, 4> weight;
+};
+
+/// Catmull-Rom weights of the four neighbours at a fraction t in [0, 1] of the cell.
+[[nodiscard]] inline std::array<float, 4> CatmullRom(float t) {
+  return {0.5F * t * (-1.0F + t * (2.0F - t)), 0.5F * (2.0F + t * t * (-5.0F + 3.0F * t)),
+          0.5F * t * (1.0F + t * (4.0F - 3.0F * t)), 0.5F * t * t * (t - 1.0F)};
+}
+
+/// @param coordinate position in [0, 1] over n >= 2 nodes, clamped.
+[[nodiscard]] inline CubicTaps TapsAt(double coordinate, int n) {
+  const double position = std::clamp(coordinate, 0.0, 1.0) * (n - 1);
+  const int cell = std::min(static_cast<int>(position), n - 2);
+  std::array<float, 4> weight = CatmullRom(static_cast<float>(position - cell));
+  if (cell == 0) {  // node -1 is 2 f(0) - f(1)
+    weight[1] += 2.0F * weight[0];
+    weight[2] -= weight[0];
+    weight[0] = 0.0F;
+  }
+  if (cell == n - 2) {  // node n is 2 f(n - 1) - f(n - 2)
+    weight[1] -= weight[3];
+    weight[2] += 2.0F * weight[3];
+    weight[3] = 0.0F;
+  }
+  CubicTaps taps{{}, weight};
+  for (int i = 0; i < 4; ++i) {
+    taps.node[static_cast<std::size_t>(i)] =
+        static_cast<std::size_t>(std::clamp(cell - 1 + i, 0, n - 1));
+  }
+  return taps;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Successive orders of scattering in a spherical atmosphere: what fills the table of DiffuseLight.
+//
+// One order's radiance at every node (altitude, sun angle), along directions of a Gauss grid split
+// at the horizon, is marched through the previous order's moments and projected onto moments again.
+// Altitudes, angles and interpolation along the marches depend on neither band nor order: they are
+// computed once, bands follow four at a time. When the orders have become a geometric series its
+// rest is summed in closed form.
+#pragma once
+
+#include <vector>
+
+#include "lut/multiple_scattering.h"
+
+namespace alpenglow {
+
+struct SolvedOrders {
+  std::vector<float> values;  // as DiffuseLight::values()
+  int orders = 0;             // largest number of orders computed for any band
+  bool converged = true;      // every band reached the tolerance within max_orders
+};
+
+/// Deterministic for any number of threads.
+[[nodiscard]] SolvedOrders SolveSuccessiveOrders(const Medium& medium,
+                                                 const DiffuseLightOptions& options);
+
+}  // namespace alpenglow
