@@ -55,10 +55,10 @@ double DetailNoise(const GroundPoint& point, double longest_m, int octaves, std:
 // 0.1-0.3, snow 0.7-0.95.
 MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover)
     : cover_(cover),
-      forest_(AlbedoBands({0.035, 0.060, 0.022}, wavelengths_nm)),
-      meadow_(AlbedoBands({0.095, 0.120, 0.045}, wavelengths_nm)),
-      rock_(AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm)),
-      snow_(AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)) {}
+      materials_{AlbedoBands({0.035, 0.060, 0.022}, wavelengths_nm),
+                 AlbedoBands({0.095, 0.120, 0.045}, wavelengths_nm),
+                 AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm),
+                 AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
 Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up) const {
   const double broad = DetailNoise(point, 900.0, 5, 11U);
@@ -70,12 +70,13 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up)
   const float wooded =
       1.0F - SmoothStep(cover_.tree_line_m - 250.0, cover_.tree_line_m - 50.0, altitude);
   const float sloping = 1.0F - SmoothStep(0.95, 0.985, level);
-  const Bands<float> green = Mix(meadow_, forest_, wooded * (0.35F + 0.65F * sloping));
-  const Bands<float> ground = Mix(green, rock_, std::max(bare, steep));
+  const Bands<float> green =
+      Mix(materials_.meadow, materials_.forest, wooded * (0.35F + 0.65F * sloping));
+  const Bands<float> ground = Mix(green, materials_.rock, std::max(bare, steep));
   // Gentle ground keeps snow 200 m below the line; faces over about 45 degrees shed it.
   const float cold = SmoothStep(cover_.snow_line_m - 200.0, cover_.snow_line_m + 350.0, altitude);
   const float holds = SmoothStep(0.60, 0.76, level);
-  Bands<float> albedo = Mix(ground, snow_, cold * holds);
+  Bands<float> albedo = Mix(ground, materials_.snow, cold * holds);
   const float bare_share = 1.0F - cold * holds;  // fresh snow is even, ground is not
   const auto tone = static_cast<float>(std::clamp(0.3 * fine + 0.15 * broad, -0.5, 0.5));
   for (std::size_t band = 0; band < albedo.count; ++band) {

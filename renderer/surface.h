@@ -29,7 +29,15 @@ struct GroundPoint {
 /// slopes waver by fractal noise from 10 m to 1 km, as on real mountains.
 class MountainSurface {
  public:
+  /// Albedos of pure materials.
+  struct Materials {
+    Bands<float> forest, meadow, rock, snow;
+  };
+
   MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover);
+
+  [[nodiscard]] const MountainCover& cover() const { return cover_; }
+  [[nodiscard]] const Materials& materials() const { return materials_; }
 
   /// @param normal_up  vertical component of the unit normal, 1 on level ground.
   [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up) const;
@@ -41,7 +49,7 @@ class MountainSurface {
 
  private:
   MountainCover cover_;
-  Bands<float> forest_, meadow_, rock_, snow_;
+  Materials materials_;
 };
 
 /// Tree line and snow line at a latitude and season: the tree line highest in the subtropics and at

@@ -6,12 +6,11 @@ out vec4 picture;
 
 uniform sampler2D surface_map;       // of terrain.frag.glsl; distance 0 where there is no terrain
 uniform sampler2DArray diffuse_sky;  // of diffuse_sky.frag.glsl
-uniform sampler2D ground_cover;      // albedo; s: vertical component of the normal, t: altitude
-uniform vec2 cover_altitudes;        // of the first and the last texel [km]
 uniform sampler2DShadow sun_shadow;
 uniform mat4 shadow_from_eye;
 uniform float shadow_texel;  // size on the ground [m]; 0 without terrain
 uniform float pixel_angle;   // [rad]
+uniform float sample_angle;  // of one of its rays [rad]
 
 vec4 DiffuseOfWholeRay(vec3 direction, bool ground) {
   float layer = ground ? 1.0 : 0.0;
@@ -24,19 +23,11 @@ vec4 DiffuseOfWholeRay(vec3 direction, bool ground) {
                  vec3(TexelFromUnit(unit.x, size.x), TexelFromUnit(unit.y, size.y), layer));
 }
 
-vec4 Albedo(float h, float normal_up) {
-  float altitude = (h - cover_altitudes.x) / (cover_altitudes.y - cover_altitudes.x);
-  vec2 size = vec2(textureSize(ground_cover, 0));
-  return texture(ground_cover, vec2(TexelFromUnit(clamp(normal_up, 0.0, 1.0), size.x),
-                                    TexelFromUnit(clamp(altitude, 0.0, 1.0), size.y)));
-}
-
 // Share of the sun's light that terrain lets through: the shadow map around the point, moved off
 // the surface by what a texel of the map may hide.
 float SunThroughTerrain(vec3 point, vec3 normal) {
   if (shadow_texel <= 0.0) return 1.0;
-  float slope = clamp(1.0 - dot(normal, sun.xyz), 0.0, 1.0);
-  vec3 moved = point + normal * (shadow_texel * (0.5 + slope)) + sun.xyz * (0.5 * shadow_texel);
+  vec3 moved = point + (0.5 * shadow_texel) * normal;
   vec4 clip = shadow_from_eye * vec4(moved, 1.0);
   vec3 at = 0.5 * clip.xyz + 0.5;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
@@ -57,13 +48,16 @@ vec4 Reflected(vec3 point, vec3 normal, bool terrain) {
   float d = length(at);
   float h = max(AltitudeAlongRay(EYE_ALTITUDE, at.z / max(d, 1e-9), d, RADIUS), 0.0);
   vec3 up = normalize(vec3(at.xy, RADIUS + EYE_ALTITUDE + at.z));
-  if (!terrain) normal = up;
+  float footprint = 1e3 * d * pixel_angle;
+  vec2 offset = vec2(dot(point, mesh_east.xyz), dot(point, mesh_north.xyz));
+  vec3 mesh_normal = normal;
+  normal = terrain ? DetailedNormal(offset, mesh_normal, footprint) : up;
   float mu_s = clamp(dot(up, sun.xyz), -1.0, 1.0);
   float incidence = dot(normal, sun.xyz);
   vec2 disk = DiskOverHorizon(mu_s, HorizonCosine(h, RADIUS), sun.w);
   vec4 irradiance = vec4(0.0);
   if (incidence > 0.0 && disk.x > 0.0) {
-    float seen = disk.x * (terrain ? SunThroughTerrain(point, normal) : 1.0);
+    float seen = disk.x * (terrain ? SunThroughTerrain(point, mesh_normal) : 1.0);
     irradiance += seen * incidence * exp(-OpticalDepth(ColumnsToSun(h, disk.y)));
   }
   float normal_mu = clamp(dot(normal, up), -1.0, 1.0);
@@ -72,7 +66,9 @@ vec4 Reflected(vec3 point, vec3 normal, bool terrain) {
   float lengths = length(flat_sun) * length(flat_normal);
   float azimuth = lengths > 1e-6 ? clamp(dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
   irradiance += DiffuseIrradiance(h, mu_s, normal_mu, azimuth);
-  return (terrain ? Albedo(h, normal_mu) : ground_albedo) * irradiance / 3.14159265359;
+  vec4 albedo =
+      terrain ? GroundAlbedo(offset, 1e3 * h, dot(mesh_normal, up), footprint) : ground_albedo;
+  return albedo * irradiance / 3.14159265359;
 }
 
 // Whether the planet stands before a piece of terrain: the ray dips deeper than ground ever lies
@@ -100,7 +96,7 @@ void main() {
     vec3 point = 1e3 * (ray.begin + ray.length) * direction;
     radiance += light.transmittance * Reflected(point, vec3(0.0), false);
   } else {
-    radiance += light.transmittance * SunDiskRadiance(direction, pixel_angle);
+    radiance += light.transmittance * SunDiskRadiance(direction, sample_angle);
   }
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 1.0);
 }

@@ -8,6 +8,7 @@
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "atmosphere/quadrature.h"
+#include "atmosphere/refraction.h"
 #include "atmosphere/shell.h"
 #include "renderer/dither.h"
 #include "renderer/render.h"
@@ -21,12 +22,12 @@ namespace {
 constexpr GLuint kAirBinding = 0;
 constexpr GLuint kViewBinding = 1;
 constexpr GLuint kMomentBinding = 2;
+constexpr GLuint kGroundBinding = 3;
 
 enum TextureUnit {
   kSurfaceUnit,
   kDiffuseMomentsUnit,
   kDiffuseSkyUnit,
-  kGroundCoverUnit,
   kSunShadowUnit,
   kPictureUnit,
   kDitherUnit,
@@ -35,12 +36,8 @@ enum TextureUnit {
 constexpr int kSkyNodes = 12;  // Gauss nodes of a panel of a ray to the sky, as SceneRenderer has
 constexpr int kNearNodes = 4;  // of a ray to terrain within 50 km
 constexpr int kDiffuseSkySide = 96;  // texels of the map of diffuse light, azimuth and elevation
-constexpr int kMomentSuns = 160;     // finer than DiffuseLight's nodes: bilinear for its cubic
-constexpr int kMomentAltitudes = 80;
-constexpr double kLowestCover_m = -500.0;  // altitudes of the table of ground cover
-constexpr double kHighestCover_m = 9500.0;
-constexpr int kCoverAltitudes = 512;
-constexpr int kCoverSlopes = 128;
+constexpr int kMomentSuns = 512;      // finer than DiffuseLight's nodes: bilinear for its cubic, in
+constexpr int kMomentAltitudes = 96;  // twilight, where light falls by e a degree, to 5e-4
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
@@ -51,9 +48,10 @@ std::vector<ShaderPiece> LightTexts(int degree) {
       {"constants", fmt::format("#define DEGREE {}\n#define SKY_RULE 0\n#define SKY_NODES {}\n"
                                 "#define NEAR_RULE {}\n#define NEAR_NODES {}\n",
                                 degree, kSkyNodes, kSkyNodes, kNearNodes)});
-  for (const char* name : {"viewer/air_block.glsl", "viewer/view_block.glsl", "viewer/air_ray.glsl",
-                           "viewer/diffuse_light.glsl", "viewer/air_light.glsl",
-                           "viewer/diffuse_sky_map.glsl", "viewer/sun_light.glsl"}) {
+  for (const char* name :
+       {"viewer/air_block.glsl", "viewer/view_block.glsl", "viewer/air_ray.glsl",
+        "viewer/diffuse_light.glsl", "viewer/air_light.glsl", "viewer/diffuse_sky_map.glsl",
+        "viewer/sun_light.glsl", "viewer/ground_cover.glsl"}) {
     pieces.push_back(Piece(name));
   }
   return pieces;
@@ -106,27 +104,6 @@ void UploadMoments(const DiffuseLight& diffuse) {
   ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
 }
 
-// Albedo of mountain ground over slope and altitude.
-void UploadGroundCover(const Medium& medium, double latitude_rad) {
-  const MountainSurface surface(medium.wavelengths_nm, CoverAtLatitude(latitude_rad));
-  std::vector<glm::vec4> texels;
-  for (int row = 0; row < kCoverAltitudes; ++row) {
-    const double altitude_m =
-        kLowestCover_m + (kHighestCover_m - kLowestCover_m) * row / (kCoverAltitudes - 1.0);
-    for (int column = 0; column < kCoverSlopes; ++column) {
-      const Bands<float> albedo = surface.Albedo(altitude_m, column / (kCoverSlopes - 1.0));
-      glm::vec4 texel(0.0F);
-      for (std::size_t band = 0; band < albedo.count; ++band) {
-        texel[static_cast<glm::length_t>(band)] = albedo[band];
-      }
-      texels.push_back(texel);
-    }
-  }
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kCoverSlopes, kCoverAltitudes, 0, GL_RGBA, GL_FLOAT,
-               texels.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
-}
-
 void UploadDither() {
   std::vector<float> noise;
   for (int y = 0; y < kDitherTileSize; ++y) {
@@ -160,12 +137,12 @@ void Fit(std::optional<RenderTarget>& target, int width, int height, RenderTarge
 
 SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant) {
   SunPosition sun = SunAt(place, instant);
-  sun.elevation_rad += Refraction(sun.elevation_rad);
+  sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, place.height_m);
   return sun;
 }
 
 SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const TriangleMesh& mesh,
-                       const LocalFrame& frame)
+                       const LocalFrame& frame, bool relief)
     : medium_(medium),
       ellipsoid_(frame.ellipsoid()),
       terrain_(mesh, frame),
@@ -174,13 +151,12 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
       picture_program_(
           FullScreenProgram(LightTexts(diffuse.options().degree), "viewer/picture.frag.glsl")),
       average_program_(FullScreenProgram({}, "viewer/average.frag.glsl")),
-      develop_program_(FullScreenProgram(SharedTexts(), "viewer/develop.frag.glsl")) {
+      develop_program_(FullScreenProgram(SharedTexts(), "viewer/develop.frag.glsl")),
+      relief_(relief) {
   const MomentBlock moments = MomentBlockOf(medium, diffuse.options().degree);
   UploadBlock(moment_block_, kMomentBinding, moments.data(), moments.size() * sizeof(moments[0]));
   BindTexture(kDiffuseMomentsUnit, GL_TEXTURE_2D_ARRAY, diffuse_moments_);
   UploadMoments(diffuse);
-  BindTexture(kGroundCoverUnit, GL_TEXTURE_2D, ground_cover_);
-  UploadGroundCover(medium, frame.origin().latitude_rad);
   BindTexture(kDitherUnit, GL_TEXTURE_2D, dither_noise_);
   UploadDither();
   BindTexture(kDiffuseSkyUnit, GL_TEXTURE_2D_ARRAY, diffuse_sky_);
@@ -192,15 +168,12 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
     program->BindBlock("Air", kAirBinding);
     program->BindBlock("View", kViewBinding);
     program->BindBlock("Moments", kMomentBinding);
+    program->BindBlock("Ground", kGroundBinding);
     program->BindSampler("diffuse_moments", kDiffuseMomentsUnit);
   }
   picture_program_.BindSampler("surface_map", kSurfaceUnit);
   picture_program_.BindSampler("diffuse_sky", kDiffuseSkyUnit);
-  picture_program_.BindSampler("ground_cover", kGroundCoverUnit);
   picture_program_.BindSampler("sun_shadow", kSunShadowUnit);
-  glUniform2f(picture_program_.Uniform("cover_altitudes"),
-              static_cast<float>(kLowestCover_m / 1000.0),
-              static_cast<float>(kHighestCover_m / 1000.0));
   average_program_.BindSampler("larger", kPictureUnit);
   develop_program_.BindSampler("linear_picture", kPictureUnit);
   develop_program_.BindSampler("dither_noise", kDitherUnit);
@@ -235,7 +208,27 @@ void SkyPainter::UploadView(const Eye& eye, const SunPosition& sun, int width, i
                        irradiance,
                        {h, horizon, std::asin(horizon), air_elevation}};
   UploadBlock(view_block_, kViewBinding, &view, sizeof(view));
-  pixel_angle_ = static_cast<float>(2.0 * half_width / width);
+}
+
+void SkyPainter::UploadGround(const Eye& eye, const UtcInstant& instant) {
+  const GeodeticPosition& origin = terrain_.frame().origin();
+  const MountainSurface surface(medium_.wavelengths_nm,
+                                CoverInSeason(origin.latitude_rad, instant.modified_julian_day));
+  const double radius = medium_.follows_wgs84 ? OsculatingRadius(kWgs84, origin.latitude_rad)
+                                              : medium_.planet_radius_m;
+  const glm::dmat4 mesh_from_eye = terrain_.MeshFromEye(eye.place);
+  const double east_m =
+      origin.longitude_rad * std::cos(origin.latitude_rad) * radius + mesh_from_eye[3].x;
+  const double north_m = origin.latitude_rad * radius + mesh_from_eye[3].y;
+  GroundBlock block = GroundBlockOf(surface, east_m, north_m, relief_);
+  // The columns are the eye's axes in the mesh's frame; the rows are the mesh's in the eye's.
+  const auto row = [&](glm::length_t axis) {
+    return glm::vec4(mesh_from_eye[0][axis], mesh_from_eye[1][axis], mesh_from_eye[2][axis], 0.0);
+  };
+  block.mesh_east = row(0);
+  block.mesh_north = row(1);
+  block.mesh_up = row(2);
+  UploadBlock(ground_block_, kGroundBinding, &block, sizeof(block));
 }
 
 void SkyPainter::PaintDiffuseSky() const {
@@ -250,30 +243,35 @@ void SkyPainter::PaintDiffuseSky() const {
   }
 }
 
-void SkyPainter::PaintPicture(const Eye& eye, const RenderTarget& target) const {
+void SkyPainter::PaintPicture(const Eye& eye, const RenderTarget& target, float pixel_angle) const {
   target.Bind();
   surface_->BindTexture(kSurfaceUnit);
   BindTexture(kDiffuseMomentsUnit, GL_TEXTURE_2D_ARRAY, diffuse_moments_);
   BindTexture(kDiffuseSkyUnit, GL_TEXTURE_2D_ARRAY, diffuse_sky_);
-  BindTexture(kGroundCoverUnit, GL_TEXTURE_2D, ground_cover_);
   terrain_.BindShadow(kSunShadowUnit);
   picture_program_.Use();
   const glm::mat4 shadow = terrain_.ShadowFromEye(eye.place);
   glUniformMatrix4fv(picture_program_.Uniform("shadow_from_eye"), 1, GL_FALSE,
                      glm::value_ptr(shadow));
   glUniform1f(picture_program_.Uniform("shadow_texel"), terrain_.shadow_texel_m());
-  glUniform1f(picture_program_.Uniform("pixel_angle"), pixel_angle_);
+  glUniform1f(picture_program_.Uniform("pixel_angle"), pixel_angle);
+  glUniform1f(
+      picture_program_.Uniform("sample_angle"),
+      pixel_angle * static_cast<float>(picture_->width()) / static_cast<float>(target.width()));
   DrawFullScreen(picture_program_, no_vertices_);
 }
 
-void SkyPainter::Paint(const Eye& eye, const SunPosition& sun, int width, int height, int samples) {
+void SkyPainter::Paint(const Eye& eye, const UtcInstant& instant, int width, int height,
+                       int samples) {
+  const SunPosition sun = ApparentSun(eye.place, instant);
   const int side = static_cast<int>(std::lround(std::sqrt(samples)));
   Fit(surface_, width * side, height * side, RenderTarget::Depth::k32Bit);
   Fit(picture_, width, height, RenderTarget::Depth::kNone);
   if (side > 1) Fit(samples_, width * side, height * side, RenderTarget::Depth::kNone);
   const RenderTarget& target = side > 1 ? *samples_ : *picture_;
 
-  UploadView(eye, sun, width * side, height * side);
+  UploadView(eye, sun, width, height);
+  UploadGround(eye, instant);
   const LocalFrame here(ellipsoid_, eye.place);
   terrain_.CastShadow(here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad)));
   surface_->Bind();
@@ -281,7 +279,7 @@ void SkyPainter::Paint(const Eye& eye, const SunPosition& sun, int width, int he
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   terrain_.DrawSurface(eye.place, kViewBinding);
   PaintDiffuseSky();
-  PaintPicture(eye, target);
+  PaintPicture(eye, target, static_cast<float>(2.0 * std::tan(0.5 * eye.fov_rad) / width));
   if (side > 1) {
     picture_->Bind();
     samples_->BindTexture(kPictureUnit);

@@ -26,13 +26,14 @@ class SkyPainter {
   /// @param medium  at most four wavelengths, else InputError.
   /// @param diffuse solved for `medium`.
   /// @param mesh    terrain in `frame`; without triangles there is the bare planet.
+  /// @param relief  draw relief finer than the mesh (see MountainSurface).
   SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const TriangleMesh& mesh,
-             const LocalFrame& frame);
+             const LocalFrame& frame, bool relief);
 
   /// Paints the linear picture. The sphere under the eye osculates the ellipsoid there, if the
-  /// medium follows WGS84. @param sun apparent, from the eye. @param samples rays a pixel, a
-  /// square number.
-  void Paint(const Eye& eye, const SunPosition& sun, int width, int height, int samples = 1);
+  /// medium follows WGS84; the instant says where the sun stands and what season it is.
+  /// @param samples rays a pixel, a square number.
+  void Paint(const Eye& eye, const UtcInstant& instant, int width, int height, int samples = 1);
 
   /// The picture painted last: linear sRGB [cd/m^2].
   [[nodiscard]] Image Read() const;
@@ -43,22 +44,23 @@ class SkyPainter {
 
  private:
   void UploadView(const Eye& eye, const SunPosition& sun, int width, int height);
+  void UploadGround(const Eye& eye, const UtcInstant& instant);
   void PaintDiffuseSky() const;
-  void PaintPicture(const Eye& eye, const RenderTarget& target) const;
+  void PaintPicture(const Eye& eye, const RenderTarget& target, float pixel_angle) const;
 
   Medium medium_;
   Ellipsoid ellipsoid_;
   TerrainSurface terrain_;
   GlVertexArray no_vertices_;
-  GlBuffer air_block_, view_block_, moment_block_;
+  GlBuffer air_block_, view_block_, moment_block_, ground_block_;
   ShaderProgram diffuse_sky_program_, picture_program_, average_program_, develop_program_;
-  GlTexture diffuse_moments_, ground_cover_, dither_noise_, diffuse_sky_;
+  GlTexture diffuse_moments_, dither_noise_, diffuse_sky_;
   GlFramebuffer diffuse_sky_target_;
   std::optional<RenderTarget> surface_, samples_, picture_;
-  float pixel_angle_ = 0.0F;
+  bool relief_;
 };
 
-/// The sun from a place, where refraction shows it.
+/// The sun from a place at any height, where refraction shows it.
 [[nodiscard]] SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant);
 
 }  // namespace alpenglow

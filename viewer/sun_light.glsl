@@ -15,10 +15,10 @@ vec2 DiskOverHorizon(float mu_s, float horizon_mu, float radius) {
 
 // Radiance of the sun's disk outside the air, per unit of its irradiance [1/sr], times the share of
 // a pixel that the disk covers.
-float SunDiskRadiance(vec3 direction, float pixel_angle) {
+float SunDiskRadiance(vec3 direction, float width) {
   float radius = sun.w;
   float rho = 2.0 * asin(min(0.5 * length(direction - sun.xyz), 1.0)) / radius;
-  float covered = clamp((1.0 - rho) * radius / pixel_angle + 0.5, 0.0, 1.0);
+  float covered = clamp((1.0 - rho) * radius / width + 0.5, 0.0, 1.0);
   if (covered <= 0.0) return 0.0;
   float mu = sqrt(max(1.0 - rho * rho, 0.0));
   float darkening = (1.0 - 0.6 * (1.0 - mu)) / 0.8;

@@ -4,11 +4,11 @@
 in vec3 from_eye;
 in vec3 facing;
 in float along_view;
-out vec4 surface;  // unit normal towards the eye; distance [m]
+out vec4 surface;  // unit normal, on the side that is seen; distance [m]
 
 void main() {
   float d = length(from_eye);
   vec3 n = normalize(facing);
-  surface = vec4(dot(n, from_eye) > 0.0 ? -n : n, d);
+  surface = vec4(gl_FrontFacing ? n : -n, d);
   gl_FragDepth = clamp(log2(max(d, 0.1) / 0.1) / log2(1e10), 0.0, 1.0);
 }

@@ -148,8 +148,12 @@ void TerrainSurface::CastShadow(const Vector<Ecef>& to_sun) {
   const glm::mat4 matrix(shadow_from_mesh_);
   glUniformMatrix4fv(shadow_program_.Uniform("shadow_from_mesh"), 1, GL_FALSE,
                      glm::value_ptr(matrix));
+  // A look-up reaches two texels aside: what the depth of a plane changes over them is no shadow.
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(2.5F, 1.0F);
   glBindVertexArray(layout_.id());
   glDrawElements(GL_TRIANGLES, indices_, GL_UNSIGNED_INT, nullptr);
+  glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_DEPTH_TEST);
 }
 

@@ -28,6 +28,10 @@ class TerrainSurface {
   /// (within a fifth of its radius).
   void CastShadow(const Vector<Ecef>& to_sun);
 
+  /// From metres in the frame (east, north, up) at the eye to metres in the frame of the mesh.
+  [[nodiscard]] glm::dmat4 MeshFromEye(const GeodeticPosition& eye) const;
+  [[nodiscard]] const LocalFrame& frame() const { return frame_; }
+
   /// From metres in the frame (east, north, up) at the eye to the clip space of the shadow map.
   [[nodiscard]] glm::mat4 ShadowFromEye(const GeodeticPosition& eye) const;
   /// Size of the shadow map's texel [m], the larger side; 0 without terrain.
@@ -35,8 +39,6 @@ class TerrainSurface {
   void BindShadow(int unit) const;
 
  private:
-  [[nodiscard]] glm::dmat4 MeshFromEye(const GeodeticPosition& eye) const;
-
   LocalFrame frame_;
   GLsizei indices_;
   glm::dvec3 low_, high_;  // corners of the box around the mesh

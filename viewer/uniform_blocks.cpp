@@ -97,4 +97,27 @@ MomentBlock MomentBlockOf(const Medium& medium, int degree) {
   return block;
 }
 
+GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double north_m,
+                          bool relief) {
+  const auto bands = [](const Bands<float>& albedo) {
+    return GpuBandsOf(
+        {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
+  };
+  constexpr std::array<double, 3> kLongest_m{900.0, 70.0, 220.0};
+  GroundBlock block{};
+  block.forest = bands(surface.materials().forest);
+  block.meadow = bands(surface.materials().meadow);
+  block.rock = bands(surface.materials().rock);
+  block.snow = bands(surface.materials().snow);
+  block.cover_lines = {surface.cover().tree_line_m, surface.cover().snow_line_m,
+                       relief ? 1.0F : 0.0F, 0.0F};
+  for (std::size_t family = 0; family < kLongest_m.size(); ++family) {
+    const double east = east_m / kLongest_m[family];
+    const double north = north_m / kLongest_m[family];
+    block.noise_cell[family] = {std::floor(east), std::floor(north), kLongest_m[family], 0.0};
+    block.noise_place[family] = {east - std::floor(east), north - std::floor(north), 0.0, 0.0};
+  }
+  return block;
+}
+
 }  // namespace alpenglow

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <vector>
 
 #include "atmosphere/medium.h"
 #include "lut/multiple_scattering.h"
+#include "renderer/surface.h"
 
 namespace alpenglow {
 
@@ -42,6 +44,17 @@ struct MeshBlock {
 static_assert(sizeof(MeshBlock) == 5 * sizeof(glm::vec4));
 static_assert(offsetof(MeshBlock, up) == 4 * sizeof(glm::vec4));
 
+/// `block Ground` of ground_cover.glsl.
+struct GroundBlock {
+  glm::vec4 forest, meadow, rock, snow;
+  glm::vec4 cover_lines;
+  std::array<glm::vec4, 3> noise_cell, noise_place;
+  glm::vec4 mesh_east, mesh_north, mesh_up;
+};
+static_assert(sizeof(GroundBlock) == 14 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, noise_place) == 8 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, mesh_up) == 13 * sizeof(glm::vec4));
+
 /// `block Moments` of diffuse_light.glsl for one degree: the factors of every moment, then the axis
 /// of the sun. Its length is the shader's (a block's array has the length that its text says).
 using MomentBlock = std::vector<glm::vec4>;
@@ -49,6 +62,11 @@ using MomentBlock = std::vector<glm::vec4>;
 /// Throws InputError when the medium has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
 [[nodiscard]] MomentBlock MomentBlockOf(const Medium& medium, int degree);
+
+/// Materials and noise around the eye, which stands at (east_m, north_m) on the pattern's plane;
+/// see GroundPoint. The axes of the mesh are left to the caller.
+[[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m,
+                                        double north_m, bool relief);
 
 /// One value a band, the rest 0.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);

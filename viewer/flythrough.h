@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// A scene flown through: eye, time and exposure, what keys do to them, and the picture.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "renderer/scene.h"
+#include "renderer/scene_ground.h"
+#include "viewer/flight.h"
+#include "viewer/sky_painter.h"
+
+namespace alpenglow {
+
+/// What a key press asks for.
+enum class Command {
+  kFasterTime,
+  kSlowerTime,
+  kNarrowerView,
+  kWiderView,
+  kScreenshot,
+  kHud,
+  kQuit
+};
+
+/// Seconds of the scene per second of the pilot, one step faster (+1) or slower (-1) than `rate`:
+/// ..., -60, -1, 0, 1, 60, ...
+[[nodiscard]] double SteppedTimeRate(double rate, int step);
+
+/// Exposure that follows the meter like an eye: half way in 0.3 s. A first exposure is the
+/// metered one.
+[[nodiscard]] double AdaptedEv100(std::optional<double> before, double metered, double seconds);
+
+/// Throws InputError unless the file's name ends in .png or .exr.
+void RequirePictureName(const std::filesystem::path& file);
+
+class Flythrough {
+ public:
+  /// Loads the terrain, solves the diffuse light, fills the graphics card: an OpenGL context must
+  /// be current, now and in all calls. The scene starts at `start`. Throws InputError for what the
+  /// scene names and cannot be read, and a medium of more than four wavelengths.
+  Flythrough(const Scene& scene, const UtcInstant& start);
+
+  /// Lets `seconds` pass, with the controls held like this.
+  void Advance(const Steering& steering, double seconds);
+  void Turn(double right_rad, double up_rad) { eye_ = Turned(eye_, right_rad, up_rad); }
+  /// kScreenshot writes the next free of skyview-0001.png, ... in the current folder.
+  void Do(Command command);
+
+  /// Paints into a framebuffer (0: the window), exposed as the meter says.
+  void Paint(int width, int height, GLuint framebuffer, double seconds);
+  /// Paints anew with four rays a pixel and writes what is seen: .png developed, .exr linear, both
+  /// with what made them in their headers. Throws OutputError.
+  void WritePicture(const std::filesystem::path& file, int width, int height);
+
+  [[nodiscard]] const Eye& eye() const { return eye_; }
+  [[nodiscard]] bool quit() const { return quit_; }
+  /// Place, height, heading, time, sun and exposure in one line; empty when hidden.
+  [[nodiscard]] std::string HudText() const;
+  /// What loading the terrain has to tell, empty if nothing.
+  [[nodiscard]] const std::string& terrain_message() const { return ground_.message; }
+
+ private:
+  [[nodiscard]] double GroundUnderEye() const;
+
+  Scene scene_;
+  SceneGround ground_;
+  SkyPainter painter_;
+  Eye eye_;
+  UtcInstant now_;
+  double time_rate_ = 1.0;
+  std::optional<double> ev100_;
+  int width_ = 0, height_ = 0;  // of the last picture
+  bool hud_ = true, quit_ = false;
+};
+
+}  // namespace alpenglow

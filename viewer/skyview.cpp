@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// skyview: a flight through a scene, on the graphics card.
+#include <fmt/core.h>
+
+#include <chrono>
+
+#include "atmosphere/constants.h"
+#include "renderer/frame_times.h"
+#include "viewer/flythrough.h"
+#include "viewer/gl_context.h"
+#include "viewer/skyview_options.h"
+#include "viewer/window.h"
+
+namespace alpenglow {
+namespace {
+
+// The place typed moves the eye of a scene file, and is the place of a scene without one.
+Scene SceneOf(const SkyviewOptions& options) {
+  if (options.scene_file.empty()) {
+    SceneOptions typed;
+    typed.latitude = options.latitude.value_or(typed.latitude);
+    typed.longitude = options.longitude.value_or(typed.longitude);
+    typed.height_m = options.altitude;
+    typed.heading = options.heading;
+    typed.pitch = options.pitch;
+    typed.dem = options.dem;
+    return SceneFromOptions(typed);
+  }
+  Scene scene = ReadScene(options.scene_file);
+  const auto degrees = [](const std::optional<double>& typed, double radians) {
+    return typed.value_or(radians / kRadiansPerDegree);
+  };
+  if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange && !scene.terrain.centre) {
+    scene.terrain.centre = scene.place;
+  }
+  scene.place = PlaceFromDegrees(degrees(options.latitude, scene.place.latitude_rad),
+                                 degrees(options.longitude, scene.place.longitude_rad), 0.0);
+  const Height height = options.altitude ? Height{*options.altitude, false} : scene.camera.height;
+  const Camera& camera = scene.camera;
+  scene.camera = CameraFromDegrees(height, degrees(options.heading, camera.heading_rad),
+                                   degrees(options.pitch, camera.pitch_rad),
+                                   degrees({}, camera.roll_rad), degrees({}, camera.fov_rad), "--");
+  return scene;
+}
+
+UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
+  if (!options.time && scene.time) return *scene.time;
+  const EventDay day{scene.place, scene.zone,
+                     scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
+  return InstantFromText(options.time.value_or("noon"), day);
+}
+
+// A frame lasts a sixtieth of a second where nobody watches.
+void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const ImageSize& size) {
+  for (int frame = 1; frame < options.frames; ++frame) flight.Advance({}, 1.0 / 60.0);
+  flight.WritePicture(*options.screenshot, size.width, size.height);
+}
+
+void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window) {
+  using Clock = std::chrono::steady_clock;
+  int frames = 0;
+  for (Clock::time_point before = Clock::now(); !flight.quit();) {
+    ThrowIfInterrupted();
+    const Window::Events events = window.Poll();
+    if (events.close) return;
+    const Clock::time_point now = Clock::now();
+    const double seconds = std::min(std::chrono::duration<double>(now - before).count(), 0.25);
+    before = now;
+    if (window.width() == 0 || window.height() == 0) continue;
+    flight.Turn(-events.drag_right * flight.eye().fov_rad, -events.drag_up * flight.eye().fov_rad);
+    flight.Advance(events.steering, seconds);
+    flight.Paint(window.width(), window.height(), 0, seconds);
+    window.SetTitle(flight.HudText());
+    window.Swap();
+    for (const Command command : events.commands) flight.Do(command);
+    if (options.screenshot && ++frames == options.frames) {
+      flight.WritePicture(*options.screenshot, window.width(), window.height());
+      return;
+    }
+  }
+}
+
+int Run(const SkyviewOptions& options) {
+  const ThreadLimit threads(options.common.threads);
+  const ImageSize size = ImageSizeFromText(options.size);
+  if (options.screenshot) RequirePictureName(*options.screenshot);
+  const Scene scene = SceneOf(options);
+  const UtcInstant start = StartOf(options, scene);
+  // The context outlives what was made in it.
+  const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
+  const auto window = options.headless
+                          ? nullptr
+                          : std::make_unique<Window>(size.width, size.height, options.fullscreen);
+  if (!options.common.quiet) fmt::print(stderr, "skyview: {}\n", GlDescription());
+  Flythrough flight(scene, start);
+  if (!flight.terrain_message().empty())
+    fmt::print(stderr, "skyview: {}\n", flight.terrain_message());
+  window ? Fly(options, flight, *window) : PaintHeadless(options, flight, size);
+  return 0;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("A flight through a scene, on the graphics card", "skyview");
+  SkyviewOptions options;
+  AddSkyviewOptions(app, options);
+  if (const std::optional<int> status = ParseCommandLine(app, argc, argv)) return *status;
+  return Run(options);
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main(int argc, char** argv) {
+  return alpenglow::RunProgram("skyview", [&] { return alpenglow::Main(argc, argv); });
+}

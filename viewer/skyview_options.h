@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// The command line of skyview. Included by its one translation unit (CLI11 is slow to compile).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lut/command_line.h"
+#include "renderer/scene_options.h"
+
+namespace alpenglow {
+
+inline constexpr char kSkyviewFooter[] =
+    "Keys: W A S D fly along and across the view, R F up and down, arrows turn, a drag with the "
+    "left button looks; t T change the rate of time, x X the field of view, F3 writes a "
+    "screenshot, h hides the numbers in the title, Esc quits. Speed grows with the height over "
+    "the ground.\n\n"
+    "Example: sunrise over the built-in range, without a display\n"
+    "  skyview --time sunrise+15m --headless --screenshot dawn.png";
+
+/// What is typed; texts are read later, against the scene.
+struct SkyviewOptions {
+  CommonOptions common;
+  std::string scene_file, size = "1280x720";
+  std::optional<double> latitude, longitude, altitude, heading, pitch;
+  std::optional<std::string> dem, time, screenshot;
+  int frames = 1;
+  bool fullscreen = false, headless = false;
+};
+
+inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
+  CLI::Option* file = app.add_option("SCENE", options.scene_file,
+                                     "Scene file (TOML); without it a built-in range, or --dem");
+  app.add_option("--latitude", options.latitude, "Of the eye: degrees north, -90 to 90");
+  app.add_option("--longitude", options.longitude, "Of the eye: degrees east, -180 to 360");
+  app.add_option("--altitude", options.altitude, "Of the eye: metres above the ellipsoid, to 1e9");
+  app.add_option("--heading", options.heading, "Degrees clockwise from north, -360 to 360");
+  app.add_option("--pitch", options.pitch, "Degrees above the horizontal, -90 to 90");
+  app.add_option("--time", options.time,
+                 "2026-06-21T04:00:00Z, or an event of the scene's day: sunrise-10m, noon, "
+                 "civil-dusk (default: the scene's time, else noon of 2026-06-21)");
+  app.add_option("--dem", options.dem, "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM")
+      ->excludes(file);
+  app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
+      ->capture_default_str();
+  app.add_flag("--fullscreen", options.fullscreen, "Use the whole screen");
+  CLI::Option* picture = app.add_option("--screenshot", options.screenshot,
+                                        "Write this PNG or EXR after --frames frames and end");
+  app.add_option("--frames", options.frames, "Frames before the screenshot, 1 to 1000000")
+      ->check(CLI::Range(1, 1000000))
+      ->needs(picture)
+      ->capture_default_str();
+  app.add_flag("--headless", options.headless, "Needs no display; only with --screenshot")
+      ->needs(picture);
+  AddCommonOptions(app, "skyview", options.common);
+  app.footer(kSkyviewFooter);
+}
+
+}  // namespace alpenglow
