@@ -9,7 +9,7 @@ target_compile_options(alpenglow_warnings INTERFACE
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
 
 set(CMAKE_CXX_FLAGS_SANITIZE
-  "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+  "-O2 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
   CACHE STRING "Flags of the Sanitize build type")
 set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}" CACHE STRING "")
 set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined" CACHE STRING "")
