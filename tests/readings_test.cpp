@@ -8,12 +8,12 @@ namespace alpenglow {
 namespace {
 
 TEST(Readings, FloatAgreesWithDoubleToOnePartInAHundredThousand) {
-  for (const testing::SharedTextCase& c : testing::AllSharedTextCases()) {
+  for (const tests::SharedTextCase& c : tests::AllSharedTextCases()) {
     SCOPED_TRACE(c.glsl);
     ASSERT_FALSE(c.points.empty());
     for (const auto& a : c.points) {
-      const double exact = c.in_double(testing::Widen(a));
-      ASSERT_NEAR(static_cast<double>(c.in_float(a)), exact, testing::Allowance(c, a))
+      const double exact = c.in_double(tests::Widen(a));
+      ASSERT_NEAR(static_cast<double>(c.in_float(a)), exact, tests::Allowance(c, a))
           << "at " << ::testing::PrintToString(a)
           << "; allowed are 1e-5 and what one ulp of the arguments changes";
     }
@@ -23,15 +23,14 @@ TEST(Readings, FloatAgreesWithDoubleToOnePartInAHundredThousand) {
 // The sense of the first test: an ill-conditioned formula does not pass it.
 TEST(Readings, TheNaiveFormulaOfTheAltitudeFails) {
   int failures = 0;
-  const testing::SharedTextCase naive{
-      "sqrt(r^2 - R^2)",
-      [](const testing::Arguments<double>& a) {
-        return std::sqrt((a[2] + a[0]) * (a[2] + a[0]) - a[2] * a[2]);
-      },
-      [](const testing::Arguments<float>& a) {
-        return std::sqrt((a[2] + a[0]) * (a[2] + a[0]) - a[2] * a[2]);
-      },
-      testing::grid::Rays(), 0.0};
+  const tests::SharedTextCase naive{"sqrt(r^2 - R^2)",
+                                    [](const tests::Arguments<double>& a) {
+                                      return std::sqrt((a[2] + a[0]) * (a[2] + a[0]) - a[2] * a[2]);
+                                    },
+                                    [](const tests::Arguments<float>& a) {
+                                      return std::sqrt((a[2] + a[0]) * (a[2] + a[0]) - a[2] * a[2]);
+                                    },
+                                    tests::grid::Rays(), 0.0};
   for (const auto& a : naive.points) {
     const double exact = shared::HorizonDistance<double>(static_cast<double>(a[0]), 6371.0);
     const double error = std::abs(static_cast<double>(naive.in_float(a)) - exact);

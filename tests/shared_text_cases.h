@@ -17,7 +17,7 @@
 #include "lut/transmittance_map.h"
 #include "renderer/tone_curve.h"
 
-namespace alpenglow::testing {
+namespace alpenglow::tests {
 
 inline constexpr std::size_t kArguments = 8;
 template <typename Real>
@@ -337,6 +337,7 @@ inline std::vector<SharedTextCase> ToneCurveCases() {
   return {
       ALPENGLOW_SHARED_CASE(Luminance(a[0], a[1], a[2]), grid::Colours()),
       ALPENGLOW_SHARED_CASE(ExposedChannel(a[0], a[3]), grid::Colours()),
+      ALPENGLOW_SHARED_CASE(PrintedChannel(a[0]), grid::Colours()),
       ALPENGLOW_SHARED_CASE(InnerChannel(a[0], min(a[0], min(a[1], a[2])), abs(a[0])),
                             grid::Colours()),
       ALPENGLOW_SHARED_CASE(PrintedChannel(a[0]), grid::Colours()),
@@ -378,4 +379,4 @@ inline std::vector<SharedTextCase> AllSharedTextCases() {
   return all;
 }
 
-}  // namespace alpenglow::testing
+}  // namespace alpenglow::tests

@@ -17,8 +17,9 @@ void main() {
   float smallest = min(exposed.r, min(exposed.g, exposed.b));
   vec3 inside = vec3(InnerChannel(exposed.r, smallest, y), InnerChannel(exposed.g, smallest, y),
                      InnerChannel(exposed.b, smallest, y));
-  float share = AgxWhiteShare(inside.r, inside.g, inside.b);
-  vec3 code = vec3(AgxCode(inside.r, share), AgxCode(inside.g, share), AgxCode(inside.b, share));
+  vec3 printed = vec3(PrintedChannel(inside.r), PrintedChannel(inside.g), PrintedChannel(inside.b));
+  float share = AgxWhiteShare(printed.r, printed.g, printed.b);
+  vec3 code = vec3(AgxCode(printed.r, share), AgxCode(printed.g, share), AgxCode(printed.b, share));
   float code_share = AgxWhiteShare(code.r, code.g, code.b);
   vec3 srgb =
       255.0 * vec3(SrgbCode(AgxLight(code.r, code_share)), SrgbCode(AgxLight(code.g, code_share)),

@@ -35,27 +35,11 @@ enum TextureUnit {
 
 constexpr int kSkyNodes = 12;  // Gauss nodes of a panel of a ray to the sky, as SceneRenderer has
 constexpr int kNearNodes = 4;  // of a ray to terrain within 50 km
-constexpr int kDiffuseSkySide = 96;  // texels of the map of diffuse light, azimuth and elevation
+constexpr int kDiffuseSkySide = 96;   // texels of the map of diffuse light, azimuth and elevation
 constexpr int kMomentSuns = 512;      // finer than DiffuseLight's nodes: bilinear for its cubic, in
 constexpr int kMomentAltitudes = 96;  // twilight, where light falls by e a degree, to 5e-4
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
-
-// Everything that lights rays: shared texts, blocks, and the loops over them.
-std::vector<ShaderPiece> LightTexts(int degree) {
-  std::vector<ShaderPiece> pieces = SharedTexts();
-  pieces.push_back(
-      {"constants", fmt::format("#define DEGREE {}\n#define SKY_RULE 0\n#define SKY_NODES {}\n"
-                                "#define NEAR_RULE {}\n#define NEAR_NODES {}\n",
-                                degree, kSkyNodes, kSkyNodes, kNearNodes)});
-  for (const char* name :
-       {"viewer/air_block.glsl", "viewer/view_block.glsl", "viewer/air_ray.glsl",
-        "viewer/diffuse_light.glsl", "viewer/air_light.glsl", "viewer/diffuse_sky_map.glsl",
-        "viewer/sun_light.glsl", "viewer/ground_cover.glsl"}) {
-    pieces.push_back(Piece(name));
-  }
-  return pieces;
-}
 
 ShaderProgram FullScreenProgram(std::vector<ShaderPiece> texts, const char* stage) {
   texts.push_back(Piece(stage));
@@ -134,6 +118,21 @@ void Fit(std::optional<RenderTarget>& target, int width, int height, RenderTarge
 }
 
 }  // namespace
+
+std::vector<ShaderPiece> LightTexts(int degree) {
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  pieces.push_back(
+      {"constants", fmt::format("#define DEGREE {}\n#define SKY_RULE 0\n#define SKY_NODES {}\n"
+                                "#define NEAR_RULE {}\n#define NEAR_NODES {}\n",
+                                degree, kSkyNodes, kSkyNodes, kNearNodes)});
+  for (const char* name :
+       {"viewer/air_block.glsl", "viewer/view_block.glsl", "viewer/air_ray.glsl",
+        "viewer/diffuse_light.glsl", "viewer/air_light.glsl", "viewer/diffuse_sky_map.glsl",
+        "viewer/sun_light.glsl", "viewer/ground_cover.glsl"}) {
+    pieces.push_back(Piece(name));
+  }
+  return pieces;
+}
 
 SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant) {
   SunPosition sun = SunAt(place, instant);

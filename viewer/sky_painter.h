@@ -60,6 +60,10 @@ class SkyPainter {
   bool relief_;
 };
 
+/// Everything that lights rays: shared texts, uniform blocks and the loops over them, for diffuse
+/// light of this degree.
+[[nodiscard]] std::vector<ShaderPiece> LightTexts(int degree);
+
 /// The sun from a place at any height, where refraction shows it.
 [[nodiscard]] SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant);
 

@@ -10,7 +10,7 @@
 #include "atmosphere/error.h"
 #include "viewer/gl_context.h"
 
-namespace alpenglow::testing {
+namespace alpenglow::tests {
 
 /// Tests of this fixture have a current OpenGL context. They are skipped only where EGL gives none.
 class Headless : public ::testing::Test {
@@ -27,4 +27,4 @@ class Headless : public ::testing::Test {
   std::unique_ptr<HeadlessContext> context_;
 };
 
-}  // namespace alpenglow::testing
+}  // namespace alpenglow::tests

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// skyview as users meet it: the program itself, its exit statuses, files and messages.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "renderer/image.h"
+#include "tests/renderer/temporary_folder.h"
+#include "tests/viewer/headless.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class Skyview : public TemporaryFolder {
+ protected:
+  struct Outcome {
+    int status;
+    std::string error;
+  };
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    WriteText(folder_ / "s.toml",
+              "[place]\nlatitude = 46.5\nlongitude = 8.0\nzone = \"Europe/Zurich\"\n"
+              "[time]\nutc = \"2026-06-21T10:00:00Z\"\n[terrain]\nnone = true\n"
+              "[atmosphere]\npreset = \"bruneton2017\"\n");  // three bands: quick to prepare
+  }
+  [[nodiscard]] std::string InFolder(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  /// @param arguments as typed into a shell; no display is named in the environment.
+  [[nodiscard]] Outcome Run(const std::string& arguments) const {
+    const std::string command = std::string("env -u DISPLAY -u WAYLAND_DISPLAY ") +
+                                ALPENGLOW_SKYVIEW + " " + arguments + " >" + InFolder("out.txt") +
+                                " 2>" + InFolder("err.txt");
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), ContentOf(InFolder("err.txt"))};
+  }
+  static bool HasOpenGl() {
+    try {
+      const HeadlessContext context;
+      return true;
+    } catch (const DisplayError&) {
+      return false;
+    }
+  }
+};
+
+TEST_F(Skyview, WithoutADisplayItWritesThePictureAsPng) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const Outcome outcome =
+      Run(InFolder("s.toml") + " --headless --size 64x36 --screenshot " + InFolder("view.png"));
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  const DisplayImage image = ReadPng(InFolder("view.png"));
+  EXPECT_EQ(image.width, 64);
+  EXPECT_EQ(image.height, 36);
+  EXPECT_GT(image.rgb[2], image.rgb[0]) << "the sky over the scene is blue";
+  EXPECT_EQ(ReadPngMetadata(InFolder("view.png")).at("alpenglow.painter"), "skyview");
+}
+
+TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const Outcome outcome = Run(InFolder("s.toml") +
+                              " --headless --size 32x18 --frames 3 --altitude 10000 --time "
+                              "sunset-30m --screenshot " +
+                              InFolder("view.exr"));
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_GT(ReadExr(InFolder("view.exr")).at(16, 4)[1], 10.0F) << "candela per square metre";
+  EXPECT_THAT(ReadExrMetadata(InFolder("view.exr")).at("alpenglow.camera_height"),
+              HasSubstr("10000"));
+}
+
+TEST_F(Skyview, WithoutADisplayAWindowIsRefusedWithStatusFive) {
+  const Outcome outcome = Run(InFolder("s.toml"));
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.error, HasSubstr("no display"));
+  EXPECT_THAT(outcome.error, HasSubstr("--headless"));
+}
+
+TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
+  EXPECT_EQ(Run("--headless").status, 2) << "nothing would be seen";
+  EXPECT_EQ(Run("--nonsense").status, 2);
+  EXPECT_EQ(Run("--headless --screenshot a.png --frames 0").status, 2);
+  EXPECT_EQ(Run(InFolder("s.toml") + " --dem x.hgt").status, 2);
+}
+
+TEST_F(Skyview, AWrongInputEndsWithStatusThreeAndNamesIt) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"--headless --screenshot a.jpg", "a.jpg"},
+      {"--headless --screenshot a.png --size 0x10", "size"},
+      {"--headless --screenshot a.png --latitude 91", "latitude"},
+      {"--headless --screenshot a.png --time 2026-02-30T00:00:00Z", "2026-02-30"},
+      {"missing.toml --headless --screenshot a.png", "missing.toml"},
+  };
+  for (const auto& [arguments, named] : cases) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments << ": " << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(named));
+    EXPECT_FALSE(fs::exists("a.png"));
+  }
+}
+
+TEST_F(Skyview, AMediumOfManyBandsIsRefused) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  WriteText(folder_ / "bands.toml",
+            "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nnone = true\n"
+            "[atmosphere]\nfile = \"eight.toml\"\n");
+  WriteText(folder_ / "eight.toml", "preset = \"earth\"\n[spectrum]\nbands = 8\n");
+  const Outcome outcome =
+      Run(InFolder("bands.toml") + " --headless --screenshot " + InFolder("a.png"));
+  EXPECT_EQ(outcome.status, 3) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("at most 4"));
+}
+
+TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFour) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const Outcome outcome =
+      Run(InFolder("s.toml") + " --headless --size 16x9 --screenshot /no/such/folder/a.png");
+  EXPECT_EQ(outcome.status, 4) << outcome.error;
+}
+
+TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
+  EXPECT_EQ(Run("--help").status, 0);
+  const std::string help = ContentOf(InFolder("out.txt"));
+  for (const char* option : {"--latitude", "--longitude", "--altitude", "--heading", "--pitch",
+                             "--time", "--dem", "--size", "--fullscreen", "--screenshot",
+                             "--frames", "--headless", "--threads", "--version", "Example"}) {
+    EXPECT_THAT(help, HasSubstr(option));
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
