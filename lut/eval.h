@@ -5,10 +5,13 @@
 //             difference between two numbers of nodes and what closed forms leave (bounds below).
 //             For errors below what these can do, the judge.
 //   table     look-ups in stored tables. The error is the distance to the integral.
+//   path-trace  the judge of multiple scattering. The error is one standard error.
 //
 // Radiances are per unit solar irradiance [1/sr], irradiances per unit solar irradiance [1].
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -39,6 +42,12 @@ struct IntegralOptions {
   /// Relative: chooses the samples of every case, and the judge where they do not suffice. Light of
   /// higher orders has the error it has.
   std::optional<double> max_error;
+};
+
+struct PathTraceOptions {
+  double max_error = 0.005;  // relative: paths are added until one standard error is below it
+  std::size_t max_paths = std::size_t{1} << 22U;  // of a case; errors stay larger then
+  std::uint64_t seed = 1;                         // a case's value does not depend on others
 };
 
 inline constexpr int kFewestSamples = 2;
@@ -80,6 +89,11 @@ class Evaluator {
 /// Throws InputError for tables of different media.
 [[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TransmittanceTable transmittance,
                                                             ScatteringTable single_scattering);
+
+/// Light scattered once or by all orders, and the sky's irradiance; refuses the other quantities.
+/// Throws InputError for options out of range.
+[[nodiscard]] std::unique_ptr<Evaluator> MakePathTraceEvaluator(
+    const Medium& medium, const PathTraceOptions& options = {});
 
 /// Evaluates every case of a file in parallel and writes "id,wavelength_nm,value,error" in the
 /// order of the cases, whole or not at all. Never holds more than a few thousand cases. Throws

@@ -16,15 +16,13 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::optional<std::string> atmosphere;
+  std::optional<std::string> atmosphere, tables, max_error;
   std::string out;
   bool single_scattering_only = false;
   std::string quality = "standard";
   std::string described;
   std::string cases, results, method;
-  std::optional<std::string> tables;
   std::optional<int> samples;
-  std::optional<std::string> max_error;
 };
 
 std::string FaultOfMaxError(const std::string& text) {
@@ -70,8 +68,8 @@ void AddEval(CLI::App& app, Options& options) {
       "id,wavelength_nm,value,error.");
   eval.add_option("--cases", options.cases, "Cases (CSV)")->required();
   eval.add_option("--out", options.results, "Results (CSV)")->required();
-  eval.add_option("--method", options.method, "table (needs --lut) or integral")
-      ->check(CLI::IsMember({"table", "integral"}))
+  eval.add_option("--method", options.method, "table (needs --lut), integral or path-trace")
+      ->check(CLI::IsMember({"table", "integral", "path-trace"}))
       ->required();
   AddAtmosphere(eval, options);
   eval.add_option("--lut", options.tables,
@@ -81,7 +79,7 @@ void AddEval(CLI::App& app, Options& options) {
                       "integral: Gauss nodes on each smooth piece of a ray; default 16")
           ->check(CLI::Range(kFewestSamples, kMostSamples));
   eval.add_option("--max-error", options.max_error,
-                  "integral: relative error, 1e-8 to 1 or like 0.2%; chooses the samples")
+                  "Relative error, 1e-8 to 1 or like 0.2%; path-trace: one standard error, 0.5%")
       ->check(FaultOfMaxError)
       ->excludes(samples);
   eval.footer("Example: skylut eval --cases cases.csv --out results.csv --method integral");
@@ -89,11 +87,11 @@ void AddEval(CLI::App& app, Options& options) {
 
 /// What CLI11 cannot say by itself: options that belong to one method.
 void CheckMethod(const CLI::App& eval, const Options& options) {
-  if (!eval.parsed() || options.method != "table") return;
+  if (!eval.parsed() || options.method == "integral") return;
+  if (options.samples) throw CLI::ValidationError("--samples", "needs --method integral");
+  if (options.method == "path-trace") return;
   if (!options.tables) throw CLI::ValidationError("--method table", "needs --lut");
-  if (options.samples || options.max_error) {
-    throw CLI::ValidationError("--method table", "takes neither --samples nor --max-error");
-  }
+  if (options.max_error) throw CLI::ValidationError("--method table", "takes no --max-error");
 }
 
 std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
@@ -108,10 +106,12 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
     }
     medium = tables.transmittance.medium();
   }
-  IntegralOptions integral;
-  integral.samples = options.samples.value_or(integral.samples);
-  if (options.max_error) integral.max_error = RelativeErrorFromText(*options.max_error);
-  return MakeIntegralEvaluator(medium ? *medium : MediumPreset("earth"), integral);
+  if (!medium) medium = MediumPreset("earth");
+  const auto error = RelativeErrorFromText(options.max_error.value_or(""));
+  if (options.method == "path-trace")
+    return MakePathTraceEvaluator(*medium, {.max_error = error.value_or(0.005)});
+  return MakeIntegralEvaluator(*medium,
+                               {.samples = options.samples.value_or(16), .max_error = error});
 }
 
 int Run(int argc, char** argv) {

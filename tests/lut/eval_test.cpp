@@ -360,5 +360,52 @@ TEST(IntegralEvaluator, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(MakeIntegralEvaluator(MediumPreset("earth", wavelengths)), InputError);
 }
 
+TEST_F(Eval, PathsGiveScatteredLightWithOneStandardErrorAndNothingElse) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.003});
+  const auto integral = MakeIntegralEvaluator(medium, WithMaxError(1e-6));
+  const std::string cases = std::string(kHeader) +
+                            "sky,single,2,80,40,70,\nground,single,1000,130,40,70,\n"
+                            "air,inscatter_single,1000,130,40,70,\n"
+                            "dusk,single,2,80,40,95,\nspace,single,400000,100,40,70,\n";
+  const Results traced = Evaluate(cases, *paths);
+  const Results judged = Evaluate(cases, *integral);
+  ASSERT_EQ(traced.size(), 15U);
+  for (const auto& [key, estimate] : traced) {
+    const double truth = judged.at(key).value;
+    EXPECT_NEAR(estimate.value, truth, 4.0 * estimate.error + 1e-5 * truth)
+        << key.first << ": four standard errors; six digits are written";
+    EXPECT_LE(estimate.error, 0.0031 * truth) << key.first;
+  }
+  const Results alone = Evaluate(std::string(kHeader) + "dusk,total,2,80,40,95,\n", *paths);
+  const Results among = Evaluate(
+      std::string(kHeader) + "noon,irradiance_sky,2,0,0,20,\ndusk,total,2,80,40,95,\n", *paths);
+  EXPECT_EQ(alone.at({"dusk", 550.0}).value, among.at({"dusk", 550.0}).value)
+      << "a value does not depend on the other cases";
+  for (const Quantity quantity :
+       {Quantity::kTransmittance, Quantity::kOpticalDepth, Quantity::kIrradianceSun}) {
+    EXPECT_TRUE(paths->Refusal(quantity).has_value());
+  }
+}
+
+TEST_F(StoredEval, PathsAgreeWithStoredSkyIrradiance) {
+  const auto media = stored::Media();
+  const auto results = stored::Results("irradiance_results.csv");
+  int compared = 0;
+  for (const stored::Row& row : stored::Read("irradiance.csv")) {
+    if (row.at("quantity") != "irradiance_down") continue;
+    const auto paths = MakePathTraceEvaluator(media.at(row.at("set")));
+    const Results traced = Evaluate(kHeader + LineOf(row, "irradiance_sky"), *paths);
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const Estimate& estimate = traced.at({row.at("id"), stored::Number(expected, "lambda_nm")});
+      EXPECT_NEAR(estimate.value, stored::Number(expected, "irradiance"),
+                  4.0 * std::hypot(estimate.error, stored::Number(expected, "std_err")))
+          << row.at("id") << ": four standard errors";
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 12);
+}
+
 }  // namespace
 }  // namespace alpenglow

@@ -76,7 +76,8 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
   for (const char* arguments :
        {"", "frobnicate", "build", "build --out t --quality best", "build --out t --threads -1",
         "build --out t --max-error 1%", "info", "eval --cases c --out r",
-        "eval --cases c --out r --method path-trace", "eval --cases c --out r --method table",
+        "eval --cases c --out r --method path-trace --samples 8",
+        "eval --cases c --out r --method table",
         "eval --cases c --out r --method table --lut t --samples 8",
         "eval --cases c --out r --method integral --samples 1",
         "eval --cases c --out r --method integral --max-error much",
