@@ -239,7 +239,7 @@ TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
   for (const auto& [key, truth] : integrated) {
     const Estimate& estimate = looked_up.at(key);
     EXPECT_LE(std::abs(estimate.value - truth.value), estimate.error + 1e-15) << key.first;
-    EXPECT_LT(estimate.error, 0.1 * truth.value + 1e-15) << key.first << ": a coarse table";
+    EXPECT_LT(estimate.error, 0.3 * truth.value + 1e-15) << key.first << ": a coarse table";
   }
 }
 
