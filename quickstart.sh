@@ -11,5 +11,5 @@ cmake --build build/quickstart
 mkdir -p out
 echo "Rendering"
 build/quickstart/renderer/skyseries --out 'out/day.%04d.exr' --png --size 960x540 \
-  --from sunrise-1h --to sunset+1h --every 30m --contact-sheet out/day.png
+  --date 2026-03-21 --from sunrise-1h --to sunset+1h --every 40m --contact-sheet out/day.png
 echo "Done: out/day.png shows the whole day, out/day.0000.png and on the single frames."

@@ -9,7 +9,7 @@ target_compile_options(alpenglow_warnings INTERFACE
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
 
 set(CMAKE_CXX_FLAGS_SANITIZE
-  "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+  "-O2 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
   CACHE STRING "Flags of the Sanitize build type")
 set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}" CACHE STRING "")
 set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined" CACHE STRING "")
@@ -81,9 +81,10 @@ std::string_view EmbeddedText(std::string_view name) {
   target_sources(${target} PRIVATE ${pieces} ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp)
 endfunction()
 
-# alpenglow_test(<folder>/<subject>_test.cpp LIBRARIES ...): one program a subject, one CTest line a test.
+# alpenglow_test(<folder>/<subject>_test.cpp [WHOLE] LIBRARIES ...): one program a subject, one CTest line a
+# test; WHOLE: one line for the program, whose tests share something costly.
 function(alpenglow_test source)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "WHOLE" "" "LIBRARIES;SOURCES")
   string(REGEX REPLACE "[/]" "_" name ${source})
   string(REGEX REPLACE "\\.cpp$" "" name ${name})
   add_executable(${name} ${source} ${arg_SOURCES})
@@ -92,6 +93,11 @@ function(alpenglow_test source)
   target_compile_definitions(${name} PRIVATE
     ALPENGLOW_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     ALPENGLOW_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
+  if(arg_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 900)
+    return()
+  endif()
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
 endfunction()
 

@@ -55,8 +55,8 @@ double DetailNoise(const GroundPoint& point, double longest_m, int octaves, std:
 // 0.1-0.3, snow 0.7-0.95.
 MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover)
     : cover_(cover),
-      materials_{AlbedoBands({0.035, 0.060, 0.022}, wavelengths_nm),
-                 AlbedoBands({0.095, 0.120, 0.045}, wavelengths_nm),
+      materials_{AlbedoBands({0.038, 0.054, 0.027}, wavelengths_nm),
+                 AlbedoBands({0.098, 0.115, 0.055}, wavelengths_nm),
                  AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm),
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
