@@ -8,11 +8,11 @@ target_compile_options(alpenglow_warnings INTERFACE
   # gives one result on every machine.
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
 
+# Not cache variables: project() has put empty ones of these names into the cache, which would win.
 set(CMAKE_CXX_FLAGS_SANITIZE
-  "-O2 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
-  CACHE STRING "Flags of the Sanitize build type")
-set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}" CACHE STRING "")
-set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined" CACHE STRING "")
+  "-O2 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
+set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}")
+set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined")
 
 # alpenglow_library(<folder> SOURCES a.cpp ... HEADERS a.h ...)
 function(alpenglow_library folder)
