@@ -115,11 +115,11 @@ class AtmosphereFile {
   }
 
   Values SetOfBands(double bands) const {
-    for (const int count : {3, 4, 8, 16, 40}) {
+    for (const int count : kWavelengthSetSizes) {
       if (bands == count) return WavelengthSet(count);
     }
-    spectrum_->Fail("bands",
-                    fmt::format("spectrum.bands is {}; it must be one of 3, 4, 8, 16, 40", bands));
+    spectrum_->Fail("bands", fmt::format("spectrum.bands is {}; it must be one of {}", bands,
+                                         fmt::join(kWavelengthSetSizes, ", ")));
   }
 
   // Ascending; remembers whether the lists of the file have to be reversed.

@@ -9,14 +9,18 @@
 // which is exact for the sun itself on any wavelength set: its white point never moves. With at
 // most sixteen bands a correction is added that makes the relative errors of XYZ least over a
 // family of daylight spectra; it keeps the sun exact and is as small as the family allows (ridge).
+//
+// The default sets do better: their rows come from a file, trained on simulated skies.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/cholesky.h"
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "atmosphere/solar_table.h"
 #include "atmosphere/spectrum.h"
+#include "atmosphere/trained_bands.h"
 
 namespace alpenglow {
 namespace {
@@ -120,7 +124,7 @@ std::vector<Daylight> DaylightFamily() {
   return family;
 }
 
-// The symmetric positive definite system of one row of the matrix.
+// The least-squares system of one row of the matrix.
 class NormalEquations {
  public:
   explicit NormalEquations(std::size_t unknowns) : n_(unknowns), a_(n_ * n_), b_(n_) {}
@@ -131,32 +135,12 @@ class NormalEquations {
       b_[i] += weight * row[i] * target;
     }
   }
+  // Keeps the system positive definite.
   void AddRidge(double ridge) {
     for (std::size_t i = 0; i < n_; ++i) a_[i * n_ + i] += ridge;
   }
 
-  // Cholesky; the ridge keeps every pivot positive.
-  [[nodiscard]] std::vector<double> Solve() const {
-    std::vector<double> l = a_;
-    std::vector<double> x = b_;
-    for (std::size_t j = 0; j < n_; ++j) {
-      for (std::size_t k = 0; k < j; ++k) {
-        for (std::size_t i = j; i < n_; ++i) l[i * n_ + j] -= l[i * n_ + k] * l[j * n_ + k];
-      }
-      ALPENGLOW_ENSURE(l[j * n_ + j], >, 0.0);
-      const double pivot = std::sqrt(l[j * n_ + j]);
-      for (std::size_t i = j; i < n_; ++i) l[i * n_ + j] /= pivot;
-    }
-    for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t k = 0; k < i; ++k) x[i] -= l[i * n_ + k] * x[k];
-      x[i] /= l[i * n_ + i];
-    }
-    for (std::size_t i = n_; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n_; ++k) x[i] -= l[k * n_ + i] * x[k];
-      x[i] /= l[i * n_ + i];
-    }
-    return x;
-  }
+  [[nodiscard]] std::vector<double> Solve() const { return SolvePositiveDefinite(a_, b_); }
 
  private:
   std::size_t n_;
@@ -240,6 +224,23 @@ void RequireAscending(const std::vector<double>& wavelengths_nm) {
   }
 }
 
+// The three rows that make XYZ of light relative to the sun.
+std::array<Row, 3> RowsOf(std::span<const double> wavelengths_nm) {
+  std::array<Row, 3> rows;
+  for (std::size_t c = 0; c < 3; ++c) rows[c] = Starting(wavelengths_nm, c);
+  if (const TrainedBands* trained = FindTrainedBands(wavelengths_nm)) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double sun = Sum(rows[c]);
+      rows[c] = trained->share[c];
+      for (double& value : rows[c]) value *= sun;
+    }
+  } else if (wavelengths_nm.size() <= kMostTrainedBands) {
+    const std::vector<Example> examples = Examples(wavelengths_nm);
+    for (std::size_t c = 0; c < 3; ++c) rows[c] = Corrected(std::move(rows[c]), examples, c);
+  }
+  return rows;
+}
+
 Triple Product(std::span<const double> matrix, std::span<const double> bands) {
   const std::size_t n = bands.size();
   return {Dot(matrix.subspan(0, n), bands), Dot(matrix.subspan(n, n), bands),
@@ -252,11 +253,7 @@ BandColour::BandColour(std::vector<double> wavelengths_nm)
     : wavelengths_nm_(std::move(wavelengths_nm)) {
   RequireAscending(wavelengths_nm_);
   const std::size_t n = wavelengths_nm_.size();
-  const std::vector<Example> examples =
-      n <= kMostTrainedBands ? Examples(wavelengths_nm_) : std::vector<Example>{};
-  for (std::size_t component = 0; component < 3; ++component) {
-    Row row = Starting(wavelengths_nm_, component);
-    if (!examples.empty()) row = Corrected(std::move(row), examples, component);
+  for (const Row& row : RowsOf(wavelengths_nm_)) {
     for (std::size_t i = 0; i < n; ++i) {
       xyz_.push_back(row[i] / SolarIrradiance(wavelengths_nm_[i]));
     }

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/solar_table.h"
 #include "atmosphere/spectrum.h"
+#include "atmosphere/trained_bands.h"
 
 namespace alpenglow {
 namespace {
@@ -161,6 +163,61 @@ Matrix3 DeriveSharesFromLinearSrgb() {
   return Inverse(srgb);
 }
 
+// Colours of the bases under the sun above the air, relative to the sun's: one row a base.
+Matrix3 DeriveBasesUnderSun() {
+  constexpr double kStep_nm = 0.5;
+  Matrix3 xyz{};
+  Triple sun{};
+  for (double at = 360.0 + 0.5 * kStep_nm; at < 830.0; at += kStep_nm) {
+    const Triple bases = AlbedoBases(at);
+    const Triple matching = ColourMatching(at);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sun[c] += matching[c] * SolarTable()(at);
+      for (std::size_t base = 0; base < 3; ++base) {
+        xyz[base][c] += matching[c] * SolarTable()(at) * bases[base];
+      }
+    }
+  }
+  for (Triple& row : xyz) {
+    for (std::size_t c = 0; c < 3; ++c) row[c] /= sun[c];
+  }
+  return xyz;
+}
+
+// The bases at the bands of a trained set, changed as little as gives them the colours above
+// through the bands: with the shares M and the error e of a base, by M^T (M M^T)^-1 e.
+std::vector<Triple> AlbedoBasesInBands(const TrainedBands& set) {
+  static const Matrix3 under_sun = DeriveBasesUnderSun();
+  const std::size_t n = set.wavelengths_nm.size();
+  std::vector<Triple> bases;
+  for (const double wavelength_nm : set.wavelengths_nm) bases.push_back(AlbedoBases(wavelength_nm));
+  Matrix3 product{};
+  Matrix3 error = under_sun;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t d = 0; d < 3; ++d) {
+        product[c][d] += set.share[c][i] * set.share[d][i];
+        error[c][d] -= bases[i][c] * set.share[d][i];
+      }
+    }
+  }
+  const Matrix3 inverse = Inverse(product);
+  for (std::size_t base = 0; base < 3; ++base) {
+    const Triple multiplier = inverse * error[base];
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) bases[i][base] += multiplier[c] * set.share[c][i];
+    }
+  }
+  return bases;
+}
+
+std::vector<Triple> AlbedoBasesAt(std::span<const double> wavelengths_nm) {
+  if (const TrainedBands* set = FindTrainedBands(wavelengths_nm)) return AlbedoBasesInBands(*set);
+  std::vector<Triple> bases;
+  for (const double wavelength_nm : wavelengths_nm) bases.push_back(AlbedoBases(wavelength_nm));
+  return bases;
+}
+
 }  // namespace
 
 const Matrix3& XyzFromLinearSrgb() {
@@ -188,8 +245,7 @@ std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
   Triple shares = shares_from_srgb * rgb;
   for (double& share : shares) share = std::clamp(share, 0.0, 1.0);
   std::vector<double> albedo;
-  for (const double wavelength_nm : wavelengths_nm) {
-    const Triple bases = AlbedoBases(wavelength_nm);
+  for (const Triple& bases : AlbedoBasesAt(wavelengths_nm)) {
     albedo.push_back(
         std::clamp(shares[0] * bases[0] + shares[1] * bases[1] + shares[2] * bases[2], 0.0, 1.0));
   }

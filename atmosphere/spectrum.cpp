@@ -3,53 +3,23 @@
 #include "atmosphere/spectrum.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <string>
+#include <string_view>
 #include <utility>
 
-#include "atmosphere/embedded_text.h"
+#include "atmosphere/embedded_table.h"
 #include "atmosphere/error.h"
 #include "atmosphere/solar_table.h"
+#include "atmosphere/trained_bands.h"
 
 namespace alpenglow {
 namespace {
 
-std::string_view TakeUntil(std::string_view& text, char end) {
-  const std::size_t length = std::min(text.find(end), text.size());
-  const std::string_view piece = text.substr(0, length);
-  text.remove_prefix(std::min(length + 1, text.size()));
-  return piece;
-}
-
-double ToNumber(std::string_view field, std::string_view file) {
-  double value = 0.0;
-  const auto result = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (result.ec != std::errc() || result.ptr != field.data() + field.size()) {
-    throw InternalError(fmt::format("{}: \"{}\" is not a number", file, field));
-  }
-  return value;
-}
-
-std::string_view Field(std::string_view line, int column) {
-  std::string_view field = TakeUntil(line, ',');
-  for (int i = 0; i < column; ++i) field = TakeUntil(line, ',');
-  return field;
-}
-
-// Column `column` over column 0 of an embedded table: lines of '#', a line of names, then numbers.
+// Column `column` over column 0 of an embedded table.
 SampledFunction ReadTable(std::string_view file, int column, double shift_x = 0.0) {
-  std::string_view text = atmosphere::EmbeddedText(file);
-  std::vector<double> x, y;
-  bool names_seen = false;
-  while (!text.empty()) {
-    const std::string_view line = TakeUntil(text, '\n');
-    if (line.empty() || line.front() == '#') continue;
-    if (!std::exchange(names_seen, true)) continue;
-    x.push_back(ToNumber(Field(line, 0), file) + shift_x);
-    y.push_back(ToNumber(Field(line, column), file));
-  }
-  return {std::move(x), std::move(y)};
+  std::vector<std::vector<double>> columns = atmosphere::ReadColumns(file, {0, column});
+  for (double& x : columns[0]) x += shift_x;
+  return {std::move(columns[0]), std::move(columns[1])};
 }
 
 constexpr std::string_view kSolarFile = "atmosphere/data/solar_irradiance_astm_g173_etr_native.csv";
@@ -101,20 +71,14 @@ double SampledFunction::Mean(double low, double high) const {
 }
 
 std::vector<double> WavelengthSet(int bands) {
-  switch (bands) {
-    case 3:
-      return {450.0, 540.0, 610.0};
-    case 4:
-      return {450.0, 500.0, 590.0, 650.0};
-    case 8:
-      return UniformSet(400.0, 40.0, 8);
-    case 16:
-      return UniformSet(390.0, 20.0, 16);
-    case 40:
-      return UniformSet(380.0, 10.0, 40);
-    default:
-      throw InputError(fmt::format("bands is {}; it must be one of 3, 4, 8, 16, 40", bands));
+  if (bands == 8) return UniformSet(400.0, 40.0, 8);
+  if (bands == 16) return UniformSet(390.0, 20.0, 16);
+  if (bands == 40) return UniformSet(380.0, 10.0, 40);
+  for (const TrainedBands& set : TrainedBandSets()) {
+    if (static_cast<int>(set.wavelengths_nm.size()) == bands) return set.wavelengths_nm;
   }
+  throw InputError(fmt::format("bands is {}; it must be one of {}", bands,
+                               fmt::join(kWavelengthSetSizes, ", ")));
 }
 
 const SampledFunction& SolarTable() {

@@ -85,12 +85,12 @@ TEST(AtmosphereFile, WhatIsNotGivenIsThePresets) {
 }
 
 TEST(AtmosphereFile, BandsChooseTheWavelengths) {
-  for (const int bands : {3, 4, 8, 16, 40}) {
+  for (const int bands : kWavelengthSetSizes) {
     const Medium medium = Read("[spectrum]\nbands = " + std::to_string(bands) + "\n");
     EXPECT_EQ(medium.wavelengths_nm, WavelengthSet(bands));
   }
-  EXPECT_EQ(FaultOf("[spectrum]\nbands = 5\n"),
-            "a.toml:2: spectrum.bands is 5; it must be one of 3, 4, 8, 16, 40");
+  EXPECT_EQ(FaultOf("[spectrum]\nbands = 7\n"),
+            "a.toml:2: spectrum.bands is 7; it must be one of 3, 4, 5, 6, 8, 16, 40");
   EXPECT_THAT(FaultOf("[spectrum]\nbands = 4\nwavelengths_nm = [500]\n"), HasSubstr("give one of"));
 }
 
@@ -244,7 +244,7 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
       {"[rayleigh]\nscale_height_m = 0\n",
        "a.toml:2: rayleigh.scale_height_m is 0; it must lie in [1"},
       {"[mie]\nscattering_per_m = [1, 1, 1, 1]\n",
-       "a.toml:2: mie.scattering_per_m is 1 at 450 nm; it must not exceed mie.extinction_per_m"},
+       "a.toml:2: mie.scattering_per_m is 1 at 445 nm; it must not exceed mie.extinction_per_m"},
       {"[mie]\nextinction_per_m = [0, 0, 0, 0]\n", "a.toml:1: mie.scattering_per_m is"},
       {"[ozone]\npeak_m = 5000\n", "a.toml:2: ozone.peak_m is 5000; it must lie between"},
       {"[ozone]\ntop_m = 20000\n", "a.toml:1: ozone.peak_m is 25000; it must lie between"},

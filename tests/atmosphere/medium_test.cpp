@@ -46,7 +46,7 @@ TEST(Medium, EarthHasFourBandsOverAnEllipsoid) {
   EXPECT_TRUE(earth.follows_wgs84);
   EXPECT_DOUBLE_EQ(earth.planet_radius_m, 6371008.7714);
   EXPECT_DOUBLE_EQ(earth.atmosphere_height_m, 120000.0);
-  EXPECT_EQ(earth.rayleigh_scattering_per_m[0], RayleighScatteringAtSeaLevel(450.0));
+  EXPECT_EQ(earth.rayleigh_scattering_per_m[0], RayleighScatteringAtSeaLevel(WavelengthSet(4)[0]));
 }
 
 TEST(Medium, AerosolOfEarthHasTheOpticalDepthAndSlopeOfAngstrom) {
@@ -175,7 +175,7 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
       {"planet.ground_albedo is 1.5; it must lie in [0, 1]",
        [](Medium& m) { m.ground_albedo[2] = 1.5; }},
       {"spectrum.wavelengths_nm is 199", [](Medium& m) { m.wavelengths_nm[0] = 199.0; }},
-      {"spectrum.wavelengths_nm has 500 after 500", [](Medium& m) { m.wavelengths_nm[0] = 500.0; }},
+      {"spectrum.wavelengths_nm has 525 after 525", [](Medium& m) { m.wavelengths_nm[0] = 525.0; }},
       {"spectrum.solar_irradiance is -1", [](Medium& m) { m.solar_irradiance[0] = -1.0; }},
       {"rayleigh.scattering_per_m is inf",
        [](Medium& m) { m.rayleigh_scattering_per_m[3] = kInfinity; }},
@@ -183,7 +183,7 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
        [](Medium& m) { m.rayleigh_scattering_per_m.pop_back(); }},
       {"rayleigh.scale_height_m is 0.5", [](Medium& m) { m.rayleigh_scale_height_m = 0.5; }},
       {"mie.scale_height_m is 300000", [](Medium& m) { m.mie_scale_height_m = 3e5; }},
-      {"mie.scattering_per_m is 1 at 450 nm; it must not exceed",
+      {"mie.scattering_per_m is 1 at 445 nm; it must not exceed",
        [](Medium& m) { m.mie_scattering_per_m[0] = 1.0; }},
       {"mie.g is 1;", [](Medium& m) { m.mie_phase.g = 1.0; }},
       {"ozone.absorption_per_m is -1", [](Medium& m) { m.ozone_absorption_per_m[0] = -1.0; }},

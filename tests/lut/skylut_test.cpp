@@ -132,7 +132,7 @@ TEST_F(Skylut, BuiltTablesAreDescribedAndEvaluated) {
 TEST_F(Skylut, WithoutAnAtmosphereFileTheEarthIsTaken) {
   WriteCases();
   ASSERT_EQ(Run("eval --cases cases.csv --out r.csv --method integral --quiet").status, 0);
-  EXPECT_THAT(ContentOf(folder_ / "r.csv"), HasSubstr("\nt,450,")) << "four bands";
+  EXPECT_THAT(ContentOf(folder_ / "r.csv"), HasSubstr("\nt,445,")) << "four bands";
 }
 
 TEST_F(Skylut, WrongInputsAreStatus3WithOneLineAndNoOutput) {
