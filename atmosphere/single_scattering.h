@@ -21,8 +21,8 @@
 namespace alpenglow {
 
 inline constexpr std::size_t kMaxBands = 40;
-/// Sixteen panels (a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee and the
-/// planet's shadow) of 32 nodes, and room for the last SIMD lanes.
+/// Sixteen panels (a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee
+/// and the planet's shadow) of 32 nodes, and room for the last SIMD lanes.
 inline constexpr std::size_t kMaxRaySamples = 528;
 
 /// One value a wavelength.

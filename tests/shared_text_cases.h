@@ -340,7 +340,6 @@ inline std::vector<SharedTextCase> ToneCurveCases() {
       ALPENGLOW_SHARED_CASE(PrintedChannel(a[0]), grid::Colours()),
       ALPENGLOW_SHARED_CASE(InnerChannel(a[0], min(a[0], min(a[1], a[2])), abs(a[0])),
                             grid::Colours()),
-      ALPENGLOW_SHARED_CASE(PrintedChannel(a[0]), grid::Colours()),
       ALPENGLOW_SHARED_CASE(AgxWhiteShare(a[0], a[1], a[2]), grid::Colours()),
       ALPENGLOW_SHARED_CASE(AgxLogCode(AgxInset(a[0], AgxWhiteShare(a[0], a[1], a[2]))),
                             grid::Colours()),
