@@ -21,13 +21,13 @@ void Order(inout float a, inout float b) {
 
 // Distances at which the integrand is not smooth: ends, shadow, perigee; ascending.
 float[5] CutsOf(AirRay ray, vec2 shadow) {
-  float perigee = clamp(-(RADIUS + ray.h) * ray.mu, 0.0, ray.length);
-  float x = clamp(shadow.x, 0.0, ray.length);
-  float y = clamp(shadow.y, 0.0, ray.length);
+  float perigee = clamp(-(RADIUS + ray.h) * ray.mu, 0.0, ray.reach);
+  float x = clamp(shadow.x, 0.0, ray.reach);
+  float y = clamp(shadow.y, 0.0, ray.reach);
   Order(x, y);
   Order(x, perigee);
   Order(perigee, y);
-  return float[5](0.0, x, perigee, y, ray.length);
+  return float[5](0.0, x, perigee, y, ray.reach);
 }
 
 // What is integrated along a ray, per unit solar irradiance [1/sr].
@@ -40,7 +40,7 @@ struct AirLight {
 // In-scattered light along a ray. @param first, count  of the rule in `gauss`.
 AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool with_diffuse) {
   AirLight light = AirLight(vec4(0.0), vec4(0.0), vec4(1.0));
-  if (ray.length <= 0.0) return light;
+  if (ray.reach <= 0.0) return light;
   vec3 origin = ColumnsUp(ray.h, abs(ray.mu));
   vec3 lowest = ColumnsFromPerigee(ray.h, ray.mu);
   vec2 shadow = ShadowOf(ray);
@@ -50,7 +50,7 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
   for (int panel = 0; panel < 4; ++panel) {
     float begin = cuts[panel];
     float span = cuts[panel + 1] - begin;
-    if (span <= 1e-6 * ray.length) continue;
+    if (span <= 1e-6 * ray.reach) continue;
     float middle = begin + 0.5 * span;
     bool lit = !(middle > shadow.x && middle < shadow.y);
     if (!(with_diffuse || lit)) continue;
@@ -78,7 +78,7 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
       if (with_diffuse) light.diffuse += point.weight * exp(-tau) * DiffuseSource(point, ray.nu);
     }
   }
-  AirPoint end = PointAt(ray, ray.length, 0.0);
+  AirPoint end = PointAt(ray, ray.reach, 0.0);
   light.transmittance = exp(
       -OpticalDepth(ColumnsBetween(ray.mu, end.mu, origin, ColumnsUp(end.h, abs(end.mu)), lowest)));
   return light;

@@ -7,7 +7,7 @@ struct AirRay {
   float nu;            // cosine between the ray and the sun
   float sine_squared;  // of that angle, without cancelling
   float begin;         // of the entry, from the eye
-  float length;        // 0: the ray meets no air
+  float reach;         // 0: the ray meets no air
   bool ground;         // ends at the ground
 };
 
@@ -21,7 +21,7 @@ AirRay RayOf(vec3 direction, float limit) {
   ray.mu = clamp(direction.z, -1.0, 1.0);
   ray.mu_s = clamp(sun.z, -1.0, 1.0);
   ray.begin = 0.0;
-  ray.length = 0.0;
+  ray.reach = 0.0;
   ray.ground = GroundClearance(ray.h, ray.mu, RADIUS) > 0.0;
   float end = ray.ground ? DistanceDownTo(ray.h, ray.mu, 0.0, RADIUS) : 0.0;
   if (ray.h > TOP) {
@@ -39,7 +39,7 @@ AirRay RayOf(vec3 direction, float limit) {
     end = limit;
     ray.ground = false;
   }
-  ray.length = max(end - ray.begin, 0.0);
+  ray.reach = max(end - ray.begin, 0.0);
   return ray;
 }
 
@@ -51,7 +51,7 @@ vec2 ShadowOf(AirRay ray) {
   float b = r * (ray.mu - ray.mu_s * ray.nu);
   float horizon = HorizonDistance(ray.h, RADIUS);
   float c = (horizon - height) * (horizon + height);
-  vec2 span = vec2(0.0, ray.length);
+  vec2 span = vec2(0.0, ray.reach);
   if (a > 1e-12) {
     float discriminant = b * b - a * c;
     if (discriminant <= 0.0) return vec2(0.0);
@@ -59,7 +59,7 @@ vec2 ShadowOf(AirRay ray) {
     float q = b > 0.0 ? -b - root : -b + root;
     float first = q / a;
     float second = q != 0.0 ? c / q : 0.0;
-    span = vec2(max(0.0, min(first, second)), min(ray.length, max(first, second)));
+    span = vec2(max(0.0, min(first, second)), min(ray.reach, max(first, second)));
   } else if (c >= 0.0) {
     return vec2(0.0);
   }

@@ -3,8 +3,8 @@
 // the horizon, layer 1: rays to the ground. s: azimuth from the sun, 0 to pi (the other half is its
 // mirror image); t: the root of the angle from the horizon, over its range, so that the steep rise
 // at the horizon is resolved.
-#define HORIZON_ELEVATION eye.z
-#define AIR_ELEVATION eye.w
+#define HORIZON_ELEVATION eye.y
+#define AIR_ELEVATION eye.z
 
 float ElevationRange(float layer) {
   return layer < 0.5 ? AIR_ELEVATION - HORIZON_ELEVATION : HORIZON_ELEVATION + 1.57079632679;

@@ -30,7 +30,8 @@ float SunThroughTerrain(vec3 point, vec3 normal) {
   vec3 moved = point + (0.5 * shadow_texel) * normal;
   vec4 clip = shadow_from_eye * vec4(moved, 1.0);
   vec3 at = 0.5 * clip.xyz + 0.5;
-  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+  at.z = min(at.z, 1.0);  // behind all terrain: what is clear in the map is clear
   vec2 texel = 1.0 / vec2(textureSize(sun_shadow, 0));
   float lit = 0.0;
   for (int y = -1; y <= 1; ++y) {
@@ -57,7 +58,7 @@ vec4 Reflected(vec3 point, vec3 normal, bool terrain) {
   vec2 disk = DiskOverHorizon(mu_s, HorizonCosine(h, RADIUS), sun.w);
   vec4 irradiance = vec4(0.0);
   if (incidence > 0.0 && disk.x > 0.0) {
-    float seen = disk.x * (terrain ? SunThroughTerrain(point, mesh_normal) : 1.0);
+    float seen = disk.x * SunThroughTerrain(point, terrain ? mesh_normal : up);
     irradiance += seen * incidence * exp(-OpticalDepth(ColumnsToSun(h, disk.y)));
   }
   float normal_mu = clamp(dot(normal, up), -1.0, 1.0);
@@ -93,7 +94,7 @@ void main() {
   if (terrain) {
     radiance += light.transmittance * Reflected(surface.w * direction, surface.xyz, true);
   } else if (ray.ground) {
-    vec3 point = 1e3 * (ray.begin + ray.length) * direction;
+    vec3 point = 1e3 * (ray.begin + ray.reach) * direction;
     radiance += light.transmittance * Reflected(point, vec3(0.0), false);
   } else {
     radiance += light.transmittance * SunDiskRadiance(direction, sample_angle);

@@ -205,7 +205,7 @@ void SkyPainter::UploadView(const Eye& eye, const SunPosition& sun, int width, i
                        {glm::vec3(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz),
                         sun.angular_radius_rad},
                        irradiance,
-                       {h, horizon, std::asin(horizon), air_elevation}};
+                       {h, std::asin(horizon), air_elevation, 0.0}};
   UploadBlock(view_block_, kViewBinding, &view, sizeof(view));
 }
 
@@ -294,20 +294,19 @@ Image SkyPainter::Read() const {
   return picture_->Read();
 }
 
-double SkyPainter::MeteredEv100() const {
+double SkyPainter::MeteredEv100() {
   ALPENGLOW_ENSURE(picture_.has_value(), ==, true);
   constexpr int kLongSide = 160;
   const int longest = std::max(picture_->width(), picture_->height());
   const auto shrunk = [&](int side) {
     return std::clamp(side * kLongSide / longest, 1, std::max(side, 1));
   };
-  const RenderTarget small(shrunk(picture_->width()), shrunk(picture_->height()),
-                           RenderTarget::Depth::kNone);
+  Fit(meter_, shrunk(picture_->width()), shrunk(picture_->height()), RenderTarget::Depth::kNone);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, picture_->framebuffer());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, small.framebuffer());
-  glBlitFramebuffer(0, 0, picture_->width(), picture_->height(), 0, 0, small.width(),
-                    small.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  return MeterEv100(small.Read(), kSunDiskLuminance_cd_per_m2);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, meter_->framebuffer());
+  glBlitFramebuffer(0, 0, picture_->width(), picture_->height(), 0, 0, meter_->width(),
+                    meter_->height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  return MeterEv100(meter_->Read(), kSunDiskLuminance_cd_per_m2);
 }
 
 void SkyPainter::Develop(double ev100, GLuint framebuffer) const {

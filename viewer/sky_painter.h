@@ -38,7 +38,7 @@ class SkyPainter {
   /// The picture painted last: linear sRGB [cd/m^2].
   [[nodiscard]] Image Read() const;
   /// What MeterEv100 makes of a small copy of the picture.
-  [[nodiscard]] double MeteredEv100() const;
+  [[nodiscard]] double MeteredEv100();
   /// Develops the picture into a framebuffer (0: the window) of the picture's size.
   void Develop(double ev100, GLuint framebuffer) const;
 
@@ -56,7 +56,7 @@ class SkyPainter {
   ShaderProgram diffuse_sky_program_, picture_program_, average_program_, develop_program_;
   GlTexture diffuse_moments_, dither_noise_, diffuse_sky_;
   GlFramebuffer diffuse_sky_target_;
-  std::optional<RenderTarget> surface_, samples_, picture_;
+  std::optional<RenderTarget> surface_, samples_, picture_, meter_;
   bool relief_;
 };
 

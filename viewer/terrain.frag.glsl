@@ -3,7 +3,6 @@
 // which resolves a part in a million from 0.1 m to 1e9 m.
 in vec3 from_eye;
 in vec3 facing;
-in float along_view;
 out vec4 surface;  // unit normal, on the side that is seen; distance [m]
 
 void main() {

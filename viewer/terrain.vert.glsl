@@ -11,9 +11,8 @@ layout(std140) uniform Mesh {
 };
 in vec3 position;
 in vec3 normal;
-out vec3 from_eye;     // [m], east, north, up at the eye
-out vec3 facing;       // normal, in the same frame
-out float along_view;  // distance in the direction of view
+out vec3 from_eye;  // [m], east, north, up at the eye
+out vec3 facing;    // normal, in the same frame
 
 vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
 
@@ -21,7 +20,7 @@ void main() {
   const float nearest = 0.1;  // m
   from_eye = InEyeFrame((position - eye_high.xyz) - eye_low.xyz);
   facing = InEyeFrame(normal);
-  along_view = dot(from_eye, view_forward.xyz);
+  float along_view = dot(from_eye, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);
   float height = dot(view_up.xyz, view_up.xyz);
   // Only the near plane clips: z = w - 2 near. Depth is written by the fragment stage.
