@@ -222,9 +222,9 @@ TEST_F(Eval, EdgesOfTheDefinitionsAreKept) {
 TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
   const Medium medium = MediumPreset("bruneton2017");
   const auto tables = MakeTableEvaluator(
-      TransmittanceTable(medium),
-      ScatteringTable(
-          medium, {.size = {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 16}, .lowest_mu_s = {}}));
+      TransmittanceTable(medium, {.mu = 128, .altitudes = 32}),
+      ScatteringTable(medium,
+                      {.size = {.nu = 4, .mu_s = 8, .mu = 16, .altitudes = 8}, .lowest_mu_s = {}}));
   const auto integral = MakeIntegralEvaluator(medium);
   std::string text = kHeader;
   for (const char* quantity :
