@@ -414,7 +414,8 @@ TEST(BandColour, IsLinearAndItsMatrixIsItsMap) {
 TEST(BandColour, StaysFiniteWithBandsThatHardlySee) {
   for (const auto& set : {std::vector<double>{200.0}, std::vector<double>{1000.0, 4000.0},
                           std::vector<double>{550.0, 550.001, 550.002, 550.003}}) {
-    for (const double value : BandColour(set).linear_srgb_from_bands()) {
+    const BandColour colour(set);
+    for (const double value : colour.linear_srgb_from_bands()) {
       EXPECT_TRUE(std::isfinite(value));
     }
   }
