@@ -319,6 +319,8 @@ ColumnSet<Real> SegmentColumns(const Medium& medium, const Entry& entry, double 
 template <typename Real>
 AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium) {
   Validate(medium_);
+  RequireInRange(static_cast<double>(bands()), 1.0, static_cast<double>(kMaxBands),
+                 "number of spectrum.wavelengths_nm");
 }
 
 template <typename Real>
@@ -379,7 +381,7 @@ ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples
   using Lanes = BatchOf<Real>;
   using T = typename Lanes::Type;
   using std::exp;
-  ScatteredOnce<Real> scattered{Bands<Real>(bands()), Bands<Real>(bands()), Bands<Real>(bands())};
+  ScatteredOnce<Real> scattered{Bands<Real>(bands()), Bands<Real>(bands())};
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   for (std::size_t band = 0; band < bands(); ++band) {
     const T rayleigh(metres * static_cast<Real>(medium_.rayleigh_scattering_per_m[band]));

@@ -60,10 +60,10 @@ struct alignas(64) RaySamples {
 };
 
 /// Light scattered once, without phase functions: the factor of p_R(nu) and of p_M(nu), per unit
-/// solar irradiance [1], and the transmittance of the whole ray.
+/// solar irradiance [1].
 template <typename Real>
 struct ScatteredOnce {
-  Bands<Real> rayleigh, mie, transmittance;
+  Bands<Real> rayleigh, mie;
 };
 
 /// A medium made ready for evaluation in Real = float or double. Immutable, safe to share between
@@ -71,6 +71,7 @@ struct ScatteredOnce {
 template <typename Real>
 class AirIntegrator {
  public:
+  /// Throws InputError for a medium that Validate refuses or of more than kMaxBands wavelengths.
   explicit AirIntegrator(const Medium& medium);
 
   [[nodiscard]] const Medium& medium() const { return medium_; }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "atmosphere/error.h"
 #include "atmosphere/judge.h"
 #include "tests/stored_cases.h"
 
@@ -179,6 +180,19 @@ TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
       EXPECT_NEAR(below[band], above[band], 1e-4F * below[band]) << view;
     }
   }
+}
+
+TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
+  Medium medium = MediumPreset("earth");
+  while (medium.wavelengths_nm.size() <= kMaxBands) {
+    medium.wavelengths_nm.push_back(medium.wavelengths_nm.back() + 1.0);
+    for (auto* list : {&medium.solar_irradiance, &medium.ground_albedo,
+                       &medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                       &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
+      list->push_back(list->back());
+    }
+  }
+  EXPECT_THROW(AirIntegrator<float>{medium}, InputError);
 }
 
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
