@@ -145,7 +145,7 @@ ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu)
 
   const LengthWeights lengths = WeightsByLength(start, mu_unit, r, m);
   const std::size_t bands = air_.bands();
-  ScatteredOnce<float> light{Bands<float>(bands), Bands<float>(bands), Bands<float>(0)};
+  ScatteredOnce<float> light{Bands<float>(bands), Bands<float>(bands)};
   for (unsigned corner = 0; corner < 16; ++corner) {
     const std::size_t up_s = corner & 1U, up_v = corner >> 1U & 1U;
     const std::size_t up_m = corner >> 2U & 1U, up_r = corner >> 3U & 1U;
@@ -207,7 +207,7 @@ ScatteringTable::Start ScatteringTable::StartAt(const ViewRay& ray, double dista
 ScatteredOnce<float> ScatteringTable::Lookup(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium().planet_radius_m, medium().atmosphere_height_m);
   if (extent.begin_m == extent.end_m) {
-    return {Bands<float>(air_.bands()), Bands<float>(air_.bands()), Bands<float>(0)};
+    return {Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   }
   if (extent.end == RayEnd::kLength) return LookupSegment(ray, extent);
   return Interpolate(StartAt(ray, extent.begin_m, extent.end == RayEnd::kGround), ray.nu);
