@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/error.h"
 
 namespace alpenglow {
 namespace {
@@ -13,6 +14,27 @@ namespace {
 constexpr double kTurnRate_rad_per_s = 45.0 * kRadiansPerDegree;
 
 }  // namespace
+
+Eye Placed(const Eye& eye, const EyePlacement& placement) {
+  const auto degrees = [](double radians) { return radians / kRadiansPerDegree; };
+  Eye placed = eye;
+  if (placement.latitude_deg || placement.longitude_deg || placement.height_m) {
+    placed.place = PlaceFromDegrees(
+        placement.latitude_deg.value_or(degrees(eye.place.latitude_rad)),
+        placement.longitude_deg.value_or(degrees(eye.place.longitude_rad)),
+        placement.height_m ? RequireInRange(*placement.height_m, -12000.0, 1e9, "--altitude")
+                           : eye.place.height_m);
+  }
+  if (placement.heading_deg) {
+    placed.heading_rad =
+        RequireInRange(*placement.heading_deg, -360.0, 360.0, "--heading") * kRadiansPerDegree;
+  }
+  if (placement.pitch_deg) {
+    placed.pitch_rad =
+        RequireInRange(*placement.pitch_deg, -90.0, 90.0, "--pitch") * kRadiansPerDegree;
+  }
+  return placed;
+}
 
 ViewAxes AxesOf(const Eye& eye) {
   const double heading = eye.heading_rad, pitch = eye.pitch_rad, roll = eye.roll_rad;

@@ -2,6 +2,8 @@
 // An eye that flies: where it is, where it looks, how keys and mouse move it.
 #pragma once
 
+#include <optional>
+
 #include "atmosphere/geodesy.h"
 
 namespace alpenglow {
@@ -14,6 +16,17 @@ struct Eye {
   double roll_rad = 0.0;                // clockwise seen from behind
   double fov_rad = 1.0471975511965976;  // horizontal
 };
+
+/// Where an eye is put, as people type it; what is left out stays as it is.
+struct EyePlacement {
+  std::optional<double> latitude_deg = {};
+  std::optional<double> longitude_deg = {};
+  std::optional<double> height_m = {};
+  std::optional<double> heading_deg = {};
+  std::optional<double> pitch_deg = {};
+};
+/// The eye put there. Throws InputError naming the option for values out of range.
+[[nodiscard]] Eye Placed(const Eye& eye, const EyePlacement& placement);
 
 /// What the pilot asks for, each in [-1, 1].
 struct Steering {

@@ -80,22 +80,29 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start)
       eye_(EyeOf(scene_, ground_.eye_height_m)),
       now_(start) {}
 
-double Flythrough::GroundUnderEye() const {
+double Flythrough::GroundUnder(const GeodeticPosition& place) const {
   if (!ground_.terrain) return 0.0;
   constexpr double kFromHeight_m = 20000.0;  // over any mountain
-  GeodeticPosition high = eye_.place;
+  GeodeticPosition high = place;
   high.height_m = kFromHeight_m;
-  const LocalFrame here(ground_.frame.ellipsoid(), eye_.place);
+  const LocalFrame here(ground_.frame.ellipsoid(), place);
   const Vector<Ecef> down = here.EcefFromEnu(Vector<Enu>{{0.0, 0.0, -1.0}});
   const auto hit = ground_.terrain->Intersect(ground_.frame.EnuFromGeodetic(high).xyz,
                                               ground_.frame.EnuFromEcef(down).xyz);
   return hit ? kFromHeight_m - hit->distance_m : 0.0;
 }
 
+void Flythrough::Place(const EyePlacement& placement) {
+  const double above_m = eye_.place.height_m - GroundUnder(eye_.place);
+  eye_ = Placed(eye_, placement);
+  if (!placement.height_m) eye_.place.height_m = GroundUnder(eye_.place) + above_m;
+  eye_ = KeptAbove(eye_, GroundUnder(eye_.place), 0.0);
+}
+
 void Flythrough::Advance(const Steering& steering, double seconds) {
-  const double above_m = std::max(eye_.place.height_m - GroundUnderEye(), 0.0);
+  const double above_m = std::max(eye_.place.height_m - GroundUnder(eye_.place), 0.0);
   eye_ = Steer(eye_, steering, ground_.frame.ellipsoid(), above_m, seconds);
-  eye_ = KeptAbove(eye_, GroundUnderEye(), kClearance_m);
+  eye_ = KeptAbove(eye_, GroundUnder(eye_.place), kClearance_m);
   now_ = AddSeconds(now_, time_rate_ * seconds);
 }
 
@@ -170,9 +177,9 @@ std::string Flythrough::HudText() const {
       "skyview  {:.4f} {:.4f}  {:.0f} m ({:.0f} m over ground)  heading {:03.0f}  pitch {:+.0f}  "
       "view {:.0f}  {} x{:.0f}  sun {:+.1f} at {:03.0f}  EV {:.1f}",
       Degrees(eye_.place.latitude_rad), Degrees(eye_.place.longitude_rad), eye_.place.height_m,
-      eye_.place.height_m - GroundUnderEye(), Azimuth(eye_.heading_rad), Degrees(eye_.pitch_rad),
-      Degrees(eye_.fov_rad), FormatUtc(now_), time_rate_, Degrees(sun.elevation_rad),
-      Azimuth(sun.azimuth_rad), ev100_.value_or(0.0));
+      eye_.place.height_m - GroundUnder(eye_.place), Azimuth(eye_.heading_rad),
+      Degrees(eye_.pitch_rad), Degrees(eye_.fov_rad), FormatUtc(now_), time_rate_,
+      Degrees(sun.elevation_rad), Azimuth(sun.azimuth_rad), ev100_.value_or(0.0));
 }
 
 }  // namespace alpenglow

@@ -42,6 +42,9 @@ class Flythrough {
   /// scene names and cannot be read, and a medium of more than four wavelengths.
   Flythrough(const Scene& scene, const UtcInstant& start);
 
+  /// Puts the eye there. Without a height it keeps the one it had over the ground; it never comes
+  /// to stand in the ground.
+  void Place(const EyePlacement& placement);
   /// Lets `seconds` pass, with the controls held like this.
   void Advance(const Steering& steering, double seconds);
   void Turn(double right_rad, double up_rad) { eye_ = Turned(eye_, right_rad, up_rad); }
@@ -62,7 +65,7 @@ class Flythrough {
   [[nodiscard]] const std::string& terrain_message() const { return ground_.message; }
 
  private:
-  [[nodiscard]] double GroundUnderEye() const;
+  [[nodiscard]] double GroundUnder(const GeodeticPosition& place) const;
 
   Scene scene_;
   SceneGround ground_;

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <regex>
+#include <algorithm>
+#include <charconv>
+#include <optional>
 
 #include "atmosphere/embedded_text.h"
 #include "atmosphere/error.h"
@@ -31,6 +33,39 @@ std::string LogOfProgram(GLuint program) {
   glGetProgramInfoLog(program, length, &length, log.data());
   log.resize(static_cast<std::size_t>(length));
   return log;
+}
+
+// Takes `prefix` off the text, if it starts with it.
+bool Take(std::string_view& text, std::string_view prefix) {
+  if (text.substr(0, prefix.size()) != prefix) return false;
+  text.remove_prefix(prefix.size());
+  return true;
+}
+
+// Takes a number off the text; nothing if it starts with none.
+std::optional<std::size_t> TakeNumber(std::string_view& text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return number;
+}
+
+// One line of a driver's log, with name and line of our file where it starts with a place.
+std::string NamedLine(std::string_view line, std::span<const ShaderPiece> pieces) {
+  std::string_view rest = line;
+  std::string_view kind;
+  for (const std::string_view word : {"ERROR: ", "WARNING: "}) {
+    if (Take(rest, word)) kind = word;
+  }
+  const bool has_place = Take(rest, "0:") || Take(rest, "0(");
+  const std::optional<std::size_t> place = has_place ? TakeNumber(rest) : std::nullopt;
+  if (!place || *place / kLinesOfAPiece >= pieces.size()) return std::string(line);
+  Take(rest, ")");
+  std::string_view column = rest;  // "(5)": left out
+  if (Take(column, "(") && TakeNumber(column) && Take(column, ")")) rest = column;
+  return fmt::format("{}{}:{}{}", kind, pieces[*place / kLinesOfAPiece].name,
+                     *place % kLinesOfAPiece, rest);
 }
 
 /// A compiled stage; the program keeps it alive once it is attached.
@@ -83,19 +118,12 @@ std::string ComposeShader(std::span<const ShaderPiece> pieces) {
 }
 
 std::string NamePieces(std::string_view log, std::span<const ShaderPiece> pieces) {
-  static const std::regex place(R"((^|\n)((?:ERROR: |WARNING: )?)0[:(](\d+)\)?(?:\(\d+\))?)");
-  const std::string text(log);
   std::string named;
-  auto copied = text.begin();
-  for (std::sregex_iterator match(text.begin(), text.end(), place), end; match != end; ++match) {
-    const std::size_t line = std::stoul((*match)[3]);
-    if (line / kLinesOfAPiece >= pieces.size()) continue;
-    named.append(copied, (*match)[0].first);
-    named += fmt::format("{}{}{}:{}", (*match)[1].str(), (*match)[2].str(),
-                         pieces[line / kLinesOfAPiece].name, line % kLinesOfAPiece);
-    copied = (*match)[0].second;
+  while (!log.empty()) {
+    const std::size_t end = std::min(log.find('\n'), log.size() - 1) + 1;
+    named += NamedLine(log.substr(0, end), pieces);
+    log.remove_prefix(end);
   }
-  named.append(copied, text.end());
   return named;
 }
 

@@ -14,38 +14,34 @@
 namespace alpenglow {
 namespace {
 
-// The place typed moves the eye of a scene file, and is the place of a scene without one.
 Scene SceneOf(const SkyviewOptions& options) {
-  if (options.scene_file.empty()) {
-    SceneOptions typed;
-    typed.latitude = options.latitude.value_or(typed.latitude);
-    typed.longitude = options.longitude.value_or(typed.longitude);
-    typed.height_m = options.altitude;
-    typed.heading = options.heading;
-    typed.pitch = options.pitch;
-    typed.dem = options.dem;
-    return SceneFromOptions(typed);
-  }
-  Scene scene = ReadScene(options.scene_file);
-  const auto degrees = [](const std::optional<double>& typed, double radians) {
-    return typed.value_or(radians / kRadiansPerDegree);
-  };
-  if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange && !scene.terrain.centre) {
-    scene.terrain.centre = scene.place;
-  }
-  scene.place = PlaceFromDegrees(degrees(options.latitude, scene.place.latitude_rad),
-                                 degrees(options.longitude, scene.place.longitude_rad), 0.0);
-  const Height height = options.altitude ? Height{*options.altitude, false} : scene.camera.height;
-  const Camera& camera = scene.camera;
-  scene.camera = CameraFromDegrees(height, degrees(options.heading, camera.heading_rad),
-                                   degrees(options.pitch, camera.pitch_rad),
-                                   degrees({}, camera.roll_rad), degrees({}, camera.fov_rad), "--");
-  return scene;
+  if (!options.scene_file.empty()) return ReadScene(options.scene_file);
+  SceneOptions typed;
+  typed.latitude = options.latitude.value_or(typed.latitude);
+  typed.longitude = options.longitude.value_or(typed.longitude);
+  typed.height_m = options.altitude;
+  typed.heading = options.heading;
+  typed.pitch = options.pitch;
+  typed.dem = options.dem;
+  return SceneFromOptions(typed);
+}
+
+// Over the scene of a file, a place and directions that are typed move the eye.
+EyePlacement PlacementOf(const SkyviewOptions& options) {
+  EyePlacement placement;
+  if (options.scene_file.empty()) return placement;
+  placement.latitude_deg = options.latitude;
+  placement.longitude_deg = options.longitude;
+  placement.height_m = options.altitude;
+  placement.heading_deg = options.heading;
+  placement.pitch_deg = options.pitch;
+  return placement;
 }
 
 UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
-  const EventDay day{scene.place, scene.zone,
+  const Eye eye = Placed({scene.place}, PlacementOf(options));
+  const EventDay day{eye.place, scene.zone,
                      scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
   return InstantFromText(options.time.value_or("noon"), day);
 }
@@ -93,6 +89,7 @@ int Run(const SkyviewOptions& options) {
                           : std::make_unique<Window>(size.width, size.height, options.fullscreen);
   if (!options.common.quiet) fmt::print(stderr, "skyview: {}\n", GlDescription());
   Flythrough flight(scene, start);
+  flight.Place(PlacementOf(options));
   if (!flight.terrain_message().empty())
     fmt::print(stderr, "skyview: {}\n", flight.terrain_message());
   window ? Fly(options, flight, *window) : PaintHeadless(options, flight, size);

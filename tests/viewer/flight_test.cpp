@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/error.h"
 #include "viewer/flythrough.h"
 
 namespace alpenglow {
@@ -26,6 +27,20 @@ TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
   EXPECT_NEAR(east.forward.x, std::cos(30.0 * kRadiansPerDegree), 1e-15);
   EXPECT_NEAR(east.forward.z, 0.5, 1e-15);
   EXPECT_NEAR(glm::dot(east.forward, east.up), 0.0, 1e-15);
+}
+
+TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
+  const Eye eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
+  const Eye north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
+  EXPECT_NEAR(north.place.latitude_rad, 47.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_NEAR(north.place.longitude_rad, 8.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_EQ(north.place.height_m, 500.0);
+  EXPECT_NEAR(north.heading_rad, 0.5 * kPi, 1e-15);
+  EXPECT_EQ(north.pitch_rad, eye.pitch_rad);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.latitude_deg = 90.1})), InputError);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.height_m = -20000.0})), InputError);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.heading_deg = 361.0})), InputError);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.pitch_deg = 91.0})), InputError);
 }
 
 TEST(Flight, SpeedIsAWalkOnTheGroundAndKilometresASecondInOrbit) {
