@@ -80,10 +80,10 @@ struct HeadlessContext::State {
   State(EGLDisplay on, EGLContext made) : display(on), context(made) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
+  // The display stays open: it is one for the whole process, and other contexts may be on it.
   ~State() {
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
-    eglTerminate(display);
   }
 };
 
