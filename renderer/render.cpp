@@ -179,7 +179,7 @@ Air SceneRenderer::State::AirTo(const Hit& hit, const glm::dvec3& direction, con
               std::clamp(light.to_sun.z, -1.0, 1.0), nu};
   // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
   if (hit.kind == HitKind::kTerrain) ray.length_m = hit.distance_m;
-  // Short paths are smooth: 4 nodes reach 50 km at 1e-4 (clear) and 5e-4 (haze).
+  // Short paths are smooth and need fewer nodes.
   const int needed =
       hit.kind == HitKind::kTerrain && hit.distance_m < 50e3 ? std::min(nodes, 4) : nodes;
   const RaySamples<float> samples =
