@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "renderer/image.h"
+#include "lut/image.h"
 #include "renderer/render.h"
 #include "renderer/scene.h"
 

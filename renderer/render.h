@@ -18,7 +18,7 @@
 
 #include "atmosphere/sun.h"
 #include "atmosphere/time.h"
-#include "renderer/image.h"
+#include "lut/image.h"
 #include "renderer/scene.h"
 
 namespace alpenglow {

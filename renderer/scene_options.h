@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "renderer/image.h"
+#include "lut/image.h"
 #include "renderer/scene.h"
 
 namespace alpenglow {

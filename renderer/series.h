@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "atmosphere/geodesy.h"
+#include "lut/image.h"
 #include "lut/progress.h"
 #include "renderer/frame_name.h"
 #include "renderer/frame_times.h"
-#include "renderer/image.h"
 
 namespace alpenglow {
 

@@ -14,8 +14,8 @@
 #include "atmosphere/phase_text.h"
 #include "atmosphere/shell.h"
 #include "lut/scattering_map.h"
+#include "lut/tone_curve.h"
 #include "lut/transmittance_map.h"
-#include "renderer/tone_curve.h"
 
 namespace alpenglow::tests {
 

@@ -2,7 +2,7 @@
 // Pictures that are drawn into and read from: floats on the graphics card.
 #pragma once
 
-#include "renderer/image.h"
+#include "lut/image.h"
 #include "viewer/gl_objects.h"
 
 namespace alpenglow {

@@ -10,7 +10,6 @@
 #include "atmosphere/embedded_text.h"
 #include "atmosphere/error.h"
 #include "lut/embedded_text.h"
-#include "renderer/embedded_text.h"
 
 namespace alpenglow {
 namespace {
@@ -101,11 +100,10 @@ std::vector<ShaderPiece> SharedTexts() {
                            "atmosphere/optical_depth.glsl", "atmosphere/phase.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
-  for (const char* name : {"lut/transmittance_map.glsl", "lut/scattering_map.glsl"}) {
+  for (const char* name :
+       {"lut/transmittance_map.glsl", "lut/scattering_map.glsl", "lut/tone_curve.glsl"}) {
     pieces.push_back({name, std::string(lut::EmbeddedText(name))});
   }
-  pieces.push_back({"renderer/tone_curve.glsl",
-                    std::string(renderer::EmbeddedText("renderer/tone_curve.glsl"))});
   return pieces;
 }
 

@@ -10,7 +10,7 @@
 #include "atmosphere/quadrature.h"
 #include "atmosphere/refraction.h"
 #include "atmosphere/shell.h"
-#include "renderer/dither.h"
+#include "lut/dither.h"
 #include "renderer/render.h"
 #include "renderer/surface.h"
 #include "viewer/embedded_text.h"

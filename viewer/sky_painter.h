@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "atmosphere/sun.h"
+#include "lut/image.h"
 #include "lut/multiple_scattering.h"
-#include "renderer/image.h"
 #include "renderer/mesh.h"
 #include "viewer/flight.h"
 #include "viewer/render_target.h"

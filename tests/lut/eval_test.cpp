@@ -10,8 +10,8 @@
 
 #include "atmosphere/error.h"
 #include "lut/program.h"
-#include "tests/renderer/temporary_folder.h"
 #include "tests/stored_cases.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

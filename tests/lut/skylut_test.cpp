@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lut/table_file.h"
-#include "tests/renderer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -22,7 +22,7 @@
 #include "atmosphere/error.h"
 #include "lut/medium_toml.h"
 #include "lut/table_image.h"
-#include "tests/renderer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -9,7 +9,7 @@
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "renderer/scene_options.h"
-#include "tests/renderer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -11,7 +11,7 @@
 #include "lut/program.h"
 #include "renderer/contact_sheet.h"
 #include "renderer/provenance.h"
-#include "tests/renderer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -10,8 +10,8 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "renderer/image.h"
-#include "tests/renderer/temporary_folder.h"
+#include "lut/image.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 
-#include "tests/renderer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 #include "viewer/embedded_text.h"
 #include "viewer/sky_painter.h"
 

@@ -6,8 +6,8 @@
 
 #include <cstdlib>
 
-#include "renderer/image.h"
-#include "tests/renderer/temporary_folder.h"
+#include "lut/image.h"
+#include "tests/temporary_folder.h"
 #include "tests/viewer/headless.h"
 
 namespace alpenglow {

@@ -6,12 +6,12 @@
 #include <array>
 
 #include "atmosphere/shared_math.h"
-#include "renderer/image.h"
+#include "lut/image.h"
 
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_begin.h"
-#include "renderer/tone_curve.glsl"
+#include "lut/tone_curve.glsl"
 #include "atmosphere/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

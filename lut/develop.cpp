@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "atmosphere/error.h"
-#include "renderer/dither.h"
-#include "renderer/image.h"
-#include "renderer/tone_curve.h"
+#include "lut/dither.h"
+#include "lut/image.h"
+#include "lut/tone_curve.h"
 
 namespace alpenglow {
 namespace {

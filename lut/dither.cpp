@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/dither.h"
+#include "lut/dither.h"
 
 #include <algorithm>
 #include <array>

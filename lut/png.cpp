@@ -12,7 +12,7 @@
 
 #include "atmosphere/error.h"
 #include "lut/atomic_file.h"
-#include "renderer/image.h"
+#include "lut/image.h"
 
 namespace alpenglow {
 namespace {

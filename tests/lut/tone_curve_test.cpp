@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/tone_curve.h"
+#include "lut/tone_curve.h"
 
 #include <gtest/gtest.h>
 

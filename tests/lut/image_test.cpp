@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/image.h"
+#include "lut/image.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -13,8 +13,8 @@
 #include <limits>
 
 #include "atmosphere/error.h"
-#include "renderer/dither.h"
-#include "tests/renderer/temporary_folder.h"
+#include "lut/dither.h"
+#include "tests/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

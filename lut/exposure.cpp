@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "atmosphere/error.h"
-#include "renderer/image.h"
-#include "renderer/tone_curve.h"
+#include "lut/image.h"
+#include "lut/tone_curve.h"
 
 namespace alpenglow {
 namespace {

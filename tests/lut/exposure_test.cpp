@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "renderer/image.h"
+#include "lut/image.h"
 
 namespace alpenglow {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/image.h"
+#include "lut/image.h"
 
 #include "atmosphere/error.h"
 
