@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Options that every program has. Included by the one translation unit of a program that parses
-// its command line (CLI11 is slow to compile).
+// Options that every program has, and what a subcommand is. Included by the translation units that
+// parse a command line, and no others (CLI11 is slow to compile).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,6 +22,16 @@ struct CommonOptions {
     return quiet ? ProgressStyle::kQuiet : ProgressStyleFromName(progress);
   }
 };
+
+/// What a subcommand does, with options of its own that it was parsed with. Each has a pair of
+/// files NAME_command.h and .cpp with `Subcommand AddNameCommand(CLI::App&)`.
+using Subcommand = std::function<void(const CommonOptions&)>;
+
+/// Adds --atmosphere. `atmosphere` must outlive the parsing.
+inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& atmosphere) {
+  command.add_option("--atmosphere", atmosphere,
+                     "Atmosphere file (TOML); without it the preset earth");
+}
 
 /// Adds --threads, --quiet, --progress and --version. `options` must outlive the parsing.
 inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOptions& options) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "atmosphere/medium.h"
+#include "lut/build_command.h"
 #include "lut/command_line.h"
 #include "lut/eval.h"
 #include "lut/program.h"
@@ -17,9 +18,6 @@ namespace {
 struct Options {
   CommonOptions common;
   std::optional<std::string> atmosphere, tables, max_error;
-  std::string out;
-  bool single_scattering_only = false;
-  std::string quality = "standard";
   std::string described;
   std::string cases, results, method;
   std::optional<int> samples;
@@ -27,28 +25,6 @@ struct Options {
 
 std::string FaultOfMaxError(const std::string& text) {
   return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
-}
-
-void AddAtmosphere(CLI::App& command, Options& options) {
-  command.add_option("--atmosphere", options.atmosphere,
-                     "Atmosphere file (TOML); without it the preset earth");
-}
-
-void AddBuild(CLI::App& app, Options& options) {
-  CLI::App& build = *app.add_subcommand(
-      "build", "Build the tables of transmittance and single scattering of an atmosphere.");
-  build.add_option("--out", options.out, "Folder for the tables; made when missing")->required();
-  AddAtmosphere(build, options);
-  build
-      .add_option("--quality", options.quality,
-                  "preview (128x32; 8x24x64x16), standard (256x64; 8x32x128x32) or fine "
-                  "(512x128; 16x48x192x48): sizes of transmittance mu x r; scattering nu x mu_s "
-                  "x mu x r")
-      ->check(CLI::IsMember({"preview", "standard", "fine"}))
-      ->capture_default_str();
-  build.add_flag("--single-scattering-only", options.single_scattering_only,
-                 "States what is built: tables of single scattering, and no others");
-  build.footer("Example: skylut build --out tables --atmosphere atmosphere.toml --quality fine");
 }
 
 void AddInfo(CLI::App& app, Options& options) {
@@ -71,7 +47,7 @@ void AddEval(CLI::App& app, Options& options) {
   eval.add_option("--method", options.method, "table (needs --lut), integral or path-trace")
       ->check(CLI::IsMember({"table", "integral", "path-trace"}))
       ->required();
-  AddAtmosphere(eval, options);
+  AddAtmosphereOption(eval, options.atmosphere);
   eval.add_option("--lut", options.tables,
                   "Folder of tables; without --atmosphere, their atmosphere is taken");
   CLI::Option* samples =
@@ -120,7 +96,7 @@ int Run(int argc, char** argv) {
   app.fallthrough();
   app.require_subcommand(1);
   AddCommonOptions(app, "skylut", options.common);
-  AddBuild(app, options);
+  const Subcommand build = AddBuildCommand(app);
   AddInfo(app, options);
   AddEval(app, options);
   app.parse_complete_callback([&] { CheckMethod(*app.get_subcommand("eval"), options); });
@@ -128,10 +104,7 @@ int Run(int argc, char** argv) {
 
   const ThreadLimit threads(options.common.threads);
   if (app.got_subcommand("build")) {
-    const Medium medium =
-        options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
-    BuildTableFolder(medium, TableQualityFromName(options.quality), options.out,
-                     options.common.progress_style());
+    build(options.common);
   } else if (app.got_subcommand("info")) {
     fmt::print("{}", DescribeTables(options.described));
   } else {

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// `skylut build`: tables of an atmosphere, into a folder.
+#pragma once
+
+#include "lut/command_line.h"
+
+namespace alpenglow {
+
+/// Adds the subcommand; what runs it once the whole command line is parsed.
+[[nodiscard]] Subcommand AddBuildCommand(CLI::App& app);
+
+}  // namespace alpenglow
