@@ -28,6 +28,7 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
   RequireInRange(options.degree, 2, kMaxDegree, "degree");
+  RequireInRange(options.exact_orders.value_or(1), 1, 1000, "exact_orders");
   Validate(medium_);
   moments_ = MomentCount(options.degree);
   chi_mie_ = LegendreCoefficients(medium.mie_phase, options.degree);

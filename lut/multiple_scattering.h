@@ -24,6 +24,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct DiffuseLightOptions {
   int ray_nodes = 10;     // Gauss nodes along each direction
   int max_orders = 200;
   double tolerance = 1e-2;  // share of the light that is summed as a geometric series, not computed
+  /// Exactly so many orders of the diffuse light (1: scattered or reflected once), no rest summed:
+  /// InscatterAlong then gives orders 2 to exact_orders + 1. For tables that are defined so.
+  std::optional<int> exact_orders = std::nullopt;
 };
 
 /// Diffuse light of all orders. Immutable; lookups are safe from many threads.

@@ -389,7 +389,11 @@ Block::Sum Block::Solve(Field first_order) const {
   Field before = order;
   int orders = 1;
   double share = 1.0, rest = 1.0;
-  while (rest > options_.tolerance && share > 0.0 && orders < options_.max_orders) {
+  const auto goes_on = [&] {
+    if (options_.exact_orders) return orders < *options_.exact_orders;
+    return rest > options_.tolerance && share > 0.0 && orders < options_.max_orders;
+  };
+  while (goes_on()) {
     Field next = Empty();
     tbb::parallel_for(std::size_t{0}, geometry_.altitudes(),
                       [&](std::size_t i) { NextOrder(i, order, next); });
@@ -402,6 +406,7 @@ Block::Sum Block::Solve(Field first_order) const {
     const double ratio = std::clamp(share / share_before, 0.0, 0.999);
     rest = share * ratio / (1.0 - ratio);
   }
+  if (options_.exact_orders) return {std::move(total), orders, true};
   for (std::size_t node = 0; node < total.size(); node += channels_) {
     const Light tail = TailFactor(order[node], before[node]);
     for (std::size_t i = 0; i < channels_; ++i) total[node + i] += tail * order[node + i];
