@@ -167,6 +167,17 @@ double MapStrength(double z, double c, double length, double radius, double exti
   return std::max(length / half - 2.0, 0.0);
 }
 
+// Ends the rows after `count` samples, with weightless ones up to whole SIMD lanes.
+template <typename Real>
+void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
+  samples.count = count;
+  constexpr std::size_t kLanes = BatchOf<Real>::kLanes;
+  samples.padded = (count + kLanes - 1) / kLanes * kLanes;
+  for (; count < samples.padded; ++count) {
+    samples.distance[count] = samples.weight[count] = samples.lit[count] = Real(0);
+  }
+}
+
 // Places Gauss nodes in every panel, in the order of the panels.
 template <typename Real>
 void PlaceSamples(const std::vector<RayPanel>& panels, const Entry& entry, const Medium& medium,
@@ -198,12 +209,7 @@ void PlaceSamples(const std::vector<RayPanel>& panels, const Entry& entry, const
       samples.lit[count] = panel.lit ? Real(1) : Real(0);
     }
   }
-  samples.count = count;
-  constexpr std::size_t kLanes = BatchOf<Real>::kLanes;
-  samples.padded = (count + kLanes - 1) / kLanes * kLanes;
-  for (; count < samples.padded; ++count) {
-    samples.distance[count] = samples.weight[count] = samples.lit[count] = Real(0);
-  }
+  CloseSamples(count, samples);
 }
 
 // Everything at the samples that depends on position: altitude, angles, densities, columns.
@@ -373,6 +379,25 @@ RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling&
   PlaceSamples(CutIntoPanels(ray, samples.extent, entry, medium_, sampling), entry, medium_,
                sampling, samples);
   FillSamples(medium_, entry, ray.nu, samples);
+  return samples;
+}
+
+template <typename Real>
+RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray,
+                                               std::span<const RayNode> nodes) const {
+  ALPENGLOW_ENSURE(nodes.size() + 16, <=, kMaxRaySamples);
+  RaySamples<Real> samples;
+  samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+  const ShadowSpan shadow = PlanetShadow(ray, samples.extent, medium_.planet_radius_m);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double d = nodes[i].distance_m;
+    const bool dark = d > shadow.dark_begin_m && d < shadow.dark_end_m;
+    samples.distance[i] = static_cast<Real>((d - samples.extent.begin_m) / kMetresPerKilometre);
+    samples.weight[i] = static_cast<Real>(nodes[i].weight_m / kMetresPerKilometre);
+    samples.lit[i] = dark ? Real(0) : Real(1);
+  }
+  CloseSamples(nodes.size(), samples);
+  FillSamples(medium_, EntryOf(ray, samples.extent, medium_), ray.nu, samples);
   return samples;
 }
 

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "atmosphere/medium.h"
 #include "atmosphere/ray.h"
@@ -42,6 +43,11 @@ struct Sampling {
   int nodes = 12;             // Gauss nodes of a panel that starts in dense air, in [1, 32]
   bool split_ozone = false;   // cut panels where ozone bends the integrand: for errors below 1e-3
   bool dark_samples = false;  // sample the air in the planet's shadow too (light of higher orders)
+};
+
+/// A point of a quadrature rule along a ray: distance from the observer and weight [m].
+struct RayNode {
+  double distance_m, weight_m;
 };
 
 /// Points along a ray, structure of arrays. Lengths in km, measured from the observer.
@@ -92,6 +98,10 @@ class AirIntegrator {
   [[nodiscard]] Bands<Real> TransmittanceAlong(const ViewRay& ray) const;
 
   [[nodiscard]] RaySamples<Real> Sample(const ViewRay& ray, const Sampling& sampling) const;
+
+  /// Samples at the nodes of any other rule, inside the air, at most kMaxRaySamples - 16: for
+  /// marches that Sample is held against.
+  [[nodiscard]] RaySamples<Real> SampleAt(const ViewRay& ray, std::span<const RayNode> nodes) const;
 
   /// Direct sunlight scattered once along the samples.
   [[nodiscard]] ScatteredOnce<Real> Scatter(const RaySamples<Real>& samples) const;

@@ -182,6 +182,24 @@ TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
   }
 }
 
+TEST(SingleScattering, MarchOfManyStepsComesToTheSameLight) {
+  const AirIntegrator<float> air(MediumPreset("bruneton2017"));
+  for (const double sun_elevation_deg : {30.0, -3.0}) {
+    const ViewRay ray = RayFromAngles(1500.0, 80.0, 20.0, 90.0 - sun_elevation_deg);
+    const RayExtent extent = air.Sample(ray, kFine).extent;
+    constexpr int kSteps = 512;
+    const double step = (extent.end_m - extent.begin_m) / kSteps;
+    std::vector<RayNode> nodes;
+    for (int i = 0; i < kSteps; ++i) nodes.push_back({extent.begin_m + (i + 0.5) * step, step});
+    const auto march = air.Inscatter(air.Scatter(air.SampleAt(ray, nodes)), ray.nu);
+    const auto gauss = Inscatter(air, ray, kFine);
+    // The step that holds the edge of the planet's shadow is lit or not as a whole: 1 / kSteps of
+    // the ray, in thin air.
+    for (std::size_t band = 0; band < air.bands(); ++band)
+      EXPECT_NEAR(march[band], gauss[band], 2e-3F * gauss[band]) << sun_elevation_deg;
+  }
+}
+
 TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
   Medium medium = MediumPreset("earth");
   while (medium.wavelengths_nm.size() <= kMaxBands) {
