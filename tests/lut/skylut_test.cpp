@@ -19,20 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct Outcome {
-  int status;
-  std::string out, error;
-};
-
 class Skylut : public TemporaryFolder {
  protected:
   /// Runs `skylut <arguments>` in the folder of the test.
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" ALPENGLOW_SKYLUT "' " +
-                                arguments + " >.out 2>.error </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ContentOf(folder_ / ".out"),
-            ContentOf(folder_ / ".error")};
+    return RunCommand("'" ALPENGLOW_SKYLUT "' " + arguments);
   }
 
   /// Tables of bruneton2017 that are coarse, but quickly made.

@@ -14,19 +14,10 @@
 #include "atmosphere/spectrum.h"
 #include "lut/multiple_scattering.h"
 #include "renderer/camera_rays.h"
+#include "tests/bare_scene.h"
 
 namespace alpenglow {
 namespace {
-
-// An eye over the bare ellipsoid.
-Scene BareScene(double height_m, double heading, double pitch, double fov) {
-  Scene scene;
-  scene.place = PlaceFromDegrees(46.5, 8.0, 0.0);
-  scene.camera = CameraFromDegrees({height_m, false}, heading, pitch, 0.0, fov);
-  scene.medium = MediumPreset("earth");
-  scene.terrain.kind = TerrainSource::Kind::kNone;
-  return scene;
-}
 
 constexpr RenderSettings kSmall{
     .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 16, .layers = {}};

@@ -11,6 +11,7 @@
 #include <cstdlib>
 
 #include "lut/image.h"
+#include "tests/bare_scene.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -21,17 +22,9 @@ using testing::HasSubstr;
 
 class Skyseries : public TemporaryFolder {
  protected:
-  struct Outcome {
-    int status;
-    std::string out, error;
-  };
   void SetUp() override {
     TemporaryFolder::SetUp();
-    // The bare ellipsoid: these tests are about the program, not about its pictures.
-    WriteText(folder_ / "s.toml",
-              "[place]\nlatitude = 46.5\nlongitude = 8.0\nzone = \"Europe/Zurich\"\n"
-              "[time]\nutc = \"2026-06-21T10:00:00Z\"\n[terrain]\nnone = true\n"
-              "[atmosphere]\npreset = \"bruneton2017\"\n");  // three bands: quick to prepare
+    WriteText(folder_ / "s.toml", kBareSceneText);
   }
   [[nodiscard]] std::string InFolder(const std::string& name) const {
     return (folder_ / name).string();
@@ -41,14 +34,7 @@ class Skyseries : public TemporaryFolder {
   }
   /// @param arguments as typed into a shell.
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
-    const std::string command = std::string(ALPENGLOW_SKYSERIES) + " " + arguments + " >" +
-                                InFolder("out.txt") + " 2>" + InFolder("err.txt");
-    const int status = std::system(command.c_str());
-    Outcome outcome{WEXITSTATUS(status), ContentOf(InFolder("out.txt")),
-                    ContentOf(InFolder("err.txt"))};
-    fs::remove(InFolder("out.txt"));
-    fs::remove(InFolder("err.txt"));
-    return outcome;
+    return RunCommand("'" ALPENGLOW_SKYSERIES "' " + arguments);
   }
   [[nodiscard]] pid_t Start(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), ALPENGLOW_SKYSERIES);

@@ -13,6 +13,7 @@
 #include "renderer/camera_rays.h"
 #include "renderer/render.h"
 #include "renderer/scene_ground.h"
+#include "tests/bare_scene.h"
 #include "tests/viewer/headless.h"
 
 namespace alpenglow {
@@ -44,15 +45,6 @@ std::vector<double> Differences(const Image& judge, const Image& other, int firs
 
 double Quantile(const std::vector<double>& ascending, double share) {
   return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
-}
-
-Scene SceneAt(double height_m, double heading, double pitch, double fov) {
-  Scene scene;
-  scene.place = PlaceFromDegrees(46.5, 8.0, 0.0);
-  scene.camera = CameraFromDegrees({height_m, false}, heading, pitch, 0.0, fov);
-  scene.medium = MediumPreset("earth");
-  scene.terrain.kind = TerrainSource::Kind::kNone;
-  return scene;
 }
 
 /// Light of higher orders over the place of all scenes: solved once, it takes most of the time.
@@ -109,7 +101,7 @@ TEST_F(SkyPainterTest, TheSkyIsTheRenderersFromNoonToTwilight) {
       "2026-06-21T03:42:00Z",   // on the horizon
       "2026-06-21T03:00:00Z",   // 5 degrees below it
       "2026-06-21T18:55:00Z"};  // opposite: the belt of Venus
-  const Scene scene = SceneAt(2.0, 80.0, 20.0, 110.0);
+  const Scene scene = BareScene(2.0, 80.0, 20.0, 110.0);
   const CameraRays camera(scene.camera, kWidth, kHeight);
   int horizon = 0;  // the first row that shows ground in the middle
   while (camera.Direction(kWidth / 2 + 0.5, horizon + 0.5).z > 0.0) ++horizon;
@@ -128,7 +120,7 @@ TEST_F(SkyPainterTest, TheSkyIsTheRenderersFromNoonToTwilight) {
 
 TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
   for (const double height_m : {10e3, 400e3}) {
-    const Scene scene = SceneAt(height_m, 160.0, height_m > 100e3 ? -20.0 : -5.0, 50.0);
+    const Scene scene = BareScene(height_m, 160.0, height_m > 100e3 ? -20.0 : -5.0, 50.0);
     const Pictures both = PaintBoth(scene, {"2026-06-21T06:00:00Z"}).front();
     const std::vector<double> differences = Differences(both.judge, both.painted);
     EXPECT_LT(Quantile(differences, 0.5), 1e-3) << height_m;
@@ -138,7 +130,7 @@ TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
 }
 
 TEST_F(SkyPainterTest, NoPixelIsBlackOrNegativeInDaylight) {
-  const Scene scene = SceneAt(2.0, 30.0, 0.0, 100.0);
+  const Scene scene = BareScene(2.0, 30.0, 0.0, 100.0);
   SkyPainter painter = SkyOver(scene);
   for (const double height_m : {-100.0, 0.0, 0.01, 2.0, 3000.0, 60e3, 119999.0, 120001.0}) {
     Eye eye = EyeOf(scene);
@@ -156,7 +148,7 @@ TEST_F(SkyPainterTest, NoPixelIsBlackOrNegativeInDaylight) {
 }
 
 TEST_F(SkyPainterTest, DevelopsAsTheRendererDoes) {
-  const Scene scene = SceneAt(2.0, 100.0, 15.0, 60.0);
+  const Scene scene = BareScene(2.0, 100.0, 15.0, 60.0);
   SkyPainter painter = SkyOver(scene);
   painter.Paint(EyeOf(scene), ParseInstant("2026-06-21T03:42:00Z"), kWidth, kHeight);
   const Image image = painter.Read();
@@ -179,7 +171,7 @@ TEST_F(SkyPainterTest, DevelopsAsTheRendererDoes) {
 }
 
 TEST_F(SkyPainterTest, SeveralRaysAPixelAverageToThePicture) {
-  const Scene scene = SceneAt(2.0, 100.0, 30.0, 60.0);
+  const Scene scene = BareScene(2.0, 100.0, 30.0, 60.0);
   SkyPainter painter = SkyOver(scene);
   const UtcInstant instant = ParseInstant("2026-06-21T09:00:00Z");
   painter.Paint(EyeOf(scene), instant, kWidth, kHeight, 1);
@@ -213,7 +205,7 @@ TEST_F(SkyPainterTest, AHillInLowSunIsTheRenderers) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("alpenglow-hill-{}.obj", getpid());
   WriteHill(file);
-  Scene scene = SceneAt(150.0, 10.0, -3.0, 70.0);
+  Scene scene = BareScene(150.0, 10.0, -3.0, 70.0);
   scene.terrain.kind = TerrainSource::Kind::kMesh;
   scene.terrain.file = file;
   const Pictures both = PaintBoth(scene, {"2026-06-21T05:30:00Z"}).front();

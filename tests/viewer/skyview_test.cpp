@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "lut/image.h"
+#include "tests/bare_scene.h"
 #include "tests/temporary_folder.h"
 #include "tests/viewer/headless.h"
 
@@ -18,27 +19,16 @@ using ::testing::HasSubstr;
 
 class Skyview : public TemporaryFolder {
  protected:
-  struct Outcome {
-    int status;
-    std::string error;
-  };
   void SetUp() override {
     TemporaryFolder::SetUp();
-    WriteText(folder_ / "s.toml",
-              "[place]\nlatitude = 46.5\nlongitude = 8.0\nzone = \"Europe/Zurich\"\n"
-              "[time]\nutc = \"2026-06-21T10:00:00Z\"\n[terrain]\nnone = true\n"
-              "[atmosphere]\npreset = \"bruneton2017\"\n");  // three bands: quick to prepare
+    WriteText(folder_ / "s.toml", kBareSceneText);
   }
   [[nodiscard]] std::string InFolder(const std::string& name) const {
     return (folder_ / name).string();
   }
   /// @param arguments as typed into a shell; no display is named in the environment.
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
-    const std::string command = std::string("env -u DISPLAY -u WAYLAND_DISPLAY ") +
-                                ALPENGLOW_SKYVIEW + " " + arguments + " >" + InFolder("out.txt") +
-                                " 2>" + InFolder("err.txt");
-    const int status = std::system(command.c_str());
-    return {WEXITSTATUS(status), ContentOf(InFolder("err.txt"))};
+    return RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW "' " + arguments);
   }
   static bool HasOpenGl() {
     try {
@@ -124,12 +114,12 @@ TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFour) {
 }
 
 TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
-  EXPECT_EQ(Run("--help").status, 0);
-  const std::string help = ContentOf(InFolder("out.txt"));
+  const Outcome outcome = Run("--help");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
   for (const char* option : {"--latitude", "--longitude", "--altitude", "--heading", "--pitch",
                              "--time", "--dem", "--size", "--fullscreen", "--screenshot",
                              "--frames", "--headless", "--threads", "--version", "Example"}) {
-    EXPECT_THAT(help, HasSubstr(option));
+    EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
 
