@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/error.h"
+#include "atmosphere/geodesy.h"
 #include "atmosphere/medium_ranges.h"
 
 namespace alpenglow {
@@ -177,6 +178,11 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.ozone.peak_m);
   fnv.Add(medium.ozone.top_m);
   return fnv.hash();
+}
+
+Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
+  if (medium.follows_wgs84) medium.planet_radius_m = OsculatingRadius(kWgs84, latitude_rad);
+  return medium;
 }
 
 }  // namespace alpenglow

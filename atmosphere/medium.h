@@ -74,6 +74,10 @@ void Validate(const Medium& medium);
 /// on: all but the name. Stable over programs, machines and versions.
 [[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
 
+/// The medium over the sphere that osculates the ellipsoid at a latitude, where its ground is one;
+/// unchanged where the planet is a sphere.
+[[nodiscard]] Medium OnOsculatingSphere(Medium medium, double latitude_rad);
+
 /// One of "earth", "bruneton2017", "clear-mountain", "hazy", "mars", on the preset's own
 /// wavelengths
 /// ("bruneton2017": 680, 550, 440 nm of the publication, given ascending; the others: the four

@@ -33,16 +33,6 @@ void DevelopRow(const Image& image, int y, float scale, ToneCurve curve, Display
 
 }  // namespace
 
-ToneCurve ToneCurveFromName(const std::string& name) {
-  if (name == "agx") return ToneCurve::kAgx;
-  if (name == "aces") return ToneCurve::kAces;
-  if (name == "reinhard") return ToneCurve::kReinhard;
-  if (name == "pbr-neutral") return ToneCurve::kPbrNeutral;
-  if (name == "linear") return ToneCurve::kLinear;
-  throw InputError(fmt::format(
-      "tone curve is \"{}\"; it must be agx, aces, reinhard, pbr-neutral or linear", name));
-}
-
 DisplayImage Develop(const Image& image, double ev100, ToneCurve curve) {
   const auto scale = static_cast<float>(ExposureScale(ev100));
   DisplayImage display{image.width, image.height, std::vector<std::uint8_t>(3 * image.rgb.size())};

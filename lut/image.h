@@ -60,6 +60,9 @@ void WriteExr(const std::filesystem::path& file, const Image& image, const Metad
 inline constexpr double kDarkestEv100 = -10.0;
 inline constexpr double kBrightestEv100 = 20.0;
 
+/// Luminance over which the exposure meter takes a pixel for the sun's disk [cd/m^2].
+inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
+
 /// EV100 that a histogram meter picks: mean log luminance between the 40th and 95th percentile
 /// mapped to middle grey by K = 12.5; pixels brighter than `ignore_above_cd_per_m2` (the sun's
 /// disk) and pixels without light do not count. Within [kDarkestEv100, kBrightestEv100]; a picture
@@ -67,8 +70,6 @@ inline constexpr double kBrightestEv100 = 20.0;
 [[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2);
 
 enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
-/// "agx", "aces", "reinhard", "pbr-neutral" or "linear"; throws InputError for another name.
-[[nodiscard]] ToneCurve ToneCurveFromName(const std::string& name);
 
 /// 8-bit sRGB of the exposed picture, dithered by triangular blue noise of +-1 code (dither.h; the
 /// same for every run). Out-of-gamut colours: see tone_curve.glsl.

@@ -14,11 +14,11 @@
 #include "atmosphere/refraction.h"
 #include "atmosphere/single_scattering.h"
 #include "atmosphere/spectrum.h"
+#include "atmosphere/sun_disk.h"
 #include "lut/multiple_scattering.h"
 #include "lut/program.h"
 #include "renderer/camera_rays.h"
 #include "renderer/scene_ground.h"
-#include "renderer/sun_disk.h"
 #include "renderer/surface.h"
 
 namespace alpenglow {
@@ -40,11 +40,6 @@ BandLight operator*(float scale, const BandLight& a) {
   BandLight product(a.count);
   for (std::size_t band = 0; band < a.count; ++band) product[band] = scale * a[band];
   return product;
-}
-
-Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
-  if (medium.follows_wgs84) medium.planet_radius_m = OsculatingRadius(kWgs84, latitude_rad);
-  return medium;
 }
 
 /// Light in the air and on surfaces for one position of the sun.

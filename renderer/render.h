@@ -62,7 +62,4 @@ class SceneRenderer {
   std::unique_ptr<State> state_;
 };
 
-/// Luminance over which the exposure meter takes a pixel for the sun's disk [cd/m^2].
-inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
-
 }  // namespace alpenglow

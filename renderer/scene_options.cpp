@@ -2,7 +2,6 @@
 #include "renderer/scene_options.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "atmosphere/error.h"
 #include "renderer/built_in_range.h"
@@ -42,15 +41,6 @@ Medium MediumFrom(const std::string& name) {
   return is_preset ? MediumPreset(name) : ReadMedium(name);
 }
 
-/// Calls `refuse` unless the whole text is a number.
-template <typename Number, typename Refuse>
-Number NumberFromText(std::string_view text, const Refuse& refuse) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) refuse();
-  return number;
-}
-
 }  // namespace
 
 Scene SceneFromOptions(const SceneOptions& options) {
@@ -70,31 +60,6 @@ Scene SceneFromOptions(const SceneOptions& options) {
     scene.terrain.centre = typed;
   }
   return scene;
-}
-
-ImageSize ImageSizeFromText(const std::string& text) {
-  constexpr int kLargest = 16384;
-  const auto refuse = [&] {
-    throw InputError(
-        fmt::format("size is \"{}\"; write it as 1280x720, each in [1, {}]", text, kLargest));
-  };
-  const auto side = [&](std::string_view digits) {
-    const int pixels = NumberFromText<int>(digits, refuse);
-    if (pixels < 1 || pixels > kLargest) refuse();
-    return pixels;
-  };
-  const std::string_view whole = text;
-  const std::size_t cross = whole.find('x');
-  if (cross == std::string_view::npos) refuse();
-  return {side(whole.substr(0, cross)), side(whole.substr(cross + 1))};
-}
-
-std::optional<double> Ev100FromText(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  const double ev100 = NumberFromText<double>(text, [&] {
-    throw InputError(fmt::format("exposure is \"{}\"; it must be auto or a number (EV)", text));
-  });
-  return RequireInRange(ev100, -30.0, 30.0, "exposure");
 }
 
 }  // namespace alpenglow

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "lut/image.h"
 #include "renderer/scene.h"
 
 namespace alpenglow {
@@ -25,16 +24,5 @@ struct SceneOptions {
 /// there and seen as in BuiltInRangeView, unless said otherwise. The scene's time is noon (UTC) of
 /// 2026-06-21: the day of events when none is given. Throws InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);
-
-struct ImageSize {
-  int width = 1280;
-  int height = 720;
-};
-
-/// "1280x720", each in [1, 16384]; throws InputError.
-[[nodiscard]] ImageSize ImageSizeFromText(const std::string& text);
-
-/// "auto" is nothing, a number in [-30, 30] an exposure value; throws InputError for other texts.
-[[nodiscard]] std::optional<double> Ev100FromText(const std::string& text);
 
 }  // namespace alpenglow

@@ -7,6 +7,7 @@
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "atmosphere/sun.h"
+#include "lut/picture_text.h"
 #include "lut/program.h"
 #include "renderer/contact_sheet.h"
 #include "renderer/provenance.h"
@@ -20,22 +21,6 @@ namespace fs = std::filesystem;
 constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
 constexpr char kFingerprint[] = "alpenglow.fingerprint";
 constexpr char kEv100[] = "alpenglow.ev100";
-
-std::string CurveName(ToneCurve curve) {
-  switch (curve) {
-    case ToneCurve::kAgx:
-      return "agx";
-    case ToneCurve::kAces:
-      return "aces";
-    case ToneCurve::kReinhard:
-      return "reinhard";
-    case ToneCurve::kPbrNeutral:
-      return "pbr-neutral";
-    case ToneCurve::kLinear:
-      return "linear";
-  }
-  throw InternalError("unknown tone curve");
-}
 
 std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
   return source.zone ? FormatInZone(instant, *source.zone) : "";
@@ -96,7 +81,7 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
       fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
   metadata[kEv100] = fmt::format("{:.4f}", ev100);
   metadata["alpenglow.exposure"] = output.ev100 ? "fixed" : "metered";
-  metadata["alpenglow.tone_curve"] = CurveName(output.curve);
+  metadata["alpenglow.tone_curve"] = NameOf(output.curve);
   if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
   return metadata;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lut/command_line.h"
+#include "lut/picture_text.h"
 #include "renderer/frame_times.h"
 #include "renderer/render.h"
 #include "renderer/scene_options.h"

@@ -17,11 +17,6 @@ constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,
 constexpr double kClearance_m = 1.5;  // of the eye over the ground
 constexpr double kZoomStep = 1.1;
 
-Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
-  if (medium.follows_wgs84) medium.planet_radius_m = OsculatingRadius(kWgs84, latitude_rad);
-  return medium;
-}
-
 Eye EyeOf(const Scene& scene, double height_m) {
   Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
           scene.camera.fov_rad};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lut/command_line.h"
+#include "lut/picture_text.h"
 #include "renderer/scene_options.h"
 
 namespace alpenglow {

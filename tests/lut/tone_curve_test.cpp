@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "atmosphere/error.h"
+#include "lut/picture_text.h"
 
 namespace alpenglow {
 namespace {

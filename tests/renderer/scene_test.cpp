@@ -8,6 +8,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "lut/picture_text.h"
 #include "renderer/scene_options.h"
 #include "tests/temporary_folder.h"
 

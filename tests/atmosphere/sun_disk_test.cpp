@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/sun_disk.h"
+#include "atmosphere/sun_disk.h"
 
 #include <gtest/gtest.h>
 
