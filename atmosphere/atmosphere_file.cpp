@@ -33,6 +33,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 using Values = std::vector<double>;
+using Phases = std::vector<PhaseFunction>;
 using ranges::Range;
 
 const Names kSections{"preset", "planet", "spectrum", "rayleigh", "mie", "aerosol", "ozone"};
@@ -163,6 +164,7 @@ class AtmosphereFile {
                          &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
       list->clear();
     }
+    if (medium.mie_phase.size() > 1) medium.mie_phase.clear();
     return medium;
   }
 
@@ -208,15 +210,15 @@ class AtmosphereFile {
     ReadList(*mie_, "extinction_per_m", ranges::kCoefficient_per_m, medium.mie_extinction_per_m,
              count);
     ReadNumber(*mie_, "scale_height_m", ranges::kScaleHeight_m, medium.mie_scale_height_m);
-    ReadPhase(medium.mie_phase);
+    ReadPhase(medium);
   }
 
-  void ReadPhase(PhaseFunction& phase) const {
+  void ReadPhase(Medium& medium) const {
+    Phases& phases = medium.mie_phase;
     if (const auto name = mie_->Text("phase")) {
       const PhaseKind kind = KindOf(*name);
-      if (kind != phase.kind) {
-        phase = PhaseFunction{};
-        phase.kind = kind;
+      if (phases.empty() || kind != phases.front().kind) {
+        phases = {PhaseFunction{.kind = kind}};
         if (kind != PhaseKind::kRayleigh && !mie_->Has("g")) {
           mie_->Fail("phase",
                      fmt::format("mie.phase is \"{}\", not the preset's: give mie.g too, for "
@@ -225,12 +227,15 @@ class AtmosphereFile {
         }
       }
     }
-    const PhaseKind kind = phase.kind;
-    ReadParameter("g", kind != PhaseKind::kRayleigh, kind, phase.g);
-    ReadParameter("g_back", kind == PhaseKind::kDoubleHenyeyGreenstein, kind, phase.g_back);
-    ReadParameter("back_weight", kind == PhaseKind::kDoubleHenyeyGreenstein, kind,
-                  phase.back_weight);
-    ReadParameter("alpha", kind == PhaseKind::kDraine, kind, phase.alpha);
+    RequirePhase(phases);
+    const PhaseKind kind = phases.front().kind;
+    const bool two_lobes = kind == PhaseKind::kDoubleHenyeyGreenstein;
+    ReadParameter("g", kind != PhaseKind::kRayleigh, &PhaseFunction::g, medium);
+    ReadParameter("g_back", two_lobes, &PhaseFunction::g_back, medium);
+    ReadParameter("back_weight", two_lobes, &PhaseFunction::back_weight, medium);
+    ReadParameter("alpha", kind == PhaseKind::kDraine, &PhaseFunction::alpha, medium);
+    const bool equal = std::equal(phases.begin() + 1, phases.end(), phases.begin());
+    if (equal) phases.resize(1);
   }
 
   PhaseKind KindOf(const std::string& name) const {
@@ -241,15 +246,27 @@ class AtmosphereFile {
     }
   }
 
-  void ReadParameter(const std::string& key, bool has_it, PhaseKind kind, double& target) const {
+  // One value for all wavelengths, or one per wavelength.
+  void ReadParameter(const std::string& key, bool has_it, double PhaseFunction::*parameter,
+                     Medium& medium) const {
     if (!mie_->Has(key)) return;
+    Phases& phases = medium.mie_phase;
     if (!has_it) {
       mie_->Fail(
           key, fmt::format("mie.{} has no effect: the phase function {} has no such parameter", key,
-                           NameOf(kind)));
+                           NameOf(phases.front().kind)));
     }
-    ReadNumber(*mie_, key, {-1.0, 1.0}, target);
+    Values values = *mie_->Numbers(key, -1.0, 1.0);
+    const std::size_t count = medium.wavelengths_nm.size();
+    if (values.size() == 1) values.resize(phases.size(), values.front());
+    if (values.size() != phases.size()) {
+      ReadList(*mie_, key, {-1.0, 1.0}, values, count);
+      phases.resize(count, phases.front());
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
   }
+
+  void RequirePhase(const Phases& phases) const { RequireList(Values(phases.size()), "mie.phase"); }
 
   // Share of scattering in the extinction of the preset's aerosol; empty where it has no data.
   static Values ScatteringShare(const Medium& medium) {
@@ -367,6 +384,7 @@ class AtmosphereFile {
     RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
     RequireList(medium.mie_scattering_per_m, "mie.scattering_per_m");
     RequireList(medium.mie_extinction_per_m, "mie.extinction_per_m");
+    RequirePhase(medium.mie_phase);
     RequireList(medium.ozone_absorption_per_m, "ozone.absorption_per_m");
   }
 

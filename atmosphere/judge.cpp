@@ -164,7 +164,7 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
   };
 
   const double phase_rayleigh = PhaseRayleigh(ray.nu);
-  const double phase_mie = Phase(medium.mie_phase, ray.nu);
+  const std::vector<double> phase_mie = MiePhaseValues(medium, ray.nu);
   const auto source = [&](double t) {
     std::vector<double> scattered(bands, 0.0);
     const SunPath sun = TowardsSun(medium, line, ray, t, !is_dark(t), kInnerTolerance);
@@ -175,7 +175,7 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
       const double tau = TauAt(medium, band, view.value) + TauAt(medium, band, sun.columns);
       scattered[band] =
           std::exp(-tau) * (medium.rayleigh_scattering_per_m[band] * density[0] * phase_rayleigh +
-                            medium.mie_scattering_per_m[band] * density[1] * phase_mie);
+                            medium.mie_scattering_per_m[band] * density[1] * phase_mie[band]);
     }
     return scattered;
   };

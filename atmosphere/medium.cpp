@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/medium.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -107,12 +108,25 @@ Fault FaultOfScalars(const Medium& medium) {
   return std::nullopt;
 }
 
-Fault FaultOfPhase(const PhaseFunction& phase) {
-  try {
-    Validate(phase, "mie");
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    return MediumFault{text.substr(0, text.find(' ')), text};
+Fault FaultOfPhase(const Medium& medium) {
+  const std::vector<PhaseFunction>& phases = medium.mie_phase;
+  if (phases.size() != 1 && phases.size() != medium.wavelengths_nm.size()) {
+    return MediumFault{"mie.phase", fmt::format("mie.phase has {} values; it must have 1 or {}, "
+                                                "one per wavelength",
+                                                phases.size(), medium.wavelengths_nm.size())};
+  }
+  for (const PhaseFunction& phase : phases) {
+    if (phase.kind != phases.front().kind) {
+      return MediumFault{"mie.phase", fmt::format("mie.phase is {} beside {}; it must be of one "
+                                                  "kind at all wavelengths",
+                                                  NameOf(phase.kind), NameOf(phases.front().kind))};
+    }
+    try {
+      Validate(phase, "mie");
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      return MediumFault{text.substr(0, text.find(' ')), text};
+    }
   }
   return std::nullopt;
 }
@@ -141,14 +155,35 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
 
+void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
+  fnv.Add(NameOf(phase.kind));
+  fnv.Add(phase.g);
+  fnv.Add(phase.g_back);
+  fnv.Add(phase.back_weight);
+  fnv.Add(phase.alpha);
+}
+
+bool AllShareOnePhase(const Medium& medium) {
+  return std::equal(medium.mie_phase.begin() + 1, medium.mie_phase.end(), medium.mie_phase.begin());
+}
+
 }  // namespace
+
+std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) {
+  std::vector<double> values;
+  for (const PhaseFunction& phase : medium.mie_phase) {
+    values.push_back(Phase(phase, cos_scattering));
+  }
+  if (values.size() == 1) values.resize(medium.wavelengths_nm.size(), values.front());
+  return values;
+}
 
 std::optional<MediumFault> FindFault(const Medium& medium) {
   if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm)) return fault;
   if (Fault fault = FaultOfScalars(medium)) return fault;
   if (Fault fault = FaultOfLists(medium)) return fault;
   if (Fault fault = FaultOfExtinction(medium)) return fault;
-  return FaultOfPhase(medium.mie_phase);
+  return FaultOfPhase(medium);
 }
 
 void Validate(const Medium& medium) {
@@ -168,11 +203,10 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.mie_scattering_per_m);
   fnv.Add(medium.mie_extinction_per_m);
   fnv.Add(medium.mie_scale_height_m);
-  fnv.Add(NameOf(medium.mie_phase.kind));
-  fnv.Add(medium.mie_phase.g);
-  fnv.Add(medium.mie_phase.g_back);
-  fnv.Add(medium.mie_phase.back_weight);
-  fnv.Add(medium.mie_phase.alpha);
+  for (const PhaseFunction& phase : medium.mie_phase) {
+    AddPhase(phase, fnv);
+    if (AllShareOnePhase(medium)) break;  // given once or once per wavelength: the same air
+  }
   fnv.Add(medium.ozone_absorption_per_m);
   fnv.Add(medium.ozone.bottom_m);
   fnv.Add(medium.ozone.peak_m);

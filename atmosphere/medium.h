@@ -8,6 +8,7 @@
 // and nothing above the top. SI units except wavelengths [nm].
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -48,13 +49,23 @@ struct Medium {
   std::vector<double> mie_scattering_per_m;  // at altitude 0
   std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
   double mie_scale_height_m = 1200.0;
-  PhaseFunction mie_phase;
+  /// Of the aerosol: one for all wavelengths, or one per wavelength, all of one kind.
+  std::vector<PhaseFunction> mie_phase{PhaseFunction{}};
 
   std::vector<double> ozone_absorption_per_m;  // at the peak of the tent
   OzoneTent ozone;
 
   bool operator==(const Medium&) const = default;
 };
+
+/// The aerosol's phase function at the wavelength of this index.
+[[nodiscard]] inline const PhaseFunction& MiePhase(const Medium& medium, std::size_t band) {
+  return medium.mie_phase.size() == 1 ? medium.mie_phase.front() : medium.mie_phase[band];
+}
+
+/// Values [1/sr] of the aerosol's phase function, one per wavelength; evaluated once when all share
+/// it. @param cos_scattering  as for Phase().
+[[nodiscard]] std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering);
 
 /// A parameter out of range: its key in atmosphere.toml, and one line with key, value and range.
 struct MediumFault {

@@ -58,8 +58,7 @@ void AddAerosol(const Aerosol& aerosol, Medium& medium) {
     medium.mie_scattering_per_m.push_back(medium.mie_extinction_per_m[i] *
                                           albedo(medium.wavelengths_nm[i]));
   }
-  medium.mie_phase.kind = PhaseKind::kCornetteShanks;
-  medium.mie_phase.g = aerosol.g;
+  medium.mie_phase = {{.kind = PhaseKind::kCornetteShanks, .g = aerosol.g}};
 }
 
 Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) {
@@ -131,10 +130,8 @@ Medium Mars(const std::vector<double>& wavelengths_nm) {
   });
   // Lobes of the dust seen from Gale crater, rounded: Chen-Chen, Perez-Hoyos and Sanchez-Lavega
   // (2019), Icarus 330, 16-29. Mean cosine 0.68.
-  medium.mie_phase.kind = PhaseKind::kDoubleHenyeyGreenstein;
-  medium.mie_phase.g = 0.89;
-  medium.mie_phase.g_back = 0.09;
-  medium.mie_phase.back_weight = 0.26;
+  medium.mie_phase = {
+      {.kind = PhaseKind::kDoubleHenyeyGreenstein, .g = 0.89, .g_back = 0.09, .back_weight = 0.26}};
   medium.ozone_absorption_per_m.assign(wavelengths_nm.size(), 0.0);
   return medium;
 }
@@ -155,8 +152,7 @@ Medium Bruneton2017() {
   medium.mie_scattering_per_m = {3.996e-6, 3.996e-6, 3.996e-6};
   medium.mie_extinction_per_m = {4.440e-6, 4.440e-6, 4.440e-6};
   medium.mie_scale_height_m = 1200.0;
-  medium.mie_phase.kind = PhaseKind::kCornetteShanks;
-  medium.mie_phase.g = 0.8;
+  medium.mie_phase = {{.kind = PhaseKind::kCornetteShanks, .g = 0.8}};
   medium.ozone_absorption_per_m = {0.085e-6, 1.881e-6, 0.650e-6};
   medium.ozone = OzoneTent{};
   return medium;

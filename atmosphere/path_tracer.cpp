@@ -306,7 +306,7 @@ class Tracer {
   void Spread(const Piece& piece, int strata, double jitter);
   void Gather(const Piece& piece, std::vector<double>& light);
   void GatherFromAir(const Piece& piece, const Point& point, double rayleigh_phase,
-                     double mie_phase, std::vector<double>& light) const;
+                     const std::vector<double>& mie_phase, std::vector<double>& light) const;
   void GatherFromGround(const Piece& piece, std::vector<double>& light);
   [[nodiscard]] double ExpectedLight(const Piece& piece, double distance_m) const;
   [[nodiscard]] double SumOfShares() const;
@@ -383,7 +383,7 @@ void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
   const Medium& medium = scene_.medium();
   const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
   const double rayleigh_phase = Phase(kMolecules, nu);
-  const double mie_phase = Phase(medium.mie_phase, nu);
+  const std::vector<double> mie_phase = MiePhaseValues(medium, nu);
   for (Point& point : points_) {
     for (std::size_t band = 0; band < weight_.size(); ++band) {
       point.share += weight_[band] * point.length_m *
@@ -400,7 +400,7 @@ void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
 
 // Sunlight scattered at one point.
 void Tracer::GatherFromAir(const Piece& piece, const Point& point, double rayleigh_phase,
-                           double mie_phase, std::vector<double>& light) const {
+                           const std::vector<double>& mie_phase, std::vector<double>& light) const {
   const Medium& medium = scene_.medium();
   const double radius = piece.Radius(point.distance_m);
   const double towards_sun =
@@ -412,7 +412,7 @@ void Tracer::GatherFromAir(const Piece& piece, const Point& point, double raylei
   for (std::size_t band = 0; band < weight_.size(); ++band) {
     const double scattered =
         medium.rayleigh_scattering_per_m[band] * point.rayleigh * rayleigh_phase +
-        medium.mie_scattering_per_m[band] * point.mie * mie_phase;
+        medium.mie_scattering_per_m[band] * point.mie * mie_phase[band];
     light[band] +=
         weight_[band] * point.length_m * scattered * std::exp(-scene_.OpticalDepth(band, both));
   }
@@ -506,14 +506,34 @@ Guidance GuidanceAt(const Scene& scene, const Vector& from, int order) {
   return {fade * glow, fade * aureole};
 }
 
+// A cosine drawn with the mean of the bands' phase functions by their shares, of any sum.
+// @param choice, v  uniform in [0, 1).
+double SampleAerosol(const Medium& medium, const std::vector<double>& share, double choice,
+                     double v) {
+  if (medium.mie_phase.size() == 1) return SampleCosine(medium.mie_phase.front(), v);
+  double left = choice * std::accumulate(share.begin(), share.end(), 0.0);
+  std::size_t band = 0;
+  while (band + 1 < share.size() && left >= share[band]) left -= share[band++];
+  return SampleCosine(medium.mie_phase[band], v);
+}
+
+// Mean of the values by the shares.
+double MeanBy(const std::vector<double>& share, const std::vector<double>& value) {
+  return std::inner_product(share.begin(), share.end(), value.begin(), 0.0) /
+         std::accumulate(share.begin(), share.end(), 0.0);
+}
+
 Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& from, double choice,
                          double u, double v) {
   const Medium& medium = scene_.medium();
   double by_molecules = 0.0, by_aerosol = 0.0;
+  std::vector<double> share(weight_.size());  // of the aerosol's scattering, by band
   for (std::size_t band = 0; band < weight_.size(); ++band) {
     by_molecules += weight_[band] * medium.rayleigh_scattering_per_m[band] * point.rayleigh;
-    by_aerosol += weight_[band] * medium.mie_scattering_per_m[band] * point.mie;
+    share[band] = weight_[band] * medium.mie_scattering_per_m[band] * point.mie;
+    by_aerosol += share[band];
   }
+  if (!(by_aerosol > 0.0)) std::fill(share.begin(), share.end(), 1.0);
   const Guidance guidance = GuidanceAt(scene_, from, order_);
   const double plain = 1.0 - guidance.glow - guidance.aureole;
   const double molecules = plain * by_molecules / (by_molecules + by_aerosol);
@@ -524,24 +544,26 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
   if (choice < guidance.glow) {
     direction = glow.Sample(u, v);
   } else if (choice < guidance.glow + guidance.aureole) {
-    direction = FrameAround(scene_.sun()).Direction(SampleCosine(medium.mie_phase, v), azimuth);
+    const double rest = (choice - guidance.glow) / guidance.aureole;
+    direction = FrameAround(scene_.sun()).Direction(SampleAerosol(medium, share, rest, v), azimuth);
   } else {
-    const bool molecule = choice < guidance.glow + guidance.aureole + molecules;
-    const double cosine = SampleCosine(molecule ? kMolecules : medium.mie_phase, v);
+    const double rest = choice - (guidance.glow + guidance.aureole + molecules);
+    const double cosine =
+        rest < 0.0 ? SampleCosine(kMolecules, v) : SampleAerosol(medium, share, rest / aerosol, v);
     direction = FrameAround(piece.direction).Direction(cosine, azimuth);
   }
   const double cosine = std::clamp(glm::dot(direction, piece.direction), -1.0, 1.0);
   const double rayleigh_phase = Phase(kMolecules, cosine);
-  const double mie_phase = Phase(medium.mie_phase, cosine);
-  double density = molecules * rayleigh_phase + aerosol * mie_phase;
+  const std::vector<double> mie_phase = MiePhaseValues(medium, cosine);
+  double density = molecules * rayleigh_phase + aerosol * MeanBy(share, mie_phase);
   if (guidance.glow > 0.0) density += guidance.glow * glow.Density(direction);
   if (guidance.aureole > 0.0) {
-    density += guidance.aureole *
-               Phase(medium.mie_phase, std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0));
+    const double to_sun = std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0);
+    density += guidance.aureole * MeanBy(share, MiePhaseValues(medium, to_sun));
   }
   for (std::size_t band = 0; band < weight_.size(); ++band) {
     weight_[band] *= (medium.rayleigh_scattering_per_m[band] * point.rayleigh * rayleigh_phase +
-                      medium.mie_scattering_per_m[band] * point.mie * mie_phase) /
+                      medium.mie_scattering_per_m[band] * point.mie * mie_phase[band]) /
                      density;
   }
   return direction;

@@ -433,9 +433,12 @@ ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples
 template <typename Real>
 Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
   const Real rayleigh_phase = static_cast<Real>(Phase({.kind = PhaseKind::kRayleigh}, nu));
-  const Real mie_phase = static_cast<Real>(Phase(medium_.mie_phase, nu));
+  Real mie_phase = static_cast<Real>(Phase(medium_.mie_phase.front(), nu));
   Bands<Real> radiance(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
+    if (band > 0 && medium_.mie_phase.size() > 1) {
+      mie_phase = static_cast<Real>(Phase(medium_.mie_phase[band], nu));
+    }
     radiance[band] = rayleigh_phase * scattered.rayleigh[band] + mie_phase * scattered.mie[band];
   }
   return radiance;

@@ -10,13 +10,23 @@ std::string ListOf(const std::vector<double>& values) {
   return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
-std::string PhaseLines(const PhaseFunction& phase) {
-  std::string lines = fmt::format("phase = \"{}\"\n", NameOf(phase.kind));
-  if (phase.kind != PhaseKind::kRayleigh) lines += fmt::format("g = {}\n", phase.g);
-  if (phase.kind == PhaseKind::kDoubleHenyeyGreenstein) {
-    lines += fmt::format("g_back = {}\nback_weight = {}\n", phase.g_back, phase.back_weight);
+// One value when all wavelengths share the phase function, else one per wavelength.
+std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
+                          const std::vector<PhaseFunction>& phases) {
+  std::vector<double> values;
+  for (const PhaseFunction& phase : phases) values.push_back(phase.*parameter);
+  return fmt::format("{} = {}\n", key, ListOf(values));
+}
+
+std::string PhaseLines(const std::vector<PhaseFunction>& phases) {
+  const PhaseKind kind = phases.front().kind;
+  std::string lines = fmt::format("phase = \"{}\"\n", NameOf(kind));
+  if (kind != PhaseKind::kRayleigh) lines += ParameterLine("g", &PhaseFunction::g, phases);
+  if (kind == PhaseKind::kDoubleHenyeyGreenstein) {
+    lines += ParameterLine("g_back", &PhaseFunction::g_back, phases);
+    lines += ParameterLine("back_weight", &PhaseFunction::back_weight, phases);
   }
-  if (phase.kind == PhaseKind::kDraine) lines += fmt::format("alpha = {}\n", phase.alpha);
+  if (kind == PhaseKind::kDraine) lines += ParameterLine("alpha", &PhaseFunction::alpha, phases);
   return lines;
 }
 

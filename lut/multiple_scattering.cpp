@@ -31,7 +31,9 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   RequireInRange(options.exact_orders.value_or(1), 1, 1000, "exact_orders");
   Validate(medium_);
   moments_ = MomentCount(options.degree);
-  chi_mie_ = LegendreCoefficients(medium.mie_phase, options.degree);
+  for (const double chi : MieLegendreCoefficients(medium, options.degree)) {
+    chi_mie_.push_back(static_cast<float>(chi));
+  }
   for (std::size_t band = 0; band < bands_; ++band) {
     const auto per_km = [band](const std::vector<double>& per_m) {
       return static_cast<float>(per_m[band] * 1000.0);
@@ -86,13 +88,13 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
                            AzimuthCosine(samples.mu[s], samples.mu_s[s], static_cast<float>(nu)));
     std::array<float, kMaxBands> rayleigh{}, mie{};
     for (int l = 0; l <= options_.degree; ++l) {
-      const auto mie_chi = static_cast<float>(chi_mie_[static_cast<std::size_t>(l)]);
+      const float* mie_chi = &chi_mie_[static_cast<std::size_t>(l) * bands_];
       const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? 0.1F : 0.0F;
       for (int m = 0; m <= l; ++m) {
         const std::size_t i = MomentIndex(l, m);
         for (std::size_t band = 0; band < bands_; ++band) {
           const float light = harmonics[i] * moments[i * bands_ + band];
-          mie[band] += mie_chi * light;
+          mie[band] += mie_chi[band] * light;
           rayleigh[band] += rayleigh_chi * light;
         }
       }

@@ -108,8 +108,8 @@ class DiffuseLight {
   bool converged_ = false;
   std::vector<float> values_;
   std::vector<std::array<float, 4>>
-      coefficients_;             // [1/km]: molecules, aerosol extinction, ozone, aerosol scattering
-  std::vector<double> chi_mie_;  // Legendre coefficients of the aerosol's phase function
+      coefficients_;            // [1/km]: molecules, aerosol extinction, ozone, aerosol scattering
+  std::vector<float> chi_mie_;  // of the aerosol: [l * bands + band]
 };
 
 }  // namespace alpenglow

@@ -97,4 +97,19 @@ std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree)
   return chi;
 }
 
+std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree) {
+  const std::size_t bands = medium.wavelengths_nm.size();
+  const std::size_t different = medium.mie_phase.size();
+  const auto degrees = static_cast<std::size_t>(degree) + 1;
+  std::vector<double> chi(degrees * bands);
+  for (std::size_t phase = 0; phase < different; ++phase) {
+    const std::vector<double> row = LegendreCoefficients(medium.mie_phase[phase], degree);
+    for (std::size_t l = 0; l < degrees; ++l) {
+      for (std::size_t band = phase; band < bands; band += different)
+        chi[l * bands + band] = row[l];
+    }
+  }
+  return chi;
+}
+
 }  // namespace alpenglow

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "atmosphere/medium.h"
 #include "atmosphere/phase.h"
 
 namespace alpenglow {
@@ -44,5 +45,8 @@ using Moments = std::array<float, kMaxMoments>;
 /// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
 /// Error below 1e-6 for |g| <= 0.999.
 [[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
+
+/// The same of the medium's aerosol at every wavelength: chi_l of a band at [l * bands + band].
+[[nodiscard]] std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree);
 
 }  // namespace alpenglow

@@ -218,7 +218,7 @@ class Block {
   const DiffuseLightOptions& options_;
   std::size_t first_band_, channels_;
   Light albedo_, rayleigh_, mie_scattering_, mie_extinction_, ozone_;  // coefficients per km
-  std::vector<float> mie_chi_;
+  std::vector<Light> mie_chi_;                                         // by degree
 };
 
 Block::Block(const Geometry& geometry, const DiffuseLightOptions& options, std::size_t first_band)
@@ -232,8 +232,10 @@ Block::Block(const Geometry& geometry, const DiffuseLightOptions& options, std::
   mie_scattering_ = Of(medium.mie_scattering_per_m) * 1000.0F;
   mie_extinction_ = Of(medium.mie_extinction_per_m) * 1000.0F;
   ozone_ = Of(medium.ozone_absorption_per_m) * 1000.0F;
-  for (const double chi : LegendreCoefficients(medium.mie_phase, options.degree)) {
-    mie_chi_.push_back(static_cast<float>(chi));
+  const std::vector<double> chi = MieLegendreCoefficients(medium, options.degree);
+  const auto bands = static_cast<std::ptrdiff_t>(medium.wavelengths_nm.size());
+  for (auto row = chi.begin(); row != chi.end(); row += bands) {
+    mie_chi_.push_back(Of(std::vector<double>(row, row + bands)));
   }
 }
 

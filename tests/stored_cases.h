@@ -72,7 +72,7 @@ inline std::map<std::string, Medium> Media() {
     medium.rayleigh_scale_height_m = Number(row, "HR_m");
     medium.mie_scale_height_m = Number(row, "HM_m");
     medium.ozone = {Number(row, "oz_lo_m"), Number(row, "oz_mid_m"), Number(row, "oz_hi_m")};
-    medium.mie_phase = {
+    medium.mie_phase.front() = {
         .kind = row.at("phase") == "CS" ? PhaseKind::kCornetteShanks : PhaseKind::kHenyeyGreenstein,
         .g = Number(row, "g")};
     medium.wavelengths_nm.push_back(Number(row, "lambda_nm"));

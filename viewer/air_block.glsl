@@ -12,8 +12,9 @@ layout(std140) uniform Air {
   vec4 blue_from_bands;
   vec4 shell;        // radius of the planet, top of the air, scale heights of molecules and aerosol
   vec4 ozone_tent;   // bottom, peak, top
-  vec4 mie_phase;    // g, g of the second lobe, its weight, alpha
-  vec4 mie_options;  // kind of the phase function; largest extinction at altitude 0, per km
+  vec4 mie_options;  // kind of the phase function; largest extinction at altitude 0, per km;
+                     // number of different phase functions: 1, or one a band
+  vec4 mie_phase[4];  // of each band: g, g of the second lobe, its weight, alpha
 };
 
 #define RADIUS shell.x
@@ -21,15 +22,24 @@ layout(std140) uniform Air {
 #define RAYLEIGH_HEIGHT shell.z
 #define MIE_HEIGHT shell.w
 
-float PhaseMie(float cosine) {
-  float g = mie_phase.x;
+float PhaseOfParameters(float cosine, vec4 phase) {
   int kind = int(mie_options.x + 0.5);  // PhaseKind of phase.h
   if (kind == 0) return PhaseRayleigh(cosine);
-  if (kind == 1) return PhaseHenyeyGreenstein(cosine, g);
-  if (kind == 2) return PhaseDoubleHenyeyGreenstein(cosine, g, mie_phase.y, mie_phase.z);
-  if (kind == 3) return PhaseCornetteShanks(cosine, g);
-  if (kind == 4) return PhaseSchlick(cosine, g);
-  return PhaseDraine(cosine, g, mie_phase.w);
+  if (kind == 1) return PhaseHenyeyGreenstein(cosine, phase.x);
+  if (kind == 2) return PhaseDoubleHenyeyGreenstein(cosine, phase.x, phase.y, phase.z);
+  if (kind == 3) return PhaseCornetteShanks(cosine, phase.x);
+  if (kind == 4) return PhaseSchlick(cosine, phase.x);
+  return PhaseDraine(cosine, phase.x, phase.w);
+}
+
+// The aerosol's phase function in every band.
+vec4 PhaseMie(float cosine) {
+  vec4 value = vec4(PhaseOfParameters(cosine, mie_phase[0]));
+  if (mie_options.z < 1.5) return value;
+  value.y = PhaseOfParameters(cosine, mie_phase[1]);
+  value.z = PhaseOfParameters(cosine, mie_phase[2]);
+  value.w = PhaseOfParameters(cosine, mie_phase[3]);
+  return value;
 }
 
 // Columns of molecules, aerosol and ozone [km] from altitude h upwards along mu >= 0 to space.

@@ -46,7 +46,7 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
   vec2 shadow = ShadowOf(ray);
   float cuts[5] = CutsOf(ray, shadow);
   float phase_rayleigh = PhaseRayleigh(ray.nu);
-  float phase_mie = PhaseMie(ray.nu);
+  vec4 phase_mie = PhaseMie(ray.nu);
   for (int panel = 0; panel < 4; ++panel) {
     float begin = cuts[panel];
     float span = cuts[panel + 1] - begin;

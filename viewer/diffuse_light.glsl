@@ -6,10 +6,12 @@
 // One layer a moment (l major), then the irradiance from the sky; s: sun, t: altitude.
 uniform sampler2DArray diffuse_moments;
 
-// Of moment (l, m): norm of its harmonic, Legendre coefficients of aerosol and molecules,
-// coefficient of the clamped cosine. MomentBlock of uniform_blocks.h.
+// Of moment (l, m): norm of its harmonic, Legendre coefficient of molecules, coefficient of the
+// clamped cosine; Legendre coefficients of the aerosol in the bands. MomentBlock of
+// uniform_blocks.h.
 layout(std140) uniform Moments {
   vec4 moment_factor[MOMENTS];
+  vec4 moment_mie[MOMENTS];
   vec4 sun_axis;  // centre and width of the sun's axis, asinh at its ends
 };
 
@@ -58,8 +60,8 @@ vec4 DiffuseSource(AirPoint point, float nu) {
   vec4 mie = vec4(0.0);
   for (int i = 0; i < MOMENTS; ++i) {
     vec4 light = y[i] * texture(diffuse_moments, vec3(at, float(i)));
-    mie += moment_factor[i].y * light;
-    rayleigh += moment_factor[i].z * light;
+    mie += moment_mie[i] * light;
+    rayleigh += moment_factor[i].y * light;
   }
   return rayleigh_scattering * point.rayleigh * max(rayleigh, vec4(0.0)) +
          mie_scattering * point.mie * max(mie, vec4(0.0));
@@ -72,7 +74,7 @@ vec4 DiffuseIrradiance(float h, float mu_s, float normal_mu, float cos_azimuth) 
   vec2 at = MomentsAt(h, mu_s);
   vec4 irradiance = vec4(0.0);
   for (int i = 0; i < MOMENTS; ++i) {
-    irradiance += (y[i] * moment_factor[i].w) * texture(diffuse_moments, vec3(at, float(i)));
+    irradiance += (y[i] * moment_factor[i].z) * texture(diffuse_moments, vec3(at, float(i)));
   }
   return max(irradiance, vec4(0.0));
 }

@@ -56,7 +56,6 @@ AirBlock AirBlockOf(const Medium& medium) {
     extinction = std::max(
         extinction, medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
   }
-  const PhaseFunction& phase = medium.mie_phase;
   AirBlock block{};
   block.rayleigh_scattering = PerKilometre(medium.rayleigh_scattering_per_m);
   block.mie_scattering = PerKilometre(medium.mie_scattering_per_m);
@@ -70,9 +69,13 @@ AirBlock AirBlockOf(const Medium& medium) {
                  Kilometres(medium.rayleigh_scale_height_m), Kilometres(medium.mie_scale_height_m)};
   block.ozone_tent = {Kilometres(medium.ozone.bottom_m), Kilometres(medium.ozone.peak_m),
                       Kilometres(medium.ozone.top_m), 0.0F};
-  block.mie_phase = {phase.g, phase.g_back, phase.back_weight, phase.alpha};
-  block.mie_options = {static_cast<float>(phase.kind), extinction * kMetresPerKilometre, 0.0F,
-                       0.0F};
+  block.mie_options = {static_cast<float>(medium.mie_phase.front().kind),
+                       extinction * kMetresPerKilometre,
+                       static_cast<float>(medium.mie_phase.size()), 0.0F};
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    const PhaseFunction& phase = MiePhase(medium, band);
+    block.mie_phase[band] = {phase.g, phase.g_back, phase.back_weight, phase.alpha};
+  }
   return block;
 }
 
@@ -82,13 +85,18 @@ MomentBlock MomentBlockOf(const Medium& medium, int degree) {
   constexpr std::array<double, kMaxDegree + 1> kCosine{
       kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
   constexpr std::array<double, kMaxDegree + 1> kRayleigh{1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
-  const std::vector<double> mie = LegendreCoefficients(medium.mie_phase, degree);
   MomentBlock block;
   for (int l = 0; l <= degree; ++l) {
     const auto at = static_cast<std::size_t>(l);
     for (int m = 0; m <= l; ++m) {
-      block.emplace_back(HarmonicNorm(l, m), mie[at], kRayleigh[at], kCosine[at]);
+      block.emplace_back(HarmonicNorm(l, m), kRayleigh[at], kCosine[at], 0.0);
     }
+  }
+  const std::vector<double> mie = MieLegendreCoefficients(medium, degree);
+  const auto bands = static_cast<std::ptrdiff_t>(medium.wavelengths_nm.size());
+  for (int l = 0; l <= degree; ++l) {
+    const auto row = mie.begin() + l * bands;
+    block.insert(block.end(), static_cast<std::size_t>(l) + 1, GpuBandsOf({row, row + bands}));
   }
   const double centre = DiffuseLight::kSunCentre;
   const double width = DiffuseLight::kSunWidth;

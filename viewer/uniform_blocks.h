@@ -22,11 +22,12 @@ inline constexpr std::size_t kGpuBands = 4;
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
-  glm::vec4 shell, ozone_tent, mie_phase, mie_options;
+  glm::vec4 shell, ozone_tent, mie_options;
+  std::array<glm::vec4, kGpuBands> mie_phase;
 };
-static_assert(sizeof(AirBlock) == 12 * sizeof(glm::vec4));
+static_assert(sizeof(AirBlock) == 15 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
-static_assert(offsetof(AirBlock, mie_options) == 11 * sizeof(glm::vec4));
+static_assert(offsetof(AirBlock, mie_phase) == 11 * sizeof(glm::vec4));
 
 /// `block View` of view_block.glsl.
 struct ViewBlock {
@@ -55,8 +56,9 @@ static_assert(sizeof(GroundBlock) == 14 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, noise_place) == 8 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, mesh_up) == 13 * sizeof(glm::vec4));
 
-/// `block Moments` of diffuse_light.glsl for one degree: the factors of every moment, then the axis
-/// of the sun. Its length is the shader's (a block's array has the length that its text says).
+/// `block Moments` of diffuse_light.glsl for one degree: the factors of every moment, the
+/// aerosol's coefficients of every moment, the axis of the sun. Its length is the shader's (a
+/// block's array has the length that its text says).
 using MomentBlock = std::vector<glm::vec4>;
 
 /// Throws InputError when the medium has more than kGpuBands wavelengths.

@@ -162,10 +162,10 @@ TEST(AtmosphereFile, DobsonIsTheColumnOfTheTent) {
 TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
   const Medium medium = Read(
       "[mie]\nphase = \"double-henyey-greenstein\"\ng = 0.9\ng_back = -0.2\nback_weight = 0.1\n");
-  EXPECT_EQ(medium.mie_phase.kind, PhaseKind::kDoubleHenyeyGreenstein);
-  EXPECT_EQ(medium.mie_phase.g_back, -0.2);
-  EXPECT_EQ(Read("[mie]\ng = 0.7\n").mie_phase.g, 0.7);
-  EXPECT_EQ(Read("[mie]\nphase = \"rayleigh\"\n").mie_phase.kind, PhaseKind::kRayleigh);
+  EXPECT_EQ(medium.mie_phase.front().kind, PhaseKind::kDoubleHenyeyGreenstein);
+  EXPECT_EQ(medium.mie_phase.front().g_back, -0.2);
+  EXPECT_EQ(Read("[mie]\ng = 0.7\n").mie_phase.front().g, 0.7);
+  EXPECT_EQ(Read("[mie]\nphase = \"rayleigh\"\n").mie_phase.front().kind, PhaseKind::kRayleigh);
   EXPECT_THAT(FaultOf("[mie]\nalpha = 0.5\n"), StartsWith("a.toml:2: mie.alpha has no effect"));
   EXPECT_THAT(FaultOf("[mie]\nphase = \"henyey-greenstein\"\n"), HasSubstr("give mie.g too"));
   EXPECT_THAT(FaultOf("[mie]\nphase = \"mie\"\n"),

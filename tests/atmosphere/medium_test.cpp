@@ -59,9 +59,9 @@ TEST(Medium, AerosolOfEarthHasTheOpticalDepthAndSlopeOfAngstrom) {
 }
 
 TEST(Medium, MeanCosinesOfEarthAerosolsAreThoseOfOpac) {
-  EXPECT_NEAR(MeanCosine(MediumPreset("earth").mie_phase), 0.7034, 1e-4);
-  EXPECT_NEAR(MeanCosine(MediumPreset("clear-mountain").mie_phase), 0.7086, 1e-4);
-  EXPECT_NEAR(MeanCosine(MediumPreset("hazy").mie_phase), 0.6977, 1e-4);
+  EXPECT_NEAR(MeanCosine(MediumPreset("earth").mie_phase.front()), 0.7034, 1e-4);
+  EXPECT_NEAR(MeanCosine(MediumPreset("clear-mountain").mie_phase.front()), 0.7086, 1e-4);
+  EXPECT_NEAR(MeanCosine(MediumPreset("hazy").mie_phase.front()), 0.6977, 1e-4);
 }
 
 TEST(Medium, VisibilityOfEarthIsThatOfACleanDay) {
@@ -86,7 +86,7 @@ TEST(Medium, DustOfMarsAbsorbsBlueAndItsGasHardlyScatters) {
   EXPECT_LT(mars.mie_scattering_per_m[0], 0.9 * mars.mie_scattering_per_m[2]);
   EXPECT_LT(mars.rayleigh_scattering_per_m[0], 0.02 * mars.mie_extinction_per_m[0]);
   EXPECT_NEAR(mars.solar_irradiance[1] * 1.524 * 1.524, SolarIrradiance(532.2), 1e-12);
-  EXPECT_NEAR(MeanCosine(mars.mie_phase), 0.68, 0.005);
+  EXPECT_NEAR(MeanCosine(mars.mie_phase.front()), 0.68, 0.005);
   const double cross_section_m2 =
       mars.rayleigh_scattering_per_m[1] / (610.0 / (1.380649e-23 * 210.0));
   EXPECT_NEAR(cross_section_m2, 1.24e-30, 0.08 * 1.24e-30)
@@ -102,7 +102,7 @@ TEST(Medium, Bruneton2017IsAsPublishedButAscending) {
   EXPECT_FALSE(medium.follows_wgs84);
   EXPECT_EQ(medium.planet_radius_m, 6360000.0);
   EXPECT_EQ(medium.atmosphere_height_m, 60000.0);
-  EXPECT_EQ(medium.mie_phase.g, 0.8);
+  EXPECT_EQ(medium.mie_phase.front().g, 0.8);
   EXPECT_THAT(MessageOf([] { (void)MediumPreset("bruneton2017", {450.0}); }), HasSubstr("440"));
 }
 
@@ -131,11 +131,11 @@ std::vector<Change> HashedChanges() {
       {"mie", [](Medium& m) { m.mie_scattering_per_m[0] *= 0.9; }},
       {"mie extinction", [](Medium& m) { m.mie_extinction_per_m[0] *= 1.1; }},
       {"mie height", [](Medium& m) { m.mie_scale_height_m += 1.0; }},
-      {"phase", [](Medium& m) { m.mie_phase.kind = PhaseKind::kDraine; }},
-      {"g", [](Medium& m) { m.mie_phase.g += 0.01; }},
-      {"g_back", [](Medium& m) { m.mie_phase.g_back += 0.01; }},
-      {"back_weight", [](Medium& m) { m.mie_phase.back_weight += 0.01; }},
-      {"alpha", [](Medium& m) { m.mie_phase.alpha -= 0.01; }},
+      {"phase", [](Medium& m) { m.mie_phase.front().kind = PhaseKind::kDraine; }},
+      {"g", [](Medium& m) { m.mie_phase.front().g += 0.01; }},
+      {"g_back", [](Medium& m) { m.mie_phase.front().g_back += 0.01; }},
+      {"back_weight", [](Medium& m) { m.mie_phase.front().back_weight += 0.01; }},
+      {"alpha", [](Medium& m) { m.mie_phase.front().alpha -= 0.01; }},
       {"ozone", [](Medium& m) { m.ozone_absorption_per_m[2] *= 1.1; }},
       {"ozone bottom", [](Medium& m) { m.ozone.bottom_m += 1.0; }},
       {"ozone peak", [](Medium& m) { m.ozone.peak_m += 1.0; }},
@@ -161,7 +161,7 @@ TEST(Medium, HashIsTheSameOnEveryMachine) {
   EXPECT_EQ(MediumHash(MediumPreset("bruneton2017")), 3681725893479617410U)
       << "a new value here makes every table on every disk stale";
   Medium negative_zero = MediumPreset("bruneton2017");
-  negative_zero.mie_phase.g_back = -0.0;
+  negative_zero.mie_phase.front().g_back = -0.0;
   EXPECT_EQ(MediumHash(negative_zero), MediumHash(MediumPreset("bruneton2017")));
 }
 
@@ -185,7 +185,7 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
       {"mie.scale_height_m is 300000", [](Medium& m) { m.mie_scale_height_m = 3e5; }},
       {"mie.scattering_per_m is 1 at 445 nm; it must not exceed",
        [](Medium& m) { m.mie_scattering_per_m[0] = 1.0; }},
-      {"mie.g is 1;", [](Medium& m) { m.mie_phase.g = 1.0; }},
+      {"mie.g is 1;", [](Medium& m) { m.mie_phase.front().g = 1.0; }},
       {"ozone.absorption_per_m is -1", [](Medium& m) { m.ozone_absorption_per_m[0] = -1.0; }},
       {"ozone.peak_m is 50000; it must lie between", [](Medium& m) { m.ozone.peak_m = 5e4; }},
   };

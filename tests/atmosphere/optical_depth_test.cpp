@@ -130,7 +130,7 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
     const double light =
         1e-3 * air.TransmittanceToSpace(100.0, 0.5)[0] *
         (medium.rayleigh_scattering_per_m[0] * density_r * Phase({PhaseKind::kRayleigh}, 0.3) +
-         medium.mie_scattering_per_m[0] * density_m * Phase(medium.mie_phase, 0.3));
+         medium.mie_scattering_per_m[0] * density_m * Phase(medium.mie_phase.front(), 0.3));
     EXPECT_NEAR(Radiance(air, ray), light, 1e-5 * light);
     const float light_in_float =
         in_float.Inscatter(in_float.Scatter(in_float.Sample(ray, {})), ray.nu)[0];
@@ -247,7 +247,7 @@ TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
 TEST(OpticalDepth, TheViewAtTheSunAndAwayFromItIsFiniteForTheSharpestLobe) {
   Medium medium = Earth();
   for (const double g : {0.999, -0.999}) {
-    medium.mie_phase.g = g;
+    medium.mie_phase.front().g = g;
     const AirIntegrator<double> air(medium);
     for (const double nu : {1.0, -1.0}) {
       const double radiance = Radiance(air, {2.0, nu * 0.5, 0.5, nu});

@@ -215,7 +215,7 @@ TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
 
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   Medium medium = MediumPreset("earth");
-  medium.mie_phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};
+  medium.mie_phase.front() = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};
   const AirIntegrator<float> air(medium);
   for (const double nu : {1.0, -1.0}) {
     const ViewRay ray{2.0, nu * 0.5, 0.5, nu};

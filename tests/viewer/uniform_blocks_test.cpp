@@ -52,7 +52,7 @@ ShaderProgram PictureBlocks() {
   std::vector<ShaderPiece> pieces = LightTexts(kDegree);
   pieces.push_back({"main",
                     "void main() { gl_Position = shell + eye + forest + moment_factor[0] + "
-                    "sun_axis; }\n"});
+                    "moment_mie[0] + sun_axis; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
 }
 
@@ -69,8 +69,8 @@ TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
                           {"blue_from_bands", offsetof(AirBlock, blue_from_bands)},
                           {"shell", offsetof(AirBlock, shell)},
                           {"ozone_tent", offsetof(AirBlock, ozone_tent)},
-                          {"mie_phase", offsetof(AirBlock, mie_phase)},
-                          {"mie_options", offsetof(AirBlock, mie_options)}});
+                          {"mie_options", offsetof(AirBlock, mie_options)},
+                          {"mie_phase[0]", offsetof(AirBlock, mie_phase)}});
 }
 
 TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
@@ -103,8 +103,9 @@ TEST_F(UniformBlocks, MomentsLieWhereTheDriverLooks) {
   const ShaderProgram program = PictureBlocks();
   const MomentBlock block = MomentBlockOf(MediumPreset("earth"), kDegree);
   EXPECT_EQ(SizeOf(program, "Moments"), static_cast<GLint>(block.size() * sizeof(block[0])));
-  ExpectOffsets(program,
-                {{"moment_factor[0]", 0}, {"sun_axis", (block.size() - 1) * sizeof(block[0])}});
+  ExpectOffsets(program, {{"moment_factor[0]", 0},
+                          {"moment_mie[0]", MomentCount(kDegree) * sizeof(block[0])},
+                          {"sun_axis", (block.size() - 1) * sizeof(block[0])}});
 }
 
 TEST_F(UniformBlocks, MeshLiesWhereTheDriverLooks) {
