@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "lut/build_command.h"
 
+#include <fmt/core.h>
+
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "atmosphere/medium.h"
+#include "lut/exchange_tables.h"
 #include "lut/table_folder.h"
 
 namespace alpenglow {
@@ -16,9 +20,58 @@ struct BuildOptions {
   std::string out;
   bool single_scattering_only = false;
   std::string quality = "standard";
+  std::string layout = "native";
+  std::optional<std::string> type, format;
 };
 
+/// The layout of other programs, when one is asked for.
+std::optional<ExchangeOptions> ExchangeOf(const BuildOptions& options) {
+  if (options.layout == "native") return std::nullopt;
+  ExchangeOptions exchange;
+  exchange.layout =
+      options.layout == "takram" ? ExchangeLayout::kTakram : ExchangeLayout::kBruneton;
+  if (options.type) exchange.type = TexelTypeFromName(*options.type);
+  if (options.format) exchange.format = TexelFormatFromName(*options.format);
+  return exchange;
+}
+
+/// What CLI11 cannot say by itself: options that contradict each other.
+void CheckLayout(const BuildOptions& options) {
+  if (const auto exchange = ExchangeOf(options)) {
+    if (options.single_scattering_only) {
+      throw CLI::ValidationError("--single-scattering-only", "needs --layout native");
+    }
+    if (const auto fault = FaultOf(*exchange)) throw CLI::ValidationError("--format", *fault);
+    return;
+  }
+  if (options.type.value_or("float") != "float") {
+    throw CLI::ValidationError("--type", "layout native is float");
+  }
+  if (options.format.value_or("exr") != "exr") {
+    throw CLI::ValidationError("--format", "layout native is exr");
+  }
+}
+
+void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
+                         const CommonOptions& common) {
+  const Medium medium =
+      options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("bruneton2017");
+  MakeFolder(options.out);  // before the work
+  WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
+                      exchange, options.out);
+  if (!IsTheMediumThatLoadersAssume(medium)) {
+    fmt::print(stderr,
+               "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
+               "these tables are for {}\n",
+               medium.name);
+  }
+}
+
 void Build(const BuildOptions& options, const CommonOptions& common) {
+  if (const auto exchange = ExchangeOf(options)) {
+    BuildExchangeTables(options, *exchange, common);
+    return;
+  }
   const Medium medium =
       options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
   BuildTableFolder(medium, TableQualityFromName(options.quality), options.out,
@@ -33,16 +86,39 @@ Subcommand AddBuildCommand(CLI::App& app) {
       "build", "Build the tables of transmittance and single scattering of an atmosphere.");
   build.add_option("--out", options->out, "Folder for the tables; made when missing")->required();
   AddAtmosphereOption(build, options->atmosphere);
-  build
-      .add_option("--quality", options->quality,
-                  "preview (128x32; 8x24x64x16), standard (256x64; 8x32x128x32) or fine "
-                  "(512x128; 16x48x192x48): sizes of transmittance mu x r; scattering nu x mu_s "
-                  "x mu x r")
-      ->check(CLI::IsMember({"preview", "standard", "fine"}))
-      ->capture_default_str();
+  CLI::Option* quality =
+      build
+          .add_option(
+              "--quality", options->quality,
+              "preview (128x32; 8x24x64x16), standard (256x64; 8x32x128x32) or fine "
+              "(512x128; 16x48x192x48): sizes of transmittance mu x r; scattering nu x mu_s "
+              "x mu x r")
+          ->check(CLI::IsMember({"preview", "standard", "fine"}))
+          ->capture_default_str();
   build.add_flag("--single-scattering-only", options->single_scattering_only,
                  "States what is built: tables of single scattering, and no others");
-  build.footer("Example: skylut build --out tables --atmosphere atmosphere.toml --quality fine");
+  build
+      .add_option("--layout", options->layout,
+                  "native, or the files that other programs load: bruneton (his demo), takram "
+                  "(three-atmosphere); three wavelengths, by default those of preset bruneton2017, "
+                  "the only atmosphere that the latter's sky draws")
+      ->check(CLI::IsMember({"native", "bruneton", "takram"}))
+      ->excludes(quality)
+      ->capture_default_str();
+  build
+      .add_option("--type", options->type,
+                  "float or half; default: float, but half for takram. bruneton in half has its "
+                  "lowest sun 12 degrees below the horizon, all others 30")
+      ->check(CLI::IsMember({"float", "half"}));
+  build
+      .add_option("--format", options->format,
+                  "exr, bin (half, takram) or dat (float, bruneton): default exr, but dat for "
+                  "bruneton")
+      ->check(CLI::IsMember({"exr", "bin", "dat"}));
+  build.parse_complete_callback([options] { CheckLayout(*options); });
+  build.footer(
+      "Examples: skylut build --out tables --atmosphere atmosphere.toml --quality fine\n"
+      "          skylut build --out takram --layout takram");
   return [options](const CommonOptions& common) { Build(*options, common); };
 }
 

@@ -20,14 +20,18 @@ TableQuality TableQualityFromName(std::string_view name) {
   throw InputError(fmt::format("quality is \"{}\"; it must be preview, standard or fine", name));
 }
 
-void BuildTableFolder(const Medium& medium, const TableQuality& quality, const fs::path& folder,
-                      ProgressStyle style) {
+void MakeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error)) {
     throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
                                   error ? error.message() : "it is a file"));
   }
+}
+
+void BuildTableFolder(const Medium& medium, const TableQuality& quality, const fs::path& folder,
+                      ProgressStyle style) {
+  MakeFolder(folder);
   WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, quality.transmittance));
   Progress progress("single scattering", ScatteringTable::Rows(quality.single_scattering), style);
   WriteTable(

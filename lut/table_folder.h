@@ -22,6 +22,9 @@ struct TableQuality {
 /// "preview", "standard" or "fine"; throws InputError for another name.
 [[nodiscard]] TableQuality TableQualityFromName(std::string_view name);
 
+/// Makes the folder when there is none. Throws OutputError naming it.
+void MakeFolder(const std::filesystem::path& folder);
+
 /// Builds and writes every table, each file whole or not at all; makes the folder when there is
 /// none. Throws OutputError naming what could not be written.
 void BuildTableFolder(const Medium& medium, const TableQuality& quality,

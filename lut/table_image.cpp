@@ -11,10 +11,12 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfVersion.h>
+#include <half.h>
 
 #include <cstdint>
 #include <optional>
 #include <system_error>
+#include <type_traits>
 
 #include "atmosphere/error.h"
 #include "lut/atomic_file.h"
@@ -42,21 +44,27 @@ auto NamingTheFile(const fs::path& file, const Read& read) {
   }
 }
 
-/// Channel `index` of interleaved values.
-Imf::Slice SliceOf(const float* values, std::size_t index, std::size_t channels,
-                   std::size_t width) {
-  // The library reads and writes through the same pointer type.
-  char* base = reinterpret_cast<char*>(const_cast<float*>(values + index));
-  return Imf::Slice(Imf::FLOAT, base, sizeof(float) * channels, sizeof(float) * channels * width);
-}
-
-Imf::FrameBuffer FrameBufferOf(const float* values, const std::vector<std::string>& channels,
+/// The channels of interleaved values of the file's type.
+template <typename Value>
+Imf::FrameBuffer FrameBufferOf(const Value* values, const std::vector<std::string>& channels,
                                std::size_t width) {
+  constexpr Imf::PixelType kType = std::is_same_v<Value, half> ? Imf::HALF : Imf::FLOAT;
+  const std::size_t stride = sizeof(Value) * channels.size();
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    buffer.insert(channels[i], SliceOf(values, i, channels.size(), width));
+    // The library reads and writes through the same pointer type.
+    char* base = reinterpret_cast<char*>(const_cast<Value*>(values + i));
+    buffer.insert(channels[i], Imf::Slice(kType, base, stride, stride * width));
   }
   return buffer;
+}
+
+template <typename Value>
+void WriteRows(const fs::path& name, const Imf::Header& header, const TableImage& image,
+               const Value* values) {
+  Imf::OutputFile output(name.c_str(), header);
+  output.setFrameBuffer(FrameBufferOf(values, image.channels, image.width));
+  output.writePixels(static_cast<int>(image.height));
 }
 
 void RequireReadable(const fs::path& file) {
@@ -79,14 +87,18 @@ void WriteTableImage(const fs::path& file, const TableImage& image) {
       Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
       header.compression() = Imf::ZIP_COMPRESSION;
       for (const std::string& channel : image.channels) {
-        header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+        header.channels().insert(
+            channel, Imf::Channel(image.type == TexelType::kHalf ? Imf::HALF : Imf::FLOAT));
       }
       for (const auto& [key, text] : image.attributes) {
         header.insert(key, Imf::StringAttribute(text));
       }
-      Imf::OutputFile output(name.c_str(), header);
-      output.setFrameBuffer(FrameBufferOf(image.values.data(), image.channels, image.width));
-      output.writePixels(static_cast<int>(image.height));
+      if (image.type == TexelType::kHalf) {
+        const std::vector<half> halves(image.values.begin(), image.values.end());
+        WriteRows(name, header, image, halves.data());
+      } else {
+        WriteRows(name, header, image, image.values.data());
+      }
     } catch (const std::exception& error) {
       throw OutputError(fmt::format("{}: cannot be written: {}", name.string(), error.what()));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR images that hold tables: one part of scan lines, 32-bit floats, ZIP, text attributes.
+// OpenEXR images that hold tables: one part of scan lines, floats, ZIP, text attributes.
 //
 // Reading trusts nothing: what is damaged, truncated, foreign or larger than its file can hold is
 // refused with an InputError that names the file, before memory is taken.
@@ -17,6 +17,8 @@ namespace alpenglow {
 
 using TextAttributes = std::map<std::string, std::string>;
 
+enum class TexelType { kFloat, kHalf };
+
 /// What an image is made of. Values are interleaved: (row * width + column) * channels + channel.
 struct TableImage {
   std::size_t width;
@@ -24,6 +26,7 @@ struct TableImage {
   std::vector<std::string> channels;
   std::span<const float> values;
   TextAttributes attributes;
+  TexelType type = TexelType::kFloat;  // in the file; half: rounded to the nearest
 };
 
 /// Writes whole or not at all (WriteFileAtomically). Throws OutputError naming the file.

@@ -65,8 +65,21 @@ std::vector<double> ValuesOf(const fs::path& results) {
 
 TEST_F(Skylut, AWrongCommandLineIsStatus2) {
   for (const char* arguments :
-       {"", "frobnicate", "build", "build --out t --quality best", "build --out t --threads -1",
-        "build --out t --max-error 1%", "info", "eval --cases c --out r",
+       {"",
+        "frobnicate",
+        "build",
+        "build --out t --quality best",
+        "build --out t --threads -1",
+        "build --out t --max-error 1%",
+        "build --out t --layout takram --format dat",
+        "build --out t --layout takram --quality fine",
+        "build --out t --layout unity",
+        "build --out t --type half",
+        "build --out t --format dat",
+        "build --out t --layout bruneton --type half",
+        "build --out t --layout takram --single-scattering-only",
+        "info",
+        "eval --cases c --out r",
         "eval --cases c --out r --method path-trace --samples 8",
         "eval --cases c --out r --method table",
         "eval --cases c --out r --method table --lut t --samples 8",
@@ -138,6 +151,7 @@ TEST_F(Skylut, WrongInputsAreStatus3WithOneLineAndNoOutput) {
   const std::pair<const char*, const char*> runs[] = {
       {"build --out t --atmosphere bad.toml", "bad.toml:2"},
       {"build --out t --atmosphere none.toml", "none.toml"},
+      {"build --out t --layout takram --atmosphere earth.toml", "spectrum.wavelengths_nm has 4"},
       {"info none", "none"},
       {"info empty", "empty"},
       {"info cut.exr", "cut.exr"},
