@@ -23,13 +23,36 @@ double DiffuseLight::MuSFromCoordinate(double v) {
   return std::clamp(kSunCentre + kSunWidth * std::sinh(low + (high - low) * v), -1.0, 1.0);
 }
 
-DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options)
-    : medium_(medium), options_(options), bands_(medium.wavelengths_nm.size()) {
+namespace {
+
+// What the solver and the look-ups take for granted.
+const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) {
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
   RequireInRange(options.degree, 2, kMaxDegree, "degree");
   RequireInRange(options.exact_orders.value_or(1), 1, 1000, "exact_orders");
-  Validate(medium_);
+  Validate(medium);
+  if (medium.wavelengths_nm.size() > kMaxBands) {
+    throw InputError(
+        fmt::format("spectrum.wavelengths_nm has {} values; diffuse light is kept for at most {}",
+                    medium.wavelengths_nm.size(), kMaxBands));
+  }
+  return medium;
+}
+
+}  // namespace
+
+DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options)
+    : DiffuseLight(medium, options, SolveSuccessiveOrders(Checked(medium, options), options)) {}
+
+DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options,
+                           SolvedOrders solved)
+    : medium_(Checked(medium, options)),
+      options_(options),
+      bands_(medium.wavelengths_nm.size()),
+      orders_(solved.orders),
+      converged_(solved.converged),
+      values_(std::move(solved.values)) {
   moments_ = MomentCount(options.degree);
   for (const double chi : MieLegendreCoefficients(medium, options.degree)) {
     chi_mie_.push_back(static_cast<float>(chi));
@@ -42,10 +65,15 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
         {per_km(medium.rayleigh_scattering_per_m), per_km(medium.mie_extinction_per_m),
          per_km(medium.ozone_absorption_per_m), per_km(medium.mie_scattering_per_m)});
   }
-  SolvedOrders solved = SolveSuccessiveOrders(medium_, options_);
-  values_ = std::move(solved.values);
-  orders_ = solved.orders;
-  converged_ = solved.converged;
+  const std::size_t expected = static_cast<std::size_t>(options.altitudes) *
+                               static_cast<std::size_t>(options.sun_angles) * channels() * bands_;
+  if (values_.size() != expected) {
+    throw InputError(
+        fmt::format("diffuse light: {} values; its options need {}", values_.size(), expected));
+  }
+  for (const float value : values_) {
+    if (!std::isfinite(value)) throw InputError("diffuse light: a value is not finite");
+  }
 }
 
 namespace {

@@ -48,6 +48,13 @@ struct DiffuseLightOptions {
   std::optional<int> exact_orders = std::nullopt;
 };
 
+/// What the table is made of.
+struct SolvedOrders {
+  std::vector<float> values;  // as DiffuseLight::values()
+  int orders = 0;             // largest number of orders computed for any band
+  bool converged = true;      // every band reached the tolerance within max_orders
+};
+
 /// Diffuse light of all orders. Immutable; lookups are safe from many threads.
 class DiffuseLight {
  public:
@@ -55,6 +62,11 @@ class DiffuseLight {
   /// need more than max_orders: converged() then says false.
   explicit DiffuseLight(const Medium& medium, const DiffuseLightOptions& options = {});
 
+  /// A solution that was stored: values, orders and converged as their accessors gave them. Throws
+  /// InputError unless there are as many values as the options say and all are finite.
+  DiffuseLight(const Medium& medium, const DiffuseLightOptions& options, SolvedOrders solved);
+
+  [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] bool converged() const { return converged_; }
   [[nodiscard]] int orders() const { return orders_; }
   [[nodiscard]] const DiffuseLightOptions& options() const { return options_; }

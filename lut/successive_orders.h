@@ -8,17 +8,9 @@
 // rest is summed in closed form.
 #pragma once
 
-#include <vector>
-
 #include "lut/multiple_scattering.h"
 
 namespace alpenglow {
-
-struct SolvedOrders {
-  std::vector<float> values;  // as DiffuseLight::values()
-  int orders = 0;             // largest number of orders computed for any band
-  bool converged = true;      // every band reached the tolerance within max_orders
-};
 
 /// Deterministic for any number of threads.
 [[nodiscard]] SolvedOrders SolveSuccessiveOrders(const Medium& medium,

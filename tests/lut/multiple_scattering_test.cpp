@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/error.h"
 #include "atmosphere/path_tracer.h"
 #include "atmosphere/quadrature.h"
 #include "tests/stored_cases.h"
@@ -75,6 +76,18 @@ TEST(DiffuseLight, EmptyAirOverABlackPlanetIsDark) {
   const DiffuseLight light(medium, kSmall);
   EXPECT_TRUE(light.converged());
   for (const float value : light.values()) EXPECT_EQ(value, 0.0F);
+}
+
+TEST(DiffuseLight, ComesBackFromItsValues) {
+  const Medium air = MediumPreset("bruneton2017");
+  const DiffuseLight light(air, kSmall);
+  const DiffuseLight back(air, kSmall, {light.values(), light.orders(), light.converged()});
+  EXPECT_EQ(back.orders(), light.orders());
+  EXPECT_EQ(back.SkyIrradiance(500.0, 0.3).value, light.SkyIrradiance(500.0, 0.3).value);
+  EXPECT_THROW(DiffuseLight(air, {}, {light.values(), 1, true}), InputError) << "of other options";
+  std::vector<float> broken = light.values();
+  broken[7] = std::nanf("");
+  EXPECT_THROW(DiffuseLight(air, kSmall, {broken, 1, true}), InputError);
 }
 
 TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
