@@ -1,4 +1,4 @@
-# alpenglow_library, alpenglow_program, alpenglow_test, alpenglow_embed: a target is a few lines.
+# alpenglow_library, alpenglow_kernels, alpenglow_program, alpenglow_test, alpenglow_embed: a target is a few lines.
 
 add_library(alpenglow_warnings INTERFACE)
 target_compile_options(alpenglow_warnings INTERFACE
@@ -28,6 +28,49 @@ function(alpenglow_library folder)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(FILES ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder})
+endfunction()
+
+# The instruction sets that kernels are compiled for (atmosphere/instruction_set.h), and their options.
+# Multiplication and addition may fuse where the processor has one instruction for both.
+set(ALPENGLOW_INSTRUCTION_SETS Baseline)
+if(ALPENGLOW_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  list(APPEND ALPENGLOW_INSTRUCTION_SETS Avx2 Avx512)
+endif()
+set(ALPENGLOW_OPTIONS_Baseline)
+set(ALPENGLOW_OPTIONS_Avx2 -mavx2 -mfma -ffp-contract=fast)
+set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
+  -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl
+  # gcc 12 takes its own _mm512_undefined_ps for a mistake.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized>)
+
+# alpenglow_kernels(<library target> a_kernel.cpp ...): compiles each file once per instruction set and
+# puts the objects into the library. Optimised in every configuration: without inlining their symbols
+# would leak.
+function(alpenglow_kernels target)
+  set(simd $<$<BOOL:${ALPENGLOW_SIMD}>:ALPENGLOW_SIMD>)
+  set(sets)
+  if("Avx2" IN_LIST ALPENGLOW_INSTRUCTION_SETS)
+    set(sets ALPENGLOW_X86_KERNELS)
+  endif()
+  # The choice is made in a header, so all who include it must see the same sets.
+  target_compile_definitions(${target} PRIVATE ${simd} PUBLIC ${sets})
+  foreach(source ${ARGN})
+    get_filename_component(name ${source} NAME_WE)
+    foreach(set ${ALPENGLOW_INSTRUCTION_SETS})
+      set(objects alpenglow_${name}_${set})
+      add_library(${objects} OBJECT ${source})
+      target_compile_features(${objects} PRIVATE cxx_std_20)
+      target_include_directories(${objects} PRIVATE
+        $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+      target_compile_definitions(${objects} PRIVATE ${simd} ${sets}
+        ALPENGLOW_KERNEL_SET=k${set})
+      target_compile_options(${objects} PRIVATE
+        $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
+        $<$<CONFIG:Debug>:-O2> ${ALPENGLOW_OPTIONS_${set}})
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+      set_property(GLOBAL APPEND PROPERTY ALPENGLOW_KERNEL_OBJECTS ${objects})
+    endforeach()
+  endforeach()
 endfunction()
 
 # alpenglow_program(<name> <source> [SOURCES ...] LIBRARIES ...)

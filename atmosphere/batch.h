@@ -1,20 +1,31 @@
 // SPDX-License-Identifier: MIT
-// The type in which a loop over samples is read: an xsimd batch where SIMD is on, the plain number
-// where it is off (and always for double, the reference).
+// For kernels only (instruction_set.h): the type in which a loop over samples is read, an xsimd
+// batch where SIMD is on, the plain number where it is off; and the shared formulas in it.
+//
+// All of it is in an unnamed namespace, against custom in a header, because the same names mean
+// other instructions in every object that includes it.
 #pragma once
 
-#include <cstddef>
+#ifndef ALPENGLOW_KERNEL_SET
+#error "batch.h is for files of alpenglow_kernels (.cmake/targets.cmake)"
+#endif
 
 #ifdef ALPENGLOW_SIMD
 #include <xsimd/xsimd.hpp>
 #endif
 
-#include "atmosphere/shared_math.h"
+#include <cmath>
+#include <cstddef>
+
+#include "atmosphere/instruction_set.h"
 
 namespace alpenglow {
+namespace {
+
+inline constexpr InstructionSet kThisSet = InstructionSet::ALPENGLOW_KERNEL_SET;
 
 template <typename Real>
-struct BatchOf {
+struct PlainNumber {
   using Type = Real;
   static constexpr std::size_t kLanes = 1;
   static Type Load(const Real* from) { return *from; }
@@ -22,15 +33,42 @@ struct BatchOf {
   static Real Sum(Type value) { return value; }
 };
 
-#ifdef ALPENGLOW_SIMD
-template <>
-struct BatchOf<float> {
-  using Type = xsimd::batch<float>;
+#if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
+/// Loads and stores are aligned: rows begin at multiples of 64 bytes.
+template <typename Real>
+struct BatchOf {
+  using Type = xsimd::batch<Real>;
   static constexpr std::size_t kLanes = Type::size;
-  static Type Load(const float* from) { return Type::load_aligned(from); }
-  static void Store(float* to, const Type& value) { value.store_aligned(to); }
-  static float Sum(const Type& value) { return xsimd::hadd(value); }
+  static Type Load(const Real* from) { return Type::load_aligned(from); }
+  static void Store(Real* to, const Type& value) { value.store_aligned(to); }
+  static Real Sum(const Type& value) { return xsimd::hadd(value); }
 };
+#else
+template <typename Real>
+using BatchOf = PlainNumber<Real>;
 #endif
 
+/// shared_math.h and shell.h again, with the linkage that a kernel needs.
+namespace shared {
+using std::abs;
+using std::exp;
+using std::log;
+using std::sqrt;
+
+inline double max(double a, double b) { return a < b ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline double min(double a, double b) { return b < a ? b : a; }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
+
+// clang-format off
+#include "atmosphere/shared_begin.h"
+#include "atmosphere/shell.glsl"
+#include "atmosphere/optical_depth.glsl"
+#include "atmosphere/shared_end.h"
+// clang-format on
+}  // namespace shared
+
+}  // namespace
 }  // namespace alpenglow

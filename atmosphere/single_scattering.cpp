@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/batch.h"
 #include "atmosphere/error.h"
 #include "atmosphere/quadrature.h"
 #include "atmosphere/shell.h"
@@ -14,79 +13,68 @@ namespace {
 
 constexpr double kMetresPerKilometre = 1000.0;
 
-/// The lengths of a medium in km, in the type of the evaluation.
-template <typename T>
-struct ShellLengths {
-  explicit ShellLengths(const Medium& medium)
-      : radius(Kilometres(medium.planet_radius_m)),
-        top(Kilometres(medium.atmosphere_height_m)),
-        rayleigh(Kilometres(medium.rayleigh_scale_height_m)),
-        mie(Kilometres(medium.mie_scale_height_m)),
-        ozone_bottom(Kilometres(medium.ozone.bottom_m)),
-        ozone_peak(Kilometres(medium.ozone.peak_m)),
-        ozone_top(Kilometres(medium.ozone.top_m)) {}
+std::size_t RoundUp(std::size_t count, std::size_t lanes) {
+  return (count + lanes - 1) / lanes * lanes;
+}
 
-  static T Kilometres(double metres) {
-    return T(static_cast<ScalarOf>(metres / kMetresPerKilometre));
+/// The lengths and coefficients of a medium in km.
+template <typename Real>
+AirConstants<Real> ConstantsOf(const Medium& medium) {
+  const auto km = [](double metres) { return static_cast<Real>(metres / kMetresPerKilometre); };
+  AirConstants<Real> air{};
+  air.radius = km(medium.planet_radius_m);
+  air.top = km(medium.atmosphere_height_m);
+  air.rayleigh_height = km(medium.rayleigh_scale_height_m);
+  air.mie_height = km(medium.mie_scale_height_m);
+  air.ozone_bottom = km(medium.ozone.bottom_m);
+  air.ozone_peak = km(medium.ozone.peak_m);
+  air.ozone_top = km(medium.ozone.top_m);
+  air.bands = medium.wavelengths_nm.size();
+  for (std::size_t band = 0; band < air.bands; ++band) {
+    const auto per_km = [band](const std::vector<double>& per_m) {
+      return static_cast<Real>(per_m[band] * kMetresPerKilometre);
+    };
+    air.rayleigh[band] = per_km(medium.rayleigh_scattering_per_m);
+    air.mie_scattering[band] = per_km(medium.mie_scattering_per_m);
+    air.mie_extinction[band] = per_km(medium.mie_extinction_per_m);
+    air.ozone[band] = per_km(medium.ozone_absorption_per_m);
   }
-  using ScalarOf = std::conditional_t<std::is_same_v<T, double>, double, float>;
+  return air;
+}
 
-  T radius, top, rayleigh, mie, ozone_bottom, ozone_peak, ozone_top;
+/// Columns at up to kLanes points, through the kernel.
+template <typename Real>
+struct ColumnRows {
+  static constexpr std::size_t kLanes = 16;
+  alignas(64) std::array<Real, kLanes> altitude{}, mu{}, rayleigh, mie, ozone;
+
+  void Set(std::size_t i, double altitude_km, double cosine) {
+    altitude[i] = static_cast<Real>(altitude_km);
+    mu[i] = static_cast<Real>(cosine);
+  }
+  [[nodiscard]] ColumnSet<Real> At(std::size_t i) const { return {rayleigh[i], mie[i], ozone[i]}; }
+  [[nodiscard]] ColumnSet<Real*> Targets() { return {rayleigh.data(), mie.data(), ozone.data()}; }
 };
 
-/// Columns [km] of the three species.
-template <typename T>
-struct ColumnSet {
-  T rayleigh, mie, ozone;
-};
-
-template <typename T>
-ColumnSet<T> ColumnsUp(const ShellLengths<T>& shell, const T& h, const T& mu) {
+template <typename Real>
+ColumnSet<Real> Between(Real mu_origin, Real mu_point, const ColumnSet<Real>& origin,
+                        const ColumnSet<Real>& point, const ColumnSet<Real>& perigee) {
   using namespace shared;
   return {
-      ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
-      ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
-      TentColumnUp<T>(h, mu, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top, shell.radius)};
+      ColumnBetween<Real>(mu_origin, mu_point, origin.rayleigh, point.rayleigh, perigee.rayleigh),
+      ColumnBetween<Real>(mu_origin, mu_point, origin.mie, point.mie, perigee.mie),
+      ColumnBetween<Real>(mu_origin, mu_point, origin.ozone, point.ozone, perigee.ozone)};
 }
 
-template <typename T>
-ColumnSet<T> ColumnsTowards(const ShellLengths<T>& shell, const T& h, const T& mu) {
-  using namespace shared;
-  using std::abs;
-  // Points in the planet's shadow have perigees below the ground, whose columns nobody uses: they
-  // only have to be finite.
-  const T perigee = max(PerigeeAltitude<T>(h, mu, shell.radius),
-                        T(static_cast<typename ShellLengths<T>::ScalarOf>(-1)));
-  const ColumnSet<T> up = ColumnsUp(shell, h, T(abs(mu)));
-  const ColumnSet<T> low =
-      ColumnsUp(shell, perigee, T(static_cast<typename ShellLengths<T>::ScalarOf>(0)));
-  return {ColumnToSun<T>(mu, up.rayleigh, low.rayleigh), ColumnToSun<T>(mu, up.mie, low.mie),
-          ColumnToSun<T>(mu, up.ozone, low.ozone)};
-}
-
-template <typename T>
-ColumnSet<T> Between(const T& mu_origin, const T& mu_point, const ColumnSet<T>& origin,
-                     const ColumnSet<T>& point, const ColumnSet<T>& perigee) {
-  using namespace shared;
-  return {ColumnBetween<T>(mu_origin, mu_point, origin.rayleigh, point.rayleigh, perigee.rayleigh),
-          ColumnBetween<T>(mu_origin, mu_point, origin.mie, point.mie, perigee.mie),
-          ColumnBetween<T>(mu_origin, mu_point, origin.ozone, point.ozone, perigee.ozone)};
-}
-
-/// The observer moved to where the ray enters the air; all distances count from here.
-struct Entry {
-  double altitude_km, mu, mu_s;
-};
-
-Entry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
+RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
   using namespace shared;
   const double radius = medium.planet_radius_m / kMetresPerKilometre;
   const double h = std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
   const double d = extent.begin_m / kMetresPerKilometre;
-  if (d == 0.0) return {h, ray.mu, ray.mu_s};
+  if (d == 0.0) return {h, ray.mu, ray.mu_s, ray.nu};
   const double altitude = medium.atmosphere_height_m / kMetresPerKilometre;
   return {altitude, ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
-          SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius)};
+          SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius), ray.nu};
 }
 
 /// A stretch of the ray on which the integrand is smooth and the altitude monotone [km from the
@@ -107,7 +95,7 @@ void AppendCrossings(double h, double mu, double z, double radius, std::vector<d
 // Where the sunbeam that meets the ray at distance t has its perigee at altitude z: a cylinder of
 // radius R + z around the axis from the planet's centre to the sun. Only beams that come from below
 // the horizontal count.
-void AppendSunPerigees(const Entry& entry, double nu, double z, double radius,
+void AppendSunPerigees(const RayEntry& entry, double nu, double z, double radius,
                        std::vector<double>& cuts) {
   const double r = radius + entry.altitude_km;
   const double a = (1.0 - nu) * (1.0 + nu);
@@ -121,8 +109,9 @@ void AppendSunPerigees(const Entry& entry, double nu, double z, double radius,
   }
 }
 
-std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent, const Entry& entry,
-                                    const Medium& medium, const Sampling& sampling) {
+std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent,
+                                    const RayEntry& entry, const Medium& medium,
+                                    const Sampling& sampling) {
   const double radius = medium.planet_radius_m / kMetresPerKilometre;
   const double length = (extent.end_m - extent.begin_m) / kMetresPerKilometre;
   const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
@@ -171,8 +160,7 @@ double MapStrength(double z, double c, double length, double radius, double exti
 template <typename Real>
 void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
   samples.count = count;
-  constexpr std::size_t kLanes = BatchOf<Real>::kLanes;
-  samples.padded = (count + kLanes - 1) / kLanes * kLanes;
+  samples.padded = RoundUp(count, Kernel<RayKernel<Real>>().lanes);
   for (; count < samples.padded; ++count) {
     samples.distance[count] = samples.weight[count] = samples.lit[count] = Real(0);
   }
@@ -180,7 +168,7 @@ void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
 
 // Places Gauss nodes in every panel, in the order of the panels.
 template <typename Real>
-void PlaceSamples(const std::vector<RayPanel>& panels, const Entry& entry, const Medium& medium,
+void PlaceSamples(const std::vector<RayPanel>& panels, const RayEntry& entry, const Medium& medium,
                   const Sampling& sampling, RaySamples<Real>& samples) {
   const double radius = medium.planet_radius_m / kMetresPerKilometre;
   const double extinction = LargestExtinction(medium) * kMetresPerKilometre;
@@ -212,49 +200,11 @@ void PlaceSamples(const std::vector<RayPanel>& panels, const Entry& entry, const
   CloseSamples(count, samples);
 }
 
-// Everything at the samples that depends on position: altitude, angles, densities, columns.
-template <typename Real>
-void FillSamples(const Medium& medium, const Entry& entry, double ray_nu,
-                 RaySamples<Real>& samples) {
-  using namespace shared;
-  using Lanes = BatchOf<Real>;
-  using T = typename Lanes::Type;
-  using std::abs;
-  using std::exp;
-  const ShellLengths<T> shell(medium);
-  const T h0(static_cast<Real>(entry.altitude_km)), mu0(static_cast<Real>(entry.mu));
-  const T mu_s0(static_cast<Real>(entry.mu_s)), nu(static_cast<Real>(ray_nu)), zero(Real(0));
-  const ColumnSet<T> origin = ColumnsUp<T>(shell, h0, T(abs(mu0)));
-  const T low = max(PerigeeAltitude<T>(h0, mu0, shell.radius), T(Real(-1)));
-  const ColumnSet<T> perigee = ColumnsUp<T>(shell, low, zero);
-  for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
-    const T d = Lanes::Load(&samples.distance[i]);
-    const T h = max(AltitudeAlongRay<T>(h0, mu0, d, shell.radius), zero);
-    const T mu = ZenithCosineAlongRay<T>(h0, mu0, d, h, shell.radius);
-    const T mu_s = SunCosineAlongRay<T>(h0, mu_s0, nu, d, h, shell.radius);
-    const ColumnSet<T> point = ColumnsUp<T>(shell, h, T(abs(mu)));
-    const ColumnSet<T> view = Between<T>(mu0, mu, origin, point, perigee);
-    const ColumnSet<T> sun = ColumnsTowards<T>(shell, h, mu_s);
-    const auto put = [i](auto& row, const T& value) { Lanes::Store(&row[i], value); };
-    put(samples.altitude, h);
-    put(samples.mu, mu);
-    put(samples.mu_s, mu_s);
-    put(samples.rayleigh_density, exp(-h / shell.rayleigh));
-    put(samples.mie_density, exp(-h / shell.mie));
-    put(samples.view_rayleigh, view.rayleigh);
-    put(samples.view_mie, view.mie);
-    put(samples.view_ozone, view.ozone);
-    put(samples.sun_rayleigh, sun.rayleigh);
-    put(samples.sun_mie, sun.mie);
-    put(samples.sun_ozone, sun.ozone);
-  }
-}
-
 // Column of a layer along [begin, end] km from the entry by 8 Gauss nodes: exact to 1e-7 relative
 // while the density is smooth and the altitudes span less than 6 scale heights, however short the
 // segment.
 template <typename Density>
-double ShortColumn(const Entry& entry, double begin, double end, double radius,
+double ShortColumn(const RayEntry& entry, double begin, double end, double radius,
                    const Density& density) {
   const GaussRule& rule = GaussLegendre(8);
   double sum = 0.0;
@@ -267,7 +217,8 @@ double ShortColumn(const Entry& entry, double begin, double end, double radius,
 }
 
 // The same for the ozone tent, piece by piece: a rule across an edge of the tent is wrong by 1 %.
-double ShortOzoneColumn(const Entry& entry, double length, double radius, const OzoneTent& tent) {
+double ShortOzoneColumn(const RayEntry& entry, double length, double radius,
+                        const OzoneTent& tent) {
   const double bottom = tent.bottom_m / kMetresPerKilometre;
   const double peak = tent.peak_m / kMetresPerKilometre;
   const double top = tent.top_m / kMetresPerKilometre;
@@ -288,10 +239,10 @@ double ShortOzoneColumn(const Entry& entry, double length, double radius, const 
 // Columns along a segment: the difference of two closed forms is good to 1e-7 of the whole column,
 // which is nothing for a short segment; those are integrated.
 template <typename Real>
-ColumnSet<Real> SegmentColumns(const Medium& medium, const Entry& entry, double length) {
+ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medium,
+                               const RayEntry& entry, double length) {
   using namespace shared;
   const double radius = medium.planet_radius_m / kMetresPerKilometre;
-  const ShellLengths<Real> shell(medium);
   const double h_end =
       std::max(AltitudeAlongRay<double>(entry.altitude_km, entry.mu, length, radius), 0.0);
   const double mu_end =
@@ -302,11 +253,15 @@ ColumnSet<Real> SegmentColumns(const Medium& medium, const Entry& entry, double 
   const double span = std::max(entry.altitude_km, h_end) - low;
 
   const auto real = [](double value) { return static_cast<Real>(value); };
-  const ColumnSet<Real> origin =
-      ColumnsUp<Real>(shell, real(entry.altitude_km), real(std::abs(entry.mu)));
-  const ColumnSet<Real> point = ColumnsUp<Real>(shell, real(h_end), real(std::abs(mu_end)));
-  const ColumnSet<Real> middle = ColumnsUp<Real>(shell, real(std::max(perigee, -1.0)), Real(0));
-  ColumnSet<Real> columns = Between<Real>(real(entry.mu), real(mu_end), origin, point, middle);
+  const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
+  ColumnRows<Real> rows;
+  rows.Set(0, entry.altitude_km, std::abs(entry.mu));
+  rows.Set(1, h_end, std::abs(mu_end));
+  rows.Set(2, std::max(perigee, -1.0), 0.0);
+  kernel.columns_up(air, RoundUp(3, kernel.lanes), rows.altitude.data(), rows.mu.data(),
+                    rows.Targets());
+  ColumnSet<Real> columns =
+      Between<Real>(real(entry.mu), real(mu_end), rows.At(0), rows.At(1), rows.At(2));
   const auto exponential = [](double height) {
     return [height](double h) { return std::exp(-h / height); };
   };
@@ -323,17 +278,21 @@ ColumnSet<Real> SegmentColumns(const Medium& medium, const Entry& entry, double 
 }  // namespace
 
 template <typename Real>
-AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium) {
+AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium), constants_{} {
   Validate(medium_);
   RequireInRange(static_cast<double>(bands()), 1.0, static_cast<double>(kMaxBands),
                  "number of spectrum.wavelengths_nm");
+  constants_ = ConstantsOf<Real>(medium_);
 }
 
 template <typename Real>
 std::array<Real, 3> AirIntegrator<Real>::ColumnsToSpace(double altitude_m, double mu) const {
-  const ShellLengths<Real> shell(medium_);
-  const auto columns = ColumnsTowards<Real>(
-      shell, static_cast<Real>(altitude_m / kMetresPerKilometre), static_cast<Real>(mu));
+  const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
+  ColumnRows<Real> rows;
+  rows.Set(0, altitude_m / kMetresPerKilometre, mu);
+  kernel.columns_to_space(constants_, kernel.lanes, rows.altitude.data(), rows.mu.data(),
+                          rows.Targets());
+  const ColumnSet<Real> columns = rows.At(0);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   return {columns.rayleigh * metres, columns.mie * metres, columns.ozone * metres};
 }
@@ -349,9 +308,9 @@ Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double 
 template <typename Real>
 Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
-  const Entry entry = EntryOf(ray, extent, medium_);
-  const ColumnSet<Real> columns =
-      SegmentColumns<Real>(medium_, entry, (extent.end_m - extent.begin_m) / kMetresPerKilometre);
+  const RayEntry entry = EntryOf(ray, extent, medium_);
+  const ColumnSet<Real> columns = SegmentColumns<Real>(
+      constants_, medium_, entry, (extent.end_m - extent.begin_m) / kMetresPerKilometre);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   Bands<Real> depth(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
@@ -375,10 +334,10 @@ template <typename Real>
 RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling& sampling) const {
   RaySamples<Real> samples;
   samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
-  const Entry entry = EntryOf(ray, samples.extent, medium_);
+  const RayEntry entry = EntryOf(ray, samples.extent, medium_);
   PlaceSamples(CutIntoPanels(ray, samples.extent, entry, medium_, sampling), entry, medium_,
                sampling, samples);
-  FillSamples(medium_, entry, ray.nu, samples);
+  Kernel<RayKernel<Real>>().fill(constants_, entry, samples);
   return samples;
 }
 
@@ -397,36 +356,14 @@ RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray,
     samples.lit[i] = dark ? Real(0) : Real(1);
   }
   CloseSamples(nodes.size(), samples);
-  FillSamples(medium_, EntryOf(ray, samples.extent, medium_), ray.nu, samples);
+  Kernel<RayKernel<Real>>().fill(constants_, EntryOf(ray, samples.extent, medium_), samples);
   return samples;
 }
 
 template <typename Real>
 ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples) const {
-  using Lanes = BatchOf<Real>;
-  using T = typename Lanes::Type;
-  using std::exp;
   ScatteredOnce<Real> scattered{Bands<Real>(bands()), Bands<Real>(bands())};
-  const Real metres = static_cast<Real>(kMetresPerKilometre);
-  for (std::size_t band = 0; band < bands(); ++band) {
-    const T rayleigh(metres * static_cast<Real>(medium_.rayleigh_scattering_per_m[band]));
-    const T mie(metres * static_cast<Real>(medium_.mie_extinction_per_m[band]));
-    const T ozone(metres * static_cast<Real>(medium_.ozone_absorption_per_m[band]));
-    T rayleigh_sum(Real(0)), mie_sum(Real(0));
-    for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
-      const auto at = [i](const auto& row) { return Lanes::Load(&row[i]); };
-      const T tau = rayleigh * (at(samples.view_rayleigh) + at(samples.sun_rayleigh)) +
-                    mie * (at(samples.view_mie) + at(samples.sun_mie)) +
-                    ozone * (at(samples.view_ozone) + at(samples.sun_ozone));
-      const T light = at(samples.weight) * at(samples.lit) * exp(-tau);
-      rayleigh_sum += light * at(samples.rayleigh_density);
-      mie_sum += light * at(samples.mie_density);
-    }
-    const Real mie_scattering = metres * static_cast<Real>(medium_.mie_scattering_per_m[band]);
-    scattered.rayleigh[band] = Lanes::Sum(rayleigh_sum) * metres *
-                               static_cast<Real>(medium_.rayleigh_scattering_per_m[band]);
-    scattered.mie[band] = Lanes::Sum(mie_sum) * mie_scattering;
-  }
+  Kernel<RayKernel<Real>>().scatter(constants_, samples, scattered);
   return scattered;
 }
 

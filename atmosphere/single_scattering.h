@@ -18,59 +18,10 @@
 
 #include "atmosphere/medium.h"
 #include "atmosphere/ray.h"
+#include "atmosphere/ray_kernel.h"
+#include "atmosphere/ray_samples.h"
 
 namespace alpenglow {
-
-inline constexpr std::size_t kMaxBands = 40;
-/// Sixteen panels (a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee
-/// and the planet's shadow) of 32 nodes, and room for the last SIMD lanes.
-inline constexpr std::size_t kMaxRaySamples = 528;
-
-/// One value a wavelength.
-template <typename Real>
-struct Bands {
-  std::array<Real, kMaxBands> value{};
-  std::size_t count = 0;
-
-  Bands() = default;
-  explicit Bands(std::size_t bands) : count(bands) {}
-  Real& operator[](std::size_t band) { return value[band]; }
-  const Real& operator[](std::size_t band) const { return value[band]; }
-};
-
-/// How finely a ray is sampled.
-struct Sampling {
-  int nodes = 12;             // Gauss nodes of a panel that starts in dense air, in [1, 32]
-  bool split_ozone = false;   // cut panels where ozone bends the integrand: for errors below 1e-3
-  bool dark_samples = false;  // sample the air in the planet's shadow too (light of higher orders)
-};
-
-/// A point of a quadrature rule along a ray: distance from the observer and weight [m].
-struct RayNode {
-  double distance_m, weight_m;
-};
-
-/// Points along a ray, structure of arrays. Lengths in km, measured from the observer.
-template <typename Real>
-struct alignas(64) RaySamples {
-  using Row = std::array<Real, kMaxRaySamples>;
-  alignas(64) Row distance, weight;  // weight: Gauss weight times the derivative of the map
-  alignas(64) Row lit;               // 1 in sunlight, 0 in the shadow of the planet
-  alignas(64) Row altitude, mu, mu_s;
-  alignas(64) Row rayleigh_density, mie_density;        // relative to altitude 0
-  alignas(64) Row view_rayleigh, view_mie, view_ozone;  // columns from the observer
-  alignas(64) Row sun_rayleigh, sun_mie, sun_ozone;     // columns to the sun
-  std::size_t count = 0;                                // samples
-  std::size_t padded = 0;  // count rounded up to whole SIMD lanes; the rest has weight 0
-  RayExtent extent;
-};
-
-/// Light scattered once, without phase functions: the factor of p_R(nu) and of p_M(nu), per unit
-/// solar irradiance [1].
-template <typename Real>
-struct ScatteredOnce {
-  Bands<Real> rayleigh, mie;
-};
 
 /// A medium made ready for evaluation in Real = float or double. Immutable, safe to share between
 /// threads.
@@ -111,6 +62,7 @@ class AirIntegrator {
 
  private:
   Medium medium_;
+  AirConstants<Real> constants_;
 };
 
 extern template class AirIntegrator<float>;

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "atmosphere/error.h"
+#include "atmosphere/instruction_set.h"
 #include "lut/version.h"
 
 namespace alpenglow {
@@ -59,18 +60,14 @@ int Report(const std::string& name, std::string message, int status) {
   return status;
 }
 
-constexpr std::string_view SimdText() {
-#if defined(__AVX512F__)
-  return "AVX-512 (compiler)";
-#elif defined(__AVX2__)
-  return "AVX2 (compiler)";
-#elif defined(__SSE2__)
-  return "SSE2 (compiler)";
-#elif defined(__ARM_NEON)
-  return "NEON (compiler)";
-#else
-  return "none";
-#endif
+// "avx512 (of sse2, avx2, avx512)".
+std::string SimdText() {
+  std::string available;
+  for (const InstructionSet set : AvailableInstructionSets()) {
+    available += available.empty() ? "" : ", ";
+    available += NameOf(set);
+  }
+  return fmt::format("{} (of {})", NameOf(CurrentInstructionSet()), available);
 }
 
 }  // namespace

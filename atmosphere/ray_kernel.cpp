@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/ray_kernel.h"
+
+#include "atmosphere/batch.h"
+
+namespace alpenglow {
+namespace {
+
+/// The lengths of AirConstants, spread over lanes.
+template <typename Real, typename T>
+struct ShellLengths {
+  explicit ShellLengths(const AirConstants<Real>& air)
+      : radius(air.radius),
+        top(air.top),
+        rayleigh(air.rayleigh_height),
+        mie(air.mie_height),
+        ozone_bottom(air.ozone_bottom),
+        ozone_peak(air.ozone_peak),
+        ozone_top(air.ozone_top) {}
+
+  T radius, top, rayleigh, mie, ozone_bottom, ozone_peak, ozone_top;
+};
+
+template <typename Real, typename T>
+ColumnSet<T> ColumnsUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  return {
+      ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
+      ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
+      TentColumnUp<T>(h, mu, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top, shell.radius)};
+}
+
+// Points in the planet's shadow have perigees below the ground, whose columns nobody uses: they
+// only have to be finite.
+template <typename Real, typename T>
+ColumnSet<T> ColumnsAtPerigee(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  const T perigee = max(PerigeeAltitude<T>(h, mu, shell.radius), T(Real(-1)));
+  return ColumnsUp(shell, perigee, T(Real(0)));
+}
+
+template <typename Real, typename T>
+ColumnSet<T> ColumnsTowards(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  const ColumnSet<T> up = ColumnsUp(shell, h, T(abs(mu)));
+  const ColumnSet<T> low = ColumnsAtPerigee(shell, h, mu);
+  return {ColumnToSun<T>(mu, up.rayleigh, low.rayleigh), ColumnToSun<T>(mu, up.mie, low.mie),
+          ColumnToSun<T>(mu, up.ozone, low.ozone)};
+}
+
+template <typename T>
+ColumnSet<T> Between(const T& mu_origin, const T& mu_point, const ColumnSet<T>& origin,
+                     const ColumnSet<T>& point, const ColumnSet<T>& perigee) {
+  using namespace shared;
+  return {ColumnBetween<T>(mu_origin, mu_point, origin.rayleigh, point.rayleigh, perigee.rayleigh),
+          ColumnBetween<T>(mu_origin, mu_point, origin.mie, point.mie, perigee.mie),
+          ColumnBetween<T>(mu_origin, mu_point, origin.ozone, point.ozone, perigee.ozone)};
+}
+
+template <typename Real>
+void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples) {
+  using namespace shared;
+  using Lanes = BatchOf<Real>;
+  using T = typename Lanes::Type;
+  const ShellLengths<Real, T> shell(air);
+  const T h0(static_cast<Real>(entry.altitude_km)), mu0(static_cast<Real>(entry.mu));
+  const T mu_s0(static_cast<Real>(entry.mu_s)), nu(static_cast<Real>(entry.nu)), zero(Real(0));
+  const ColumnSet<T> origin = ColumnsUp(shell, h0, T(abs(mu0)));
+  const ColumnSet<T> perigee = ColumnsAtPerigee(shell, h0, mu0);
+  for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
+    const T d = Lanes::Load(&samples.distance[i]);
+    const T h = max(AltitudeAlongRay<T>(h0, mu0, d, shell.radius), zero);
+    const T mu = ZenithCosineAlongRay<T>(h0, mu0, d, h, shell.radius);
+    const T mu_s = SunCosineAlongRay<T>(h0, mu_s0, nu, d, h, shell.radius);
+    const ColumnSet<T> point = ColumnsUp(shell, h, T(abs(mu)));
+    const ColumnSet<T> view = Between<T>(mu0, mu, origin, point, perigee);
+    const ColumnSet<T> sun = ColumnsTowards(shell, h, mu_s);
+    const auto put = [i](auto& row, const T& value) { Lanes::Store(&row[i], value); };
+    put(samples.altitude, h);
+    put(samples.mu, mu);
+    put(samples.mu_s, mu_s);
+    put(samples.rayleigh_density, T(exp(-h / shell.rayleigh)));
+    put(samples.mie_density, T(exp(-h / shell.mie)));
+    put(samples.view_rayleigh, view.rayleigh);
+    put(samples.view_mie, view.mie);
+    put(samples.view_ozone, view.ozone);
+    put(samples.sun_rayleigh, sun.rayleigh);
+    put(samples.sun_mie, sun.mie);
+    put(samples.sun_ozone, sun.ozone);
+  }
+}
+
+template <typename Real>
+void Scatter(const AirConstants<Real>& air, const RaySamples<Real>& samples,
+             ScatteredOnce<Real>& scattered) {
+  using namespace shared;
+  using Lanes = BatchOf<Real>;
+  using T = typename Lanes::Type;
+  for (std::size_t band = 0; band < air.bands; ++band) {
+    const T rayleigh(air.rayleigh[band]), mie(air.mie_extinction[band]), ozone(air.ozone[band]);
+    T rayleigh_sum(Real(0)), mie_sum(Real(0));
+    for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
+      const auto at = [i](const auto& row) { return Lanes::Load(&row[i]); };
+      const T tau = rayleigh * (at(samples.view_rayleigh) + at(samples.sun_rayleigh)) +
+                    mie * (at(samples.view_mie) + at(samples.sun_mie)) +
+                    ozone * (at(samples.view_ozone) + at(samples.sun_ozone));
+      const T light = at(samples.weight) * at(samples.lit) * exp(-tau);
+      rayleigh_sum += light * at(samples.rayleigh_density);
+      mie_sum += light * at(samples.mie_density);
+    }
+    scattered.rayleigh[band] = Lanes::Sum(rayleigh_sum) * air.rayleigh[band];
+    scattered.mie[band] = Lanes::Sum(mie_sum) * air.mie_scattering[band];
+  }
+}
+
+template <typename Real, typename ColumnsOf>
+void ForEachPoint(std::size_t n, const Real* altitude, const Real* mu,
+                  const ColumnSet<Real*>& columns, const ColumnsOf& columns_of) {
+  using Lanes = BatchOf<Real>;
+  using T = typename Lanes::Type;
+  for (std::size_t i = 0; i < n; i += Lanes::kLanes) {
+    const ColumnSet<T> found = columns_of(T(Lanes::Load(altitude + i)), T(Lanes::Load(mu + i)));
+    Lanes::Store(columns.rayleigh + i, found.rayleigh);
+    Lanes::Store(columns.mie + i, found.mie);
+    Lanes::Store(columns.ozone + i, found.ozone);
+  }
+}
+
+template <typename Real>
+void FindColumnsToSpace(const AirConstants<Real>& air, std::size_t n, const Real* altitude,
+                        const Real* mu, const ColumnSet<Real*>& columns) {
+  using T = typename BatchOf<Real>::Type;
+  const ShellLengths<Real, T> shell(air);
+  ForEachPoint(n, altitude, mu, columns,
+               [&](const T& h, const T& cosine) { return ColumnsTowards(shell, h, cosine); });
+}
+
+template <typename Real>
+void FindColumnsUp(const AirConstants<Real>& air, std::size_t n, const Real* altitude,
+                   const Real* mu, const ColumnSet<Real*>& columns) {
+  using T = typename BatchOf<Real>::Type;
+  const ShellLengths<Real, T> shell(air);
+  ForEachPoint(n, altitude, mu, columns,
+               [&](const T& h, const T& cosine) { return ColumnsUp(shell, h, cosine); });
+}
+
+template <typename Real>
+constexpr RayKernel<Real> kRayKernel{BatchOf<Real>::kLanes, Fill<Real>, Scatter<Real>,
+                                     FindColumnsToSpace<Real>, FindColumnsUp<Real>};
+
+}  // namespace
+
+template <>
+const RayKernel<float>& KernelOf<RayKernel<float>, kThisSet>() {
+  return kRayKernel<float>;
+}
+
+template <>
+const RayKernel<double>& KernelOf<RayKernel<double>, kThisSet>() {
+  return kRayKernel<double>;
+}
+
+}  // namespace alpenglow
