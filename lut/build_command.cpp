@@ -74,8 +74,9 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
   }
   const Medium medium =
       options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
-  BuildTableFolder(medium, TableQualityFromName(options.quality), options.out,
-                   common.progress_style());
+  BuildTableFolder(medium, TableQualityFromName(options.quality),
+                   options.single_scattering_only ? TableOrders::kSingleOnly : TableOrders::kAll,
+                   options.out, common.progress_style());
 }
 
 }  // namespace
@@ -83,7 +84,8 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
 Subcommand AddBuildCommand(CLI::App& app) {
   const auto options = std::make_shared<BuildOptions>();
   CLI::App& build = *app.add_subcommand(
-      "build", "Build the tables of transmittance and single scattering of an atmosphere.");
+      "build",
+      "Build the tables of an atmosphere: transmittance, single scattering, multiple scattering.");
   build.add_option("--out", options->out, "Folder for the tables; made when missing")->required();
   AddAtmosphereOption(build, options->atmosphere);
   CLI::Option* quality =
@@ -96,7 +98,7 @@ Subcommand AddBuildCommand(CLI::App& app) {
           ->check(CLI::IsMember({"preview", "standard", "fine"}))
           ->capture_default_str();
   build.add_flag("--single-scattering-only", options->single_scattering_only,
-                 "States what is built: tables of single scattering, and no others");
+                 "Leave the table of multiple scattering out");
   build
       .add_option("--layout", options->layout,
                   "native, or the files that other programs load: bruneton (his demo), takram "

@@ -4,7 +4,8 @@
 //   integral  AirIntegrator in double; light of all orders from DiffuseLight. The error is the
 //             difference between two numbers of nodes and what closed forms leave (bounds below).
 //             For errors below what these can do, the judge.
-//   table     look-ups in stored tables. The error is the distance to the integral.
+//   table     look-ups in stored tables; what they leave out, integrated on their number of nodes.
+//             The error is the distance to the integral.
 //   path-trace  the judge of multiple scattering. The error is one standard error.
 //
 // Radiances are per unit solar irradiance [1/sr], irradiances per unit solar irradiance [1].
@@ -23,8 +24,7 @@
 #include "atmosphere/medium.h"
 #include "lut/case_file.h"
 #include "lut/progress.h"
-#include "lut/scattering_table.h"
-#include "lut/transmittance_table.h"
+#include "lut/table_folder.h"
 
 namespace alpenglow {
 
@@ -86,9 +86,9 @@ class Evaluator {
 /// Throws InputError for more than kMaxBands wavelengths, and options out of range.
 [[nodiscard]] std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
                                                                const IntegralOptions& options = {});
-/// Throws InputError for tables of different media.
-[[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TransmittanceTable transmittance,
-                                                            ScatteringTable single_scattering);
+/// Refuses light of all orders where the tables hold single scattering only. Throws InputError for
+/// tables of different media.
+[[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables);
 
 /// Light scattered once or by all orders, and the sky's irradiance; refuses the other quantities.
 /// Throws InputError for options out of range.

@@ -77,10 +77,9 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
   if (options.tables) {
     TableFolder tables = ReadTableFolder(*options.tables, hash);
     if (options.method == "table") {
-      return MakeTableEvaluator(std::move(tables.transmittance),
-                                std::move(tables.single_scattering));
+      return MakeTableEvaluator(std::move(tables));
     }
-    medium = tables.transmittance.medium();
+    medium = tables.medium;
   }
   if (!medium) medium = MediumPreset("earth");
   const auto error = RelativeErrorFromText(options.max_error.value_or(""));

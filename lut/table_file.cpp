@@ -25,7 +25,8 @@ struct Kind {
   const char* axes;  // slowest last
   const char* layout;
   int map_version;
-  std::vector<const char*> species;  // first parts of channel names
+  std::vector<std::string> species;  // first parts of channel names
+  double lowest = 0.0, highest = 1.0;
 };
 
 const Kind kTransmittance{"transmittance",
@@ -44,6 +45,25 @@ const Kind kSingleScattering{
     kScatteringMapVersion,
     {"rayleigh", "mie"}};
 
+/// Moments up to a degree, then the irradiance from above.
+Kind MultipleScattering(int degree) {
+  Kind kind{"multiple scattering",
+            "diffuse light of all orders per unit solar irradiance: moments of its radiance on "
+            "real spherical harmonics L_lm (azimuth from the sun), and irradiance E from above",
+            "1",
+            "mu_s h",
+            "column = mu_s (lowest sun to zenith), row = altitude (ground to top)",
+            kDiffuseLightMapVersion,
+            {},
+            -100.0,
+            100.0};
+  for (int l = 0; l <= degree; ++l) {
+    for (int m = 0; m <= l; ++m) kind.species.push_back(fmt::format("L{}{}", l, m));
+  }
+  kind.species.emplace_back("E");
+  return kind;
+}
+
 // Whole nanometres as 0450nm, others as 0450,500nm.
 std::string WavelengthText(double wavelength_nm) {
   std::string text = fmt::format("{:08.3f}", wavelength_nm);
@@ -54,7 +74,7 @@ std::string WavelengthText(double wavelength_nm) {
 
 std::vector<std::string> ChannelNames(const Kind& kind, const Medium& medium) {
   std::vector<std::string> names;
-  for (const char* species : kind.species) {
+  for (const std::string& species : kind.species) {
     for (const double wavelength_nm : medium.wavelengths_nm) {
       names.push_back(fmt::format("{}.{}", species, WavelengthText(wavelength_nm)));
     }
@@ -163,11 +183,12 @@ std::vector<float> CheckedValues(const TableImageReader& image, const Kind& kind
   const std::vector<std::string> names = ChannelNames(kind, medium);
   std::vector<float> values = image.Values(names);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] >= 0.0F && values[i] <= 1.0F) continue;
+    const auto value = static_cast<double>(values[i]);
+    if (value >= kind.lowest && value <= kind.highest) continue;
     const std::size_t texel = i / names.size();
-    Fail(image.file(), fmt::format("texel ({}, {}) of channel {} is {}; it must lie in [0, 1]",
+    Fail(image.file(), fmt::format("texel ({}, {}) of channel {} is {}; it must lie in [{}, {}]",
                                    texel % image.width(), texel / image.width(),
-                                   names[i % names.size()], values[i]));
+                                   names[i % names.size()], value, kind.lowest, kind.highest));
   }
   return values;
 }
@@ -221,11 +242,84 @@ ScatteringTable ScatteringTableOf(const TableImageReader& image,
                        [&] { return ScatteringTable(medium, options, std::move(values)); });
 }
 
+int IntegerOf(const TableImageReader& image, const std::string& name, int lowest, int highest) {
+  const double value = NumberOf(image, name);
+  if (value == std::floor(value) && value >= lowest && value <= highest) {
+    return static_cast<int>(value);
+  }
+  Fail(image.file(), fmt::format("{} is {}; it must be a whole number from {} to {}", name, value,
+                                 lowest, highest));
+}
+
+bool YesOf(const TableImageReader& image, const std::string& name) {
+  const std::string text = image.Attribute(name);
+  if (text == "yes" || text == "no") return text == "yes";
+  Fail(image.file(), fmt::format("{} is \"{}\"; it must be yes or no", name, text));
+}
+
+std::string SunCosinesText(std::size_t columns) {
+  std::string text;
+  for (std::size_t j = 0; j < columns; ++j) {
+    const double v = static_cast<double>(j) / static_cast<double>(columns - 1);
+    text += fmt::format("{}{:.9f}", j == 0 ? "" : " ", DiffuseLight::MuSFromCoordinate(v));
+  }
+  return text;
+}
+
+std::string TablesText(const FolderUse& use) {
+  std::string text;
+  if (use.transmittance) text += kTransmittanceFileName;
+  if (use.single_scattering) {
+    text += fmt::format("{}{}", text.empty() ? "" : " ", kSingleScatteringFileName);
+  }
+  return text.empty() ? "none" : text;
+}
+
+FolderUse UseOf(const TableImageReader& image) {
+  FolderUse use;
+  use.ray_nodes = IntegerOf(image, "alpenglow.rayNodes", 2, 32);
+  const std::string tables = image.Attribute("alpenglow.tables");
+  for (const bool transmittance : {false, true}) {
+    for (const bool single_scattering : {false, true}) {
+      use.transmittance = transmittance;
+      use.single_scattering = single_scattering;
+      if (tables == TablesText(use)) return use;
+    }
+  }
+  Fail(image.file(), fmt::format("alpenglow.tables is \"{}\"", tables));
+}
+
+StoredDiffuseLight DiffuseLightOf(const TableImageReader& image,
+                                  const std::optional<std::uint64_t>& medium_hash) {
+  const int degree = IntegerOf(image, "alpenglow.degree", 2, kMaxDegree);
+  const Kind kind = MultipleScattering(degree);
+  RequireKind(image, kind);
+  const Medium medium = MediumOf(image);
+  RequireMedium(image, medium, medium_hash);
+  const std::vector<std::size_t> sizes = SizesOf(image, 2);
+  RequireWindow(image, sizes[0], sizes[1]);
+  if (image.Attribute("alpenglow.sunCosines") != SunCosinesText(sizes[0])) {
+    Fail(image.file(), "alpenglow.sunCosines are not the nodes of this program");
+  }
+  DiffuseLightOptions options;
+  options.sun_angles = static_cast<int>(sizes[0]);
+  options.altitudes = static_cast<int>(sizes[1]);
+  options.degree = degree;
+  SolvedOrders solved{CheckedValues(image, kind, medium),
+                      IntegerOf(image, "alpenglow.orders", 1, 1 << 20),
+                      YesOf(image, "alpenglow.converged")};
+  const FolderUse use = UseOf(image);
+  return NamingTheFile(image.file(), [&] {
+    return StoredDiffuseLight{DiffuseLight(medium, options, std::move(solved)), use};
+  });
+}
+
 std::vector<TableDescription::ChannelRange> RangesOf(const std::vector<std::string>& names,
                                                      const std::vector<float>& values) {
   std::vector<TableDescription::ChannelRange> ranges;
   for (std::size_t channel = 0; channel < names.size(); ++channel) {
-    TableDescription::ChannelRange range{names[channel], 1.0, 0.0, 0.0};
+    const double first = values[channel];
+    TableDescription::ChannelRange range{names[channel], first, first, 0.0};
     double sum = 0.0;
     for (std::size_t i = channel; i < values.size(); i += names.size()) {
       const double value = values[i];
@@ -258,6 +352,22 @@ void WriteTable(const fs::path& file, const ScatteringTable& table) {
                          std::move(attributes)});
 }
 
+void WriteTable(const fs::path& file, const DiffuseLight& light, const FolderUse& use) {
+  const DiffuseLightOptions& options = light.options();
+  const auto columns = static_cast<std::size_t>(options.sun_angles);
+  const auto rows = static_cast<std::size_t>(options.altitudes);
+  const Kind kind = MultipleScattering(options.degree);
+  TextAttributes attributes = AttributesOf(kind, light.medium(), {columns, rows});
+  attributes["alpenglow.degree"] = std::to_string(options.degree);
+  attributes["alpenglow.orders"] = std::to_string(light.orders());
+  attributes["alpenglow.converged"] = light.converged() ? "yes" : "no";
+  attributes["alpenglow.sunCosines"] = SunCosinesText(columns);
+  attributes["alpenglow.rayNodes"] = std::to_string(use.ray_nodes);
+  attributes["alpenglow.tables"] = TablesText(use);
+  WriteTableImage(file, {columns, rows, ChannelNames(kind, light.medium()), light.values(),
+                         std::move(attributes)});
+}
+
 TransmittanceTable ReadTransmittanceTable(const fs::path& file,
                                           const std::optional<std::uint64_t>& medium_hash) {
   return TransmittanceTableOf(TableImageReader(file), medium_hash);
@@ -268,21 +378,34 @@ ScatteringTable ReadScatteringTable(const fs::path& file,
   return ScatteringTableOf(TableImageReader(file), medium_hash);
 }
 
+StoredDiffuseLight ReadDiffuseLight(const fs::path& file,
+                                    const std::optional<std::uint64_t>& medium_hash) {
+  return DiffuseLightOf(TableImageReader(file), medium_hash);
+}
+
 Medium ReadMediumOfTable(const fs::path& file) { return MediumOf(TableImageReader(file)); }
 
 TableDescription DescribeTable(const fs::path& file) {
   const TableImageReader image(file);
   TableDescription description;
   description.kind = image.Attribute("alpenglow.kind");
-  const auto describe = [&](const Kind& kind, const auto& table) {
-    description.medium = table.medium();
-    description.bytes = table.bytes();
-    description.channels = RangesOf(ChannelNames(kind, table.medium()), table.texels());
+  const auto describe = [&](const Kind& kind, const Medium& medium,
+                            const std::vector<float>& values) {
+    description.medium = medium;
+    description.bytes = values.size() * sizeof(float);
+    description.channels = RangesOf(ChannelNames(kind, medium), values);
+    description.lowest = kind.lowest;
+    description.highest = kind.highest;
   };
   if (description.kind == kTransmittance.name) {
-    describe(kTransmittance, TransmittanceTableOf(image, {}));
+    const TransmittanceTable table = TransmittanceTableOf(image, {});
+    describe(kTransmittance, table.medium(), table.texels());
   } else if (description.kind == kSingleScattering.name) {
-    describe(kSingleScattering, ScatteringTableOf(image, {}));
+    const ScatteringTable table = ScatteringTableOf(image, {});
+    describe(kSingleScattering, table.medium(), table.texels());
+  } else if (description.kind == MultipleScattering(0).name) {
+    const DiffuseLight light = DiffuseLightOf(image, {}).light;
+    describe(MultipleScattering(light.options().degree), light.medium(), light.values());
   } else {
     Fail(file, fmt::format("is a table of {}, which this program does not know", description.kind));
   }
@@ -318,7 +441,8 @@ std::string DescriptionText(const fs::path& file, const TableDescription& descri
     text += fmt::format("  channel     {:<20} {:.6g} to {:.6g}, mean {:.6g}\n", channel.name,
                         channel.lowest, channel.highest, channel.mean);
   }
-  return text + "  every texel is finite and in [0, 1]\n";
+  return text + fmt::format("  every texel is finite and in [{}, {}]\n", description.lowest,
+                            description.highest);
 }
 
 }  // namespace alpenglow

@@ -17,7 +17,12 @@ namespace alpenglow {
 struct TableQuality {
   TransmittanceTableSize transmittance;
   ScatteringTableSize single_scattering;
+  DiffuseLightOptions multiple_scattering;
+  int ray_nodes = 12;
 };
+
+/// Which orders of scattering the tables of a folder hold.
+enum class TableOrders { kAll, kSingleOnly };
 
 /// "preview", "standard" or "fine"; throws InputError for another name.
 [[nodiscard]] TableQuality TableQualityFromName(std::string_view name);
@@ -27,16 +32,21 @@ void MakeFolder(const std::filesystem::path& folder);
 
 /// Builds and writes every table, each file whole or not at all; makes the folder when there is
 /// none. Throws OutputError naming what could not be written.
-void BuildTableFolder(const Medium& medium, const TableQuality& quality,
+void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
                       const std::filesystem::path& folder, ProgressStyle style);
 
+/// Tables of one medium. What is absent is integrated where it is needed (see FolderUse).
 struct TableFolder {
-  TransmittanceTable transmittance;
-  ScatteringTable single_scattering;
+  Medium medium;
+  std::optional<TransmittanceTable> transmittance;
+  std::optional<ScatteringTable> single_scattering;
+  std::optional<DiffuseLight> multiple_scattering;
+  int ray_nodes = 12;
 };
 
-/// Reads both tables; throws InputError when one is missing or bad, or when they are not of this
-/// medium, or of the same one.
+/// Reads the tables that the file of multiple scattering tells of; the other two where it is
+/// missing. Throws InputError when one is missing or bad, or when they are not of this medium, or
+/// of the same one.
 [[nodiscard]] TableFolder ReadTableFolder(const std::filesystem::path& folder,
                                           const std::optional<std::uint64_t>& medium_hash = {});
 

@@ -219,16 +219,26 @@ TEST_F(Eval, EdgesOfTheDefinitionsAreKept) {
   EXPECT_EQ(results.at({"dark", 550.0}).value, 0.0);
 }
 
+/// Tables of single scattering only.
+TableFolder SmallTables(const Medium& medium) {
+  return {.medium = medium,
+          .transmittance = TransmittanceTable(medium, {.mu = 128, .altitudes = 32}),
+          .single_scattering = ScatteringTable(
+              medium, {.size = {.nu = 4, .mu_s = 8, .mu = 16, .altitudes = 8}, .lowest_mu_s = {}}),
+          .multiple_scattering = {}};
+}
+
+constexpr DiffuseLightOptions kSmallLight{.altitudes = 12, .sun_angles = 24, .degree = 2};
+
 TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
   const Medium medium = MediumPreset("bruneton2017");
-  const auto tables = MakeTableEvaluator(
-      TransmittanceTable(medium, {.mu = 128, .altitudes = 32}),
-      ScatteringTable(medium,
-                      {.size = {.nu = 4, .mu_s = 8, .mu = 16, .altitudes = 8}, .lowest_mu_s = {}}));
+  TableFolder folder = SmallTables(medium);
+  folder.multiple_scattering.emplace(medium, kSmallLight);
+  const auto tables = MakeTableEvaluator(std::move(folder));
   const auto integral = MakeIntegralEvaluator(medium);
   std::string text = kHeader;
-  for (const char* quantity :
-       {"transmittance", "optical_depth", "single", "inscatter_single", "irradiance_sun"}) {
+  for (const char* quantity : {"transmittance", "optical_depth", "single", "inscatter_single",
+                               "total", "irradiance_sun", "irradiance_sky"}) {
     text += fmt::format("{}-sky,{},1500,70,30,50,\n", quantity, quantity);
     text += fmt::format("{}-ground,{},1500,110,30,50,\n", quantity, quantity);
     text += fmt::format("{}-segment,{},1500,80,30,50,30000\n", quantity, quantity);
@@ -245,10 +255,7 @@ TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
 
 TEST_F(Eval, WhatTablesDoNotHoldIsRefusedWithItsLine) {
   const Medium medium = MediumPreset("bruneton2017");
-  const auto tables = MakeTableEvaluator(
-      TransmittanceTable(medium, {.mu = 4, .altitudes = 4}),
-      ScatteringTable(medium,
-                      {.size = {.nu = 2, .mu_s = 4, .mu = 4, .altitudes = 2}, .lowest_mu_s = {}}));
+  const auto tables = MakeTableEvaluator(SmallTables(medium));
   WriteText(cases_, std::string(kHeader) + "a,single,0,10,0,10,\nb,total,0,10,0,10,\n");
   try {
     EvaluateFile(cases_, results_, *tables, ProgressStyle::kQuiet);
@@ -256,12 +263,29 @@ TEST_F(Eval, WhatTablesDoNotHoldIsRefusedWithItsLine) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("cases.csv:3: "));
   }
-  EXPECT_THROW(static_cast<void>(MakeTableEvaluator(
-                   TransmittanceTable(medium, {.mu = 4, .altitudes = 4}),
-                   ScatteringTable(MediumPreset("earth"),
-                                   {.size = {.nu = 2, .mu_s = 2, .mu = 4, .altitudes = 2},
-                                    .lowest_mu_s = {}}))),
-               InputError);
+  TableFolder mixed = SmallTables(medium);
+  mixed.multiple_scattering.emplace(MediumPreset("earth"), kSmallLight);
+  EXPECT_THROW(static_cast<void>(MakeTableEvaluator(std::move(mixed))), InputError);
+}
+
+TEST_F(Eval, WhatAFolderLeavesOutIsIntegrated) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const auto tables = MakeTableEvaluator({.medium = medium,
+                                          .transmittance = {},
+                                          .single_scattering = {},
+                                          .multiple_scattering = DiffuseLight(medium),
+                                          .ray_nodes = 12});
+  const auto integral = MakeIntegralEvaluator(medium);
+  std::string text = kHeader;
+  for (const char* quantity : {"transmittance", "optical_depth", "single", "inscatter_single",
+                               "total", "irradiance_sun", "irradiance_sky"}) {
+    text += fmt::format("{0}-sky,{0},1500,70,30,50,\n{0}-ground,{0},1500,110,30,50,\n", quantity);
+  }
+  const Results looked_up = Evaluate(text, *tables);
+  for (const auto& [key, truth] : Evaluate(text, *integral)) {
+    EXPECT_NEAR(looked_up.at(key).value, truth.value, 1e-3 * truth.value)
+        << key.first << ": twelve nodes on air whose ozone bends";
+  }
 }
 
 TEST_F(Eval, ColumnsComeInAnyOrderAndLinesEndAsTheyLike) {

@@ -114,6 +114,7 @@ TEST_F(Skylut, BuiltTablesAreDescribedAndEvaluated) {
     EXPECT_THAT(info.out, HasSubstr(fact));
   }
   EXPECT_EQ(Run("info tables/transmittance.exr").status, 0);
+  EXPECT_EQ(Run("info tables/multiple_scattering.exr").status, 0);
 
   WriteCases();
   for (const char* method :
@@ -131,6 +132,38 @@ TEST_F(Skylut, BuiltTablesAreDescribedAndEvaluated) {
     EXPECT_NEAR(values[1], std::exp(-2.0 * vertical), 0.003)
         << "60 degrees from the zenith; the curvature of the shell takes 0.5 % of the path";
   }
+}
+
+TEST_F(Skylut, TablesGiveLightOfAllOrdersUnlessTheyWereLeftOut) {
+  WriteText(folder_ / "air.toml", "preset = \"bruneton2017\"\n");
+  WriteText(folder_ / "cases.csv",
+            "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,"
+            "distance_m\n"
+            "t,total,100,75,40,50,\n"
+            "g,total,1000,130,40,50,\n"
+            "e,irradiance_sky,0,0,0,30,\n");
+  const std::string build = "build --out tables --atmosphere air.toml --quality preview --quiet";
+  ASSERT_EQ(Run(build).status, 0);
+  const std::string eval = "eval --cases cases.csv --quiet --lut tables --out ";
+  ASSERT_EQ(Run(eval + "table.csv --method table").status, 0);
+  ASSERT_EQ(Run(eval + "integral.csv --method integral").status, 0);
+  const std::vector<double> looked_up = ValuesOf(folder_ / "table.csv");
+  const std::vector<double> integrated = ValuesOf(folder_ / "integral.csv");
+  ASSERT_EQ(looked_up.size(), 9U);
+  for (std::size_t i = 0; i < looked_up.size(); ++i) {
+    EXPECT_NEAR(looked_up[i] / integrated[i], 1.0, 0.02) << i << ": the coarsest tables";
+  }
+
+  fs::remove(folder_ / "tables" / "transmittance.exr");
+  const Outcome missing = Run(eval + "r.csv --method table");
+  EXPECT_EQ(missing.status, 3);
+  EXPECT_THAT(missing.error, HasSubstr("transmittance.exr"));
+
+  ASSERT_EQ(Run(build + " --single-scattering-only").status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "tables" / "multiple_scattering.exr")) << "not even an old one";
+  const Outcome refused = Run(eval + "r.csv --method table");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.error, HasSubstr("cases.csv:2"));
 }
 
 TEST_F(Skylut, WithoutAnAtmosphereFileTheEarthIsTaken) {

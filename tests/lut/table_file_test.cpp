@@ -121,6 +121,57 @@ TEST_F(TableFile, SingleScatteringComesBackBitForBit) {
   EXPECT_EQ(back.Lookup(ray).rayleigh[1], Scattering().Lookup(ray).rayleigh[1]);
 }
 
+const DiffuseLight& Light() {
+  static const DiffuseLight light(MediumPreset("bruneton2017"), {.altitudes = 5,
+                                                                 .sun_angles = 6,
+                                                                 .degree = 2,
+                                                                 .zenith_nodes = 4,
+                                                                 .azimuth_nodes = 4,
+                                                                 .ray_nodes = 4});
+  return light;
+}
+
+TEST_F(TableFile, DiffuseLightComesBackBitForBit) {
+  const fs::path file = folder_ / "multiple.exr";
+  const FolderUse use{.ray_nodes = 9, .transmittance = false, .single_scattering = true};
+  WriteTable(file, Light(), use);
+  const StoredDiffuseLight back = ReadDiffuseLight(file, MediumHash(Light().medium()));
+  EXPECT_EQ(back.use, use);
+  EXPECT_EQ(back.light.values(), Light().values());
+  EXPECT_EQ(back.light.orders(), Light().orders());
+  EXPECT_EQ(back.light.converged(), Light().converged());
+  EXPECT_EQ(back.light.options().degree, 2);
+  EXPECT_EQ(back.light.SkyIrradiance(700.0, 0.2).value, Light().SkyIrradiance(700.0, 0.2).value);
+  const std::string text = DescriptionText(file, DescribeTable(file));
+  for (const char* fact : {"multiple scattering", "L22.0550nm", "E.0680nm", "6 5 = 2520 bytes",
+                           "every texel is finite and in [-100, 100]"}) {
+    EXPECT_THAT(text, HasSubstr(fact));
+  }
+}
+
+TEST_F(TableFile, DiffuseLightOfAnotherAtmosphereOrWithOtherAttributesIsRefused) {
+  const fs::path file = folder_ / "multiple.exr";
+  WriteTable(file, Light());
+  EXPECT_THROW(static_cast<void>(ReadDiffuseLight(file, MediumHash(MediumPreset("earth")))),
+               InputError);
+  EXPECT_THROW(static_cast<void>(ReadTransmittanceTable(file)), InputError);
+  const Imf::Header header = Imf::InputFile(file.c_str()).header();
+  for (const auto& [name, text] : {std::pair{"alpenglow.degree", "3"},
+                                   {"alpenglow.degree", "2.5"},
+                                   {"alpenglow.orders", "0"},
+                                   {"alpenglow.converged", "perhaps"},
+                                   {"alpenglow.rayNodes", "99"},
+                                   {"alpenglow.tables", "all"},
+                                   {"alpenglow.sunCosines", "0 1"},
+                                   {"alpenglow.mapVersion", "0"},
+                                   {"alpenglow.axisSizes", "6 7"}}) {
+    Imf::Header changed = header;
+    changed.insert(name, Imf::StringAttribute(text));
+    WriteImage(changed);
+    EXPECT_THROW(static_cast<void>(ReadDiffuseLight(bad_)), InputError) << name << " = " << text;
+  }
+}
+
 TEST_F(TableFile, SameTableSameBytes) {
   WriteTable(bad_, Transmittance());
   EXPECT_EQ(ContentOf(bad_), ContentOf(good_));
