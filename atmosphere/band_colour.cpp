@@ -26,6 +26,7 @@ namespace alpenglow {
 namespace {
 
 using Triple = std::array<double, 3>;
+using Seen = std::array<double, 4>;  // X, Y, Z of the cones; scotopic luminance of the rods
 
 constexpr std::size_t kMostTrainedBands = 16;
 constexpr double kFirst_nm = 360.0;  // of the colour-matching functions
@@ -44,7 +45,7 @@ double Hat(std::span<const double> nodes, std::size_t i, double at) {
 // The colour of the sun's light in one narrow interval, and its middle.
 struct Slice {
   double wavelength_nm;
-  Triple xyz;
+  Seen seen;
 };
 
 // Colour-matching functions times the solar spectrum, integrated over steps of 5 nm by 0.5 nm
@@ -59,7 +60,9 @@ const std::vector<Slice>& SunlightSlices() {
       for (double at = low + 0.5 * kFine_nm; at < low + kStep_nm; at += kFine_nm) {
         const Triple matching = ColourMatching(at);
         const double power = kLuminousEfficacy_lm_per_W * SolarTable()(at) * kFine_nm;
-        for (std::size_t c = 0; c < 3; ++c) slice.xyz[c] += matching[c] * power;
+        for (std::size_t c = 0; c < 3; ++c) slice.seen[c] += matching[c] * power;
+        slice.seen[3] += ScotopicEfficiency(at) * kScotopicEfficacy_lm_per_W /
+                         kLuminousEfficacy_lm_per_W * power;
       }
       made.push_back(slice);
     }
@@ -149,23 +152,23 @@ class NormalEquations {
 
 // One spectrum of the family: true colour, and what the bands see of it.
 struct Example {
-  Triple xyz;
+  Seen seen;
   std::vector<double> bands;
 };
 
 std::vector<Example> Examples(std::span<const double> wavelengths_nm) {
-  std::vector<std::pair<Air, Triple>> slices;
+  std::vector<std::pair<Air, Seen>> slices;
   for (const Slice& slice : SunlightSlices()) {
-    slices.emplace_back(AirAt(slice.wavelength_nm), slice.xyz);
+    slices.emplace_back(AirAt(slice.wavelength_nm), slice.seen);
   }
   std::vector<Air> bands;
   for (const double wavelength_nm : wavelengths_nm) bands.push_back(AirAt(wavelength_nm));
   std::vector<Example> examples;
   for (const Daylight& light : DaylightFamily()) {
     Example example{};
-    for (const auto& [air, xyz] : slices) {
+    for (const auto& [air, seen] : slices) {
       const double f = RelativeToSun(light, air);
-      for (std::size_t c = 0; c < 3; ++c) example.xyz[c] += f * xyz[c];
+      for (std::size_t c = 0; c < 4; ++c) example.seen[c] += f * seen[c];
     }
     for (const Air& air : bands) example.bands.push_back(RelativeToSun(light, air));
     examples.push_back(std::move(example));
@@ -179,7 +182,7 @@ Row Starting(std::span<const double> wavelengths_nm, std::size_t component) {
   Row row(wavelengths_nm.size(), 0.0);
   for (const Slice& slice : SunlightSlices()) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      row[i] += Hat(wavelengths_nm, i, slice.wavelength_nm) * slice.xyz[component];
+      row[i] += Hat(wavelengths_nm, i, slice.wavelength_nm) * slice.seen[component];
     }
   }
   return row;
@@ -205,8 +208,8 @@ Row Corrected(Row row, const std::vector<Example>& examples, std::size_t compone
   const double whole = Sum(row);
   NormalEquations equations(row.size());
   for (const Example& example : examples) {
-    const double scale = example.xyz[component] + 0.02 * example.xyz[1];
-    const double residual = example.xyz[component] - Dot(row, example.bands);
+    const double scale = example.seen[component] + 0.02 * example.seen[1];
+    const double residual = example.seen[component] - Dot(row, example.bands);
     equations.Add(example.bands, residual / whole,
                   whole * whole / (scale * scale) / static_cast<double>(examples.size()));
   }
@@ -224,19 +227,20 @@ void RequireAscending(const std::vector<double>& wavelengths_nm) {
   }
 }
 
-// The three rows that make XYZ of light relative to the sun.
-std::array<Row, 3> RowsOf(std::span<const double> wavelengths_nm) {
-  std::array<Row, 3> rows;
-  for (std::size_t c = 0; c < 3; ++c) rows[c] = Starting(wavelengths_nm, c);
+// The rows that make X, Y, Z and scotopic luminance of light relative to the sun.
+std::array<Row, 4> RowsOf(std::span<const double> wavelengths_nm) {
+  std::array<Row, 4> rows;
+  for (std::size_t c = 0; c < 4; ++c) rows[c] = Starting(wavelengths_nm, c);
+  if (wavelengths_nm.size() <= kMostTrainedBands) {
+    const std::vector<Example> examples = Examples(wavelengths_nm);
+    for (std::size_t c = 0; c < 4; ++c) rows[c] = Corrected(std::move(rows[c]), examples, c);
+  }
   if (const TrainedBands* trained = FindTrainedBands(wavelengths_nm)) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const double sun = Sum(rows[c]);
+      const double sun = Sum(Starting(wavelengths_nm, c));
       rows[c] = trained->share[c];
       for (double& value : rows[c]) value *= sun;
     }
-  } else if (wavelengths_nm.size() <= kMostTrainedBands) {
-    const std::vector<Example> examples = Examples(wavelengths_nm);
-    for (std::size_t c = 0; c < 3; ++c) rows[c] = Corrected(std::move(rows[c]), examples, c);
   }
   return rows;
 }
@@ -253,9 +257,10 @@ BandColour::BandColour(std::vector<double> wavelengths_nm)
     : wavelengths_nm_(std::move(wavelengths_nm)) {
   RequireAscending(wavelengths_nm_);
   const std::size_t n = wavelengths_nm_.size();
-  for (const Row& row : RowsOf(wavelengths_nm_)) {
+  const std::array<Row, 4> rows = RowsOf(wavelengths_nm_);
+  for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < n; ++i) {
-      xyz_.push_back(row[i] / SolarIrradiance(wavelengths_nm_[i]));
+      (c < 3 ? xyz_ : scotopic_).push_back(rows[c][i] / SolarIrradiance(wavelengths_nm_[i]));
     }
   }
   for (const auto& srgb_row : LinearSrgbFromXyz()) {
@@ -274,6 +279,11 @@ std::array<double, 3> BandColour::Xyz(std::span<const double> radiance) const {
 std::array<double, 3> BandColour::LinearSrgb(std::span<const double> radiance) const {
   ALPENGLOW_ENSURE(radiance.size(), ==, wavelengths_nm_.size());
   return Product(srgb_, radiance);
+}
+
+double BandColour::ScotopicLuminance(std::span<const double> radiance) const {
+  ALPENGLOW_ENSURE(radiance.size(), ==, wavelengths_nm_.size());
+  return Dot(scotopic_, radiance);
 }
 
 }  // namespace alpenglow

@@ -25,4 +25,8 @@ inline constexpr double kSunAngularRadius_rad = 4.650471e-3;
 /// maximum with the 1931 observer is 683.002 at 555 nm.
 inline constexpr double kLuminousEfficacy_lm_per_W = 683.002;
 
+/// The scotopic maximum, at 507 nm [lm/W]. CIE 018:2019: it makes radiation of 540 THz as luminous
+/// in the dark as by day.
+inline constexpr double kScotopicEfficacy_lm_per_W = 1700.0;
+
 }  // namespace alpenglow

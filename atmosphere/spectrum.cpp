@@ -24,6 +24,7 @@ SampledFunction ReadTable(std::string_view file, int column, double shift_x = 0.
 
 constexpr std::string_view kSolarFile = "atmosphere/data/solar_irradiance_astm_g173_etr_native.csv";
 constexpr std::string_view kOzoneFile = "atmosphere/data/ozone_cross_section_10nm.csv";
+constexpr std::string_view kScotopicFile = "atmosphere/data/scotopic_1951_10nm.csv";
 constexpr std::string_view kObserverFile = "atmosphere/data/cie1931_2deg_cmf_5nm.csv";
 
 double ValueInside(const SampledFunction& table, double low, double high, double x) {
@@ -113,6 +114,11 @@ std::array<double, 3> ColourMatching(double wavelength_nm) {
   std::array<double, 3> xyz{};
   for (std::size_t i = 0; i < 3; ++i) xyz[i] = ValueInside(tables[i], 360.0, 830.0, wavelength_nm);
   return xyz;
+}
+
+double ScotopicEfficiency(double wavelength_nm) {
+  static const SampledFunction table = ReadTable(kScotopicFile, 1);
+  return ValueInside(table, 380.0, 780.0, wavelength_nm);
 }
 
 }  // namespace alpenglow

@@ -53,6 +53,9 @@ inline constexpr std::array<int, 7> kWavelengthSetSizes{3, 4, 5, 6, 8, 16, 40};
 /// outside.
 [[nodiscard]] std::array<double, 3> ColourMatching(double wavelength_nm);
 
+/// CIE 1951 scotopic luminous efficiency, that of the rods, linear in the 10 nm table, 0 outside.
+[[nodiscard]] double ScotopicEfficiency(double wavelength_nm);
+
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 /// Linear sRGB (Rec. 709 primaries, D65) from CIE XYZ, and back. IEC 61966-2-1.
 [[nodiscard]] const Matrix3& LinearSrgbFromXyz();
@@ -86,13 +89,18 @@ class BandColour {
   [[nodiscard]] std::array<double, 3> Xyz(std::span<const double> radiance) const;
   [[nodiscard]] std::array<double, 3> LinearSrgb(std::span<const double> radiance) const;
 
+  /// What the rods see [scotopic cd/m^2], by a row fitted to the family of daylight spectra. Error
+  /// over the skies and suns of the tests above, mean and 95th percentile: 3 bands 4 % and 8 %, 4
+  /// bands 1 % and 3 %, more 0.2 % and 0.3 %.
+  [[nodiscard]] double ScotopicLuminance(std::span<const double> radiance) const;
+
   /// Row-major 3 x N: linear sRGB [cd/m^2 per W m^-2 sr^-1 nm^-1] from bands.
   [[nodiscard]] std::span<const double> linear_srgb_from_bands() const { return srgb_; }
   [[nodiscard]] const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
 
  private:
   std::vector<double> wavelengths_nm_;
-  std::vector<double> xyz_, srgb_;
+  std::vector<double> xyz_, srgb_, scotopic_;
 };
 
 /// A spectral albedo in [0, 1] on the wavelengths whose colour under equal-energy light, its white

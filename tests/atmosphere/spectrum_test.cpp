@@ -61,6 +61,7 @@ TEST(Tables, EveryByteIsAsItWasChecked) {
       {"atmosphere/data/cie1931_2deg_cmf_5nm.csv", 0x6ba6801c7c9a2b4aU},
       {"atmosphere/data/ozone_cross_section_10nm.csv", 0x1d7d02511e53b2aeU},
       {"atmosphere/data/rayleigh_10nm.csv", 0xfa772001166795a3U},
+      {"atmosphere/data/scotopic_1951_10nm.csv", 0xf3b45ec76c038468U},
       {"atmosphere/data/solar_irradiance_astm_g173_etr_native.csv", 0x6a9d32919a9f6a32U},
   };
   for (const auto& [name, checksum] : files) {
@@ -82,6 +83,29 @@ TEST(Tables, ColourMatchingFunctionsHaveThePublishedSums) {
   EXPECT_DOUBLE_EQ(ColourMatching(555.0)[1], 1.0);
   EXPECT_EQ(ColourMatching(359.0), Triple{});
   EXPECT_EQ(ColourMatching(831.0), Triple{});
+}
+
+// Luminance of the rods over that of the cones, of a black body.
+double ScotopicOverPhotopic(double temperature_k) {
+  constexpr double kSecondRadiationConstant_nm_k = 1.438777e7;
+  double scotopic = 0.0, photopic = 0.0;
+  for (double at = 380.5; at < 780.0; at += 1.0) {
+    const double power = 1.0 / (std::pow(at / 555.0, 5) *
+                                std::expm1(kSecondRadiationConstant_nm_k / (at * temperature_k)));
+    scotopic += power * kScotopicEfficacy_lm_per_W * ScotopicEfficiency(at);
+    photopic += power * kLuminousEfficacy_lm_per_W * ColourMatching(at)[1];
+  }
+  return scotopic / photopic;
+}
+
+TEST(Tables, RodsSeeIlluminantAAsThePublishedRatioSays) {
+  EXPECT_NEAR(ScotopicOverPhotopic(2856.0), 1.41, 0.01) << "published to two decimals";
+  EXPECT_GT(ScotopicOverPhotopic(6504.0), 2.2) << "daylight is rich in what rods see";
+  EXPECT_NEAR(ScotopicEfficiency(555.0) * kScotopicEfficacy_lm_per_W, kLuminousEfficacy_lm_per_W,
+              0.01 * kLuminousEfficacy_lm_per_W)
+      << "rods and cones have the same efficacy at 555 nm; linear between 10 nm is 1 % high there";
+  EXPECT_EQ(ScotopicEfficiency(379.0), 0.0);
+  EXPECT_EQ(ScotopicEfficiency(781.0), 0.0);
 }
 
 TEST(Tables, SunlightAboveTheAirHasTheIlluminanceOfTheLiterature) {
@@ -359,6 +383,40 @@ TEST(BandColour, ErrorsOnSkiesItWasNotTrainedOnAreBelowTheBoundsInItsHeader) {
                                      percentile95, errors.back()));
     EXPECT_LT(MeanOf(errors), bound.mean) << name;
     EXPECT_LT(percentile95, bound.percentile95) << name;
+  }
+}
+
+double TrueScotopic(const SampledFunction& relative_to_sun) {
+  double luminance = 0.0;
+  for (double at = 360.25; at < 830.0; at += 0.5) {
+    luminance += kScotopicEfficacy_lm_per_W * ScotopicEfficiency(at) * SolarTable()(at) *
+                 relative_to_sun(at) * 0.5;
+  }
+  return luminance;
+}
+
+TEST(BandColour, ScotopicLuminanceIsWithinTheBoundsInItsHeader) {
+  const Bound bounds[] = {{WavelengthSet(3), 0.04, 0.08},   {WavelengthSet(4), 0.01, 0.03},
+                          {WavelengthSet(5), 0.002, 0.003}, {WavelengthSet(6), 0.002, 0.003},
+                          {WavelengthSet(8), 0.002, 0.003}, {WavelengthSet(16), 0.002, 0.003},
+                          {WavelengthSet(40), 0.002, 0.003}};
+  for (const Bound& bound : bounds) {
+    const BandColour colour(bound.wavelengths_nm);
+    std::vector<double> errors;
+    for (const TestLight& light : TestLights()) {
+      std::vector<double> bands = SunInBands(bound.wavelengths_nm);
+      for (std::size_t i = 0; i < bands.size(); ++i)
+        bands[i] *= light.relative_to_sun(bound.wavelengths_nm[i]);
+      errors.push_back(
+          std::abs(colour.ScotopicLuminance(bands) / TrueScotopic(light.relative_to_sun) - 1.0));
+    }
+    std::sort(errors.begin(), errors.end());
+    const double percentile95 = errors[errors.size() * 95 / 100];
+    const auto bands = bound.wavelengths_nm.size();
+    RecordProperty(fmt::format("scotopic_error_of_{}_bands", bands),
+                   fmt::format("mean {:.4f} p95 {:.4f}", MeanOf(errors), percentile95));
+    EXPECT_LT(MeanOf(errors), bound.mean) << bands << " bands, p95 " << percentile95;
+    EXPECT_LT(percentile95, bound.percentile95) << bands << " bands";
   }
 }
 
