@@ -12,7 +12,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMeterConstant = 12.5;  // K [cd s / (m^2 ISO)]
 constexpr int kBinsPerStop = 16;
 constexpr int kLowestStop = -24;  // log2 cd/m^2; less than this is no light to meter
 constexpr int kHighestStop = 40;

@@ -56,6 +56,9 @@ void WriteExr(const std::filesystem::path& file, const Image& image, const Metad
 /// 2014).
 [[nodiscard]] double ExposureScale(double ev100);
 
+/// K of reflected-light meters [cd s / (m^2 ISO)], ISO 2720: EV100 = log2(100 L / K).
+inline constexpr double kMeterConstant = 12.5;
+
 /// The range of the meter: from a moonless night to the sun's surroundings.
 inline constexpr double kDarkestEv100 = -10.0;
 inline constexpr double kBrightestEv100 = 20.0;

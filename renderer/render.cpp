@@ -16,6 +16,7 @@
 #include "atmosphere/spectrum.h"
 #include "atmosphere/sun_disk.h"
 #include "lut/multiple_scattering.h"
+#include "lut/night_vision.h"
 #include "lut/program.h"
 #include "renderer/camera_rays.h"
 #include "renderer/scene_ground.h"
@@ -41,6 +42,19 @@ BandLight operator*(float scale, const BandLight& a) {
   for (std::size_t band = 0; band < a.count; ++band) product[band] = scale * a[band];
   return product;
 }
+
+/// The same light for the sums of colours.
+class InDouble {
+ public:
+  explicit InDouble(const BandLight& light) : count_(light.count) {
+    std::copy_n(light.value.begin(), count_, value_.begin());
+  }
+  operator std::span<const double>() const { return {value_.data(), count_}; }  // NOLINT: a view
+
+ private:
+  std::array<double, kMaxBands> value_{};
+  std::size_t count_;
+};
 
 /// Light in the air and on surfaces for one position of the sun.
 struct Lighting {
@@ -89,8 +103,8 @@ double HashedUnit(std::uint32_t x, std::uint32_t y, std::uint32_t dimension) {
 }  // namespace
 
 const std::vector<std::string>& KnownLayers() {
-  static const std::vector<std::string> layers{"depth",     "normal",        "albedo",
-                                               "inscatter", "transmittance", "sun_visibility"};
+  static const std::vector<std::string> layers{
+      "depth", "normal", "albedo", "inscatter", "transmittance", "sun_visibility", kScotopicLayer};
   return layers;
 }
 
@@ -274,10 +288,8 @@ class PixelWriter {
       : colour_(colour), image_(settings.width, settings.height) {
     for (const std::string& layer : settings.layers) {
       if (std::find(KnownLayers().begin(), KnownLayers().end(), layer) == KnownLayers().end()) {
-        throw InputError(fmt::format(
-            "layer \"{}\" is not one of depth, normal, albedo, transmittance, inscatter, "
-            "sun_visibility",
-            layer));
+        throw InputError(
+            fmt::format("layer \"{}\" is not one of {}", layer, fmt::join(KnownLayers(), ", ")));
       }
       for (const std::string& channel : ChannelsOf(layer)) {
         image_.layers.push_back({channel, std::vector<float>(image_.rgb.size(), 0.0F)});
@@ -307,15 +319,13 @@ class PixelWriter {
   static std::vector<std::string> ChannelsOf(const std::string& layer) {
     if (layer == "depth") return {"depth.Z"};
     if (layer == "sun_visibility") return {"sun_visibility.Y"};
+    if (layer == kScotopicLayer) return {kScotopicChannel};
     if (layer == "normal") return {"normal.X", "normal.Y", "normal.Z"};
     return {layer + ".R", layer + ".G", layer + ".B"};
   }
 
   [[nodiscard]] std::array<float, 3> Rgb(const BandLight& light) const {
-    std::array<double, kMaxBands> bands{};
-    for (std::size_t band = 0; band < light.count; ++band)
-      bands[band] = static_cast<double>(light[band]);
-    const auto rgb = colour_.LinearSrgb(std::span<const double>(bands.data(), light.count));
+    const auto rgb = colour_.LinearSrgb(InDouble(light));
     return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
   }
 
@@ -349,8 +359,11 @@ class PixelWriter {
     for (const Shaded& ray : rays) {
       mean = mean + share * (layer == "albedo"          ? ray.albedo
                              : layer == "transmittance" ? ray.transmittance
+                             : layer == kScotopicLayer  ? ray.radiance
                                                         : ray.inscatter);
     }
+    if (layer == kScotopicLayer)
+      return {static_cast<float>(colour_.ScotopicLuminance(InDouble(mean)))};
     const auto rgb = layer == "inscatter" ? Rgb(mean) : RgbOfFactor(mean);
     return {rgb[0], rgb[1], rgb[2]};
   }
@@ -389,6 +402,20 @@ SunPosition SceneRenderer::ApparentSun(const UtcInstant& instant) const {
   SunPosition sun = SunAt(eye, instant);
   sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, eye.height_m);
   return sun;
+}
+
+double SceneRenderer::Illuminance(const UtcInstant& instant) const {
+  const Lighting light = state_->LightingAt(ApparentSun(instant), instant);
+  const double altitude = std::max(eye_height_m(), 0.0);
+  const double mu_s = std::clamp(light.to_sun.z, -1.0, 1.0);
+  const double horizon =
+      -std::sqrt(altitude * (2.0 * state_->radius() + altitude)) / (state_->radius() + altitude);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, light.sun_radius_rad);
+  const auto direct = static_cast<float>(disk.fraction * std::max(disk.mu_s_effective, 0.0));
+  const BandLight irradiance =
+      direct * state_->air.TransmittanceToSpace(altitude, disk.mu_s_effective) +
+      state_->diffuse.SkyIrradiance(altitude, mu_s);
+  return state_->colour.Xyz(InDouble(light.irradiance * irradiance))[1];
 }
 
 Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {

@@ -31,9 +31,12 @@ struct RenderSettings {
   std::vector<std::string> layers;  // of KnownLayers()
 };
 
-/// "depth" [m], "normal" (ENU), "albedo", "transmittance", "inscatter" [cd/m^2] and
-/// "sun_visibility" (0 to 1): what `layers` may name.
+/// "depth" [m], "normal" (ENU), "albedo", "transmittance", "inscatter" [cd/m^2], "sun_visibility"
+/// (0 to 1) and kScotopicLayer: what `layers` may name.
 [[nodiscard]] const std::vector<std::string>& KnownLayers();
+
+/// The layer of what rods see [scotopic cd/m^2]; its channel is kScotopicChannel.
+inline constexpr const char* kScotopicLayer = "scotopic";
 
 /// A scene ready to be rendered at any time: terrain loaded, light of higher orders solved.
 /// Immutable.
@@ -46,6 +49,9 @@ class SceneRenderer {
   /// Linear sRGB in cd/m^2. The same bytes for any number of threads. Throws InputError for a layer
   /// that is not known or a size out of [1, 16384]; stops early when Interrupted().
   [[nodiscard]] Image Render(const UtcInstant& instant, const RenderSettings& settings) const;
+
+  /// Of sun and sky on a horizontal plane at the eye, terrain aside [lux].
+  [[nodiscard]] double Illuminance(const UtcInstant& instant) const;
 
   /// The sun from the scene's place with refraction: where the picture shows it.
   [[nodiscard]] SunPosition ApparentSun(const UtcInstant& instant) const;

@@ -80,8 +80,8 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
   metadata["alpenglow.sun_elevation_deg"] =
       fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
   metadata[kEv100] = fmt::format("{:.4f}", ev100);
-  metadata["alpenglow.exposure"] = output.ev100 ? "fixed" : "metered";
-  metadata["alpenglow.tone_curve"] = NameOf(output.curve);
+  metadata["alpenglow.exposure"] = NameOf(output.exposure.kind);
+  metadata["alpenglow.tone_curve"] = NameOf(output.look);
   if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
   return metadata;
@@ -100,7 +100,7 @@ class Series {
     if (output_.resume) image = KeptImage(exr, wanted);
     const bool rendered = !image;
     if (rendered) image = source_.render(frame.instant);
-    const double ev100 = output_.ev100.value_or(MeterEv100(*image, kSunDiskLuminance_cd_per_m2));
+    const double ev100 = Ev100Of(frame, *image);
     Write(frame, *image, ev100, rendered);
     if (output_.contact_sheet) AddThumbnail(frame, *image, ev100);
     return rendered;
@@ -121,6 +121,18 @@ class Series {
   [[nodiscard]] const SeriesSummary& summary() const { return summary_; }
 
  private:
+  [[nodiscard]] double Ev100Of(const Frame& frame, const Image& image) const {
+    switch (output_.exposure.kind) {
+      case ExposureRule::Kind::kFixed:
+        return output_.exposure.ev100;
+      case ExposureRule::Kind::kIncident:
+        return IncidentEv100(source_.illuminance(frame.instant));
+      case ExposureRule::Kind::kMetered:
+        break;
+    }
+    return MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2);
+  }
+
   void Write(const Frame& frame, const Image& image, double ev100, bool rendered) {
     const Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
     const fs::path exr = output_.name.Exr(frame.number);
@@ -128,7 +140,7 @@ class Series {
     const bool keep_exr = !rendered && ExrValue(exr, kFingerprint) == metadata.at(kFingerprint);
     const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
     if (!keep_exr) WriteExr(exr, image, metadata);
-    if (!keep_png) WritePng(png, Develop(image, ev100, output_.curve), metadata);
+    if (!keep_png) WritePng(png, Develop(Seen(image, output_.look), ev100, output_.look), metadata);
     (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
     ev100_of_[frame.number] = metadata.at(kEv100);
   }
@@ -138,8 +150,9 @@ class Series {
     const std::string time = (local.empty() ? FormatUtc(frame.instant) : local).substr(11, 5);
     const double elevation_deg =
         SunAt(source_.place, frame.instant).elevation_rad / kRadiansPerDegree;
-    thumbnails_.push_back({Develop(Reduced(image, kThumbnailWidth), ev100, output_.curve),
-                           fmt::format("{} {:+.1f}", time, elevation_deg)});
+    const Image small = Reduced(Seen(image, output_.look), kThumbnailWidth);
+    thumbnails_.push_back(
+        {Develop(small, ev100, output_.look), fmt::format("{} {:+.1f}", time, elevation_deg)});
   }
 
   /// Frames of other runs (or machines) are looked up in their files.

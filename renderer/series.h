@@ -10,6 +10,7 @@
 
 #include "atmosphere/geodesy.h"
 #include "lut/image.h"
+#include "lut/look.h"
 #include "lut/progress.h"
 #include "renderer/frame_name.h"
 #include "renderer/frame_times.h"
@@ -19,6 +20,8 @@ namespace alpenglow {
 /// What makes the pictures of a series.
 struct SeriesSource {
   std::function<Image(const UtcInstant&)> render;
+  /// Of sun and sky on a horizontal plane at the eye [lux], for ExposureRule::Kind::kIncident.
+  std::function<double(const UtcInstant&)> illuminance;
   /// Everything that the pixels depend on but the instant (SceneMetadata, size, samples, layers).
   Metadata settings;
   GeodeticPosition place;
@@ -28,9 +31,9 @@ struct SeriesSource {
 /// How the pictures are exposed and where they go.
 struct SeriesOutput {
   FrameName name;
-  bool png = false;                            // a developed picture beside every EXR
-  std::optional<double> ev100 = std::nullopt;  // nothing: every frame is metered
-  ToneCurve curve = ToneCurve::kAgx;
+  bool png = false;            // a developed picture beside every EXR
+  ExposureRule exposure = {};  // of every frame
+  Look look = {};
   bool resume = false;
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;
   ProgressStyle progress = ProgressStyle::kAuto;

@@ -54,8 +54,9 @@ int Run(const SkyseriesOptions& options) {
       options.frames ? SelectFrames(frames, *options.frames) : frames;
   SayWhatIsLeftOut(scene);
   output.png = options.png;
-  output.ev100 = Ev100FromText(options.exposure);
-  output.curve = ToneCurveFromName(options.tone_curve);
+  output.exposure = ExposureRuleFromText(options.exposure);
+  output.look = LookFromName(options.tone_curve);
+  output.look.night_vision = options.night_vision;
   output.resume = options.resume;
   if (options.contact_sheet) output.contact_sheet = *options.contact_sheet;
   output.progress = options.common.progress_style();
@@ -66,12 +67,16 @@ int Run(const SkyseriesOptions& options) {
   settings.height = size.height;
   settings.samples_per_pixel = options.samples;
   settings.layers = options.layers;
-  std::unique_ptr<SceneRenderer> renderer;  // built for the first frame that needs it
-  const SeriesSource source{[&](const UtcInstant& instant) {
-                              if (!renderer) renderer = Load(scene);
-                              return renderer->Render(instant, settings);
-                            },
-                            PictureMetadata(scene, settings), scene.place, scene.zone};
+  if (options.night_vision) settings.layers.emplace_back(kScotopicLayer);
+  std::unique_ptr<SceneRenderer> loaded;
+  const auto renderer = [&]() -> const SceneRenderer& {  // built for the first frame that needs it
+    if (!loaded) loaded = Load(scene);
+    return *loaded;
+  };
+  const SeriesSource source{
+      [&](const UtcInstant& instant) { return renderer().Render(instant, settings); },
+      [&](const UtcInstant& instant) { return renderer().Illuminance(instant); },
+      PictureMetadata(scene, settings), scene.place, scene.zone};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     fmt::print(stderr, "skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,

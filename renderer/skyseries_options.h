@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lut/command_line.h"
+#include "lut/look.h"
 #include "lut/picture_text.h"
 #include "renderer/frame_times.h"
 #include "renderer/render.h"
@@ -35,7 +36,7 @@ struct SkyseriesOptions {
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx";
   int samples = 4;
   std::vector<std::string> layers;
-  bool png = false, resume = false;
+  bool png = false, night_vision = false, resume = false;
 };
 
 inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
@@ -100,12 +101,17 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember(KnownLayers()));
   app.add_option("--exposure", options.exposure,
-                 "auto (metered, frame by frame) or EV at ISO 100, -30 to 30")
-      ->check(ReadableBy([](const std::string& text) { (void)Ev100FromText(text); }))
+                 "auto (each frame's picture is metered), incident (each frame's light on the "
+                 "ground is metered: smooth from day to night) or EV at ISO 100, -30 to 30")
+      ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  app.add_option("--tone-map", options.tone_curve, "Curve of the PNG")
-      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear"}))
+  app.add_option("--tone-map", options.tone_curve,
+                 "Curve of the PNG; local: an exposure of its own for every part, and agx")
+      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
       ->capture_default_str();
+  app.add_flag("--night-vision", options.night_vision,
+               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
+               "grows brighter");
   app.add_flag("--resume", options.resume, "Keep intact frames that were made with these settings");
   app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small");
 }

@@ -13,6 +13,7 @@
 #include "atmosphere/judge.h"
 #include "atmosphere/spectrum.h"
 #include "lut/multiple_scattering.h"
+#include "lut/night_vision.h"
 #include "renderer/camera_rays.h"
 #include "tests/bare_scene.h"
 
@@ -183,6 +184,40 @@ TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
   EXPECT_GT(lit_share(-5.0, 0, 30), 0.01) << "the summit catches the sun";
   EXPECT_EQ(lit_share(-5.0, 40, 60), 0.0) << "the foot lies in shadow";
   EXPECT_EQ(lit_share(-15.0, 0, 60), 0.0) << "the sun is under the summit's horizon";
+}
+
+TEST(Render, IlluminanceFallsSmoothlyFromNoonIntoTheNight) {
+  const SceneRenderer renderer(BareScene(2.0, 0.0, 0.0, 60.0));
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const double at_noon = renderer.Illuminance(noon);
+  EXPECT_GT(at_noon, 90e3) << "a clear June noon at 46.5 degrees: about 110 klx";
+  EXPECT_LT(at_noon, 130e3);
+  double before = std::log2(renderer.Illuminance(ParseInstant("2026-06-21T17:00:00Z")));
+  double step_before = 0.0;
+  for (int minute = 1; minute <= 210; ++minute) {
+    const UtcInstant instant{61212, 17.0 * 3600.0 + 60.0 * minute};
+    const double stops = std::log2(renderer.Illuminance(instant));
+    EXPECT_LT(stops, before) << minute << " minutes after 17:00 UTC";
+    if (minute > 1) {
+      EXPECT_NEAR(stops - before, step_before, 0.05) << "no flicker, " << minute << " minutes";
+    }
+    step_before = stops - before;
+    before = stops;
+  }
+}
+
+TEST(Render, ScotopicLayerIsWhatRodsSeeOfTheSamePixel) {
+  const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
+  RenderSettings settings = kSmall;
+  settings.layers = {kScotopicLayer};
+  const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
+  ASSERT_EQ(image.layers.size(), 1U);
+  EXPECT_EQ(image.layers[0].name, kScotopicChannel);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const double ratio = static_cast<double>(image.layers[0].values[i]) / Luminance(image.rgb[i]);
+    EXPECT_GT(ratio, 2.3) << "a blue sky has S/P 2.5 to 3.5";
+    EXPECT_LT(ratio, 4.0);
+  }
 }
 
 }  // namespace

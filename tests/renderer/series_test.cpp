@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <sstream>
 
 #include "atmosphere/error.h"
+#include "lut/night_vision.h"
 #include "lut/program.h"
 #include "renderer/contact_sheet.h"
 #include "renderer/provenance.h"
@@ -103,7 +105,7 @@ TEST_F(SeriesRun, WritesEveryFrameAndTheManifest) {
 TEST_F(SeriesRun, EveryFileSaysWhatMadeIt) {
   SeriesOutput output = Output();
   output.png = true;
-  output.ev100 = 12.5;
+  output.exposure = {ExposureRule::Kind::kFixed, 12.5};
   Run(Source(), output);
   for (const Metadata& metadata :
        {ReadExrMetadata(folder_ / "frame.0001.exr"), ReadPngMetadata(folder_ / "frame.0001.png")}) {
@@ -113,6 +115,34 @@ TEST_F(SeriesRun, EveryFileSaysWhatMadeIt) {
     EXPECT_EQ(metadata.at("alpenglow.frame"), "1");
     EXPECT_EQ(metadata.at("alpenglow.fingerprint").size(), 16U);
   }
+}
+
+TEST_F(SeriesRun, AnIncidentExposureFollowsTheLightOnThePlaceNotThePicture) {
+  SeriesSource source = Source();
+  source.illuminance = [](const UtcInstant& instant) { return instant.second_of_day; };
+  SeriesOutput output = Output();
+  output.exposure.kind = ExposureRule::Kind::kIncident;
+  Run(source, output);
+  const Metadata metadata = ReadExrMetadata(folder_ / "frame.0002.exr");
+  EXPECT_EQ(metadata.at("alpenglow.ev100"), fmt::format("{:.4f}", IncidentEv100(18000.0)));
+  EXPECT_EQ(metadata.at("alpenglow.exposure"), "incident");
+}
+
+TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
+  SeriesSource source = Source();
+  source.render = [](const UtcInstant&) {
+    Image image(16, 9);
+    image.rgb.assign(image.rgb.size(), {2e-3F, 1e-4F, 1e-4F});
+    image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1e-3F)});
+    return image;
+  };
+  SeriesOutput output = Output();
+  output.png = true;
+  output.look.night_vision = true;
+  Run(source, output, 1);
+  EXPECT_EQ(ReadExr(folder_ / "frame.0001.exr").at(0, 0)[0], 2e-3F);
+  const DisplayImage seen = ReadPng(folder_ / "frame.0001.png");
+  EXPECT_GT(seen.rgb[2], seen.rgb[0]) << "red light has turned a bluish grey";
 }
 
 TEST_F(SeriesRun, AFixedExposureIsNotMetered) {
@@ -176,7 +206,7 @@ TEST_F(SeriesRun, AnotherExposureOrCurveIsDevelopedWithoutRendering) {
   Run(Source(), output);
   const DisplayImage metered = ReadPng(folder_ / "frame.0001.png");
   output.resume = true;
-  output.ev100 = 18.0;
+  output.exposure = {ExposureRule::Kind::kFixed, 18.0};
   const SeriesSummary summary = Run(Source(), output);
   EXPECT_EQ(summary.developed, 3);
   EXPECT_EQ(renderings_, 3);

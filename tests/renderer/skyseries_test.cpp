@@ -98,7 +98,7 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
   for (const std::string& arguments :
        {std::string("--nonsense"), std::string(""), InFolder("s.toml"), still + " --size 0x5",
         still + " --size 5", still + " --exposure bright", still + " --exposure nan",
-        still + " --tone-map local", still + " --aov smell", still + " --samples 3",
+        still + " --tone-map filmic", still + " --aov smell", still + " --samples 3",
         still + " --threads -1", still + " --effects all", still + " --max-error 1%",
         still + " --explain", still + " --from sunrise", still + " --progress loud",
         still + " --at noon --from sunrise --to sunset",
