@@ -55,10 +55,11 @@ class CheckedStream : public Imf::OStream {
   std::ofstream file_;
 };
 
-Imf::Header HeaderOf(const Image& image, const Metadata& metadata) {
+Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection projection) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addWhiteLuminance(header, 1.0F);
+  if (projection == Projection::kLatitudeLongitude) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
   for (const auto& [name, value] : metadata) header.insert(name, Imf::StringAttribute(value));
   for (const char* name : {"R", "G", "B"}) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
@@ -89,10 +90,11 @@ Imf::FrameBuffer FrameBufferOf(const Image& image) {
   return buffer;
 }
 
-void WritePixels(const fs::path& name, const Image& image, const Metadata& metadata) {
+void WritePixels(const fs::path& name, const Image& image, const Metadata& metadata,
+                 Projection projection) {
   CheckedStream stream(name);
   {
-    Imf::OutputFile file(stream, HeaderOf(image, metadata));
+    Imf::OutputFile file(stream, HeaderOf(image, metadata, projection));
     file.setFrameBuffer(FrameBufferOf(image));
     file.writePixels(image.height);
   }
@@ -151,10 +153,11 @@ void AddLayers(const fs::path& file, const Imf::ChannelList& channels, Image& im
 
 }  // namespace
 
-void WriteExr(const fs::path& file, const Image& image, const Metadata& metadata) {
+void WriteExr(const fs::path& file, const Image& image, const Metadata& metadata,
+              Projection projection) {
   WriteFileAtomically(file, [&](const fs::path& name) {
     try {
-      WritePixels(name, image, metadata);
+      WritePixels(name, image, metadata, projection);
     } catch (const Iex::BaseExc& fault) {
       throw OutputError(fault.what());
     }

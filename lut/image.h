@@ -43,9 +43,14 @@ struct Image {
 /// What made a picture: name and value, written into the file's header.
 using Metadata = std::map<std::string, std::string>;
 
+/// What the pixels of a picture are: seen through a camera, or the whole sphere by longitude and
+/// latitude (OpenEXR's attribute envmap = latlong).
+enum class Projection { kCamera, kLatitudeLongitude };
+
 /// Writes float RGB and the layers, ZIP, atomically, with the metadata as text attributes and
 /// whiteLuminance 1 (the unit is cd/m^2). Throws OutputError.
-void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata);
+void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
+              Projection projection = Projection::kCamera);
 /// Reads what WriteExr wrote (any scan-line EXR with R, G, B); every other channel becomes a layer.
 /// Throws InputError for a file that is missing, truncated, foreign, or has no R, G or B.
 [[nodiscard]] Image ReadExr(const std::filesystem::path& file);

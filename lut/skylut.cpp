@@ -10,6 +10,7 @@
 #include "lut/command_line.h"
 #include "lut/eval.h"
 #include "lut/program.h"
+#include "lut/sky_command.h"
 #include "lut/table_folder.h"
 
 namespace alpenglow {
@@ -96,6 +97,7 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   AddCommonOptions(app, "skylut", options.common);
   const Subcommand build = AddBuildCommand(app);
+  const Subcommand sky = AddSkyCommand(app);
   AddInfo(app, options);
   AddEval(app, options);
   app.parse_complete_callback([&] { CheckMethod(*app.get_subcommand("eval"), options); });
@@ -104,6 +106,8 @@ int Run(int argc, char** argv) {
   const ThreadLimit threads(options.common.threads);
   if (app.got_subcommand("build")) {
     build(options.common);
+  } else if (app.got_subcommand("sky")) {
+    sky(options.common);
   } else if (app.got_subcommand("info")) {
     fmt::print("{}", DescribeTables(options.described));
   } else {

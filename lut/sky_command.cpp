@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky_command.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "atmosphere/medium.h"
+#include "atmosphere/refraction.h"
+#include "atmosphere/sun.h"
+#include "lut/panorama.h"
+#include "lut/picture_text.h"
+
+namespace alpenglow {
+namespace {
+
+struct SkyOptions {
+  std::optional<std::string> atmosphere, png, time, zone;
+  std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx";
+  std::optional<double> sun_elevation, latitude, longitude;
+  double sun_azimuth = 180.0, altitude = 2.0;
+  bool sun_disk = false;
+};
+
+/// A panorama ready to be rendered.
+struct SkyJob {
+  Medium medium;
+  PanoramaSettings settings;
+  Metadata metadata;
+};
+
+std::string Degrees(double radians) { return fmt::format("{:.6f}", radians / kRadiansPerDegree); }
+
+PanoramaSun SunFromAngles(const SkyOptions& options) {
+  PanoramaSun sun;
+  sun.elevation_rad = *options.sun_elevation * kRadiansPerDegree;
+  sun.azimuth_rad = options.sun_azimuth * kRadiansPerDegree;
+  return sun;
+}
+
+// Where refraction shows it, as in the pictures of skyseries.
+PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant) {
+  const SunPosition sun = SunAt(eye, instant);
+  return {sun.elevation_rad + RefractionFromHeight(sun.elevation_rad, eye.height_m),
+          sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad};
+}
+
+SkyJob JobFrom(const SkyOptions& options) {
+  SkyJob job;
+  job.medium = options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
+  const ImageSize size = ImageSizeFromText(options.size);
+  job.settings.width = size.width;
+  job.settings.height = size.height;
+  job.settings.altitude_m = options.altitude;
+  job.settings.orientation = PanoramaOrientationFromName(options.orientation);
+  job.settings.sun_disk = options.sun_disk;
+  if (options.sun_elevation) {
+    job.settings.sun = SunFromAngles(options);
+  } else {
+    const GeodeticPosition eye =
+        PlaceFromDegrees(*options.latitude, *options.longitude, options.altitude);
+    const UtcInstant instant = ParseInstant(*options.time, options.zone);
+    job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad);
+    job.settings.sun = SunFromTime(eye, instant);
+    job.metadata["alpenglow.latitude_deg"] = Degrees(eye.latitude_rad);
+    job.metadata["alpenglow.longitude_deg"] = Degrees(eye.longitude_rad);
+    job.metadata["alpenglow.utc"] = FormatUtc(instant, 3);
+  }
+  return job;
+}
+
+void Describe(SkyJob& job) {
+  const PanoramaSettings& settings = job.settings;
+  const PanoramaSun& sun = settings.sun;
+  Metadata& metadata = job.metadata;
+  metadata["Software"] = ProducerText();
+  metadata["alpenglow.unit"] = "cd/m^2, linear sRGB (Rec. 709 primaries, D65)";
+  metadata["alpenglow.atmosphere"] = job.medium.name;
+  metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(job.medium));
+  metadata["alpenglow.altitude_m"] = fmt::format("{}", settings.altitude_m);
+  metadata["alpenglow.sun_elevation_deg"] = Degrees(sun.elevation_rad);
+  metadata["alpenglow.sun_azimuth_deg"] = Degrees(sun.azimuth_rad);
+  metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance);
+  metadata["alpenglow.sun_disk"] = settings.sun_disk ? "drawn" : "left out";
+  metadata["alpenglow.orientation"] = NameOf(settings.orientation);
+  metadata["alpenglow.centre_azimuth_deg"] = Degrees(CentreAzimuth(settings.orientation));
+}
+
+Image Rendered(const SkyJob& job, ProgressStyle style) {
+  const AirIntegrator<float> air(job.medium);
+  const DiffuseLight diffuse(job.medium);
+  Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
+  return RenderPanorama(air, diffuse, job.settings, [&] { progress.Advance(); });
+}
+
+void MakeSky(const SkyOptions& options, const CommonOptions& common) {
+  const std::optional<double> fixed_ev100 = Ev100FromText(options.exposure);
+  const ToneCurve curve = ToneCurveFromName(options.curve);
+  SkyJob job = JobFrom(options);
+  const Image image = Rendered(job, common.progress_style());
+  const double ev100 = fixed_ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2));
+  Describe(job);
+  job.metadata["alpenglow.ev100"] = fmt::format("{:.4f}", ev100);
+  job.metadata["alpenglow.exposure"] = fixed_ev100 ? "fixed" : "metered";
+  WriteExr(options.out, image, job.metadata, Projection::kLatitudeLongitude);
+  if (options.png) {
+    job.metadata["alpenglow.tone_curve"] = NameOf(curve);
+    WritePng(*options.png, Develop(image, ev100, curve), job.metadata);
+  }
+}
+
+void AddSun(CLI::App& sky, SkyOptions& options) {
+  CLI::Option* elevation =
+      sky.add_option("--sun-elevation", options.sun_elevation,
+                     "Degrees of the sun over the horizontal, as seen, -90 to 90")
+          ->check(CLI::Range(-90.0, 90.0));
+  sky.add_option("--sun-azimuth", options.sun_azimuth,
+                 "Degrees of the sun from north over east, -360 to 360")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->needs(elevation)
+      ->capture_default_str();
+  CLI::Option* latitude = sky.add_option("--latitude", options.latitude, "Degrees north, -90 to 90")
+                              ->check(CLI::Range(-90.0, 90.0))
+                              ->excludes(elevation);
+  CLI::Option* longitude =
+      sky.add_option("--longitude", options.longitude, "Degrees east, -180 to 360")
+          ->check(CLI::Range(-180.0, 360.0))
+          ->needs(latitude);
+  CLI::Option* time = sky.add_option("--time", options.time,
+                                     "Instant: 2026-06-21T04:00:00Z, with an offset, or local time "
+                                     "with --zone")
+                          ->needs(latitude);
+  sky.add_option("--zone", options.zone, "IANA zone of a local time")->needs(time);
+  latitude->needs(longitude)->needs(time);
+}
+
+void AddPicture(CLI::App& sky, SkyOptions& options) {
+  sky.add_option("--out", options.out, "EXR file: linear sRGB in cd/m^2, envmap latlong")
+      ->required();
+  CLI::Option* png = sky.add_option("--png", options.png, "PNG file as well: exposed, tone-mapped");
+  sky.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
+      ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
+      ->capture_default_str();
+  sky.add_option("--orient", options.orientation,
+                 "What the middle of the picture is: north or geographic (north); blender, three, "
+                 "unity (east, +x there); openexr, godot (south, +z there). East is +x in all; "
+                 "never mirrored")
+      ->check(ReadableBy([](const std::string& text) { (void)PanoramaOrientationFromName(text); }))
+      ->capture_default_str();
+  sky.add_flag("--sun-disk", options.sun_disk,
+               "Draw the sun's disk: pixels of some 1e9 cd/m^2 that bring its whole light");
+  sky.add_option("--exposure", options.exposure, "auto (metered) or EV at ISO 100, -30 to 30")
+      ->check(ReadableBy([](const std::string& text) { (void)Ev100FromText(text); }))
+      ->capture_default_str();
+  sky.add_option("--tone-map", options.curve, "Curve of the PNG")
+      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear"}))
+      ->needs(png)
+      ->capture_default_str();
+}
+
+}  // namespace
+
+Subcommand AddSkyCommand(CLI::App& app) {
+  const auto options = std::make_shared<SkyOptions>();
+  CLI::App& sky = *app.add_subcommand(
+      "sky",
+      "Make a panorama of the sky for lighting: the whole sphere around an observer, "
+      "latitude-longitude, ground included. The sun stands where --sun-elevation and --sun-azimuth "
+      "say, or where it is seen from a place at a time.");
+  AddSun(sky, *options);
+  sky.add_option("--altitude", options->altitude,
+                 "Metres of the observer over the ground, -12000 to 1e9; below 0 as from 0")
+      ->check(CLI::Range(-12000.0, 1e9))
+      ->capture_default_str();
+  AddAtmosphereOption(sky, options->atmosphere);
+  AddPicture(sky, *options);
+  sky.parse_complete_callback([options] {
+    if (!options->sun_elevation && !options->latitude) {
+      throw CLI::ValidationError("sky",
+                                 "needs --sun-elevation, or --latitude, --longitude, --time");
+    }
+  });
+  sky.footer(
+      "Example: skylut sky --out sky.exr --png sky.png --sun-elevation 10 --orient blender\n"
+      "Example: skylut sky --out sky.exr --latitude 46.5 --longitude 8 --zone Europe/Zurich "
+      "--time 2026-06-21T05:30 --altitude 3500");
+  return [options](const CommonOptions& common) { MakeSky(*options, common); };
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// `skylut sky`: panoramas for lighting.
+#pragma once
+
+#include "lut/command_line.h"
+
+namespace alpenglow {
+
+/// Adds the subcommand; what runs it once the whole command line is parsed.
+[[nodiscard]] Subcommand AddSkyCommand(CLI::App& app);
+
+}  // namespace alpenglow

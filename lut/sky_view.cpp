@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/error.h"
+#include "lut/sky_row.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kLanes = 4;
+
+/// Weights of the four uniform cubic B-splines that reach a fraction t of a cell.
+std::array<float, 4> SplineWeights(double t) {
+  const double s = 1.0 - t;
+  const auto weight = [](double six_times) { return static_cast<float>(six_times / 6.0); };
+  return {weight(s * s * s), weight(4.0 - 3.0 * t * t * (2.0 - t)),
+          weight(4.0 - 3.0 * s * s * (2.0 - s)), weight(t * t * t)};
+}
+
+/// A cell and the fraction of it, of a coordinate in [0, 1] over n nodes.
+struct CellPosition {
+  int cell;
+  double fraction;
+};
+CellPosition PositionOf(double coordinate, int n) {
+  const double x = std::clamp(coordinate, 0.0, 1.0) * (n - 1);
+  const int cell = std::min(static_cast<int>(x), n - 2);
+  return {cell, x - cell};
+}
+
+/// What lies between two neighbours of a line of nodes in memory, each of `width` floats.
+struct Line {
+  float* first;        // the node before the first one
+  std::size_t stride;  // floats between neighbours
+  std::size_t width;
+  int n;  // nodes, not counting one more at each end
+  [[nodiscard]] float* node(int i) const {
+    return first + stride * static_cast<std::size_t>(i + 1);
+  }
+};
+
+// Solves c[i - 1] + 4 c[i] + c[i + 1] = 6 f[i] for i in [from, to] in place, c known at from - 1
+// and to + 1 (Thomas' algorithm).
+void SolveTridiagonal(const Line& line, int from, int to) {
+  if (from > to) return;
+  std::vector<float> factor(static_cast<std::size_t>(to - from + 1));
+  float last = 0.0F;
+  for (int i = from; i <= to; ++i) {
+    const float f = 1.0F / (4.0F - last);
+    factor[static_cast<std::size_t>(i - from)] = last = f;
+    float* c = line.node(i);
+    const float* before = line.node(i - 1);
+    for (std::size_t k = 0; k < line.width; ++k) c[k] = (6.0F * c[k] - before[k]) * f;
+  }
+  // The first equation has its known neighbour in full; the others had it eliminated: c[i - 1]
+  // above was already the reduced right side.
+  const float* after = line.node(to + 1);
+  float* c = line.node(to);
+  for (std::size_t k = 0; k < line.width; ++k)
+    c[k] -= factor[static_cast<std::size_t>(to - from)] * after[k];
+  for (int i = to - 1; i >= from; --i) {
+    const float f = factor[static_cast<std::size_t>(i - from)];
+    float* here = line.node(i);
+    const float* next = line.node(i + 1);
+    for (std::size_t k = 0; k < line.width; ++k) here[k] -= f * next[k];
+  }
+}
+
+// Coefficients in place of values, the third derivative continuous over the second node from each
+// end ("not a knot"): there c[1] = f[1] - (f[0] - 2 f[1] + f[2]) / 6.
+void SplineOpenLine(const Line& line) {
+  const int n = line.n;
+  for (std::size_t k = 0; k < line.width; ++k) {
+    const auto f = [&](int i) { return line.node(i)[k]; };
+    const float first = (8.0F * f(1) - f(0) - f(2)) / 6.0F;
+    const float last = (8.0F * f(n - 2) - f(n - 1) - f(n - 3)) / 6.0F;
+    line.node(-1)[k] = f(1);  // kept for c[0] = 6 f[1] - 4 c[1] - c[2]
+    line.node(n)[k] = f(n - 2);
+    line.node(1)[k] = first;
+    line.node(n - 2)[k] = last;
+  }
+  SolveTridiagonal(line, 2, n - 3);
+  for (std::size_t k = 0; k < line.width; ++k) {
+    const auto c = [&](int i) -> float& { return line.node(i)[k]; };
+    c(0) = 6.0F * c(-1) - 4.0F * c(1) - c(2);
+    c(n - 1) = 6.0F * c(n) - 4.0F * c(n - 2) - c(n - 3);
+    c(-1) = 4.0F * c(0) - 6.0F * c(1) + 4.0F * c(2) - c(3);
+    c(n) = 4.0F * c(n - 1) - 6.0F * c(n - 2) + 4.0F * c(n - 3) - c(n - 4);
+  }
+}
+
+// The same for a line that goes on beyond each end as its mirror image.
+void SplineMirroredLine(const Line& line) {
+  const int n = line.n;
+  std::vector<float> factor(static_cast<std::size_t>(n));
+  // 4 c[0] + 2 c[1] = 6 f[0] at the first end, likewise at the last.
+  for (int i = 0; i < n; ++i) {
+    const float lower = i == 0 ? 0.0F : i == n - 1 ? 2.0F : 1.0F;
+    const float upper = i == 0 ? 2.0F : 1.0F;
+    const float before = i == 0 ? 0.0F : factor[static_cast<std::size_t>(i - 1)];
+    const float f = 1.0F / (4.0F - lower * before);
+    factor[static_cast<std::size_t>(i)] = upper * f;
+    float* c = line.node(i);
+    const float* left = line.node(i - 1);
+    for (std::size_t k = 0; k < line.width; ++k)
+      c[k] = (6.0F * c[k] - (i == 0 ? 0.0F : lower * left[k])) * f;
+  }
+  for (int i = n - 2; i >= 0; --i) {
+    float* here = line.node(i);
+    const float* next = line.node(i + 1);
+    for (std::size_t k = 0; k < line.width; ++k)
+      here[k] -= factor[static_cast<std::size_t>(i)] * next[k];
+  }
+  std::copy_n(line.node(1), line.width, line.node(-1));
+  std::copy_n(line.node(n - 2), line.width, line.node(n));
+}
+
+std::vector<float> PhaseTable(const Medium& medium, std::size_t first_band) {
+  std::vector<float> table(kLanes * (kSkyPhaseNodes + 1));
+  for (int k = 0; k <= kSkyPhaseNodes; ++k) {
+    const double x = static_cast<double>(k) / kSkyPhaseNodes;
+    const std::vector<double> values = MiePhaseValues(medium, std::cos(kPi * x * x));
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t band = std::min(first_band + lane, values.size() - 1);
+      table[kLanes * static_cast<std::size_t>(k) + lane] = static_cast<float>(values[band]);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
+  constexpr double kHigh_m = 15e3;
+  constexpr double kDay = 0.1;  // sine of the sun's elevation
+  if (altitude_m > medium.atmosphere_height_m) return {48, 40, 65, 16};
+  if (altitude_m > kHigh_m || mu_s < kDay) return {48, 32, 33, 16};
+  return {28, 16, 9, 12};
+}
+
+SkyAzimuths::SkyAzimuths(const SkyView& view, std::span<const double> azimuth_rad)
+    : columns_(view.size().azimuths) {
+  for (const double azimuth : azimuth_rad) {
+    const double half_turn = std::abs(std::remainder(azimuth, 2.0 * kPi));
+    const CellPosition at = PositionOf(view.map().AzimuthCoordinate(half_turn), columns_);
+    cell_.push_back(at.cell);
+    for (const float weight : SplineWeights(at.fraction)) weights_.push_back(weight);
+    const double sine = std::sin(0.5 * half_turn);
+    half_sine2_.push_back(static_cast<float>(sine * sine));
+  }
+}
+
+/// Evaluates the nodes.
+class SkyView::Builder {
+ public:
+  Builder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+          double mu_s, SkyView& view)
+      : air_(air), diffuse_(diffuse), altitude_m_(altitude_m), mu_s_(mu_s), view_(view) {}
+
+  void Fill() {
+    const std::size_t columns = Columns();
+    const auto rows = static_cast<std::size_t>(view_.size_.sky_rows + view_.size_.ground_rows + 4);
+    for (Block& block : view_.blocks_)
+      block.coefficients.assign(rows * columns * kSkyNodeFloats, 0.0F);
+    for (int i = 0; i < view_.size_.sky_rows; ++i) {
+      const double v = static_cast<double>(i) / (view_.size_.sky_rows - 1);
+      FillRow(view_.map_.SkyZenithAngle(v), 1 + i, false, i == 0);
+    }
+    const int ground = view_.size_.sky_rows + 3;
+    for (int i = 0; i < view_.size_.ground_rows; ++i) {
+      const double v = static_cast<double>(i) / (view_.size_.ground_rows - 1);
+      FillRow(view_.map_.GroundZenithAngle(v), ground + i, true, i == 0);
+    }
+    for (Block& block : view_.blocks_) {
+      SplineColumns(block, 0, view_.size_.sky_rows);
+      SplineColumns(block, ground - 1, view_.size_.ground_rows);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t Columns() const {
+    return static_cast<std::size_t>(view_.size_.azimuths + 2);
+  }
+  [[nodiscard]] float* Node(Block& block, int row, int column) const {
+    return &block.coefficients[(static_cast<std::size_t>(row) * Columns() +
+                                static_cast<std::size_t>(column)) *
+                               kSkyNodeFloats];
+  }
+
+  // On the horizon the two sides differ: each row there is moved to its own by a hair.
+  void FillRow(double zenith_angle, int row, bool ground, bool on_horizon) {
+    constexpr double kHair_rad = 1e-9;
+    const double angle =
+        on_horizon ? zenith_angle + (ground ? kHair_rad : -kHair_rad) : zenith_angle;
+    const double mu = std::clamp(std::cos(angle), -1.0, 1.0);
+    const double sines = std::sin(angle) * std::sqrt(std::max(1.0 - mu_s_ * mu_s_, 0.0));
+    for (int k = 0; k < view_.size_.azimuths; ++k) {
+      const double azimuth =
+          view_.map_.Azimuth(static_cast<double>(k) / (view_.size_.azimuths - 1));
+      const double nu = std::clamp(mu * mu_s_ + sines * std::cos(azimuth), -1.0, 1.0);
+      Store({altitude_m_, mu, mu_s_, nu}, row, k + 1);
+    }
+    for (Block& block : view_.blocks_) {
+      SplineMirroredLine(
+          {Node(block, row, 0), kSkyNodeFloats, kSkyNodeFloats, view_.size_.azimuths});
+    }
+  }
+
+  void Store(const ViewRay& ray, int row, int column) {
+    const ScatteredOnce<float> once =
+        air_.Scatter(air_.Sample(ray, {.nodes = view_.size_.ray_nodes, .dark_samples = false}));
+    const RaySamples<float> samples =
+        air_.Sample(ray, {.nodes = view_.size_.ray_nodes, .dark_samples = true});
+    Bands<float> rest = diffuse_.InscatterAlong(samples, ray.nu);
+    if (samples.extent.end == RayEnd::kGround) AddGround(ray, samples.extent, rest);
+    for (std::size_t band = 0; band < view_.bands_; ++band) {
+      float* node = Node(view_.blocks_[band / kLanes], row, column) + band % kLanes;
+      node[0] = once.rayleigh[band];
+      node[kLanes] = once.mie[band];
+      node[2 * kLanes] = rest[band];
+    }
+  }
+
+  void AddGround(const ViewRay& ray, const RayExtent& extent, Bands<float>& light) const {
+    const Medium& medium = air_.medium();
+    const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
+    const double mu_s =
+        std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
+    const Bands<float> through = air_.TransmittanceAlong(ray);
+    Bands<float> irradiance = diffuse_.SkyIrradiance(0.0, mu_s);
+    if (mu_s > 0.0) {
+      const Bands<float> sun = air_.TransmittanceToSpace(0.0, mu_s);
+      for (std::size_t band = 0; band < light.count; ++band)
+        irradiance[band] += static_cast<float>(mu_s) * sun[band];
+    }
+    for (std::size_t band = 0; band < light.count; ++band) {
+      light[band] +=
+          through[band] * irradiance[band] * static_cast<float>(medium.ground_albedo[band] / kPi);
+    }
+  }
+
+  void SplineColumns(Block& block, int first_row, int rows) {
+    const std::size_t width = Columns() * kSkyNodeFloats;
+    SplineOpenLine({Node(block, first_row, 0), width, width, rows});
+  }
+
+  const AirIntegrator<float>& air_;
+  const DiffuseLight& diffuse_;
+  double altitude_m_, mu_s_;
+  SkyView& view_;
+};
+
+SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+                 double mu_s)
+    : SkyView(air, diffuse, altitude_m, mu_s, SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
+
+SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+                 double mu_s, const SkyViewSize& size)
+    : map_(air.medium(), altitude_m, mu_s),
+      size_(size),
+      bands_(air.bands()),
+      sun_zenith_angle_rad_(std::acos(std::clamp(mu_s, -1.0, 1.0))),
+      blocks_((air.bands() + kLanes - 1) / kLanes) {
+  RequireInRange(size.sky_rows, 5, 4096, "sky_rows");
+  RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
+  RequireInRange(size.azimuths, 3, 4096, "azimuths");
+  ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    blocks_[i].phase = PhaseTable(air.medium(), kLanes * i);
+  Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
+}
+
+std::size_t SkyView::bytes() const {
+  std::size_t floats = 0;
+  for (const Block& block : blocks_) floats += block.coefficients.size() + block.phase.size();
+  return floats * sizeof(float);
+}
+
+void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
+                      std::span<float> radiance) const {
+  ALPENGLOW_ENSURE(azimuths.columns_, ==, size_.azimuths);
+  ALPENGLOW_ENSURE(radiance.size(), ==, azimuths.count() * stride());
+  const bool ground = zenith_angle_rad > map_.horizon_zenith_angle_rad();
+  if (!ground && zenith_angle_rad <= map_.upper_edge_zenith_angle_rad() && map_.sees_upper_edge()) {
+    std::fill(radiance.begin(), radiance.end(), 0.0F);
+    return;
+  }
+  const CellPosition at =
+      ground ? PositionOf(map_.GroundCoordinate(zenith_angle_rad), size_.ground_rows)
+             : PositionOf(map_.SkyCoordinate(zenith_angle_rad), size_.sky_rows);
+  const auto first_row = static_cast<std::size_t>(at.cell + (ground ? size_.sky_rows + 2 : 0));
+  const std::array<float, 4> weight = SplineWeights(at.fraction);
+  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
+  std::vector<float> row(width);
+  const double sine = std::sin(0.5 * (zenith_angle_rad - sun_zenith_angle_rad_));
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const float* rows = &blocks_[i].coefficients[first_row * width];
+    for (std::size_t k = 0; k < width; ++k) {
+      row[k] = weight[0] * rows[k] + weight[1] * rows[width + k] + weight[2] * rows[2 * width + k] +
+               weight[3] * rows[3 * width + k];
+    }
+    FillSkyRow({row.data(), blocks_[i].phase.data(), azimuths.cell_.data(),
+                azimuths.weights_.data(), azimuths.half_sine2_.data(),
+                static_cast<float>(sine * sine),
+                static_cast<float>(std::sin(zenith_angle_rad) * std::sin(sun_zenith_angle_rad_)),
+                azimuths.count(), radiance.data() + kLanes * i, stride()});
+  }
+}
+
+Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) const {
+  const SkyAzimuths azimuth(*this, std::span(&azimuth_rad, 1));
+  std::vector<float> values(stride());
+  FillRow(zenith_angle_rad, azimuth, values);
+  Bands<float> radiance(bands_);
+  std::copy_n(values.begin(), bands_, radiance.value.begin());
+  return radiance;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky_view_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/constants.h"
+
+namespace alpenglow {
+namespace {
+
+// Angle by which the horizontal is above the line that touches a sphere of radius r - depth.
+double DipTo(double depth_m, double r_m) {
+  return std::atan2(std::sqrt(depth_m * (2.0 * r_m - depth_m)), r_m - depth_m);
+}
+
+// Around the azimuth where the sun stands a little below the horizontal of the points of the
+// horizon, which lie a dip away from the observer along the ground: there the light on the limb
+// dies within a few degrees.
+AzimuthCrowd CrowdAtTerminator(double dip, double mu_s) {
+  constexpr double kDarkening = -0.045;  // sine of the sun's elevation where it is steepest
+  constexpr double kExtent_rad = 0.07;   // of the sun's elevation in which it happens
+  const double sun_sine = std::sqrt(std::max(1.0 - mu_s * mu_s, 0.0));
+  const double reach = std::sin(dip) * sun_sine;
+  const double cosine = (kDarkening - std::cos(dip) * mu_s) / std::max(reach, 1e-9);
+  if (std::abs(cosine) >= 1.0) return {};
+  const double sine = std::sqrt((1.0 - cosine) * (1.0 + cosine));
+  const double width = kExtent_rad / std::max(reach * sine, kExtent_rad);
+  return {4.0, std::acos(cosine), std::clamp(width, 0.15, 1.0)};
+}
+
+}  // namespace
+
+SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
+  const double h = std::max(altitude_m, 0.0);
+  const double r = medium.planet_radius_m + h;
+  const double dip = DipTo(h, r);
+  horizon_ = 0.5 * kPi + dip;
+  outside_ = h > medium.atmosphere_height_m;
+  if (outside_) edge_ = 0.5 * kPi + DipTo(h - medium.atmosphere_height_m, r);
+
+  const double layer = std::min(medium.mie_scale_height_m, medium.rayleigh_scale_height_m);
+  // The perigee rises by r (cos(dip - e) - cos(dip)) over the horizon: solved for one layer. A
+  // higher eye sees layers apart that are thinner than a pixel.
+  const double per_layer = std::sqrt(dip * dip + 2.0 * layer / r) - dip;
+  sky_.a = outside_ ? 4.0 * per_layer : per_layer;
+  sky_.b = std::asinh((horizon_ - edge_) / sky_.a);
+  crowd_ = CrowdAtTerminator(dip, mu_s);
+  constexpr double kSmallestDip = 1e-4;
+  ground_.a = std::max(dip, kSmallestDip);
+  ground_.b = std::acosh(1.0 + (kPi - horizon_) / ground_.a);
+}
+
+double SkyViewMap::SkyZenithAngle(double v) const {
+  return horizon_ - sky_.a * std::sinh(sky_.b * v);
+}
+
+double SkyViewMap::GroundZenithAngle(double v) const {
+  return horizon_ + ground_.a * (std::cosh(ground_.b * v) - 1.0);
+}
+
+double SkyViewMap::SkyCoordinate(double zenith_angle_rad) const {
+  return std::asinh((horizon_ - zenith_angle_rad) / sky_.a) / sky_.b;
+}
+
+double SkyViewMap::GroundCoordinate(double zenith_angle_rad) const {
+  const double x = std::max(zenith_angle_rad - horizon_, 0.0) / ground_.a;
+  return std::log1p(x + std::sqrt(x * (2.0 + x))) / ground_.b;  // acosh(1 + x), for tiny x too
+}
+
+double SkyViewMap::AzimuthIntegral(double azimuth_rad) const {
+  const auto bell = [&](double centre) {
+    return std::atan((azimuth_rad - centre) / crowd_.width) + std::atan(centre / crowd_.width);
+  };
+  return azimuth_rad +
+         crowd_.strength * crowd_.width *
+             (bell(crowd_.azimuth) + bell(-crowd_.azimuth) + bell(2.0 * kPi - crowd_.azimuth));
+}
+
+double SkyViewMap::AzimuthCoordinate(double azimuth_rad) const {
+  return AzimuthIntegral(azimuth_rad) / AzimuthIntegral(kPi);
+}
+
+// By bisection: the integral grows, and nodes are few.
+double SkyViewMap::Azimuth(double x) const {
+  const double wanted = x * AzimuthIntegral(kPi);
+  double low = 0.0, high = kPi;
+  if (x <= 0.0) return low;
+  if (x >= 1.0) return high;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (AzimuthIntegral(middle) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Errors of SkyView over altitudes and suns, and what its building costs, as a table.
+//   sky_error [sky_rows ground_rows azimuths ray_nodes [preset]]
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <ctime>
+
+#include "tests/sky_view_errors.h"
+
+namespace alpenglow {
+namespace {
+
+void Row(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const DirectSky& direct,
+         double altitude_m, double elevation_deg, const SkyViewSize* fixed) {
+  const double mu_s = std::sin(elevation_deg * kRadiansPerDegree);
+  const SkyViewSize size =
+      fixed != nullptr ? *fixed : SkyViewSizeFor(air.medium(), altitude_m, mu_s);
+  const std::clock_t start = std::clock();
+  const SkyView view(air, diffuse, altitude_m, mu_s, size);
+  const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const SkyViewErrors errors = ErrorsOf(view, direct, altitude_m, mu_s, 3000);
+  fmt::print(
+      "{:8.0f} m {:6.1f} deg  {:3}+{:2} x {:2}  {:7.2f} ms  rms {:.5f}  p99 {:.5f}  max {:.5f}\n",
+      altitude_m, elevation_deg, size.sky_rows, size.ground_rows, size.azimuths, ms, errors.Rms(),
+      errors.Percentile(99.0), errors.Percentile(100.0));
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main(int argc, char** argv) {
+  using namespace alpenglow;
+  SkyViewSize size;
+  const bool fixed = argc > 4 && std::atoi(argv[1]) > 0;
+  if (fixed) {
+    size = {.sky_rows = std::atoi(argv[1]),
+            .ground_rows = std::atoi(argv[2]),
+            .azimuths = std::atoi(argv[3]),
+            .ray_nodes = std::atoi(argv[4])};
+  }
+  const Medium medium = MediumPreset(argc > 5 ? argv[5] : "earth");
+  const AirIntegrator<float> air(medium);
+  const DiffuseLight diffuse(medium);
+  const DirectSky direct(medium, diffuse);
+  for (const double altitude_m : {2.0, 10e3, 40e3, 400e3}) {
+    for (const double elevation_deg : {60.0, 10.0, 1.0, -1.0, -4.0, -10.0})
+      Row(air, diffuse, direct, altitude_m, elevation_deg, fixed ? &size : nullptr);
+  }
+}

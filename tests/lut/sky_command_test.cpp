@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// `skylut sky` as users run it: what it writes and returns.
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfStandardAttributes.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "lut/image.h"
+#include "tests/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class SkylutSky : public TemporaryFolder {
+ protected:
+  [[nodiscard]] Outcome Run(const std::string& arguments) const {
+    return RunCommand("'" ALPENGLOW_SKYLUT "' sky " + arguments);
+  }
+};
+
+TEST_F(SkylutSky, AWrongCommandLineIsStatus2) {
+  for (const char* arguments :
+       {"", "--out a.exr", "--sun-elevation 10", "--out a.exr --sun-elevation 91",
+        "--out a.exr --sun-azimuth 10", "--out a.exr --sun-elevation 10 --latitude 46",
+        "--out a.exr --latitude 46 --longitude 8",
+        "--out a.exr --latitude 46 --time 2026-06-21T12:00:00Z",
+        "--out a.exr --sun-elevation 10 --orient maya", "--out a.exr --sun-elevation 10 --size 5",
+        "--out a.exr --sun-elevation 10 --tone-map agx",
+        "--out a.exr --sun-elevation 10 --exposure bright",
+        "--out a.exr --sun-elevation 10 --altitude 1e10",
+        "--out a.exr --sun-elevation 10 --zone Europe/Zurich"}) {
+    EXPECT_EQ(Run(arguments).status, 2) << arguments;
+  }
+  EXPECT_EQ(FileCount(), 0U);
+}
+
+TEST_F(SkylutSky, AWrongInputIsStatus3AndNamedInOneLine) {
+  const Outcome time = Run("--out a.exr --latitude 46 --longitude 8 --time 2024-02-30T00:00:00Z");
+  EXPECT_EQ(time.status, 3);
+  EXPECT_THAT(time.error, HasSubstr("2024-02-30"));
+  EXPECT_EQ(std::count(time.error.begin(), time.error.end(), '\n'), 1);
+  EXPECT_EQ(Run("--out a.exr --sun-elevation 10 --atmosphere missing.toml").status, 3);
+  EXPECT_EQ(FileCount(), 0U);
+}
+
+TEST_F(SkylutSky, AFolderThatIsMissingIsStatus4) {
+  const Outcome outcome = Run("--quiet --size 8x4 --out no/where/a.exr --sun-elevation 10");
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.error, HasSubstr("no/where"));
+}
+
+TEST_F(SkylutSky, WritesALatitudeLongitudePictureThatSaysWhatMadeIt) {
+  const Outcome outcome =
+      Run("--quiet --size 64x32 --out a.exr --png a.png --sun-elevation 10 --sun-azimuth 30 "
+          "--altitude 1000 --orient blender --tone-map aces");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(outcome.error, "");
+  EXPECT_EQ(FileCount(), 2U) << "no temporary stays";
+  {
+    const Imf::InputFile file((folder_ / "a.exr").c_str());
+    ASSERT_TRUE(Imf::hasEnvmap(file.header()));
+    EXPECT_EQ(Imf::envmap(file.header()), Imf::ENVMAP_LATLONG);
+    EXPECT_EQ(Imf::whiteLuminance(file.header()), 1.0F) << "the unit is cd/m^2";
+  }
+  const Metadata exr = ReadExrMetadata(folder_ / "a.exr");
+  for (const auto& [name, value] : Metadata{{"alpenglow.sun_elevation_deg", "10.000000"},
+                                            {"alpenglow.sun_azimuth_deg", "30.000000"},
+                                            {"alpenglow.altitude_m", "1000"},
+                                            {"alpenglow.orientation", "blender"},
+                                            {"alpenglow.centre_azimuth_deg", "90.000000"},
+                                            {"alpenglow.sun_disk", "left out"},
+                                            {"alpenglow.atmosphere", "earth"},
+                                            {"alpenglow.exposure", "metered"}}) {
+    ASSERT_EQ(exr.count(name), 1U) << name;
+    EXPECT_EQ(exr.at(name), value) << name;
+  }
+  for (const char* name :
+       {"Software", "alpenglow.unit", "alpenglow.atmosphere_hash", "alpenglow.ev100"})
+    EXPECT_EQ(exr.count(name), 1U) << name;
+  EXPECT_EQ(ReadPngMetadata(folder_ / "a.png").at("alpenglow.tone_curve"), "aces");
+  EXPECT_EQ(ReadPng(folder_ / "a.png").width, 64);
+}
+
+TEST_F(SkylutSky, APlaceAndATimeGiveTheSunThere) {
+  const std::string rest = "--quiet --size 16x8 --latitude 46.5 --longitude 8 ";
+  ASSERT_EQ(Run(rest + "--out a.exr --time 2026-06-21T11:30:00Z").status, 0);
+  ASSERT_EQ(Run(rest + "--out b.exr --time 2026-06-21T13:30 --zone Europe/Zurich").status, 0);
+  const Metadata metadata = ReadExrMetadata(folder_ / "a.exr");
+  // Noon of the solstice: 90 - 46.5 + 23.44, and refraction of half a minute of arc.
+  EXPECT_NEAR(std::stod(metadata.at("alpenglow.sun_elevation_deg")), 66.94, 0.02);
+  EXPECT_NEAR(std::stod(metadata.at("alpenglow.sun_azimuth_deg")), 180.0, 1.0);
+  EXPECT_EQ(metadata.at("alpenglow.utc"), "2026-06-21T11:30:00.000Z");
+  EXPECT_EQ(ContentOf(folder_ / "a.exr"), ContentOf(folder_ / "b.exr")) << "the same instant";
+}
+
+TEST_F(SkylutSky, ProgressIsJsonLinesOnRequest) {
+  const Outcome outcome = Run("--progress json --size 16x8 --out a.exr --sun-elevation 10");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error, HasSubstr("\"label\":\"rows\""));
+}
+
+}  // namespace
+}  // namespace alpenglow
