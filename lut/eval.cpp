@@ -1,40 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "lut/eval.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <string>
 
 #include "atmosphere/error.h"
-#include "lut/program.h"
+#include "lut/case_results.h"
 
 namespace alpenglow {
 namespace {
 
-constexpr std::size_t kCasesAtOnce = 4096;
-
-std::vector<Case> NextCases(CaseReader& reader, const Evaluator& evaluator) {
-  std::vector<Case> cases;
-  while (cases.size() < kCasesAtOnce) {
-    std::optional<Case> next = reader.Next();
-    if (!next) break;
-    if (const auto refusal = evaluator.Refusal(next->quantity)) {
-      reader.Fail(next->line, "its quantity " + *refusal);
-    }
-    cases.push_back(std::move(*next));
-  }
-  return cases;
-}
-
 std::string Lines(const Case& work, const Medium& medium, const Estimates& estimates) {
   std::string lines;
   for (std::size_t band = 0; band < estimates.size(); ++band) {
-    // The error to three digits, rounded up.
-    lines += fmt::format("{},{},{},{:.3g}\n", work.id, medium.wavelengths_nm[band],
-                         estimates[band].value, 1.005 * estimates[band].error);
+    lines += ResultLine(work.id, fmt::format("{}", medium.wavelengths_nm[band]), estimates[band]);
   }
   return lines;
 }
@@ -61,29 +41,16 @@ std::optional<double> RelativeErrorFromText(std::string_view text) {
 void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
                   Evaluator& evaluator, ProgressStyle style) {
   CaseReader reader(cases);
-  Progress progress("bytes of cases", reader.bytes(), style);
-  WriteFileAtomically(results, [&](const std::filesystem::path& name) {
-    std::ofstream out(name, std::ios::binary);
-    out << "id,wavelength_nm,value,error\n";
-    std::uint64_t done = 0;
-    while (true) {
-      const std::vector<Case> work = NextCases(reader, evaluator);
-      if (work.empty()) break;
-      evaluator.Prepare(work);
-      std::vector<std::string> lines(work.size());
-      tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t i) {
-        if (!Interrupted()) {
-          lines[i] = Lines(work[i], evaluator.medium(), evaluator.Evaluate(work[i]));
-        }
-      });
-      ThrowIfInterrupted();
-      for (const std::string& text : lines) out << text;
-      if (!out) throw OutputError(name.string() + ": cannot be written");
-      progress.Advance(reader.bytes_read() - done);
-      done = reader.bytes_read();
+  const auto prepare = [&](std::span<const Case> work) {
+    for (const Case& next : work) {
+      if (const auto refusal = evaluator.Refusal(next.quantity)) {
+        reader.Fail(next.line, "its quantity " + *refusal);
+      }
     }
-    out.close();
-    if (!out) throw OutputError(name.string() + ": cannot be written");
+    evaluator.Prepare(work);
+  };
+  WriteCaseResults(reader, results, style, prepare, [&](const Case& work) {
+    return Lines(work, evaluator.medium(), evaluator.Evaluate(work));
   });
 }
 

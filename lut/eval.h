@@ -9,6 +9,9 @@
 //   path-trace  the judge of multiple scattering. The error is one standard error.
 //
 // Radiances are per unit solar irradiance [1/sr], irradiances per unit solar irradiance [1].
+//
+// Light of lamps (quantity airlight) needs other columns and no atmosphere: such cases are a file
+// of their own (lamp_cases.h), and neither kind of file holds cases of the other.
 #pragma once
 
 #include <cstddef>

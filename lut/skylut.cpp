@@ -5,10 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "atmosphere/error.h"
 #include "atmosphere/medium.h"
 #include "lut/build_command.h"
 #include "lut/command_line.h"
 #include "lut/eval.h"
+#include "lut/lamp_cases.h"
 #include "lut/program.h"
 #include "lut/sky_command.h"
 #include "lut/table_folder.h"
@@ -42,7 +44,10 @@ void AddEval(CLI::App& app, Options& options) {
       "relative_azimuth_deg,sun_zenith_deg,distance_m. Quantities: transmittance, "
       "optical_depth, single, inscatter_single, total, irradiance_sun, irradiance_sky; "
       "radiances [1/sr] and irradiances [1] per unit solar irradiance. Results: "
-      "id,wavelength_nm,value,error.");
+      "id,wavelength_nm,value,error. Or a file of lamps in homogeneous air, quantity airlight: "
+      "id,quantity,scattering_per_m,extinction_per_m,phase,g,segment_m,light_along_m,"
+      "light_across_m,profile,axis_x,axis_y,axis_z,exponent,inner_deg,outer_deg (--method "
+      "integral; no atmosphere is needed): radiance for unit intensity [1/(sr m2)].");
   eval.add_option("--cases", options.cases, "Cases (CSV)")->required();
   eval.add_option("--out", options.results, "Results (CSV)")->required();
   eval.add_option("--method", options.method, "table (needs --lut), integral or path-trace")
@@ -90,6 +95,21 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
                                {.samples = options.samples.value_or(16), .max_error = error});
 }
 
+void Evaluate(const Options& options) {
+  const ProgressStyle style = options.common.progress_style();
+  if (!HoldsLampCases(options.cases)) {
+    EvaluateFile(options.cases, options.results, *EvaluatorFor(options), style);
+    return;
+  }
+  if (options.method != "integral") {
+    throw InputError(options.cases + ": light of lamps needs --method integral");
+  }
+  EvaluateLampFile(options.cases, options.results,
+                   {.samples = options.samples.value_or(16),
+                    .max_error = RelativeErrorFromText(options.max_error.value_or(""))},
+                   style);
+}
+
 int Run(int argc, char** argv) {
   Options options;
   CLI::App app("Tables of the sky: what the air does to light, ready to look up.", "skylut");
@@ -111,8 +131,7 @@ int Run(int argc, char** argv) {
   } else if (app.got_subcommand("info")) {
     fmt::print("{}", DescribeTables(options.described));
   } else {
-    EvaluateFile(options.cases, options.results, *EvaluatorFor(options),
-                 options.common.progress_style());
+    Evaluate(options);
   }
   return 0;
 }

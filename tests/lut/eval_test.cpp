@@ -344,7 +344,7 @@ TEST_F(Eval, BadCaseFilesAreRefusedWithTheirLine) {
   ExpectRefused(header + good + "b,transmittance,0,60,0,30,,\n", ":3: has 8 fields");
   ExpectRefused(header + good + "\n", ":3: has 1 fields");
   ExpectRefused(header + good + ",transmittance,0,60,0,30,\n", ":3: id is empty");
-  ExpectRefused(header + "b,airlight,0,60,0,30,\n", "airlight is not available in this version");
+  ExpectRefused(header + "b,airlight,0,60,0,30,\n", "quantity airlight has columns of its own");
   ExpectRefused(header + "b,luminance,0,60,0,30,\n", "quantity is \"luminance\"");
   for (const char* number : {"abc", "", "1,5", "1e999", "nan", "inf", "0x10", "5m", "--3", "1e"}) {
     ExpectRefused(header + good + "b,transmittance," + number + ",60,0,30,\n", ":3: ");
