@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <string_view>
 
 #include "atmosphere/airlight_judge.h"
@@ -44,7 +45,7 @@ constexpr double kFarthest_m = 1e9;
 // What the difference of two numbers of nodes does not see: the judge's own error, and the smallest
 // that nodes are trusted with.
 constexpr double kFloor = 1e-9;
-constexpr double kSmallestByNodes = 1e-4;
+constexpr double kSmallestByNodes = 1e-3;
 
 }  // namespace
 
@@ -143,12 +144,17 @@ Estimate EvaluateLamp(const LampCase& work, const IntegralOptions& options) {
     return estimate(with(options.samples),
                     with(std::max(2 * options.samples / 3, kFewestLampNodes)));
   }
+  // Two numbers of nodes may agree by chance; three that do are believed.
   double coarse = with(8);
+  double last_difference = std::numeric_limits<double>::infinity();
   for (const int nodes : {12, 16, 24, 32, 48, 64}) {
     if (*options.max_error < kSmallestByNodes) break;
-    const Estimate found = estimate(with(nodes), coarse);
+    Estimate found = estimate(with(nodes), coarse);
+    const double difference = std::abs(found.value - coarse);
+    found.error = std::max(found.error, last_difference / 3.0);
     if (found.error <= *options.max_error * found.value) return found;
     coarse = found.value;
+    last_difference = difference;
   }
   const judge::LampLight judged = judge::AirlightAlong(work.air, work.lamp, work.segment);
   const double value = judged.radiance[0];

@@ -56,7 +56,7 @@ class LampCaseReader {
 [[nodiscard]] bool HoldsLampCases(const std::filesystem::path& file);
 
 /// By Airlight; with max_error by as many nodes as it takes, and by the judge where 64 do not
-/// suffice and for errors below 1e-4.
+/// suffice and for errors below 1e-3.
 [[nodiscard]] Estimate EvaluateLamp(const LampCase& work, const IntegralOptions& options);
 
 /// As EvaluateFile, for such a file.
