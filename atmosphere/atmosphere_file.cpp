@@ -1,30 +1,46 @@
 // SPDX-License-Identifier: MIT
 // atmosphere.toml. Everything is optional; what is not given is the preset's.
 //
-//   preset = "earth"                 also clear-mountain, hazy, mars, bruneton2017
-//   [planet]    radius_m (makes the planet a sphere), follows_wgs84, atmosphere_top_m,
-//   ground_albedo [spectrum]  wavelengths_nm | bands, solar_irradiance [rayleigh] scattering_per_m,
-//   scale_height_m [mie]       scattering_per_m, extinction_per_m, scale_height_m, phase, g,
-//   g_back, back_weight, alpha [aerosol]   one of visibility_m, turbidity, optical_depth_550; with
-//   it angstrom_exponent,
-//               single_scattering_albedo. Instead of the lists of [mie].
-//   [ozone]     absorption_per_m | dobson, bottom_m, peak_m, top_m
+//   preset = "earth"     also clear-mountain, hazy, mars, bruneton2017
+//   [planet]             radius_m (makes the planet a sphere), follows_wgs84, atmosphere_top_m,
+//                        ground_albedo
+//   [spectrum]           wavelengths_nm | bands, solar_irradiance
+//   [rayleigh]           scattering_per_m, scale_height_m
+//   [mie]                scattering_per_m, extinction_per_m, scale_height_m, phase with its
+//                        parameters, each one value or one per wavelength:
+//     rayleigh
+//     henyey-greenstein, cornette-shanks, schlick       g
+//     double-henyey-greenstein                          g, g_back, back_weight
+//     draine                                            g, alpha
+//     henyey-greenstein-draine                          g; g_back, alpha of Draine's lobe, its
+//                                                       share back_weight
+//     fog                                               droplet_diameter_um, in [5, 50]
+//     table                                             phase_file (CSV; phase_table.h), or
+//                                                       phase_angles_deg with phase_per_sr
+//   [aerosol]            instead of the lists of [mie]: mixture (aerosol_mixture.h), or one of
+//                        visibility_m, turbidity, optical_depth_550, or both;
+//                        single_scattering_albedo; without a mixture angstrom_exponent
+//   [ozone]              absorption_per_m | dobson, bottom_m, peak_m, top_m
 //
 // What people think in becomes the aerosol's extinction at 550 nm and the ground:
-//   visibility V          3.912 / V - molecules                       Koschmieder (1924), 2 %
-//   contrast turbidity T           (T - 1) (column of molecules) / H_M         McCartney (1976):
-//   optical depth of
-//                                                                     air with haze over that
-//                                                                     without
-//   optical depth tau     tau / H_M
-// and (lambda / 550 nm)^-angstrom_exponent elsewhere; scattering keeps the preset's share.
+//   visibility V             3.912 / V - molecules         Koschmieder (1924), 2 % contrast
+//   turbidity T              (T - 1) (column of molecules) / H_M
+//                                                          McCartney (1976): optical depth of air
+//                                                          with haze over that without
+//   optical depth tau        tau / H_M
+// and (lambda / 550 nm)^-angstrom_exponent elsewhere, scattering keeping the preset's share; or the
+// mixture's own spectrum and share.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "atmosphere/aerosol_mixture.h"
 #include "atmosphere/error.h"
 #include "atmosphere/medium.h"
 #include "atmosphere/medium_ranges.h"
 #include "atmosphere/ozone_column.h"
+#include "atmosphere/phase_table.h"
 #include "atmosphere/spectrum.h"
 #include "atmosphere/toml_table.h"
 
@@ -40,11 +56,21 @@ const Names kSections{"preset", "planet", "spectrum", "rayleigh", "mie", "aeroso
 const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
 const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
 const Names kRayleighKeys{"scattering_per_m", "scale_height_m"};
-const Names kMieKeys{"scattering_per_m", "extinction_per_m", "scale_height_m", "phase", "g",
-                     "g_back",           "back_weight",      "alpha"};
+const Names kMieKeys{
+    "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
+    "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
+    "phase_per_sr",     "droplet_diameter_um"};
+// Kinds of mie.phase that are no PhaseKind of their own, or need more than parameters.
+constexpr const char* kFog = "fog";
+constexpr const char* kTabulated = "table";
+const Names kTableKeys{"phase_file", "phase_angles_deg", "phase_per_sr"};
 const Names kAerosolAmounts{"visibility_m", "turbidity", "optical_depth_550"};
-const Names kAerosolKeys{"visibility_m", "turbidity", "optical_depth_550", "angstrom_exponent",
-                         "single_scattering_albedo"};
+const Names kAerosolKeys{"visibility_m",
+                         "turbidity",
+                         "optical_depth_550",
+                         "angstrom_exponent",
+                         "single_scattering_albedo",
+                         "mixture"};
 const Names kOzoneKeys{"absorption_per_m", "dobson", "bottom_m", "peak_m", "top_m"};
 
 // Refuses two keys of a table that say the same thing.
@@ -68,7 +94,9 @@ void ReadNumber(const TomlTable& table, const std::string& key, const Range& ran
 class AtmosphereFile {
  public:
   AtmosphereFile(std::string_view text, const std::string& origin)
-      : root_(text, origin), preset_(PresetOf(root_)) {
+      : root_(text, origin),
+        folder_(std::filesystem::path(origin).parent_path()),
+        preset_(PresetOf(root_)) {
     planet_ = Section("planet", kPlanetKeys);
     spectrum_ = Section("spectrum", kSpectrumKeys);
     rayleigh_ = Section("rayleigh", kRayleighKeys);
@@ -215,7 +243,13 @@ class AtmosphereFile {
 
   void ReadPhase(Medium& medium) const {
     Phases& phases = medium.mie_phase;
-    if (const auto name = mie_->Text("phase")) {
+    const std::optional<std::string> name = mie_->Text("phase");
+    RefuseKeysOfOtherPhases(name.value_or(""));
+    if (name == kFog) {
+      phases = {FogOfFile()};
+    } else if (name == kTabulated) {
+      phases = TableOfFile(medium.wavelengths_nm);
+    } else if (name) {
       const PhaseKind kind = KindOf(*name);
       if (phases.empty() || kind != phases.front().kind) {
         phases = {PhaseFunction{.kind = kind}};
@@ -229,13 +263,77 @@ class AtmosphereFile {
     }
     RequirePhase(phases);
     const PhaseKind kind = phases.front().kind;
-    const bool two_lobes = kind == PhaseKind::kDoubleHenyeyGreenstein;
-    ReadParameter("g", kind != PhaseKind::kRayleigh, &PhaseFunction::g, medium);
+    const bool mixed = kind == PhaseKind::kHenyeyGreensteinDraine && name != kFog;
+    const bool two_lobes = mixed || kind == PhaseKind::kDoubleHenyeyGreenstein;
+    const bool has_g = kind != PhaseKind::kRayleigh && kind != PhaseKind::kTable;
+    ReadParameter("g", has_g && name != kFog, &PhaseFunction::g, medium);
     ReadParameter("g_back", two_lobes, &PhaseFunction::g_back, medium);
     ReadParameter("back_weight", two_lobes, &PhaseFunction::back_weight, medium);
-    ReadParameter("alpha", kind == PhaseKind::kDraine, &PhaseFunction::alpha, medium);
+    ReadParameter("alpha", mixed || kind == PhaseKind::kDraine, &PhaseFunction::alpha, medium);
     const bool equal = std::equal(phases.begin() + 1, phases.end(), phases.begin());
     if (equal) phases.resize(1);
+  }
+
+  void RefuseKeysOfOtherPhases(const std::string& phase) const {
+    const auto refuse = [&](const std::string& key, const char* owner) {
+      if (mie_->Has(key) && phase != owner) {
+        mie_->Fail(key, fmt::format("mie.{} has no effect without phase = \"{}\"", key, owner));
+      }
+    };
+    refuse("droplet_diameter_um", kFog);
+    for (const std::string& key : kTableKeys) refuse(key, kTabulated);
+  }
+
+  PhaseFunction FogOfFile() const {
+    const auto diameter_um =
+        mie_->Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
+    if (!diameter_um) mie_->Fail("phase", "mie.phase is \"fog\": give mie.droplet_diameter_um too");
+    return FogPhase(*diameter_um);
+  }
+
+  // From a file beside this one, or from lists in this one: one for all wavelengths, or one after
+  // the other for every wavelength.
+  Phases TableOfFile(const Values& wavelengths_nm) const {
+    const auto shared = [](PhaseTable table) {
+      return PhaseFunction{.kind = PhaseKind::kTable,
+                           .table = std::make_shared<const PhaseTable>(std::move(table))};
+    };
+    if (const auto file = mie_->Text("phase_file")) {
+      RequireOneOf(*mie_, {"phase_file", "phase_angles_deg"});
+      const SpectralPhase spectral = ReadSpectralPhase(folder_ / *file);
+      Phases phases;
+      for (const double wavelength_nm : wavelengths_nm) {
+        phases.push_back(shared(spectral.At(wavelength_nm)));
+      }
+      return phases;
+    }
+    const auto angles = mie_->Numbers("phase_angles_deg", 0.0, 180.0);
+    const auto values = mie_->Numbers("phase_per_sr", 0.0, 1e12);
+    if (!angles || !values || angles->empty()) {
+      mie_->Fail("phase",
+                 "mie.phase is \"table\": give mie.phase_file too, or mie.phase_angles_deg "
+                 "and mie.phase_per_sr");
+    }
+    const std::size_t count = values->size() / angles->size();
+    if (values->size() % angles->size() != 0 || (count != 1 && count != wavelengths_nm.size())) {
+      mie_->Fail(
+          "phase_per_sr",
+          fmt::format("mie.phase_per_sr has {} values; it must have {}, one per angle, or {}, "
+                      "one per angle and wavelength",
+                      values->size(), angles->size(), angles->size() * wavelengths_nm.size()));
+    }
+    Phases phases;
+    try {
+      for (auto row = values->begin(); row != values->end();
+           row += static_cast<std::ptrdiff_t>(angles->size())) {
+        phases.push_back(
+            shared(PhaseTable(*angles, {row, row + static_cast<std::ptrdiff_t>(angles->size())})));
+      }
+    } catch (const InputError& error) {
+      mie_->Fail("phase_per_sr", std::string("mie.") + error.what());
+    }
+    if (reversed_) std::reverse(phases.begin(), phases.end());
+    return phases;
   }
 
   PhaseKind KindOf(const std::string& name) const {
@@ -256,11 +354,12 @@ class AtmosphereFile {
           key, fmt::format("mie.{} has no effect: the phase function {} has no such parameter", key,
                            NameOf(phases.front().kind)));
     }
-    Values values = *mie_->Numbers(key, -1.0, 1.0);
+    const Range range = key == "alpha" ? Range{0.0, 100.0} : Range{-1.0, 1.0};
+    Values values = *mie_->Numbers(key, range.low, range.high);
     const std::size_t count = medium.wavelengths_nm.size();
     if (values.size() == 1) values.resize(phases.size(), values.front());
     if (values.size() != phases.size()) {
-      ReadList(*mie_, key, {-1.0, 1.0}, values, count);
+      ReadList(*mie_, key, range, values, count);
       phases.resize(count, phases.front());
     }
     for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
@@ -313,19 +412,58 @@ class AtmosphereFile {
     return extinction;
   }
 
+  bool HasAmount() const {
+    return std::any_of(kAerosolAmounts.begin(), kAerosolAmounts.end(),
+                       [&](const std::string& key) { return aerosol_->Has(key); });
+  }
+
+  // The mixture's spectrum, phase function and layer, and its own load unless the file gives one.
+  void ReadMixture(const std::string& name, Medium& medium) const {
+    const TomlTable& table = *aerosol_;
+    const Names names = AerosolMixtureNames();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      const auto nearest = NearestName(name, names);
+      table.Fail("mixture", fmt::format("aerosol.mixture is \"{}\"; it must be one of {}{}", name,
+                                        fmt::join(names, ", "),
+                                        nearest ? "; did you mean " + *nearest + "?" : ""));
+    }
+    if (table.Has("angstrom_exponent")) {
+      table.Fail("angstrom_exponent",
+                 "aerosol.angstrom_exponent has no effect: the mixture has a spectrum of its own");
+    }
+    for (const char* key : {"g", "g_back", "back_weight", "alpha"}) {
+      if (!mie_ || !mie_->Has(key) || mie_->Has("phase")) continue;
+      mie_->Fail(key, fmt::format("mie.{} has no effect: the mixture has a phase function of its "
+                                  "own; give mie.phase too",
+                                  key));
+    }
+    AerosolOptics optics = AerosolMixture(name, medium.wavelengths_nm);
+    if (!(mie_ && mie_->Has("scale_height_m"))) medium.mie_scale_height_m = optics.scale_height_m;
+    if (!(mie_ && mie_->Has("phase"))) medium.mie_phase = std::move(optics.phase);
+    const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0);
+    const double scale = HasAmount() ? AerosolAt550(medium) / optics.extinction_550_per_m : 1.0;
+    medium.mie_extinction_per_m = std::move(optics.extinction_per_m);
+    medium.mie_scattering_per_m = std::move(optics.scattering_per_m);
+    for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+      medium.mie_extinction_per_m[i] *= scale;
+      medium.mie_scattering_per_m[i] *= scale;
+      if (albedo) medium.mie_scattering_per_m[i] = *albedo * medium.mie_extinction_per_m[i];
+    }
+  }
+
   void ReadAerosol(Values scattering_share, Medium& medium) const {
     const TomlTable& table = *aerosol_;
     RequireOneOf(table, kAerosolAmounts);
-    if (std::none_of(kAerosolAmounts.begin(), kAerosolAmounts.end(),
-                     [&](const std::string& key) { return table.Has(key); })) {
-      root_.Fail("aerosol",
-                 fmt::format("aerosol needs one of {}", fmt::join(kAerosolAmounts, ", ")));
+    if (!HasAmount() && !table.Has("mixture")) {
+      root_.Fail("aerosol", fmt::format("aerosol needs mixture or one of {}",
+                                        fmt::join(kAerosolAmounts, ", ")));
     }
     for (const char* key : {"scattering_per_m", "extinction_per_m"}) {
       if (mie_ && mie_->Has(key)) {
         mie_->Fail(key, fmt::format("mie.{} is given beside [aerosol]; give one of them", key));
       }
     }
+    if (const auto mixture = table.Text("mixture")) return ReadMixture(*mixture, medium);
     if (const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0)) {
       scattering_share.assign(medium.wavelengths_nm.size(), *albedo);
     }
@@ -397,6 +535,7 @@ class AtmosphereFile {
   }
 
   TomlTable root_;
+  std::filesystem::path folder_;  // of the file: what names of other files are relative to
   std::string preset_;
   std::optional<TomlTable> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
   bool reversed_ = false;

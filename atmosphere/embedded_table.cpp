@@ -33,21 +33,33 @@ std::string_view Field(std::string_view line, int column) {
   return field;
 }
 
-}  // namespace
-
-std::vector<std::vector<double>> ReadColumns(std::string_view file,
-                                             const std::vector<int>& columns) {
+template <typename Visit>
+void VisitRows(std::string_view file, const Visit& visit) {
   std::string_view text = EmbeddedText(file);
-  std::vector<std::vector<double>> values(columns.size());
   bool names_seen = false;
   while (!text.empty()) {
     const std::string_view line = TakeUntil(text, '\n');
     if (line.empty() || line.front() == '#') continue;
-    if (!std::exchange(names_seen, true)) continue;
+    if (std::exchange(names_seen, true)) visit(line);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> ReadColumns(std::string_view file,
+                                             const std::vector<int>& columns) {
+  std::vector<std::vector<double>> values(columns.size());
+  VisitRows(file, [&](std::string_view line) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       values[i].push_back(ToNumber(Field(line, columns[i]), file));
     }
-  }
+  });
+  return values;
+}
+
+std::vector<std::string> ReadTextColumn(std::string_view file, int column) {
+  std::vector<std::string> values;
+  VisitRows(file, [&](std::string_view line) { values.emplace_back(Field(line, column)); });
   return values;
 }
 

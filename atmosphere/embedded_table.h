@@ -2,6 +2,7 @@
 // Tables of numbers that travel inside the library as CSV text.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,5 +13,8 @@ namespace alpenglow::atmosphere {
 /// @param file  as EmbeddedText takes it.
 [[nodiscard]] std::vector<std::vector<double>> ReadColumns(std::string_view file,
                                                            const std::vector<int>& columns);
+
+/// One column of such a table as text.
+[[nodiscard]] std::vector<std::string> ReadTextColumn(std::string_view file, int column);
 
 }  // namespace alpenglow::atmosphere

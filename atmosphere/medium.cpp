@@ -2,12 +2,13 @@
 #include "atmosphere/medium.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "atmosphere/error.h"
+#include "atmosphere/fnv1a.h"
 #include "atmosphere/geodesy.h"
 #include "atmosphere/medium_ranges.h"
+#include "atmosphere/phase_table.h"
 
 namespace alpenglow {
 namespace {
@@ -131,36 +132,13 @@ Fault FaultOfPhase(const Medium& medium) {
   return std::nullopt;
 }
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv), over little-endian bytes.
-class Fnv1a {
- public:
-  void Add(std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte, word >>= 8) {
-      hash_ = (hash_ ^ (word & 0xffU)) * 0x100000001b3U;
-    }
-  }
-  void Add(double value) { Add(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value)); }
-  void Add(const std::vector<double>& values) {
-    Add(std::uint64_t{values.size()});
-    for (const double value : values) Add(value);
-  }
-  void Add(const std::string& text) {
-    Add(std::uint64_t{text.size()});
-    for (const char letter : text) Add(std::uint64_t{static_cast<unsigned char>(letter)});
-  }
-
-  [[nodiscard]] std::uint64_t hash() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325U;
-};
-
 void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
   fnv.Add(NameOf(phase.kind));
   fnv.Add(phase.g);
   fnv.Add(phase.g_back);
   fnv.Add(phase.back_weight);
   fnv.Add(phase.alpha);
+  if (phase.table) fnv.Add(phase.table->hash());
 }
 
 bool AllShareOnePhase(const Medium& medium) {

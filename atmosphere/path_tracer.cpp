@@ -32,7 +32,7 @@ constexpr double kRouletteShare = 0.2;
 constexpr double kSplitShare = 2.0;
 constexpr double kMostCopies = 8.0;
 
-constexpr PhaseFunction kMolecules{.kind = PhaseKind::kRayleigh};
+const PhaseFunction kMolecules{.kind = PhaseKind::kRayleigh};
 
 double Mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

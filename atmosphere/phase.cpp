@@ -8,18 +8,21 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/phase_table.h"
 #include "atmosphere/phase_text.h"
 
 namespace alpenglow {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, PhaseKind>, 6> kNames{{
+constexpr std::array<std::pair<std::string_view, PhaseKind>, 8> kNames{{
     {"rayleigh", PhaseKind::kRayleigh},
     {"henyey-greenstein", PhaseKind::kHenyeyGreenstein},
     {"double-henyey-greenstein", PhaseKind::kDoubleHenyeyGreenstein},
     {"cornette-shanks", PhaseKind::kCornetteShanks},
     {"schlick", PhaseKind::kSchlick},
     {"draine", PhaseKind::kDraine},
+    {"henyey-greenstein-draine", PhaseKind::kHenyeyGreensteinDraine},
+    {"table", PhaseKind::kTable},
 }};
 
 double SchlickK(double g) { return g * (1.55 - 0.55 * g * g); }
@@ -128,6 +131,13 @@ double SampleUnclamped(const PhaseFunction& phase, double u) {
     }
     case PhaseKind::kDraine:
       return SampleDraine(u, phase.g, phase.alpha);
+    case PhaseKind::kHenyeyGreensteinDraine:
+      return u < phase.back_weight
+                 ? SampleDraine(u / phase.back_weight, phase.g_back, phase.alpha)
+                 : HenyeyGreensteinQuantile(
+                       2.0 * ((u - phase.back_weight) / (1.0 - phase.back_weight)) - 1.0, phase.g);
+    case PhaseKind::kTable:
+      return phase.table->Quantile(u);
   }
   throw InternalError("unknown kind of phase function");
 }
@@ -139,6 +149,12 @@ void RequireLobe(double g, double limit, const std::string& key) {
 }
 
 }  // namespace
+
+bool PhaseFunction::operator==(const PhaseFunction& other) const {
+  const bool same_table = table == other.table || (table && other.table && *table == *other.table);
+  return kind == other.kind && g == other.g && g_back == other.g_back &&
+         back_weight == other.back_weight && alpha == other.alpha && same_table;
+}
 
 double Phase(const PhaseFunction& phase, double cos_scattering) {
   switch (phase.kind) {
@@ -155,6 +171,11 @@ double Phase(const PhaseFunction& phase, double cos_scattering) {
       return shared::PhaseSchlick(cos_scattering, phase.g);
     case PhaseKind::kDraine:
       return shared::PhaseDraine(cos_scattering, phase.g, phase.alpha);
+    case PhaseKind::kHenyeyGreensteinDraine:
+      return shared::PhaseHenyeyGreensteinDraine(cos_scattering, phase.g, phase.g_back,
+                                                 phase.back_weight, phase.alpha);
+    case PhaseKind::kTable:
+      return phase.table->At(PhaseTable::Position(cos_scattering));
   }
   throw InternalError("unknown kind of phase function");
 }
@@ -173,12 +194,27 @@ double MeanCosine(const PhaseFunction& phase) {
       return MeanCosineOfSchlick(SchlickK(phase.g));
     case PhaseKind::kDraine:
       return MeanCosineOfDraine(phase.g, phase.alpha);
+    case PhaseKind::kHenyeyGreensteinDraine:
+      return (1.0 - phase.back_weight) * phase.g +
+             phase.back_weight * MeanCosineOfDraine(phase.g_back, phase.alpha);
+    case PhaseKind::kTable:
+      return phase.table->mean_cosine();
   }
   throw InternalError("unknown kind of phase function");
 }
 
 double SampleCosine(const PhaseFunction& phase, double u) {
   return std::clamp(SampleUnclamped(phase, u), -1.0, 1.0);
+}
+
+PhaseFunction FogPhase(double droplet_diameter_um, const std::string& key) {
+  const double d =
+      RequireInRange(droplet_diameter_um, kSmallestDroplet_um, kLargestDroplet_um, key);
+  return {.kind = PhaseKind::kHenyeyGreensteinDraine,
+          .g = shared::FogForwardG(d),
+          .g_back = shared::FogDraineG(d),
+          .back_weight = shared::FogDraineWeight(d),
+          .alpha = shared::FogDraineAlpha(d)};
 }
 
 PhaseKind PhaseKindFromName(std::string_view name) {
@@ -201,7 +237,10 @@ void Validate(const PhaseFunction& phase, const std::string& prefix) {
   RequireLobe(phase.g, phase.kind == PhaseKind::kSchlick ? kLargestSchlickG : 1.0, prefix + ".g");
   RequireLobe(phase.g_back, 1.0, prefix + ".g_back");
   RequireInRange(phase.back_weight, 0.0, 1.0, prefix + ".back_weight");
-  RequireInRange(phase.alpha, 0.0, 1.0, prefix + ".alpha");
+  RequireInRange(phase.alpha, 0.0, 100.0, prefix + ".alpha");
+  if (phase.kind == PhaseKind::kTable && !phase.table) {
+    throw InputError(fmt::format("{}.phase is table; it needs values at angles", prefix));
+  }
 }
 
 }  // namespace alpenglow

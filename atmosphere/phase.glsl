@@ -10,6 +10,9 @@
 //                                                       Blasi, Le Saec, Schlick (1993); |g| < 0.938
 //   Draine             Henyey-Greenstein times (1 + a c^2) / (1 + a (1 + 2 g^2)/3);
 //                      Draine (2003)
+//   Fog                Henyey-Greenstein and Draine, mixed; parameters from the droplets' diameter:
+//                      Jendersie, d'Eon (2023), "An Approximate Mie Scattering Function for Fog and
+//                      Cloud Rendering", SIGGRAPH talks
 //
 // A lobe that points backwards is the mirror image of the one that points forwards, and the
 // denominators are written as a sum of two terms that are never negative,
@@ -68,4 +71,31 @@ SHARED Number PhaseSchlick(Number cos_scattering, Number g) {
   Number below_one = (Number(1.0) - a) * (Number(1.0) - Number(0.55) * a * (Number(1.0) + a));
   Number d = below_one + k * PhaseOffAxis(cos_scattering, g);
   return Number(0.0795774715459476679) * below_one * (Number(1.0) + k) / (d * d);
+}
+
+SHARED Number PhaseHenyeyGreensteinDraine(Number cos_scattering, Number g, Number g_draine,
+                                          Number draine_weight, Number alpha) {
+  return (Number(1.0) - draine_weight) * PhaseHenyeyGreenstein(cos_scattering, g) +
+         draine_weight * PhaseDraine(cos_scattering, g_draine, alpha);
+}
+
+// Jendersie and d'Eon's fits to Lorenz-Mie theory for droplets of 5 to 50 micrometres. @param d
+// diameter of the droplets [um].
+SHARED Number FogForwardG(Number d) { return exp(Number(-0.0990567) / (d - Number(1.67154))); }
+
+SHARED Number FogDraineG(Number d) {
+  return exp(Number(-2.20679) / (d + Number(3.91029)) - Number(0.428934));
+}
+
+SHARED Number FogDraineAlpha(Number d) {
+  return exp(Number(3.62489) - Number(8.29288) / (d + Number(5.52825)));
+}
+
+SHARED Number FogDraineWeight(Number d) {
+  return exp(Number(-0.599085) / (d - Number(0.641583)) - Number(0.665888));
+}
+
+SHARED Number PhaseFog(Number cos_scattering, Number d) {
+  return PhaseHenyeyGreensteinDraine(cos_scattering, FogForwardG(d), FogDraineG(d),
+                                     FogDraineWeight(d), FogDraineAlpha(d));
 }

@@ -6,10 +6,13 @@
 // Formulas are the shared text phase.glsl; here they become values that a medium can hold.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace alpenglow {
+
+class PhaseTable;
 
 enum class PhaseKind {
   kRayleigh,
@@ -18,6 +21,8 @@ enum class PhaseKind {
   kCornetteShanks,
   kSchlick,
   kDraine,
+  kHenyeyGreensteinDraine,
+  kTable,
 };
 
 /// Schlick's k = 1.55 g - 0.55 g^3 exceeds 1 from g = 0.938 on, where his formula is no longer a
@@ -28,23 +33,35 @@ inline constexpr double kLargestSchlickG = 0.938;
 struct PhaseFunction {
   PhaseKind kind = PhaseKind::kCornetteShanks;
   double g = 0.8;            // asymmetry parameter of the (first) lobe, in (-1, 1); see Schlick
-  double g_back = 0.0;       // second lobe of the double Henyey-Greenstein, in (-1, 1)
+  double g_back = 0.0;       // of the second lobe where there are two, in (-1, 1)
   double back_weight = 0.0;  // share of the second lobe, in [0, 1]
-  double alpha = 1.0;        // Draine: 0 Henyey-Greenstein, 1 Cornette-Shanks; in [0, 1]
+  double alpha = 1.0;        // Draine: 0 Henyey-Greenstein, 1 Cornette-Shanks; in [0, 100]
+  std::shared_ptr<const PhaseTable> table = nullptr;  // of kTable
 
-  bool operator==(const PhaseFunction&) const = default;
+  /// Equal values; tables of equal samples are equal.
+  bool operator==(const PhaseFunction& other) const;
 };
 
 /// Phase function value [1/sr].
 /// @param cos_scattering  in [-1, 1]; values beyond by rounding are clamped.
 [[nodiscard]] double Phase(const PhaseFunction& phase, double cos_scattering);
 
-/// Mean of cos_scattering over the lobe. Exact (closed form).
+/// Mean of cos_scattering over the lobe. Exact (closed form; of a table, of its broken line).
 [[nodiscard]] double MeanCosine(const PhaseFunction& phase);
 
 /// A cosine drawn with the density 2 pi Phase(). @param u uniform in [0, 1). The distribution is
-/// that of Phase() to 1e-9; for all but the double Henyey-Greenstein the cosine grows with u.
+/// that of Phase() to 1e-9; where there are not two lobes the cosine grows with u.
 [[nodiscard]] double SampleCosine(const PhaseFunction& phase, double u);
+
+/// Diameters of droplets [um] that FogPhase knows.
+inline constexpr double kSmallestDroplet_um = 5.0;
+inline constexpr double kLargestDroplet_um = 50.0;
+
+/// The phase function of fog whose droplets have this diameter: Henyey-Greenstein for the forward
+/// peak, Draine's for the rest, fitted to Lorenz-Mie theory by Jendersie and d'Eon (2023). Grey.
+/// @param droplet_diameter_um  in [5, 50]; throws InputError naming `key` beyond.
+[[nodiscard]] PhaseFunction FogPhase(double droplet_diameter_um,
+                                     const std::string& key = "droplet_diameter_um");
 
 /// "henyey-greenstein" and so on, as in atmosphere.toml; throws InputError for another name.
 [[nodiscard]] PhaseKind PhaseKindFromName(std::string_view name);

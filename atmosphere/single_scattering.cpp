@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/error.h"
+#include "atmosphere/phase_table.h"
 #include "atmosphere/quadrature.h"
 #include "atmosphere/shell.h"
 
@@ -370,11 +371,15 @@ ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples
 template <typename Real>
 Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
   const Real rayleigh_phase = static_cast<Real>(Phase({.kind = PhaseKind::kRayleigh}, nu));
-  Real mie_phase = static_cast<Real>(Phase(medium_.mie_phase.front(), nu));
+  const std::vector<PhaseFunction>& phases = medium_.mie_phase;
+  const bool tabulated = phases.front().kind == PhaseKind::kTable;
+  const double position = tabulated ? PhaseTable::Position(nu) : 0.0;  // one for all tables
+  Real mie_phase = Real(0);
   Bands<Real> radiance(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
-    if (band > 0 && medium_.mie_phase.size() > 1) {
-      mie_phase = static_cast<Real>(Phase(medium_.mie_phase[band], nu));
+    if (band < phases.size()) {
+      mie_phase =
+          static_cast<Real>(tabulated ? phases[band].table->At(position) : Phase(phases[band], nu));
     }
     radiance[band] = rayleigh_phase * scattered.rayleigh[band] + mie_phase * scattered.mie[band];
   }

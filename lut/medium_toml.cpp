@@ -2,6 +2,7 @@
 #include "lut/medium_toml.h"
 
 #include "atmosphere/error.h"
+#include "atmosphere/phase_table.h"
 
 namespace alpenglow {
 namespace {
@@ -18,15 +19,28 @@ std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
   return fmt::format("{} = {}\n", key, ListOf(values));
 }
 
+// Tables of different angles at different wavelengths have no text.
+std::string TableLines(const std::vector<PhaseFunction>& phases) {
+  std::vector<double> values;
+  for (const PhaseFunction& phase : phases) {
+    const std::vector<double>& row = phase.table->per_sr();
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return fmt::format("phase = \"table\"\nphase_angles_deg = {}\nphase_per_sr = {}\n",
+                     ListOf(phases.front().table->angle_deg()), ListOf(values));
+}
+
 std::string PhaseLines(const std::vector<PhaseFunction>& phases) {
   const PhaseKind kind = phases.front().kind;
+  if (kind == PhaseKind::kTable) return TableLines(phases);
   std::string lines = fmt::format("phase = \"{}\"\n", NameOf(kind));
   if (kind != PhaseKind::kRayleigh) lines += ParameterLine("g", &PhaseFunction::g, phases);
-  if (kind == PhaseKind::kDoubleHenyeyGreenstein) {
+  if (kind == PhaseKind::kDoubleHenyeyGreenstein || kind == PhaseKind::kHenyeyGreensteinDraine) {
     lines += ParameterLine("g_back", &PhaseFunction::g_back, phases);
     lines += ParameterLine("back_weight", &PhaseFunction::back_weight, phases);
   }
-  if (kind == PhaseKind::kDraine) lines += ParameterLine("alpha", &PhaseFunction::alpha, phases);
+  if (kind == PhaseKind::kDraine || kind == PhaseKind::kHenyeyGreensteinDraine)
+    lines += ParameterLine("alpha", &PhaseFunction::alpha, phases);
   return lines;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/phase_table.h"
 #include "atmosphere/quadrature.h"
 
 namespace alpenglow {
@@ -71,13 +72,33 @@ float AzimuthCosine(float mu, float mu_s, float nu) {
   return std::clamp((nu - mu * mu_s) / sines, -1.0F, 1.0F);
 }
 
-std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
-  // Panels shrink towards the forward peak (1 - x = 2 q^k), so that g = 0.999 is resolved.
-  std::vector<double> chi(static_cast<std::size_t>(degree) + 1, 0.0);
-  const GaussRule& rule = GaussLegendre(32);
-  std::vector<double> edges{-1.0, 0.0};
-  for (double gap = 0.5; gap > 1e-9; gap *= 0.5) edges.push_back(1.0 - gap);
+namespace {
+
+// Cosines, ascending, between which the phase function is smooth and as wide as the panel: the
+// nodes of a table; else panels that shrink towards the forward peak, so that g = 0.999 is
+// resolved.
+std::vector<double> PanelEdges(const PhaseFunction& phase) {
+  std::vector<double> edges{-1.0};
+  if (phase.kind == PhaseKind::kTable) {
+    constexpr double kLast = static_cast<double>(PhaseTable::kNodes - 1);
+    for (std::size_t node = PhaseTable::kNodes - 2; node > 0; --node) {
+      const double s = static_cast<double>(node) / kLast;
+      edges.push_back(std::cos(kPi * s * s * s));
+    }
+  } else {
+    edges.push_back(0.0);
+    for (double gap = 0.5; gap > 1e-9; gap *= 0.5) edges.push_back(1.0 - gap);
+  }
   edges.push_back(1.0);
+  return edges;
+}
+
+}  // namespace
+
+std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
+  std::vector<double> chi(static_cast<std::size_t>(degree) + 1, 0.0);
+  const GaussRule& rule = GaussLegendre(phase.kind == PhaseKind::kTable ? 4 : 32);
+  const std::vector<double> edges = PanelEdges(phase);
   for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const double x = edges[panel] + (edges[panel + 1] - edges[panel]) * rule.node[i];

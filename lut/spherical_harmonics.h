@@ -43,7 +43,7 @@ using Moments = std::array<float, kMaxMoments>;
 [[nodiscard]] float AzimuthCosine(float mu, float mu_s, float nu);
 
 /// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
-/// Error below 1e-6 for |g| <= 0.999.
+/// Error below 1e-6 for |g| <= 0.999 and for tables.
 [[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
 
 /// The same of the medium's aerosol at every wavelength: chi_l of a band at [l * bands + band].

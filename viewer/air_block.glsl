@@ -17,6 +17,9 @@ layout(std140) uniform Air {
   vec4 mie_phase[4];  // of each band: g, g of the second lobe, its weight, alpha
 };
 
+// Of an aerosol that is tabulated: the bands at (theta / pi)^(1/3) = i / 1023 (phase_table.h).
+layout(std140) uniform PhaseTable { vec4 phase_table[1024]; };
+
 #define RADIUS shell.x
 #define TOP shell.y
 #define RAYLEIGH_HEIGHT shell.z
@@ -29,11 +32,21 @@ float PhaseOfParameters(float cosine, vec4 phase) {
   if (kind == 2) return PhaseDoubleHenyeyGreenstein(cosine, phase.x, phase.y, phase.z);
   if (kind == 3) return PhaseCornetteShanks(cosine, phase.x);
   if (kind == 4) return PhaseSchlick(cosine, phase.x);
-  return PhaseDraine(cosine, phase.x, phase.w);
+  if (kind == 5) return PhaseDraine(cosine, phase.x, phase.w);
+  return PhaseHenyeyGreensteinDraine(cosine, phase.x, phase.y, phase.z, phase.w);
+}
+
+vec4 PhaseOfTable(float cosine) {
+  float c = PhaseClampedCosine(cosine);
+  float angle = atan(sqrt((1.0 - c) * (1.0 + c)), c);  // acos() of some drivers is good to 1e-3
+  float position = 1023.0 * pow(max(angle, 1e-12) * 0.318309886, 0.333333333);
+  int cell = min(int(position), 1022);
+  return mix(phase_table[cell], phase_table[cell + 1], position - float(cell));
 }
 
 // The aerosol's phase function in every band.
 vec4 PhaseMie(float cosine) {
+  if (mie_options.x > 6.5) return PhaseOfTable(cosine);
   vec4 value = vec4(PhaseOfParameters(cosine, mie_phase[0]));
   if (mie_options.z < 1.5) return value;
   value.y = PhaseOfParameters(cosine, mie_phase[1]);

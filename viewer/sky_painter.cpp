@@ -23,6 +23,7 @@ constexpr GLuint kAirBinding = 0;
 constexpr GLuint kViewBinding = 1;
 constexpr GLuint kMomentBinding = 2;
 constexpr GLuint kGroundBinding = 3;
+constexpr GLuint kPhaseBinding = 4;
 
 enum TextureUnit {
   kSurfaceUnit,
@@ -154,6 +155,8 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
       relief_(relief) {
   const MomentBlock moments = MomentBlockOf(medium, diffuse.options().degree);
   UploadBlock(moment_block_, kMomentBinding, moments.data(), moments.size() * sizeof(moments[0]));
+  const PhaseBlock phase = PhaseBlockOf(medium);
+  UploadBlock(phase_block_, kPhaseBinding, phase.data(), sizeof(phase));
   BindTexture(kDiffuseMomentsUnit, GL_TEXTURE_2D_ARRAY, diffuse_moments_);
   UploadMoments(diffuse);
   BindTexture(kDitherUnit, GL_TEXTURE_2D, dither_noise_);
@@ -168,6 +171,7 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
     program->BindBlock("View", kViewBinding);
     program->BindBlock("Moments", kMomentBinding);
     program->BindBlock("Ground", kGroundBinding);
+    program->BindBlock("PhaseTable", kPhaseBinding);
     program->BindSampler("diffuse_moments", kDiffuseMomentsUnit);
   }
   picture_program_.BindSampler("surface_map", kSurfaceUnit);

@@ -52,7 +52,7 @@ class SkyPainter {
   Ellipsoid ellipsoid_;
   TerrainSurface terrain_;
   GlVertexArray no_vertices_;
-  GlBuffer air_block_, view_block_, moment_block_, ground_block_;
+  GlBuffer air_block_, view_block_, moment_block_, phase_block_, ground_block_;
   ShaderProgram diffuse_sky_program_, picture_program_, average_program_, develop_program_;
   GlTexture diffuse_moments_, dither_noise_, diffuse_sky_;
   GlFramebuffer diffuse_sky_target_;

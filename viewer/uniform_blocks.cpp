@@ -79,6 +79,19 @@ AirBlock AirBlockOf(const Medium& medium) {
   return block;
 }
 
+PhaseBlock PhaseBlockOf(const Medium& medium) {
+  PhaseBlock block{};
+  if (medium.mie_phase.front().kind != PhaseKind::kTable) return block;
+  for (std::size_t node = 0; node < block.size(); ++node) {
+    std::vector<double> values;
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      values.push_back(MiePhase(medium, band).table->nodes()[node]);
+    }
+    block[node] = GpuBandsOf(values);
+  }
+  return block;
+}
+
 MomentBlock MomentBlockOf(const Medium& medium, int degree) {
   // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients
   // (Ramamoorthi, Hanrahan 2001).

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "atmosphere/medium.h"
+#include "atmosphere/phase_table.h"
 #include "lut/multiple_scattering.h"
 #include "renderer/surface.h"
 
@@ -28,6 +29,10 @@ struct AirBlock {
 static_assert(sizeof(AirBlock) == 15 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, mie_phase) == 11 * sizeof(glm::vec4));
+
+/// `block PhaseTable` of air_block.glsl: the aerosol's tabulated phase function in the bands.
+using PhaseBlock = std::array<glm::vec4, PhaseTable::kNodes>;
+static_assert(sizeof(PhaseBlock) == 1024 * sizeof(glm::vec4));
 
 /// `block View` of view_block.glsl.
 struct ViewBlock {
@@ -63,6 +68,8 @@ using MomentBlock = std::vector<glm::vec4>;
 
 /// Throws InputError when the medium has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
+/// Zeros when the aerosol's phase function is not tabulated.
+[[nodiscard]] PhaseBlock PhaseBlockOf(const Medium& medium);
 [[nodiscard]] MomentBlock MomentBlockOf(const Medium& medium, int degree);
 
 /// Materials and noise around the eye, which stands at (east_m, north_m) on the pattern's plane;
