@@ -297,6 +297,9 @@ inline std::vector<SharedTextCase> PhaseCases() {
       ALPENGLOW_SHARED_CASE(PhaseDraine(a[0], a[1], a[3]), grid::Scattering()),
       ALPENGLOW_SHARED_CASE(PhaseCornetteShanks(a[0], a[1]), grid::Scattering()),
       ALPENGLOW_SHARED_CASE(PhaseSchlick(a[0], a[1]), grid::Scattering(0.93F)),
+      ALPENGLOW_SHARED_CASE(PhaseHenyeyGreensteinDraine(a[0], a[1], a[2], a[3], Number(17.0)),
+                            grid::Scattering()),
+      ALPENGLOW_SHARED_CASE(PhaseFog(a[0], Number(5.0) + Number(45.0) * a[3]), grid::Scattering()),
   };
 }
 

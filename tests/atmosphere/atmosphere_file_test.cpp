@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "atmosphere/aerosol_mixture.h"
 #include "atmosphere/error.h"
 #include "atmosphere/medium.h"
 #include "atmosphere/spectrum.h"
@@ -140,7 +141,7 @@ TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
 TEST(AtmosphereFile, AerosolIsGivenInOneWayOnly) {
   EXPECT_THAT(FaultOf("[aerosol]\nturbidity = 2\nvisibility_m = 23000\n"),
               StartsWith("a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"));
-  EXPECT_THAT(FaultOf("[aerosol]\nangstrom_exponent = 1\n"), HasSubstr("aerosol needs one of"));
+  EXPECT_THAT(FaultOf("[aerosol]\nangstrom_exponent = 1\n"), HasSubstr("aerosol needs mixture or one of"));
   EXPECT_THAT(FaultOf("[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n"),
               StartsWith("a.toml:2: mie.scattering_per_m is given beside [aerosol]"));
 }
@@ -171,6 +172,106 @@ TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
   EXPECT_THAT(FaultOf("[mie]\nphase = \"mie\"\n"),
               StartsWith("a.toml:2: mie.phase is \"mie\"; it must be one of rayleigh"));
   EXPECT_EQ(FaultOf("[mie]\n\ng = 1.0\n"), "a.toml:3: mie.g is 1; it must lie in (-1, 1)");
+}
+
+TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
+  const Medium medium = Read(
+      "[spectrum]\nwavelengths_nm = [650, 550, 450]\n[mie]\nphase = "
+      "\"double-henyey-greenstein\"\ng = [0.8, 0.85, 0.9]\ng_back = -0.2\nback_weight = 0.1\n");
+  ASSERT_EQ(medium.mie_phase.size(), 3U);
+  EXPECT_EQ(medium.mie_phase[0].g, 0.9) << "450 nm: lists that descend are stored ascending";
+  EXPECT_EQ(MiePhase(medium, 2).g, 0.8);
+  EXPECT_EQ(MiePhase(medium, 2).g_back, -0.2);
+  EXPECT_EQ(Read("[mie]\ng = [0.7, 0.7, 0.7, 0.7]\n").mie_phase.size(), 1U)
+      << "four times the same is one for all";
+  EXPECT_THAT(FaultOf("[mie]\ng = [0.7, 0.8]\n"),
+              StartsWith("a.toml:2: mie.g has 2 values; it must have 4, one per wavelength"));
+}
+
+TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
+  const Medium medium = Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\n");
+  EXPECT_EQ(medium.mie_phase.front(), FogPhase(12.0));
+  EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\n"), HasSubstr("give mie.droplet_diameter_um too"));
+  EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n"),
+              StartsWith("a.toml:3: mie.droplet_diameter_um is 60; it must lie in [5, 50]"));
+  EXPECT_THAT(FaultOf("[mie]\ndroplet_diameter_um = 10\n"),
+              HasSubstr("no effect without phase = \"fog\""));
+  EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n"),
+              HasSubstr("mie.g has no effect"));
+}
+
+TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "alpenglow_phase_file";
+  std::filesystem::create_directory(folder);
+  {
+    std::ofstream csv(folder / "dust.csv");
+    csv << "wavelength_nm,angle_deg,phase_per_sr\n";
+    for (const double wavelength : {400, 700}) {
+      for (int angle = 0; angle <= 180; angle += 3) {
+        const double c = std::cos(angle * 3.14159265358979 / 180.0);
+        csv << wavelength << ',' << angle << ','
+            << Phase({.kind = PhaseKind::kHenyeyGreenstein, .g = wavelength < 500 ? 0.3 : 0.5}, c)
+            << '\n';
+      }
+    }
+    std::ofstream(folder / "a.toml") << "[mie]\nphase = \"table\"\nphase_file = \"dust.csv\"\n";
+    std::ofstream(folder / "b.toml") << "[mie]\nphase = \"table\"\nphase_file = \"none.csv\"\n";
+  }
+  const Medium medium = ReadMedium(folder / "a.toml");
+  ASSERT_EQ(medium.mie_phase.size(), medium.wavelengths_nm.size());
+  const double at_445 = (445.0 - 400.0) / 300.0;
+  EXPECT_NEAR(MeanCosine(medium.mie_phase[0]), 0.3 + 0.2 * at_445, 1e-3)
+      << "linear between 400 and 700 nm";
+  EXPECT_THROW(static_cast<void>(ReadMedium(folder / "b.toml")), InputError);
+  std::filesystem::remove_all(folder);
+  EXPECT_THAT(FaultOf("[mie]\nphase = \"table\"\n"), HasSubstr("give mie.phase_file too"));
+  EXPECT_THAT(FaultOf("[mie]\nphase_file = \"x.csv\"\n"),
+              HasSubstr("no effect without phase = \"table\""));
+  EXPECT_THAT(
+      FaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+              "phase_per_sr = [0.08, 0.08]\n"),
+      StartsWith("a.toml:4: mie.phase_per_sr has 2 values; it must have 5, one per angle, or "
+                 "20, one per angle and wavelength"));
+  EXPECT_THAT(FaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+                      "phase_per_sr = [1, 1, 1, 1, 1]\n"),
+              StartsWith("a.toml:4: mie.phase: the integral over the sphere is 12.566"));
+}
+
+TEST(AtmosphereFile, AMixtureBringsSpectrumLayerAndPhaseFunction) {
+  const Medium desert = Read("[aerosol]\nmixture = \"desert\"\n");
+  const AerosolOptics optics = AerosolMixture("desert", desert.wavelengths_nm);
+  EXPECT_EQ(desert.mie_extinction_per_m, optics.extinction_per_m);
+  EXPECT_EQ(desert.mie_scattering_per_m, optics.scattering_per_m);
+  EXPECT_EQ(desert.mie_scale_height_m, optics.scale_height_m);
+  EXPECT_EQ(desert.mie_phase, optics.phase);
+}
+
+TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
+  const std::string mixture = "mixture = \"maritime_clean\"\n";
+  const std::string green = "[spectrum]\nwavelengths_nm = [450, 550, 650]\n[aerosol]\n" + mixture;
+  const Medium own = Read(green);
+  const Medium thin = Read(green + "optical_depth_550 = 0.1\n");
+  EXPECT_NEAR(thin.mie_extinction_per_m[1] * thin.mie_scale_height_m, 0.1, 1e-15);
+  EXPECT_NEAR(thin.mie_extinction_per_m[0] / thin.mie_extinction_per_m[2],
+              own.mie_extinction_per_m[0] / own.mie_extinction_per_m[2], 1e-13)
+      << "the spectrum is the mixture's";
+  const Medium hazy = Read(green + "visibility_m = 20000\n");
+  EXPECT_NEAR(
+      std::exp(-20000.0 * (hazy.mie_extinction_per_m[1] + hazy.rayleigh_scattering_per_m[1])), 0.02,
+      1e-5)
+      << "Koschmieder: a black wall at the visibility keeps 2 % of its contrast";
+  const Medium turbid = Read(green + "turbidity = 3\n");
+  EXPECT_NEAR(turbid.mie_extinction_per_m[1] * turbid.mie_scale_height_m,
+              2.0 * turbid.rayleigh_scattering_per_m[1] * turbid.rayleigh_scale_height_m, 1e-12);
+  EXPECT_THAT(FaultOf("[aerosol]\n" + mixture + "angstrom_exponent = 1\n"),
+              StartsWith("a.toml:3: aerosol.angstrom_exponent has no effect"));
+  EXPECT_THAT(FaultOf("[aerosol]\nmixture = \"dessert\"\n"), HasSubstr("did you mean desert?"));
+  EXPECT_THAT(FaultOf("[mie]\ng = 0.7\n[aerosol]\n" + mixture),
+              StartsWith("a.toml:2: mie.g has no effect"));
+  const Medium fog =
+      Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 10\n[aerosol]\n" + mixture);
+  EXPECT_EQ(fog.mie_phase.front(), FogPhase(10.0)) << "[mie] may say otherwise";
 }
 
 TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {

@@ -155,6 +155,17 @@ TEST(Medium, HashTellsApartEverythingButTheName) {
   EXPECT_EQ(MediumHash(renamed), MediumHash(MediumPreset("earth")));
 }
 
+TEST(Medium, OnePhaseFunctionForAllIsTheSameAirAsItsCopies) {
+  const Medium one = MediumPreset("earth");
+  Medium copies = one;
+  copies.mie_phase.resize(one.wavelengths_nm.size(), one.mie_phase.front());
+  EXPECT_EQ(MediumHash(one), MediumHash(copies));
+  copies.mie_phase[2].g += 0.01;
+  EXPECT_NE(MediumHash(one), MediumHash(copies));
+  EXPECT_EQ(MiePhaseValues(one, 0.3), std::vector<double>(4, Phase(one.mie_phase[0], 0.3)));
+  EXPECT_EQ(MiePhaseValues(copies, 0.3)[2], Phase(copies.mie_phase[2], 0.3));
+}
+
 TEST(Medium, HashIsTheSameOnEveryMachine) {
   // A medium of literals only, so that no library's pow can change it; the value is from a separate
   // program.
@@ -186,6 +197,15 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
       {"mie.scattering_per_m is 1 at 445 nm; it must not exceed",
        [](Medium& m) { m.mie_scattering_per_m[0] = 1.0; }},
       {"mie.g is 1;", [](Medium& m) { m.mie_phase.front().g = 1.0; }},
+      {"mie.phase has 2 values; it must have 1 or 4",
+       [](Medium& m) { m.mie_phase.push_back(m.mie_phase.front()); }},
+      {"mie.phase is rayleigh beside cornette-shanks",
+       [](Medium& m) {
+         m.mie_phase.resize(4, m.mie_phase.front());
+         m.mie_phase[1].kind = PhaseKind::kRayleigh;
+       }},
+      {"mie.phase is table; it needs values",
+       [](Medium& m) { m.mie_phase.front().kind = PhaseKind::kTable; }},
       {"ozone.absorption_per_m is -1", [](Medium& m) { m.ozone_absorption_per_m[0] = -1.0; }},
       {"ozone.peak_m is 50000; it must lie between", [](Medium& m) { m.ozone.peak_m = 5e4; }},
   };

@@ -86,6 +86,27 @@ TEST(PathTracer, OrderOneIsTheIntegralOfTheJudge) {
   EXPECT_EQ(compared, 4 * 3 * 4 * 2 * 3);
 }
 
+// Brightness of the sky when every band is scattered its own way, against each band alone.
+TEST(PathTracer, BandsWithPhaseFunctionsOfTheirOwnAreTracedTogetherAsAlone) {
+  Medium medium = MediumPreset("hazy");
+  medium.mie_phase.clear();
+  for (const double g : {0.2, 0.4, 0.6, 0.85}) {
+    medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
+  }
+  for (const double sun_deg : {40.0, 89.0}) {
+    const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, sun_deg);
+    const PathTracedRadiance together = TraceRadiance(medium, ray, {.max_paths = 8000});
+    for (std::size_t band = 0; band < 4; ++band) {
+      Medium alone = medium;
+      alone.mie_phase = {medium.mie_phase[band]};
+      const PathTracedRadiance other = TraceRadiance(alone, ray, {.seed = 5, .max_paths = 8000});
+      EXPECT_NEAR(together.total[band], other.total[band],
+                  4.0 * std::hypot(together.standard_error[band], other.standard_error[band]))
+          << "band " << band << ", sun " << sun_deg << ": four standard errors";
+    }
+  }
+}
+
 TEST(PathTracer, LightFromTheGroundAtTheEndOfASegmentIsLeftOut) {
   const Medium medium = Empty(1.0);
   ViewRay ray = RayFromAngles(1000.0, 180.0, 0.0, 60.0);

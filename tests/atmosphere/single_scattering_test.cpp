@@ -213,6 +213,25 @@ TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
   EXPECT_THROW(AirIntegrator<float>{medium}, InputError);
 }
 
+// The desert's dust: a table at every wavelength.
+Medium Dusty() { return MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"); }
+
+TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
+  const Medium medium = Dusty();
+  const AirIntegrator<float> air(medium);
+  for (const ViewRay& ray : RaysUnderSun(20.0)) {
+    const auto light = Inscatter(air, ray, kFine);
+    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 1e-4)
+          << "16 nodes a panel";
+      Medium shared = medium;
+      shared.mie_phase = {medium.mie_phase[band]};
+      EXPECT_EQ(light[band], Inscatter(AirIntegrator<float>(shared), ray, kFine)[band]);
+    }
+  }
+}
+
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   Medium medium = MediumPreset("earth");
   medium.mie_phase.front() = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};

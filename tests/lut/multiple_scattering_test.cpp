@@ -90,6 +90,52 @@ TEST(DiffuseLight, ComesBackFromItsValues) {
   EXPECT_THROW(DiffuseLight(air, kSmall, {broken, 1, true}), InputError);
 }
 
+TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {
+  Medium medium = MediumPreset("hazy");
+  medium.mie_phase.clear();
+  for (const double g : {0.5, 0.6, 0.7, 0.8}) {
+    medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
+  }
+  const DiffuseLightOptions few_orders{.altitudes = kSmall.altitudes,
+                                       .sun_angles = kSmall.sun_angles,
+                                       .degree = kSmall.degree,
+                                       .zenith_nodes = kSmall.zenith_nodes,
+                                       .azimuth_nodes = kSmall.azimuth_nodes,
+                                       .ray_nodes = kSmall.ray_nodes,
+                                       .max_orders = 4,
+                                       .tolerance = 1e-9};
+  const DiffuseLight light(medium, few_orders);
+  const ViewRay ray{2.0, 0.5, 0.7, 0.9};
+  const auto inscatter = [&ray](const Medium& air, const DiffuseLight& diffuse) {
+    const AirIntegrator<float> integrator(air);
+    return diffuse.InscatterAlong(
+        integrator.Sample(ray, {.nodes = 8, .split_ozone = false, .dark_samples = true}), ray.nu);
+  };
+  for (std::size_t band = 0; band < 4; ++band) {
+    Medium shared = medium;
+    shared.mie_phase = {medium.mie_phase[band]};
+    const DiffuseLight alone(shared, few_orders);
+    EXPECT_EQ(inscatter(medium, light)[band], inscatter(shared, alone)[band]) << "band " << band;
+  }
+}
+
+TEST(LegendreCoefficients, OfATableAreThoseOfItsBrokenLine) {
+  const Medium desert = MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "desert");
+  const PhaseFunction& phase = desert.mie_phase.front();
+  const auto chi = LegendreCoefficients(phase, 6);
+  EXPECT_NEAR(chi[0], 1.0, 1e-7);
+  EXPECT_NEAR(chi[1], MeanCosine(phase), 1e-7);
+  // Sums over a million angles, error of second order in the step.
+  double p2 = 0.0;
+  constexpr int kSteps = 1000000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = kPi * (i + 0.5) / kSteps;
+    const double c = std::cos(angle);
+    p2 += 2.0 * kPi * std::sin(angle) * kPi / kSteps * Phase(phase, c) * (1.5 * c * c - 0.5);
+  }
+  EXPECT_NEAR(chi[2], p2, 1e-6);
+}
+
 TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
   const Medium medium = MediumPreset("bruneton2017");
   std::vector<std::vector<float>> values;

@@ -207,6 +207,13 @@ TEST_F(TableFile, EveryPresetsMediumComesBackFromItsText) {
   EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), "x")), MediumHash(medium));
   medium.mie_phase.front() = {.kind = PhaseKind::kDraine, .g = 0.7, .alpha = 1.0 / 3.0};
   EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), "x")), MediumHash(medium));
+  medium.mie_phase.resize(4, medium.mie_phase.front());
+  medium.mie_phase[2].g = 0.71;
+  EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), "x")), MediumHash(medium));
+  medium.mie_phase = {FogPhase(10.0)};
+  EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), "x")), MediumHash(medium));
+  const Medium dusty = MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty");
+  EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(dusty), "x")), MediumHash(dusty));
 }
 
 TEST_F(TableFile, FractionalWavelengthsHaveChannelsOfTheirOwn) {

@@ -121,6 +121,63 @@ TEST_F(UniformBlocks, MeshLiesWhereTheDriverLooks) {
                           {"up", offsetof(MeshBlock, up)}});
 }
 
+// --- the aerosol's phase function ---
+
+using MiePhaseOnGpu = tests::Headless;
+
+void ExpectPhaseOfCpu(const Medium& medium, double tolerance, const char* why) {
+  std::vector<tests::Arguments<float>> cosines;
+  for (int i = 0; i <= 2000; ++i) {
+    cosines.push_back({static_cast<float>(std::cos(kPi * std::pow(i / 2000.0, 3.0)))});
+  }
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  pieces.push_back({"air", std::string(viewer::EmbeddedText("viewer/air_block.glsl"))});
+  const AirBlock air = AirBlockOf(medium);
+  const PhaseBlock phase = PhaseBlockOf(medium);
+  const GlBuffer air_buffer, phase_buffer;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    const std::vector<float> on_gpu = tests::EvaluateOnGpu(
+        pieces, fmt::format("PhaseMie(a[0])[{}]", band), cosines,
+        [&](const ShaderProgram& program) {
+          glBindBufferBase(GL_UNIFORM_BUFFER, 0, air_buffer.id());
+          glBufferData(GL_UNIFORM_BUFFER, sizeof(air), &air, GL_STATIC_DRAW);
+          glBindBufferBase(GL_UNIFORM_BUFFER, 4, phase_buffer.id());
+          glBufferData(GL_UNIFORM_BUFFER, sizeof(phase), phase.data(), GL_STATIC_DRAW);
+          program.BindBlock("Air", 0);
+          program.BindBlock("PhaseTable", 4);
+        });
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      const double cosine = static_cast<double>(cosines[i][0]);
+      EXPECT_NEAR(static_cast<double>(on_gpu[i]) / Phase(MiePhase(medium, band), cosine), 1.0,
+                  tolerance)
+          << NameOf(medium.mie_phase.front().kind) << ", band " << band << ", cosine " << cosine
+          << ": " << why;
+    }
+  }
+}
+
+TEST_F(MiePhaseOnGpu, OfEveryKindIsThatOfTheRenderer) {
+  Medium medium = MediumPreset("earth");
+  for (int kind = 0; kind < static_cast<int>(PhaseKind::kTable); ++kind) {
+    medium.mie_phase.clear();
+    for (const double g : {0.5, 0.6, 0.7, 0.8}) {
+      medium.mie_phase.push_back({.kind = static_cast<PhaseKind>(kind),
+                                  .g = g,
+                                  .g_back = 0.3 * g,
+                                  .back_weight = 0.2 + 0.1 * g,
+                                  .alpha = 2.0 * g});
+    }
+    ExpectPhaseOfCpu(medium, 1e-5, "a few roundings of float");
+    medium.mie_phase.resize(1);
+    ExpectPhaseOfCpu(medium, 1e-5, "a few roundings of float");
+  }
+}
+
+TEST_F(MiePhaseOnGpu, OfATableIsThatOfTheRenderer) {
+  ExpectPhaseOfCpu(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"), 1e-3,
+                   "drivers raise to the third part of a power to 1e-5, and peaks are steep");
+}
+
 TEST(AirBlock, AMediumOfFiveWavelengthsIsRefused) {
   EXPECT_THROW(static_cast<void>(AirBlockOf(MediumPreset("earth", WavelengthSet(8)))), InputError);
 }
