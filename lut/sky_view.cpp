@@ -121,7 +121,7 @@ void SplineMirroredLine(const Line& line) {
   std::copy_n(line.node(n - 2), line.width, line.node(n));
 }
 
-std::vector<float> PhaseTable(const Medium& medium, std::size_t first_band) {
+std::vector<float> PhaseSamples(const Medium& medium, std::size_t first_band) {
   std::vector<float> table(kLanes * (kSkyPhaseNodes + 1));
   for (int k = 0; k <= kSkyPhaseNodes; ++k) {
     const double x = static_cast<double>(k) / kSkyPhaseNodes;
@@ -272,7 +272,7 @@ SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, d
   RequireInRange(size.azimuths, 3, 4096, "azimuths");
   ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    blocks_[i].phase = PhaseTable(air.medium(), kLanes * i);
+    blocks_[i].phase = PhaseSamples(air.medium(), kLanes * i);
   Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
 }
 
