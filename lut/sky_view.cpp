@@ -8,7 +8,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
-#include "lut/sky_row.h"
+#include "lut/sky_row_kernel.h"
 
 namespace alpenglow {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/sky_row.h"
+#include "lut/sky_row_kernel.h"
 
 #include <algorithm>
 #include <array>
