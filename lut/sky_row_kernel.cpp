@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/sky_row_kernel.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include "atmosphere/batch.h"
 
 namespace alpenglow {
 namespace {
@@ -12,8 +10,8 @@ constexpr std::size_t kAtOnce = 64;
 
 /// Of some look-ups: Rayleigh's phase function, and where the aerosol's is in its table.
 struct Angles {
-  std::array<float, kAtOnce> rayleigh, fraction;
-  std::array<std::int32_t, kAtOnce> node;
+  float rayleigh[kAtOnce], fraction[kAtOnce];
+  std::int32_t node[kAtOnce];
 };
 
 // asin(s) from s^2: s times a polynomial of degree 5 in s^2, Chebyshev's interpolation of asin(s) /
@@ -32,45 +30,71 @@ inline float ArcSineOfRoot(float s2) {
 void FindAngles(const SkyRowWork& work, std::size_t first, std::size_t count, Angles& angles) {
   constexpr float kPerAngle = 2.0F / 3.14159265F;
   constexpr auto kNodes = static_cast<float>(kSkyPhaseNodes);
+  const float* half_sine2 = work.half_sine2 + first;
+  const float offset = work.offset;
+  const float scale = work.scale;
   for (std::size_t i = 0; i < count; ++i) {
-    const float s2 =
-        std::min(std::max(work.offset + work.scale * work.half_sine2[first + i], 0.0F), 1.0F);
+    const float s2 = shared::min(shared::max(offset + scale * half_sine2[i], 0.0F), 1.0F);
     const float nu = 1.0F - 2.0F * s2;
     angles.rayleigh[i] = 0.05968310365946075F * (1.0F + nu * nu);
     const float position = kNodes * std::sqrt(kPerAngle * ArcSineOfRoot(s2));
-    const auto node = std::min(static_cast<std::int32_t>(position), kSkyPhaseNodes - 1);
-    angles.node[i] = node;
-    angles.fraction[i] = position - static_cast<float>(node);
+    const float lower = shared::min(position, kNodes - 1.0F);
+    angles.node[i] = static_cast<std::int32_t>(lower);
+    angles.fraction[i] = position - static_cast<float>(angles.node[i]);
   }
 }
 
-}  // namespace
+/// Four floats that instructions take at once wherever a processor has them (gcc and clang).
+using Four = float __attribute__((vector_size(16)));
 
-void FillSkyRow(const SkyRowWork& work) {
+inline Four Load(const float* from) {
+  Four four;
+  __builtin_memcpy(&four, from, sizeof four);
+  return four;
+}
+
+inline Four Weighted(const float* weight, const float* node) {
+  return weight[0] * Load(node) + weight[1] * Load(node + kSkyNodeFloats) +
+         weight[2] * Load(node + 2 * kSkyNodeFloats) + weight[3] * Load(node + 3 * kSkyNodeFloats);
+}
+
+void Fill(const SkyRowWork& work) {
   Angles angles;
   for (std::size_t first = 0; first < work.count; first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, work.count - first);
+    const std::size_t count = work.count - first < kAtOnce ? work.count - first : kAtOnce;
     FindAngles(work, first, count, angles);
     for (std::size_t i = 0; i < count; ++i) {
       const float* node =
           work.row + kSkyNodeFloats * static_cast<std::size_t>(work.cell[first + i]);
       const float* weight = work.weights + 4 * (first + i);
       const float* phase = work.phase + 4 * static_cast<std::size_t>(angles.node[i]);
-      const float t = angles.fraction[i];
-      const float rayleigh = angles.rayleigh[i];
-      float* out = work.radiance + work.radiance_stride * (first + i);
-      std::array<float, kSkyNodeFloats> sum;
-      for (std::size_t k = 0; k < kSkyNodeFloats; ++k) {
-        sum[k] = weight[0] * node[k] + weight[1] * node[kSkyNodeFloats + k] +
-                 weight[2] * node[2 * kSkyNodeFloats + k] +
-                 weight[3] * node[3 * kSkyNodeFloats + k];
-      }
-      for (std::size_t k = 0; k < 4; ++k) {
-        const float mie = phase[k] + t * (phase[4 + k] - phase[k]);
-        out[k] = std::max(rayleigh * sum[k] + mie * sum[4 + k] + sum[8 + k], 0.0F);
-      }
+      const Four lower = Load(phase);
+      const Four mie = lower + angles.fraction[i] * (Load(phase + 4) - lower);
+      const Four light = angles.rayleigh[i] * Weighted(weight, node) +
+                         mie * Weighted(weight, node + 4) + Weighted(weight, node + 8);
+      const Four dark = {};
+      const Four radiance = light > dark ? light : dark;
+      __builtin_memcpy(work.radiance + work.radiance_stride * (first + i), &radiance,
+                       sizeof radiance);
     }
   }
+}
+
+void Blend(const SkyBlendWork& work) {
+  const float* rows = work.rows;
+  const std::size_t stride = work.stride;
+  for (std::size_t k = 0; k < work.count; ++k) {
+    work.sum[k] = work.weights[0] * rows[k] + work.weights[1] * rows[stride + k] +
+                  work.weights[2] * rows[2 * stride + k] + work.weights[3] * rows[3 * stride + k];
+  }
+}
+
+}  // namespace
+
+template <>
+const SkyRowKernel& KernelOf<SkyRowKernel, kThisSet>() {
+  static constexpr SkyRowKernel kernel{Fill, Blend};
+  return kernel;
 }
 
 }  // namespace alpenglow

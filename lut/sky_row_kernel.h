@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The innermost loop of SkyView: look-ups along a row of four bands, on plain data.
+// The innermost loop of SkyView, one table an instruction set: look-ups along a row of four bands.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+
+#include "atmosphere/instruction_set.h"
 
 namespace alpenglow {
 
 /// Coefficients of one node: R, M and D of four bands.
 inline constexpr std::size_t kSkyNodeFloats = 12;
 /// The table of the aerosol's phase function: node k at the scattering angle pi (k / n)^2, k = 0
-/// ... n, four bands a node. Linear between nodes it keeps 1e-3 of lobes up to g = 0.99.
+/// ... n, four bands a node, linear between nodes.
 inline constexpr int kSkyPhaseNodes = 1024;
 
 struct SkyRowWork {
@@ -25,6 +27,19 @@ struct SkyRowWork {
   std::size_t radiance_stride;  // from one look-up to the next
 };
 
-void FillSkyRow(const SkyRowWork& work);
+/// Four rows of `count` floats, `stride` apart, added with weights.
+struct SkyBlendWork {
+  const float* rows;
+  std::size_t stride, count;
+  const float* weights;
+  float* sum;
+};
+
+struct SkyRowKernel {
+  void (*fill)(const SkyRowWork& work);
+  void (*blend)(const SkyBlendWork& work);
+};
+
+ALPENGLOW_DECLARE_KERNEL(SkyRowKernel);
 
 }  // namespace alpenglow
