@@ -9,8 +9,10 @@
 #include <string>
 
 #include "atmosphere/medium.h"
+#include "lut/eval.h"
 #include "lut/exchange_tables.h"
 #include "lut/table_folder.h"
+#include "lut/table_search.h"
 
 namespace alpenglow {
 namespace {
@@ -21,7 +23,7 @@ struct BuildOptions {
   bool single_scattering_only = false;
   std::string quality = "standard";
   std::string layout = "native";
-  std::optional<std::string> type, format;
+  std::optional<std::string> type, format, max_error;
 };
 
 /// The layout of other programs, when one is asked for.
@@ -74,6 +76,13 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
   }
   const Medium medium =
       options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
+  if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
+    MakeFolder(options.out);  // before the work
+    const TableChoice choice = ChooseTables(medium, {.max_error = *max_error});
+    WriteTables(choice, options.out);
+    fmt::print("{}", ChoiceText(choice, *max_error));
+    return;
+  }
   BuildTableFolder(medium, TableQualityFromName(options.quality),
                    options.single_scattering_only ? TableOrders::kSingleOnly : TableOrders::kAll,
                    options.out, common.progress_style());
@@ -92,13 +101,23 @@ Subcommand AddBuildCommand(CLI::App& app) {
       build
           .add_option(
               "--quality", options->quality,
-              "preview (128x32; 8x24x64x16), standard (256x64; 8x32x128x32) or fine "
-              "(512x128; 16x48x192x48): sizes of transmittance mu x r; scattering nu x mu_s "
-              "x mu x r")
+              "preview (128x32; 8x24x64x16; 28x14), standard (256x64; 8x32x128x32; 40x20) or "
+              "fine (512x128; 16x48x192x48; 64x32): sizes of transmittance mu x r; single "
+              "scattering nu x mu_s x mu x r; multiple scattering mu_s x altitudes")
           ->check(CLI::IsMember({"preview", "standard", "fine"}))
           ->capture_default_str();
-  build.add_flag("--single-scattering-only", options->single_scattering_only,
-                 "Leave the table of multiple scattering out");
+  CLI::Option* max_error =
+      build
+          .add_option("--max-error", options->max_error,
+                      "Relative error, like 0.5%: chooses the number of ray nodes, which tables "
+                      "to make and the smallest sizes so that sky, aerial perspective, twilight "
+                      "and irradiance stay below it (rms), and prints what it measured")
+          ->check(FaultOfRelativeError)
+          ->excludes(quality);
+  build
+      .add_flag("--single-scattering-only", options->single_scattering_only,
+                "Leave the table of multiple scattering out")
+      ->excludes(max_error);
   build
       .add_option("--layout", options->layout,
                   "native, or the files that other programs load: bruneton (his demo), takram "
@@ -106,6 +125,7 @@ Subcommand AddBuildCommand(CLI::App& app) {
                   "the only atmosphere that the latter's sky draws")
       ->check(CLI::IsMember({"native", "bruneton", "takram"}))
       ->excludes(quality)
+      ->excludes(max_error)
       ->capture_default_str();
   build
       .add_option("--type", options->type,
@@ -120,6 +140,7 @@ Subcommand AddBuildCommand(CLI::App& app) {
   build.parse_complete_callback([options] { CheckLayout(*options); });
   build.footer(
       "Examples: skylut build --out tables --atmosphere atmosphere.toml --quality fine\n"
+      "          skylut build --out tables --max-error 1%\n"
       "          skylut build --out takram --layout takram");
   return [options](const CommonOptions& common) { Build(*options, common); };
 }

@@ -38,6 +38,10 @@ std::optional<double> RelativeErrorFromText(std::string_view text) {
   return value >= kSmallestMaxError && value <= 1.0 ? std::optional(value) : std::nullopt;
 }
 
+std::string FaultOfRelativeError(const std::string& text) {
+  return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
+}
+
 void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
                   Evaluator& evaluator, ProgressStyle style) {
   CaseReader reader(cases);

@@ -62,6 +62,8 @@ inline constexpr double kSmallestMaxError = 1e-8;
 /// "0.2%" or "0.002"; nothing for another text and outside of
 /// [kSmallestMaxError, 1].
 [[nodiscard]] std::optional<double> RelativeErrorFromText(std::string_view text);
+/// What is wrong with such a text, for the command line; empty when nothing is.
+[[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
 
 /// Relative error of closed-form optical depths (worst: rays that graze the top from outside).
 inline constexpr double kClosedFormError = 2e-5;

@@ -26,10 +26,6 @@ struct Options {
   std::optional<int> samples;
 };
 
-std::string FaultOfMaxError(const std::string& text) {
-  return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
-}
-
 void AddInfo(CLI::App& app, Options& options) {
   CLI::App& info = *app.add_subcommand(
       "info", "Say what tables hold, units, ranges, what made them. Checks every texel.");
@@ -62,7 +58,7 @@ void AddEval(CLI::App& app, Options& options) {
           ->check(CLI::Range(kFewestSamples, kMostSamples));
   eval.add_option("--max-error", options.max_error,
                   "Relative error, 1e-8 to 1 or like 0.2%; path-trace: one standard error, 0.5%")
-      ->check(FaultOfMaxError)
+      ->check(FaultOfRelativeError)
       ->excludes(samples);
   eval.footer("Example: skylut eval --cases cases.csv --out results.csv --method integral");
 }

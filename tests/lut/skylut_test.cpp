@@ -70,7 +70,10 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
         "build",
         "build --out t --quality best",
         "build --out t --threads -1",
-        "build --out t --max-error 1%",
+        "build --out t --max-error much",
+        "build --out t --max-error 1% --quality fine",
+        "build --out t --max-error 1% --layout takram",
+        "build --out t --max-error 1% --single-scattering-only",
         "build --out t --layout takram --format dat",
         "build --out t --layout takram --quality fine",
         "build --out t --layout unity",
@@ -164,6 +167,23 @@ TEST_F(Skylut, TablesGiveLightOfAllOrdersUnlessTheyWereLeftOut) {
   const Outcome refused = Run(eval + "r.csv --method table");
   EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.error, HasSubstr("cases.csv:2"));
+}
+
+TEST_F(Skylut, TablesOfAWantedErrorSayWhatWasChosenAndMeasured) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the finest solution takes minutes with sanitizers";
+#endif
+  const Outcome built = Run("build --out tables --max-error 5% --quiet");
+  ASSERT_EQ(built.status, 0) << built.error;
+  for (const char* fact : {"for errors below 5 %: ", "no table: closed form", "sun angles x ",
+                           "Gauss nodes", "sky by day", "aerial perspective", "twilight",
+                           "irradiance of the sky", "99th percentile", "against paths"}) {
+    EXPECT_THAT(built.out, HasSubstr(fact));
+  }
+  EXPECT_THAT(Run("info tables").out, HasSubstr("multiple scattering"));
+  WriteCases();
+  EXPECT_EQ(Run("eval --cases cases.csv --out r.csv --lut tables --method table --quiet").status, 0)
+      << "what has no table is integrated";
 }
 
 TEST_F(Skylut, WithoutAnAtmosphereFileTheEarthIsTaken) {

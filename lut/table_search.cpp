@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "lut/table_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <system_error>
+
+#include "atmosphere/error.h"
+#include "lut/program.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kRayNodes{4, 6, 8, 10, 12, 16, 20, 24, 28, 32};
+constexpr std::array kAltitudes{4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40};
+constexpr std::array kSunAngles{8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80};
+
+// Views that the search did not see are a little worse than those that it did.
+constexpr double kShareForUnseenViews = 0.85;
+// Standard error of path-traced views, at least: a quarter of it costs sixteen times as much.
+constexpr double kLeastNoise = 1e-3;
+// The part of the bound that the nodes along a ray may take.
+constexpr double kShareOfNodes = 0.5;
+
+/// Whether look-ups stay under the bounds, and which kind is furthest off where they do not.
+struct Verdict {
+  double excess = 0.0;  // largest error over its bound
+  ViewKind worst = ViewKind::kSky;
+  double error = 0.0;  // of that kind
+};
+
+/// What an rms may be, by kind.
+using Bounds = std::array<double, kViewKinds.size()>;
+
+Verdict Judge(const JudgedViews& views, const TableLookup& tables, const Bounds& bounds,
+              double enough) {
+  Verdict verdict;
+  // From the last: irradiance is cheap to look up and rules most tables out.
+  for (std::size_t k = kViewKinds.size(); k-- > 0;) {
+    const double error = views.ErrorsOf(tables, kViewKinds[k]).rms;
+    if (error / bounds[k] > verdict.excess) verdict = {error / bounds[k], kViewKinds[k], error};
+    if (verdict.excess > enough) return verdict;
+  }
+  return verdict;
+}
+
+struct Grid {
+  int altitudes, sun_angles, degree;
+  [[nodiscard]] std::size_t Values() const {
+    return static_cast<std::size_t>(altitudes) * static_cast<std::size_t>(sun_angles) *
+           (MomentCount(degree) + 1);
+  }
+};
+
+std::vector<Grid> GridsBySize() {
+  std::vector<Grid> grids;
+  for (int degree = 2; degree <= kMaxDegree; ++degree) {
+    for (const int altitudes : kAltitudes) {
+      for (const int sun_angles : kSunAngles) grids.push_back({altitudes, sun_angles, degree});
+    }
+  }
+  std::stable_sort(grids.begin(), grids.end(),
+                   [](const Grid& a, const Grid& b) { return a.Values() < b.Values(); });
+  return grids;
+}
+
+TableFolder Folder(const Medium& medium, DiffuseLight light, int ray_nodes) {
+  return {.medium = medium,
+          .transmittance = {},
+          .single_scattering = {},
+          .multiple_scattering = std::move(light),
+          .ray_nodes = ray_nodes};
+}
+
+[[noreturn]] void Refuse(double max_error, const std::string& best) {
+  throw InputError(
+      fmt::format("max-error {:g} %: no tables reach it: {}", 100.0 * max_error, best));
+}
+
+/// What the truths leave of the bound. Throws where they leave nothing.
+Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& measured) {
+  Bounds bounds{};
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const double missing = measured[k].paths.Unexplained();
+    const double rest = max_error * max_error - missing * missing;
+    if (rest <= 0.0) {
+      Refuse(max_error, fmt::format("the finest light of all orders is {:.2g} % from path tracing "
+                                    "({})",
+                                    100.0 * missing, NameOf(measured[k].kind)));
+    }
+    bounds[k] = kShareForUnseenViews * std::sqrt(rest);
+  }
+  return bounds;
+}
+
+int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Bounds& bounds,
+                double max_error) {
+  Verdict best;
+  for (const double share : {kShareOfNodes, 1.0}) {
+    for (const int nodes : kRayNodes) {
+      ThrowIfInterrupted();
+      const TableLookup tables(Folder(finest.medium(), finest, nodes));
+      best = Judge(views, tables, bounds, share);
+      if (best.excess <= share) return nodes;
+    }
+  }
+  Refuse(max_error, fmt::format("{} nodes along a ray leave {:.2g} % ({})", kRayNodes.back(),
+                                100.0 * best.error, NameOf(best.worst)));
+}
+
+DiffuseLight SmallestLight(const JudgedViews& views, const DiffuseLight& finest,
+                           const Bounds& bounds, int ray_nodes, double max_error) {
+  Verdict best;
+  for (const Grid& grid : GridsBySize()) {
+    ThrowIfInterrupted();
+    DiffuseLight light = Resampled(finest, grid.altitudes, grid.sun_angles, grid.degree);
+    best = Judge(views, TableLookup(Folder(finest.medium(), light, ray_nodes)), bounds, 1.0);
+    if (best.excess <= 1.0) return light;
+  }
+  Refuse(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
+                                NameOf(best.worst)));
+}
+
+std::string MeasuredText(const TableChoice& choice) {
+  std::string text;
+  for (const auto& [kind, errors, paths] : choice.measured) {
+    text += fmt::format(
+        "  {:<22} rms {:6.3f} %, 99th percentile {:6.3f} %; truth against paths "
+        "{:.3f} % (noise {:.3f} %)\n",
+        NameOf(kind), 100.0 * errors.rms, 100.0 * errors.percentile_99, 100.0 * paths.rms,
+        100.0 * paths.noise);
+  }
+  return text;
+}
+
+void RemoveOld(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error)
+    throw OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+}
+
+}  // namespace
+
+DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles, int degree) {
+  const std::size_t moments = MomentCount(degree);
+  const auto share = [](int i, int n) { return static_cast<double>(i) / (n - 1); };
+  SolvedOrders solved{{}, light.orders(), light.converged()};
+  for (int a = 0; a < altitudes; ++a) {
+    for (int s = 0; s < sun_angles; ++s) {
+      const std::vector<float> all = light.ValuesAt(share(a, altitudes), share(s, sun_angles));
+      const auto bands = static_cast<std::ptrdiff_t>(light.bands());
+      const auto kept = static_cast<std::ptrdiff_t>(moments) * bands;
+      solved.values.insert(solved.values.end(), all.begin(), all.begin() + kept);
+      solved.values.insert(solved.values.end(), all.end() - bands, all.end());
+    }
+  }
+  DiffuseLightOptions options = light.options();
+  options.altitudes = altitudes;
+  options.sun_angles = sun_angles;
+  options.degree = degree;
+  return DiffuseLight(light.medium(), options, std::move(solved));
+}
+
+TableChoice ChooseTables(const Medium& medium, const TableSearch& search) {
+  RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
+  return ChooseTables(FinestDiffuseLight(medium), search);
+}
+
+TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) {
+  RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
+  const Medium& medium = finest.medium();
+  const JudgedViews views(medium, finest, search.views_of_a_kind, 0);
+  TableChoice choice;
+  for (const ViewKind kind : kViewKinds) {
+    choice.measured.push_back(
+        {kind,
+         {},
+         views.HeldAgainstPaths(medium, kind, search.path_traced_views_of_a_kind,
+                                std::max(search.max_error / 4.0, kLeastNoise))});
+  }
+  const Bounds bounds = BoundsOf(search.max_error, choice.measured);
+  const int ray_nodes = FewestNodes(views, finest, bounds, search.max_error);
+  choice.tables =
+      Folder(medium, SmallestLight(views, finest, bounds, ray_nodes, search.max_error), ray_nodes);
+  choice.bytes = choice.tables.multiple_scattering->values().size() * sizeof(float);
+  const TableLookup chosen(choice.tables);
+  for (TableChoice::Measured& measured : choice.measured) {
+    measured.errors = views.ErrorsOf(chosen, measured.kind);
+  }
+  return choice;
+}
+
+std::string ChoiceText(const TableChoice& choice, double max_error) {
+  const DiffuseLightOptions& grid = choice.tables.multiple_scattering->options();
+  return fmt::format(
+             "for errors below {:g} %: {} bytes\n"
+             "  transmittance          no table: closed form\n"
+             "  single scattering      no table: {} Gauss nodes on each smooth piece of a ray\n"
+             "  multiple scattering    {} sun angles x {} altitudes, moments to degree {}\n"
+             "measured, total light of all orders:\n",
+             100.0 * max_error, choice.bytes, choice.tables.ray_nodes, grid.sun_angles,
+             grid.altitudes, grid.degree) +
+         MeasuredText(choice);
+}
+
+void WriteTables(const TableChoice& choice, const fs::path& folder) {
+  MakeFolder(folder);
+  for (const char* file :
+       {kMultipleScatteringFileName, kTransmittanceFileName, kSingleScatteringFileName}) {
+    RemoveOld(folder / file);
+  }
+  WriteTable(
+      folder / kMultipleScatteringFileName, *choice.tables.multiple_scattering,
+      {.ray_nodes = choice.tables.ray_nodes, .transmittance = false, .single_scattering = false});
+}
+
+}  // namespace alpenglow
