@@ -9,6 +9,8 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <cerrno>
 #include <fstream>
@@ -58,6 +60,8 @@ class CheckedStream : public Imf::OStream {
 Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection projection) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  constexpr int kLevel = 2;  // of floats, higher ones save 3 % of the bytes in half as long again
+  header.zipCompressionLevel() = kLevel;
   Imf::addWhiteLuminance(header, 1.0F);
   if (projection == Projection::kLatitudeLongitude) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
   for (const auto& [name, value] : metadata) header.insert(name, Imf::StringAttribute(value));
@@ -90,11 +94,23 @@ Imf::FrameBuffer FrameBufferOf(const Image& image) {
   return buffer;
 }
 
+// OpenEXR compresses blocks of lines in threads of its own: as many as the rest of the program may
+// use. The bytes do not depend on the number.
+int CompressionThreads() {
+  using oneapi::tbb::global_control;
+  const auto threads =
+      static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
+  const int wanted = threads > 1 ? threads : 0;
+  if (Imf::globalThreadCount() != wanted) Imf::setGlobalThreadCount(wanted);
+  return wanted;
+}
+
 void WritePixels(const fs::path& name, const Image& image, const Metadata& metadata,
                  Projection projection) {
   CheckedStream stream(name);
   {
-    Imf::OutputFile file(stream, HeaderOf(image, metadata, projection));
+    const int threads = CompressionThreads();
+    Imf::OutputFile file(stream, HeaderOf(image, metadata, projection), threads);
     file.setFrameBuffer(FrameBufferOf(image));
     file.writePixels(image.height);
   }

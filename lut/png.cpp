@@ -94,6 +94,10 @@ bool Encode(Writer& writer, const DisplayImage& image, png_text* chunks, int chu
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width),
                static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+  // Skies are smooth and dithered: differences to the left neighbour, and no long search for
+  // repetitions, make files of the same size in a quarter of the time.
+  png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  png_set_compression_level(writer.png, 4);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_text(writer.png, writer.info, chunks, chunk_count);
   png_set_rows(writer.png, writer.info, rows);
