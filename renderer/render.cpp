@@ -18,9 +18,11 @@
 #include "lut/multiple_scattering.h"
 #include "lut/night_vision.h"
 #include "lut/program.h"
+#include "renderer/aerial_perspective.h"
 #include "renderer/camera_rays.h"
 #include "renderer/scene_ground.h"
 #include "renderer/surface.h"
+#include "renderer/terrain_sunlight.h"
 
 namespace alpenglow {
 namespace {
@@ -76,11 +78,21 @@ struct Hit {
   double footprint_m = 0.0;  // width of a pixel there
 };
 
-/// The air between the eye and a hit.
-struct Air {
-  BandLight inscatter;  // per unit solar irradiance
-  BandLight transmittance;
-  double distance_m = -1.0;  // of the hit it was computed for
+/// Rays of a pixel that look through the same air, to the same place but for an edge's width.
+struct SharedAir {
+  HitKind kind;
+  double first_distance_m;   // of the ray that began it
+  glm::dvec3 direction_sum;  // of unit vectors
+  double distance_sum_m;
+  int rays;
+  AirAlongRay air{};  // along the mean of their directions, to their mean distance
+
+  [[nodiscard]] bool Takes(const Hit& hit) const {
+    constexpr double kSameDistance = 0.01;
+    if (hit.kind != kind) return false;
+    return hit.kind == HitKind::kSky ||
+           std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
+  }
 };
 
 /// One ray's contribution to a pixel.
@@ -114,18 +126,21 @@ struct SceneRenderer::State {
         ground(LoadGround(scene)),
         air(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
         diffuse(air.medium()),
+        aerial(air, diffuse),
         colour(air.medium().wavelengths_nm) {}
 
   [[nodiscard]] double radius() const { return air.medium().planet_radius_m; }
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
   [[nodiscard]] GroundPoint GroundAt(const glm::dvec3& point, double footprint_m) const;
+  [[nodiscard]] bool HiddenByPlanet(const glm::dvec3& direction, double distance_m) const;
   [[nodiscard]] Hit Trace(const glm::dvec3& direction, double pixel_angle_rad) const;
-  [[nodiscard]] Air AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
-                          int nodes) const;
-  [[nodiscard]] Shaded Shade(const Hit& hit, const Air& through, const glm::dvec3& direction,
-                             const Lighting& light, std::array<double, 2> disk_sample) const;
-  [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const Air& through,
+  [[nodiscard]] AirAlongRay AirAlong(const SharedAir& rays, const Lighting& light,
+                                     const TerrainSunlight& sunlight, int nodes) const;
+  [[nodiscard]] Shaded Shade(const Hit& hit, const AirAlongRay& through,
+                             const glm::dvec3& direction, const Lighting& light,
+                             std::array<double, 2> disk_sample) const;
+  [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
   [[nodiscard]] Lighting LightingAt(const SunPosition& sun, const UtcInstant& instant) const;
 
@@ -133,6 +148,7 @@ struct SceneRenderer::State {
   SceneGround ground;
   AirIntegrator<float> air;
   DiffuseLight diffuse;
+  AerialPerspective aerial;
   BandColour colour;
 };
 
@@ -154,10 +170,26 @@ GroundPoint SceneRenderer::State::GroundAt(const glm::dvec3& point, double footp
           origin.latitude_rad * radius() + point.y, std::max(AltitudeOf(point), 0.0), footprint_m};
 }
 
+// Whether the bare planet stands between the eye and terrain behind its horizon: the ray goes
+// through it, comes out again before the terrain, and no terrain covers the planet there (a ray
+// through a basin below the sphere is in free air).
+bool SceneRenderer::State::HiddenByPlanet(const glm::dvec3& direction, double distance_m) const {
+  if (direction.z >= 0.0) return false;
+  const double deepest_m = -(radius() + ground.eye_height_m) * direction.z;
+  const RayExtent extent = ExtentOf({ground.eye_height_m, direction.z, 1.0, direction.z}, radius(),
+                                    air.medium().atmosphere_height_m);
+  if (extent.end != RayEnd::kGround || 2.0 * deepest_m - extent.end_m > distance_m) return false;
+  const glm::dvec3 inside = glm::dvec3(0.0, 0.0, ground.eye_height_m) + deepest_m * direction;
+  constexpr double kAbove_m = 20000.0;
+  const glm::dvec3 up = UpAt(inside);
+  return !ground.terrain->Intersect(inside + kAbove_m * up, -up);
+}
+
 Hit SceneRenderer::State::Trace(const glm::dvec3& direction, double pixel_angle_rad) const {
   const glm::dvec3 eye(0.0, 0.0, ground.eye_height_m);
   if (ground.terrain) {
-    if (const auto hit = ground.terrain->Intersect(eye, direction)) {
+    const auto hit = ground.terrain->Intersect(eye, direction);
+    if (hit && !HiddenByPlanet(direction, hit->distance_m)) {
       Hit found{HitKind::kTerrain,
                 hit->distance_m,
                 hit->normal,
@@ -181,23 +213,21 @@ Hit SceneRenderer::State::Trace(const glm::dvec3& direction, double pixel_angle_
   return {HitKind::kPlanet, extent.end_m, up, up, up, point, extent.end_m * pixel_angle_rad};
 }
 
-Air SceneRenderer::State::AirTo(const Hit& hit, const glm::dvec3& direction, const Lighting& light,
-                                int nodes) const {
-  const double nu = std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0);
+AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Lighting& light,
+                                           const TerrainSunlight& sunlight, int nodes) const {
+  const glm::dvec3 direction = glm::normalize(rays.direction_sum);
   ViewRay ray{ground.eye_height_m, std::clamp(direction.z, -1.0, 1.0),
-              std::clamp(light.to_sun.z, -1.0, 1.0), nu};
+              std::clamp(light.to_sun.z, -1.0, 1.0),
+              std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)};
   // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
-  if (hit.kind == HitKind::kTerrain) ray.length_m = hit.distance_m;
-  // Short paths are smooth and need fewer nodes.
-  const int needed =
-      hit.kind == HitKind::kTerrain && hit.distance_m < 50e3 ? std::min(nodes, 4) : nodes;
-  const RaySamples<float> samples =
-      air.Sample(ray, {.nodes = needed, .split_ozone = false, .dark_samples = true});
-  return {air.Inscatter(air.Scatter(samples), nu) + diffuse.InscatterAlong(samples, nu),
-          air.TransmittanceAlong(ray), hit.distance_m};
+  if (rays.kind == HitKind::kTerrain) ray.length_m = rays.distance_sum_m / rays.rays;
+  if (!sunlight.IsBroken()) return aerial.Along(ray, {.sky = nodes});
+  const RayExtent extent = ExtentOf(ray, radius(), air.medium().atmosphere_height_m);
+  const SunlitPath path = sunlight.Along({0.0, 0.0, ground.eye_height_m}, direction, extent.end_m);
+  return aerial.Along(ray, path, {.sky = nodes});
 }
 
-BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const Air& through,
+BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                         const Lighting& light) const {
   // Angle from the chord: the arc cosine of a number near 1 has no digits left.
   const double chord = glm::length(direction - light.to_sun);
@@ -207,8 +237,9 @@ BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const Air& 
   return scale * (light.irradiance * through.transmittance);
 }
 
-Shaded SceneRenderer::State::Shade(const Hit& hit, const Air& through, const glm::dvec3& direction,
-                                   const Lighting& light, std::array<double, 2> disk_sample) const {
+Shaded SceneRenderer::State::Shade(const Hit& hit, const AirAlongRay& through,
+                                   const glm::dvec3& direction, const Lighting& light,
+                                   std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.hit = hit;
   shaded.inscatter = light.irradiance * through.inscatter;
@@ -373,11 +404,23 @@ class PixelWriter {
   std::vector<std::string> layers_;
 };
 
-// Rays of one pixel see the same air unless an edge runs through it.
-bool SameAir(const Air& air, const Hit& hit) {
-  if (std::isinf(air.distance_m) || std::isinf(hit.distance_m))
-    return air.distance_m == hit.distance_m;
-  return std::abs(air.distance_m - hit.distance_m) <= 0.01 * air.distance_m;
+/// A ray of a pixel and the air it looks through.
+struct PixelRay {
+  glm::dvec3 direction;
+  Hit hit;
+  std::size_t air;
+};
+
+// Which of the airs of a pixel a ray looks through; makes a new one if none.
+std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, std::vector<SharedAir>& airs) {
+  auto known = std::find_if(airs.begin(), airs.end(),
+                            [&](const SharedAir& shared) { return shared.Takes(hit); });
+  if (known == airs.end())
+    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, glm::dvec3(0.0), 0.0, 0});
+  known->direction_sum += direction;
+  known->distance_sum_m += hit.distance_m;
+  ++known->rays;
+  return static_cast<std::size_t>(known - airs.begin());
 }
 
 void ValidateSettings(const RenderSettings& settings) {
@@ -424,29 +467,33 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
   const CameraRays camera(state_->scene.camera, settings.width, settings.height);
   PixelWriter writer(state_->colour, settings);
   const int grid = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));
+  const TerrainSunlight sunlight(state_->ground, light.to_sun, light.sun_radius_rad);
   tbb::parallel_for(0, settings.height, [&](int y) {
     if (Interrupted()) return;
-    std::vector<Shaded> rays;
+    std::vector<PixelRay> rays;
+    std::vector<SharedAir> airs;
+    std::vector<Shaded> shaded;
     for (int x = 0; x < settings.width; ++x) {
       rays.clear();
-      std::vector<Air> airs;
+      airs.clear();
+      shaded.clear();
       for (int s = 0; s < grid * grid; ++s) {
         const glm::dvec3 direction =
             camera.Direction(x + (s % grid + 0.5) / grid, y + (s / grid + 0.5) / grid);
         const Hit hit = state_->Trace(direction, camera.PixelAngle());
-        auto known =
-            std::find_if(airs.begin(), airs.end(), [&](const Air& a) { return SameAir(a, hit); });
-        if (known == airs.end()) {
-          airs.push_back(state_->AirTo(hit, direction, light, settings.air_nodes));
-          known = airs.end() - 1;
-        }
+        rays.push_back({direction, hit, AirFor(hit, direction, airs)});
+      }
+      for (SharedAir& shared : airs)
+        shared.air = state_->AirAlong(shared, light, sunlight, settings.air_nodes);
+      for (std::size_t s = 0; s < rays.size(); ++s) {
         const auto seed = [&](std::uint32_t dimension) {
           return HashedUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                             2U * static_cast<std::uint32_t>(s) + dimension);
         };
-        rays.push_back(state_->Shade(hit, *known, direction, light, {seed(0), seed(1)}));
+        shaded.push_back(state_->Shade(rays[s].hit, airs[rays[s].air].air, rays[s].direction, light,
+                                       {seed(0), seed(1)}));
       }
-      writer.Write(x, y, rays);
+      writer.Write(x, y, shaded);
     }
   });
   ThrowIfInterrupted();

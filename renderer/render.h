@@ -6,10 +6,9 @@
 // sun stands where refraction shows it: disk, light on the ground and light in the air use the
 // same, apparent direction.
 //
-// Per pixel: rays against the terrain, then single scattering by the fast path and light of higher
-// orders from DiffuseLight along the ray to the hit. Air between the eye and a surface is taken as
-// lit wherever the planet does not shade it: shadows of terrain in the air are not computed by this
-// version.
+// Per pixel: rays against the terrain, then the air along the mean of those that meet the same
+// surface (AerialPerspective): single scattering where terrain and planet let the sun in, light of
+// higher orders everywhere. Terrain behind the planet's own horizon is not seen.
 #pragma once
 
 #include <memory>

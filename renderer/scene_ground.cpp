@@ -6,6 +6,7 @@
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "renderer/built_in_range.h"
+#include "renderer/sun_probes.h"
 
 namespace alpenglow {
 namespace {
@@ -65,7 +66,14 @@ SceneGround LoadGround(const Scene& scene) {
     throw InputError(
         fmt::format("camera.height_m is {:.1f}; the ground there is at {:.1f} m", eye, ground));
   }
-  return {frame, std::move(terrain), eye, std::move(loaded.message)};
+  const bool from_file = scene.terrain.kind == TerrainSource::Kind::kMesh;
+  const bool is_one_surface = !from_file || !terrain || IsOneSurface(*terrain);
+  if (!is_one_surface) {
+    loaded.message = fmt::format(
+        "{}: the mesh has overhangs; sunlight in the air under them is found by occlusion rays",
+        scene.terrain.file.string());
+  }
+  return {frame, std::move(terrain), eye, std::move(loaded.message), is_one_surface};
 }
 
 }  // namespace alpenglow

@@ -15,6 +15,7 @@ struct SceneGround {
   std::optional<Terrain> terrain;  // nothing: the ellipsoid alone
   double eye_height_m;             // over the ellipsoid
   std::string message;             // what loading has to tell, empty if nothing
+  bool is_one_surface;             // no overhangs: see IsOneSurface
 };
 
 /// The ellipsoid that the scene's planet has: WGS84, or a sphere of the medium's radius.
