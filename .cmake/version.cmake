@@ -20,6 +20,9 @@ function(alpenglow_version_header file)
       endif()
     endif()
   endif()
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}" flags)
+  string(REPLACE "\"" "'" flags "${flags}")
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT
 "// Written by alpenglow_version_header.
 #pragma once
@@ -27,6 +30,8 @@ namespace alpenglow::version {
 inline constexpr char kRelease[] = \"@PROJECT_VERSION@\";
 inline constexpr char kGitDescribe[] = \"@describe@\";
 inline constexpr char kCompiler[] = \"@CMAKE_CXX_COMPILER_ID@\";
+inline constexpr char kBuildType[] = \"@CMAKE_BUILD_TYPE@\";
+inline constexpr char kFlags[] = \"@flags@\";
 inline constexpr char kCompilerVersion[] = \"@CMAKE_CXX_COMPILER_VERSION@\";
 }  // namespace alpenglow::version
 ")

@@ -12,6 +12,7 @@
 #include "lut/eval.h"
 #include "lut/lamp_cases.h"
 #include "lut/program.h"
+#include "lut/report_command.h"
 #include "lut/sky_command.h"
 #include "lut/table_folder.h"
 
@@ -114,6 +115,7 @@ int Run(int argc, char** argv) {
   AddCommonOptions(app, "skylut", options.common);
   const Subcommand build = AddBuildCommand(app);
   const Subcommand sky = AddSkyCommand(app);
+  const Subcommand report = AddReportCommand(app);
   AddInfo(app, options);
   AddEval(app, options);
   app.parse_complete_callback([&] { CheckMethod(*app.get_subcommand("eval"), options); });
@@ -124,6 +126,8 @@ int Run(int argc, char** argv) {
     build(options.common);
   } else if (app.got_subcommand("sky")) {
     sky(options.common);
+  } else if (app.got_subcommand("report")) {
+    report(options.common);
   } else if (app.got_subcommand("info")) {
     fmt::print("{}", DescribeTables(options.described));
   } else {

@@ -97,7 +97,7 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
 
 TEST_F(Skylut, HelpAndVersionAreStatus0) {
   EXPECT_THAT(Run("--version").out, testing::StartsWith("skylut of alpenglow "));
-  for (const char* command : {"", "build ", "info ", "eval "}) {
+  for (const char* command : {"", "build ", "info ", "eval ", "report "}) {
     const Outcome help = Run(std::string(command) + "--help");
     EXPECT_EQ(help.status, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage:"));

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "lut/report_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "atmosphere/medium.h"
+#include "lut/report.h"
+
+namespace alpenglow {
+namespace {
+
+struct ReportCommandOptions {
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool quick = false;
+};
+
+void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOptions& common) {
+  std::vector<Medium> mediums;
+  if (options.atmosphere) {
+    mediums.push_back(ReadMedium(*options.atmosphere));
+  } else {
+    mediums = {MediumPreset("earth"), MediumPreset("hazy")};
+    if (options.quick) mediums.pop_back();
+  }
+  const Report report = MeasureReport(
+      {.mediums = mediums, .quick = options.quick, .progress = common.progress_style()});
+  WriteReport(report, options.out);
+  if (!common.quiet) fmt::print("{}", SummaryOf(report));
+}
+
+}  // namespace
+
+Subcommand AddReportCommand(CLI::App& app) {
+  const auto options = std::make_shared<ReportCommandOptions>();
+  CLI::App& report = *app.add_subcommand(
+      "report",
+      "Measure every method against the judges, error against time and memory, by day, at sunset "
+      "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
+  report.add_option("--out", options->out, "Folder for the report; made when missing")->required();
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML); without it the presets earth and hazy");
+  report.add_flag("--quick", options->quick,
+                  "Few rays and methods, one atmosphere: a test of the report, not of the methods");
+  report.footer("Example: skylut report --out report");
+  return [options](const CommonOptions& common) { WriteMeasuredReport(*options, common); };
+}
+
+}  // namespace alpenglow

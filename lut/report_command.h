@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// `skylut report`: speed against error, into a folder.
+#pragma once
+
+#include "lut/command_line.h"
+
+namespace alpenglow {
+
+/// Adds the subcommand; what runs it once the whole command line is parsed.
+[[nodiscard]] Subcommand AddReportCommand(CLI::App& app);
+
+}  // namespace alpenglow
