@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "atmosphere/embedded_table.h"
@@ -34,17 +35,14 @@ double TopOfMixingLayer(std::string_view name) {
 void AddPhases(std::vector<Mixture>& mixtures) {
   const std::vector<std::string> names = atmosphere::ReadTextColumn(kPhaseFile, 0);
   const auto columns = atmosphere::ReadColumns(kPhaseFile, {1, 2, 3});
-  for (std::size_t row = 0; row < names.size(); ++row) {
-    const auto mixture = std::find_if(mixtures.begin(), mixtures.end(),
-                                      [&](const Mixture& m) { return m.name == names[row]; });
-    ALPENGLOW_ENSURE(mixture != mixtures.end(), ==, true);
-    SpectralPhase& phase = mixture->phase;
-    if (phase.wavelength_nm.empty() || phase.wavelength_nm.back() != columns[0][row]) {
-      phase.wavelength_nm.push_back(columns[0][row]);
-      phase.per_sr.emplace_back();
-    }
-    if (phase.per_sr.size() == 1) phase.angle_deg.push_back(columns[1][row]);
-    phase.per_sr.back().push_back(columns[2][row]);
+  for (Mixture& mixture : mixtures) {
+    const auto begin = std::find(names.begin(), names.end(), mixture.name) - names.begin();
+    const auto count = static_cast<std::size_t>(
+        std::count(names.begin(), names.end(), mixture.name));  // rows of a mixture are neighbours
+    const auto rows = [&](std::size_t column) {
+      return std::span(columns[column]).subspan(static_cast<std::size_t>(begin), count);
+    };
+    mixture.phase = SpectralPhaseFromRows(rows(0), rows(1), rows(2));
   }
 }
 

@@ -8,11 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/embedded_table.h"
 #include "atmosphere/error.h"
 #include "atmosphere/medium.h"
 #include "atmosphere/ozone_column.h"
+#include "atmosphere/phase_table.h"
 #include "atmosphere/spectrum.h"
 
 namespace alpenglow {
@@ -99,15 +102,25 @@ double RayleighScatteringOnMars(double wavelength_nm) {
   return kMolecules_per_m3 * cross_section_m2;
 }
 
-// Mars on a clear day of its dusty season: dust of optical depth 0.5, grey, mixed with the gas.
+struct MarsDust {
+  SampledFunction relative_extinction, albedo;
+  SpectralPhase phase;
+};
+
+// Made, with sources, by tests/bench/mars_dust.cpp.
+MarsDust ReadMarsDust() {
+  const auto optics = atmosphere::ReadColumns("atmosphere/data/mars_dust.csv", {0, 1, 2});
+  const auto rows = atmosphere::ReadColumns("atmosphere/data/mars_dust_phase.csv", {0, 1, 2});
+  return {SampledFunction(optics[0], optics[1]), SampledFunction(optics[0], optics[2]),
+          SpectralPhaseFromRows(rows[0], rows[1], rows[2])};
+}
+
+// Mars on a clear day of its dusty season: dust of optical depth 0.5, mixed with the gas.
 Medium Mars(const std::vector<double>& wavelengths_nm) {
   constexpr double kDistance_au = 1.524;      // semi-major axis of the orbit
   constexpr double kDustOpticalDepth = 0.5;   // Smith et al. (1997), Science 278, 1758-1765
   constexpr double kScaleHeight_m = 11000.0;  // R T / M g at 210 K; the dust is well mixed
-  // Ferric iron takes the blue: representative of what the Pathfinder camera showed (Tomasko et al.
-  // 1999, J. Geophys. Res. 104, 8987-9007; Markiewicz et al. 1999, ibid. 9009-9018), within 0.03.
-  const SampledFunction dust_albedo({440.0, 480.0, 530.0, 600.0, 670.0, 830.0},
-                                    {0.76, 0.80, 0.87, 0.94, 0.97, 0.97});
+  static const MarsDust dust = ReadMarsDust();
   // Bright, dusty ground (Bell et al. 1999, Icarus 138, 25-35), rounded to 0.02.
   const SampledFunction ground({400.0, 500.0, 600.0, 700.0, 800.0}, {0.06, 0.08, 0.20, 0.28, 0.30});
   Medium medium;
@@ -123,15 +136,16 @@ Medium Mars(const std::vector<double>& wavelengths_nm) {
   medium.rayleigh_scattering_per_m = Evaluate(wavelengths_nm, RayleighScatteringOnMars);
   medium.rayleigh_scale_height_m = kScaleHeight_m;
   medium.mie_scale_height_m = kScaleHeight_m;
-  constexpr double kExtinction_per_m = kDustOpticalDepth / kScaleHeight_m;
-  medium.mie_extinction_per_m.assign(wavelengths_nm.size(), kExtinction_per_m);
-  medium.mie_scattering_per_m = Evaluate(wavelengths_nm, [&](double wavelength_nm) {
-    return kExtinction_per_m * dust_albedo(wavelength_nm);
-  });
-  // Lobes of the dust seen from Gale crater, rounded: Chen-Chen, Perez-Hoyos and Sanchez-Lavega
-  // (2019), Icarus 330, 16-29. Mean cosine 0.68.
-  medium.mie_phase = {
-      {.kind = PhaseKind::kDoubleHenyeyGreenstein, .g = 0.89, .g_back = 0.09, .back_weight = 0.26}};
+  medium.mie_phase.clear();
+  for (const double wavelength_nm : wavelengths_nm) {
+    const double extinction =
+        kDustOpticalDepth / kScaleHeight_m * dust.relative_extinction(wavelength_nm);
+    medium.mie_extinction_per_m.push_back(extinction);
+    medium.mie_scattering_per_m.push_back(extinction * dust.albedo(wavelength_nm));
+    medium.mie_phase.push_back(
+        {.kind = PhaseKind::kTable,
+         .table = std::make_shared<const PhaseTable>(dust.phase.At(wavelength_nm))});
+  }
   medium.ozone_absorption_per_m.assign(wavelengths_nm.size(), 0.0);
   return medium;
 }

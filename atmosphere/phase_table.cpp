@@ -156,6 +156,21 @@ std::uint64_t PhaseTable::hash() const {
   return fnv.hash();
 }
 
+SpectralPhase SpectralPhaseFromRows(std::span<const double> wavelength_nm,
+                                    std::span<const double> angle_deg,
+                                    std::span<const double> per_sr) {
+  SpectralPhase phase;
+  for (std::size_t row = 0; row < per_sr.size(); ++row) {
+    if (phase.wavelength_nm.empty() || phase.wavelength_nm.back() != wavelength_nm[row]) {
+      phase.wavelength_nm.push_back(wavelength_nm[row]);
+      phase.per_sr.emplace_back();
+    }
+    if (phase.per_sr.size() == 1) phase.angle_deg.push_back(angle_deg[row]);
+    phase.per_sr.back().push_back(per_sr[row]);
+  }
+  return phase;
+}
+
 PhaseTable SpectralPhase::At(double wavelength) const {
   const auto above = std::upper_bound(wavelength_nm.begin(), wavelength_nm.end(), wavelength);
   const auto high = static_cast<std::size_t>(above - wavelength_nm.begin());

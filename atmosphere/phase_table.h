@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,11 @@ struct SpectralPhase {
   /// normalised is normalised; the end's beyond the ends.
   [[nodiscard]] PhaseTable At(double wavelength_nm) const;
 };
+
+/// From rows of a table, wavelength by wavelength, each with the same angles in the same order.
+[[nodiscard]] SpectralPhase SpectralPhaseFromRows(std::span<const double> wavelength_nm,
+                                                  std::span<const double> angle_deg,
+                                                  std::span<const double> per_sr);
 
 /// Reads a CSV with the columns wavelength_nm, angle_deg, phase_per_sr in any order and no others;
 /// lines of '#' are passed over. Every wavelength must have the same angles. Throws InputError
