@@ -101,9 +101,9 @@ Subcommand AddBuildCommand(CLI::App& app) {
       build
           .add_option(
               "--quality", options->quality,
-              "preview (128x32; 8x24x64x16; 28x14), standard (256x64; 8x32x128x32; 40x20) or "
-              "fine (512x128; 16x48x192x48; 64x32): sizes of transmittance mu x r; single "
-              "scattering nu x mu_s x mu x r; multiple scattering mu_s x altitudes")
+              "preview (128x32; 6x16x32x24; 28x14), standard (256x64; 8x32x64x48; 40x20) or "
+              "fine (512x128; 10x48x96x64; 64x32): sizes of transmittance mu x r; single "
+              "scattering azimuth x mu_s x mu x r; multiple scattering mu_s x altitudes")
           ->check(CLI::IsMember({"preview", "standard", "fine"}))
           ->capture_default_str();
   CLI::Option* max_error =

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "lut/cubic_taps.h"
 #include "lut/program.h"
 #include "lut/scattering_map.h"
 #include "lut/table_size.h"
@@ -44,6 +46,16 @@ double RequireLowestSun(const Medium& medium, const std::optional<double>& lowes
 
 constexpr double kNoLength_km = 1e-9;
 
+// The axis of the sun in the azimuth table: mu_s = centre + width sinh, dense at the terminator.
+constexpr double kSunCentre = -0.05;
+constexpr double kSunWidth = 0.04;
+
+double StretchedSun(double mu_s) { return std::asinh((mu_s - kSunCentre) / kSunWidth); }
+
+// Fourth root and fourth power.
+float Root(float value) { return std::sqrt(std::sqrt(std::max(value, 0.0F))); }
+float Power(float root) { return root * root * (root * root); }
+
 double UnitOf(std::size_t index, std::size_t texels) {
   return static_cast<double>(index) / static_cast<double>(texels - 1);
 }
@@ -61,6 +73,7 @@ ScatteringTable::ScatteringTable(const Medium& medium, const ScatteringTableOpti
     : air_(medium),
       size_(options.size),
       lowest_mu_s_(RequireLowestSun(medium, options.lowest_mu_s)),
+      axes_(options.axes),
       radius_km_(medium.planet_radius_m / kMetresPerKilometre),
       top_km_(medium.atmosphere_height_m / kMetresPerKilometre),
       texels_(RequireSize(medium, options.size)) {
@@ -77,6 +90,7 @@ ScatteringTable::ScatteringTable(const Medium& medium, const ScatteringTableOpti
     : air_(medium),
       size_(options.size),
       lowest_mu_s_(RequireLowestSun(medium, options.lowest_mu_s)),
+      axes_(options.axes),
       radius_km_(medium.planet_radius_m / kMetresPerKilometre),
       top_km_(medium.atmosphere_height_m / kMetresPerKilometre),
       texels_(std::move(texels)) {
@@ -107,7 +121,14 @@ ViewRay ScatteringTable::RayOfTexel(std::size_t nu, std::size_t mu_s, std::size_
       ground ? std::min(GroundCosineFromUnit<double>(unit, h, radius_km_), horizon - kHorizonMargin)
              : std::max(SkyCosineFromUnit<double>(unit, h, top_km_, radius_km_),
                         horizon + (h > 0.0 ? kHorizonMargin : 0.0));
-  ray.mu_s = SunCosineFromUnit<double>(UnitOf(mu_s, size_.mu_s), lowest_mu_s_, top_km_, radius_km_);
+  ray.mu_s = SunCosineOfTexel(mu_s);
+  if (axes_ == ScatteringAxes::kAzimuth) {
+    const double sines = std::sqrt(
+        std::max((1.0 - ray.mu) * (1.0 + ray.mu) * (1.0 - ray.mu_s) * (1.0 + ray.mu_s), 0.0));
+    ray.nu =
+        std::clamp(ray.mu * ray.mu_s + sines * std::cos(kPi * UnitOf(nu, size_.nu)), -1.0, 1.0);
+    return ray;
+  }
   ray.nu = std::clamp(PossibleScatteringCosine<double>(
                           ScatteringCosineFromUnit<double>(UnitOf(nu, size_.nu)), ray.mu, ray.mu_s),
                       -1.0, 1.0);
@@ -125,72 +146,133 @@ void ScatteringTable::FillRow(std::size_t row) {
       float* texel = &texels_[IndexOf(nu, mu_s, mu, altitude)];
       std::copy_n(light.rayleigh.value.begin(), bands, texel);
       std::copy_n(light.mie.value.begin(), bands, texel + bands);
+      if (axes_ == ScatteringAxes::kAzimuth) {
+        std::transform(texel, texel + 2 * bands, texel, Root);
+      }
     }
   }
 }
 
-ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu) const {
+double ScatteringTable::SunCosineOfTexel(std::size_t mu_s) const {
+  const double unit = UnitOf(mu_s, size_.mu_s);
+  if (axes_ == ScatteringAxes::kBruneton) {
+    return shared::SunCosineFromUnit<double>(unit, lowest_mu_s_, top_km_, radius_km_);
+  }
+  const double low = StretchedSun(lowest_mu_s_), high = StretchedSun(1.0);
+  return std::clamp(kSunCentre + kSunWidth * std::sinh(low + (high - low) * unit), -1.0, 1.0);
+}
+
+ScatteringTable::AxisTaps ScatteringTable::SunTaps(double mu_s) const {
+  if (axes_ == ScatteringAxes::kBruneton) {
+    const auto at = AxisPosition::FromUnit(
+        shared::UnitFromSunCosine<double>(mu_s, lowest_mu_s_, top_km_, radius_km_), size_.mu_s);
+    return {{at.low, at.low + 1}, {at.Weight(0), at.Weight(1)}};
+  }
+  const double low = StretchedSun(lowest_mu_s_), high = StretchedSun(1.0);
+  const CubicTaps taps =
+      TapsAt((StretchedSun(mu_s) - low) / (high - low), static_cast<int>(size_.mu_s));
+  return {taps.node, taps.weight};
+}
+
+ScatteringTable::AxisTaps ScatteringTable::AngleTaps(const Start& start, double nu) const {
+  if (axes_ == ScatteringAxes::kBruneton) {
+    const auto at = AxisPosition::FromUnit(shared::UnitFromScatteringCosine<double>(nu), size_.nu);
+    return {{at.low, at.low + 1}, {at.Weight(0), at.Weight(1)}};
+  }
+  const double sines = std::sqrt(
+      std::max((1.0 - start.mu) * (1.0 + start.mu) * (1.0 - start.mu_s) * (1.0 + start.mu_s), 0.0));
+  // Where the azimuth is undefined every texel holds the same.
+  const double cosine =
+      sines > 0.0 ? std::clamp((nu - start.mu * start.mu_s) / sines, -1.0, 1.0) : 1.0;
+  const auto at = AxisPosition::FromUnit(std::acos(cosine) / kPi, size_.nu);
+  AxisTaps taps{{}, CatmullRom(at.fraction)};
+  // Beyond both ends light is its own mirror image.
+  const std::size_t last = size_.nu - 1;
+  taps.node = {at.low == 0 ? 1 : at.low - 1, at.low, at.low + 1,
+               at.low + 2 > last ? last - 1 : at.low + 2};
+  return taps;
+}
+
+double ScatteringTable::LengthOf(bool ground, double altitude_km, double mu_unit) const {
+  using namespace shared;
+  return ground ? altitude_km +
+                      mu_unit * (HorizonDistance<double>(altitude_km, radius_km_) - altitude_km)
+                : top_km_ - altitude_km +
+                      mu_unit * SkyDistanceRange<double>(altitude_km, top_km_, radius_km_);
+}
+
+ScatteringTable::PlaneTaps ScatteringTable::TapsByLength(const Start& start) const {
   using namespace shared;
   // Each half of the mu axis is an axis of its own; the lower one runs backwards.
   const std::size_t half = size_.mu / 2;
   const double mu_unit =
       start.ground ? UnitFromGroundCosine<double>(start.altitude_km, start.mu, radius_km_)
                    : UnitFromSkyCosine<double>(start.altitude_km, start.mu, top_km_, radius_km_);
-  const auto r = AxisPosition::FromUnit(
-      UnitFromAltitude<double>(start.altitude_km, top_km_, radius_km_), size_.altitudes);
+  const double r_unit = UnitFromAltitude<double>(start.altitude_km, top_km_, radius_km_);
+  const auto linear = AxisPosition::FromUnit(r_unit, size_.altitudes);
   const auto m = AxisPosition::FromUnit(mu_unit, half);
-  const auto v = AxisPosition::FromUnit(UnitFromScatteringCosine<double>(nu), size_.nu);
-  const auto s = AxisPosition::FromUnit(
-      UnitFromSunCosine<double>(start.mu_s, lowest_mu_s_, top_km_, radius_km_), size_.mu_s);
-
-  const LengthWeights lengths = WeightsByLength(start, mu_unit, r, m);
-  const std::size_t bands = air_.bands();
-  ScatteredOnce<float> light{Bands<float>(bands), Bands<float>(bands)};
-  for (unsigned corner = 0; corner < 16; ++corner) {
-    const std::size_t up_s = corner & 1U, up_v = corner >> 1U & 1U;
-    const std::size_t up_m = corner >> 2U & 1U, up_r = corner >> 3U & 1U;
-    const float weight = s.Weight(up_s) * v.Weight(up_v) * lengths[up_r][up_m];
-    const std::size_t mu = start.ground ? half - 1 - (m.low + up_m) : half + m.low + up_m;
-    const float* texel = &texels_[IndexOf(v.low + up_v, s.low + up_s, mu, r.low + up_r)];
-    for (std::size_t band = 0; band < bands; ++band) {
-      light.rayleigh[band] += weight * texel[band];
-      light.mie[band] += weight * texel[bands + band];
+  AxisTaps r{{linear.low, linear.low + 1}, {linear.Weight(0), linear.Weight(1)}};
+  // Where neighbours have no length (rays to the ground from the ground, and on the top) there is
+  // nothing to bend the line by.
+  if (axes_ == ScatteringAxes::kAzimuth && !start.ground && linear.low + 3 < size_.altitudes) {
+    const CubicTaps taps = TapsAt(r_unit, static_cast<int>(size_.altitudes));
+    r = {taps.node, taps.weight};
+  }
+  const double here = LengthOf(start.ground, start.altitude_km, mu_unit);
+  PlaneTaps taps{};
+  for (std::size_t up_m = 0; up_m < 2; ++up_m) {
+    const double x = UnitOf(m.low + up_m, half);
+    std::array<double, 4> there{};
+    float known = 0.0F;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (r.weight[k] == 0.0F) continue;
+      const double h =
+          AltitudeFromUnit<double>(UnitOf(r.node[k], size_.altitudes), top_km_, radius_km_);
+      there[k] = LengthOf(start.ground, h, x);
+      if (there[k] > kNoLength_km) known += r.weight[k];
+    }
+    // A texel of length 0 holds 0 and knows nothing: its neighbours in altitude speak for it.
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (r.weight[k] == 0.0F || there[k] <= kNoLength_km) continue;
+      const auto longer = static_cast<float>(here / there[k]);
+      taps[4 * up_m + k] = {start.ground ? half - 1 - (m.low + up_m) : half + m.low + up_m,
+                            r.node[k],
+                            m.Weight(up_m) * r.weight[k] / known *
+                                (axes_ == ScatteringAxes::kAzimuth ? Root(longer) : longer)};
     }
   }
-  // Where a long ray speaks for a longer one, the sum may pass what light there is.
-  for (std::size_t band = 0; band < bands; ++band) {
-    light.rayleigh[band] = std::min(light.rayleigh[band], 1.0F);
-    light.mie[band] = std::min(light.mie[band], 1.0F);
-  }
-  return light;
+  return taps;
 }
 
-ScatteringTable::LengthWeights ScatteringTable::WeightsByLength(const Start& start, double mu_unit,
-                                                                const AxisPosition& r,
-                                                                const AxisPosition& m) const {
-  using namespace shared;
-  const auto length = [&](double h, double x) {
-    return start.ground ? h + x * (HorizonDistance<double>(h, radius_km_) - h)
-                        : top_km_ - h + x * SkyDistanceRange<double>(h, top_km_, radius_km_);
-  };
-  const double here = length(start.altitude_km, mu_unit);
-  LengthWeights weights{};
-  for (const std::size_t up_m : {0U, 1U}) {
-    const double x = UnitOf(m.low + up_m, size_.mu / 2);
-    std::array<double, 2> there{};
-    for (const std::size_t up_r : {0U, 1U}) {
-      there[up_r] = length(
-          AltitudeFromUnit<double>(UnitOf(r.low + up_r, size_.altitudes), top_km_, radius_km_), x);
-    }
-    // A texel of length 0 holds 0 and knows nothing: its neighbour in altitude speaks for both.
-    for (const std::size_t up_r : {0U, 1U}) {
-      const float share = there[1 - up_r] > kNoLength_km ? r.Weight(up_r) : 1.0F;
-      weights[up_r][up_m] = there[up_r] > kNoLength_km
-                                ? m.Weight(up_m) * share * static_cast<float>(here / there[up_r])
-                                : 0.0F;
+ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu) const {
+  const AxisTaps s = SunTaps(start.mu_s);
+  const AxisTaps v = AngleTaps(start, nu);
+  const std::size_t bands = air_.bands();
+  std::array<float, 2 * kMaxBands> sum{};
+  for (const PlaneTap& plane : TapsByLength(start)) {
+    if (plane.weight == 0.0F) continue;
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (v.weight[j] == 0.0F) continue;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const float weight = plane.weight * v.weight[j] * s.weight[i];
+        if (weight == 0.0F) continue;
+        const float* texel = &texels_[IndexOf(v.node[j], s.node[i], plane.mu, plane.altitude)];
+        for (std::size_t c = 0; c < 2 * bands; ++c) sum[c] += weight * texel[c];
+      }
     }
   }
-  return weights;
+  // Where a long ray speaks for a longer one, the sum may pass what light there is; between dark
+  // texels and bright ones a cubic may pass below 0.
+  ScatteredOnce<float> light{Bands<float>(bands), Bands<float>(bands)};
+  const auto value = [&](float stored) {
+    const float positive = std::max(stored, 0.0F);
+    return std::min(axes_ == ScatteringAxes::kAzimuth ? Power(positive) : positive, 1.0F);
+  };
+  for (std::size_t band = 0; band < bands; ++band) {
+    light.rayleigh[band] = value(sum[band]);
+    light.mie[band] = value(sum[bands + band]);
+  }
+  return light;
 }
 
 ScatteringTable::Start ScatteringTable::StartAt(const ViewRay& ray, double distance_m,

@@ -45,6 +45,21 @@ const Kind kSingleScattering{
     kScatteringMapVersion,
     {"rayleigh", "mie"}};
 
+const Kind kSingleScatteringByAzimuth{
+    kSingleScattering.name,
+    "fourth root of sunlight scattered once along the ray, per unit solar irradiance, without "
+    "phase functions",
+    "1",
+    "mu_s azimuth mu r",
+    "column = azimuth (towards the sun first) * n(mu_s) + mu_s, row = r * n(mu) + mu (lower half "
+    "hits the ground)",
+    kScatteringMapVersion,
+    {"rayleigh", "mie"}};
+
+const Kind& KindOf(ScatteringAxes axes) {
+  return axes == ScatteringAxes::kAzimuth ? kSingleScatteringByAzimuth : kSingleScattering;
+}
+
 /// Moments up to a degree, then the irradiance from above.
 Kind MultipleScattering(int degree) {
   Kind kind{"multiple scattering",
@@ -229,15 +244,19 @@ TransmittanceTable TransmittanceTableOf(const TableImageReader& image,
 
 ScatteringTable ScatteringTableOf(const TableImageReader& image,
                                   const std::optional<std::uint64_t>& medium_hash) {
-  RequireKind(image, kSingleScattering);
+  ScatteringTableOptions options;
+  if (image.Attribute("alpenglow.axes") == kSingleScatteringByAzimuth.axes) {
+    options.axes = ScatteringAxes::kAzimuth;
+  }
+  const Kind& kind = KindOf(options.axes);
+  RequireKind(image, kind);
   const Medium medium = MediumOf(image);
   RequireMedium(image, medium, medium_hash);
   const std::vector<std::size_t> sizes = SizesOf(image, 4);
   RequireWindow(image, sizes[0] * sizes[1], sizes[2] * sizes[3]);
-  ScatteringTableOptions options;
   options.size = {.nu = sizes[1], .mu_s = sizes[0], .mu = sizes[2], .altitudes = sizes[3]};
   options.lowest_mu_s = NumberOf(image, "alpenglow.lowestMuS");
-  std::vector<float> values = CheckedValues(image, kSingleScattering, medium);
+  std::vector<float> values = CheckedValues(image, kind, medium);
   return NamingTheFile(image.file(),
                        [&] { return ScatteringTable(medium, options, std::move(values)); });
 }
@@ -344,12 +363,13 @@ void WriteTable(const fs::path& file, const TransmittanceTable& table) {
 
 void WriteTable(const fs::path& file, const ScatteringTable& table) {
   const ScatteringTableSize& size = table.size();
-  TextAttributes attributes = AttributesOf(kSingleScattering, table.medium(),
-                                           {size.mu_s, size.nu, size.mu, size.altitudes});
+  const Kind& kind = KindOf(table.axes());
+  TextAttributes attributes =
+      AttributesOf(kind, table.medium(), {size.mu_s, size.nu, size.mu, size.altitudes});
   attributes["alpenglow.lowestMuS"] = fmt::format("{}", table.lowest_mu_s());
-  WriteTableImage(file, {size.nu * size.mu_s, size.mu * size.altitudes,
-                         ChannelNames(kSingleScattering, table.medium()), table.texels(),
-                         std::move(attributes)});
+  WriteTableImage(
+      file, {size.nu * size.mu_s, size.mu * size.altitudes, ChannelNames(kind, table.medium()),
+             table.texels(), std::move(attributes)});
 }
 
 void WriteTable(const fs::path& file, const DiffuseLight& light, const FolderUse& use) {
@@ -402,7 +422,7 @@ TableDescription DescribeTable(const fs::path& file) {
     describe(kTransmittance, table.medium(), table.texels());
   } else if (description.kind == kSingleScattering.name) {
     const ScatteringTable table = ScatteringTableOf(image, {});
-    describe(kSingleScattering, table.medium(), table.texels());
+    describe(KindOf(table.axes()), table.medium(), table.texels());
   } else if (description.kind == MultipleScattering(0).name) {
     const DiffuseLight light = DiffuseLightOf(image, {}).light;
     describe(MultipleScattering(light.options().degree), light.medium(), light.values());

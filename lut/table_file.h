@@ -4,6 +4,8 @@
 //   transmittance       T.0450nm ...                            columns mu, rows r
 //   single scattering   rayleigh.0450nm ..., mie.0450nm ...     columns nu * n(mu_s) + mu_s,
 //                                                               rows r * n(mu) + mu
+//                                                               or mu_s nu as mu_s azimuth: see
+//                                                               ScatteringAxes
 //   multiple scattering L00.0450nm, L10 ..., E.0450nm ...       columns mu_s, rows h
 //
 // 32-bit floats, ZIP, first row = ground. Text attributes alpenglow.*: kind, quantity, units, axes,

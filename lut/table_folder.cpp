@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 TableQuality TableQualityFromName(std::string_view name) {
   if (name == "preview") {
     return {{.mu = 128, .altitudes = 32},
-            {.nu = 8, .mu_s = 24, .mu = 64, .altitudes = 16},
+            {.nu = 6, .mu_s = 16, .mu = 32, .altitudes = 24},
             {.altitudes = 14,
              .sun_angles = 28,
              .degree = 2,
@@ -21,10 +21,12 @@ TableQuality TableQualityFromName(std::string_view name) {
              .ray_nodes = 8},
             8};
   }
-  if (name == "standard") return {};
+  if (name == "standard") {
+    return {{}, {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48}, {}, 12};
+  }
   if (name == "fine") {
     return {{.mu = 512, .altitudes = 128},
-            {.nu = 16, .mu_s = 48, .mu = 192, .altitudes = 48},
+            {.nu = 10, .mu_s = 48, .mu = 96, .altitudes = 64},
             {.altitudes = 32,
              .sun_angles = 64,
              .degree = 6,
@@ -53,9 +55,11 @@ void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOr
   fs::remove(folder / kMultipleScatteringFileName, error);
   WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, quality.transmittance));
   Progress progress("single scattering", ScatteringTable::Rows(quality.single_scattering), style);
-  WriteTable(
-      folder / kSingleScatteringFileName,
-      ScatteringTable(medium, {.size = quality.single_scattering, .lowest_mu_s = {}}, &progress));
+  WriteTable(folder / kSingleScatteringFileName, ScatteringTable(medium,
+                                                                 {.size = quality.single_scattering,
+                                                                  .lowest_mu_s = {},
+                                                                  .axes = ScatteringAxes::kAzimuth},
+                                                                 &progress));
   if (orders == TableOrders::kSingleOnly) return;
   WriteTable(folder / kMultipleScatteringFileName,
              DiffuseLight(medium, quality.multiple_scattering), {.ray_nodes = quality.ray_nodes});

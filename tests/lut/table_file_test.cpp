@@ -121,6 +121,19 @@ TEST_F(TableFile, SingleScatteringComesBackBitForBit) {
   EXPECT_EQ(back.Lookup(ray).rayleigh[1], Scattering().Lookup(ray).rayleigh[1]);
 }
 
+TEST_F(TableFile, SingleScatteringByAzimuthComesBackWithItsAxes) {
+  const ScatteringTable table(MediumPreset("bruneton2017"),
+                              {.size = {.nu = 3, .mu_s = 4, .mu = 8, .altitudes = 5},
+                               .lowest_mu_s = {},
+                               .axes = ScatteringAxes::kAzimuth});
+  const fs::path file = folder_ / "scattering.exr";
+  WriteTable(file, table);
+  const ScatteringTable back = ReadScatteringTable(file);
+  EXPECT_EQ(back.axes(), ScatteringAxes::kAzimuth);
+  EXPECT_EQ(back.texels(), table.texels());
+  EXPECT_THAT(DescriptionText(file, DescribeTable(file)), HasSubstr("mu_s azimuth mu r"));
+}
+
 const DiffuseLight& Light() {
   static const DiffuseLight light(MediumPreset("bruneton2017"), {.altitudes = 5,
                                                                  .sun_angles = 6,
