@@ -26,7 +26,14 @@ struct DiffuseFan::Line {
 };
 
 DiffuseFan::DiffuseFan(const DiffuseLight& light)
-    : light_(light), chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)) {
+    : light_(light),
+      stride_((light.bands() + kLanes - 1) / kLanes * kLanes),
+      chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)) {
+  if (const std::size_t bands = light.bands(); stride_ != bands) {
+    padded_.resize(light.values().size() / bands * stride_);
+    for (std::size_t i = 0; i < light.values().size(); ++i)
+      padded_[i / bands * stride_ + i % bands] = light.values()[i];
+  }
   for (int i = 0; i <= kTableCells; ++i) {
     const double mu_s = 2.0 * i / kTableCells - 1.0;
     position_of_mu_s_.push_back(
@@ -34,20 +41,22 @@ DiffuseFan::DiffuseFan(const DiffuseLight& light)
   }
 }
 
+const float* DiffuseFan::Values() const {
+  return padded_.empty() ? light_.values().data() : padded_.data();
+}
+
 // Four bands. Where the medium has fewer left, lanes are filled with its last band.
-void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::size_t lanes,
-                          std::span<float> light) const {
+void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
   const Medium& medium = light_.medium();
   const DiffuseLightOptions& options = light_.options();
   const RaySamples<float>& samples = line.samples;
   const std::size_t bands = light_.bands();
-  const std::size_t node_floats = light_.channels() * bands;
+  const std::size_t node_floats = light_.channels() * stride_;
   const auto suns = static_cast<std::size_t>(options.sun_angles);
   const auto orders = static_cast<std::size_t>(options.degree) + 1;
   const double top_km = medium.atmosphere_height_m / kMetresPerKilometre;
   const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
   std::vector<float> rows((suns + 2) * orders * kLanes);
-  std::vector<float> copies;
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float* position = &line.position[s * line.directions];
     const auto [least, most] = std::minmax_element(position, position + line.directions);
@@ -59,7 +68,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::size_t 
     std::array<float, kMaxMoments * kLanes> factors;
     const Moments legendre = LegendreTerms(options.degree, samples.mu[s]);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t band = first_band + std::min(lane, lanes - 1);
+      const std::size_t band = std::min(first_band + lane, bands - 1);
       const auto per_km = [band](const std::vector<double>& per_m) {
         return static_cast<float>(per_m[band] * kMetresPerKilometre);
       };
@@ -86,31 +95,15 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::size_t 
     FanContraction contraction{};
     contraction.suns = static_cast<std::size_t>(high - low + 1);
     contraction.sun_stride = node_floats;
-    contraction.moment_stride = bands;
+    contraction.moment_stride = stride_;
     contraction.degree = options.degree;
     contraction.factors = factors.data();
     contraction.rows = &rows[orders * kLanes];
     for (std::size_t a = 0; a < 4; ++a) {
       contraction.weights[a] = taps.weight[a];
-      contraction.nodes[a] =
-          &light_.values()[(taps.node[a] * suns + static_cast<std::size_t>(low)) * node_floats +
-                           first_band];
-    }
-    if (lanes < kLanes) {  // four floats a moment, of which the medium has not as many
-      const std::size_t moments = light_.moments();
-      copies.resize(4 * contraction.suns * moments * kLanes);
-      for (std::size_t a = 0; a < 4; ++a) {
-        float* copy = &copies[a * contraction.suns * moments * kLanes];
-        for (std::size_t i = 0; i < contraction.suns * moments * kLanes; ++i) {
-          const std::size_t lane = std::min(i % kLanes, lanes - 1);
-          const std::size_t moment = i / kLanes % moments;
-          copy[i] =
-              contraction.nodes[a][i / kLanes / moments * node_floats + moment * bands + lane];
-        }
-        contraction.nodes[a] = copy;
-      }
-      contraction.sun_stride = moments * kLanes;
-      contraction.moment_stride = kLanes;
+      contraction.nodes[a] = Values() +
+                             (taps.node[a] * suns + static_cast<std::size_t>(low)) * node_floats +
+                             first_band;
     }
     kernel.contract(contraction);
 
@@ -149,7 +142,7 @@ std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, 
   for (std::size_t band = 0; band < bands; band += kLanes) {
     const std::size_t lanes = std::min(kLanes, bands - band);
     block.assign(kLanes * nus.size(), 0.0F);
-    AddBlock(line, band, lanes, block);
+    AddBlock(line, band, block);
     for (std::size_t k = 0; k < nus.size(); ++k)
       std::copy_n(&block[kLanes * k], lanes, &all[k * bands + band]);
   }

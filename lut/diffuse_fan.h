@@ -32,11 +32,13 @@ class DiffuseFan {
 
  private:
   struct Line;
-  void AddBlock(const Line& line, std::size_t first_band, std::size_t lanes,
-                std::span<float> light) const;
+  void AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const;
+  [[nodiscard]] const float* Values() const;
 
   const DiffuseLight& light_;
-  std::vector<double> chi_mie_;          // [l * bands + band]
+  std::size_t stride_;           // bands, rounded up to whole blocks
+  std::vector<float> padded_;    // the values of light_ at this stride; empty where it is theirs
+  std::vector<double> chi_mie_;  // [l * bands + band]
   std::vector<float> position_of_mu_s_;  // over [-1, 1]: among the nodes of the sun's angle
 };
 

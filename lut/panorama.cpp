@@ -126,6 +126,35 @@ void DrawSunDisk(const AirIntegrator<float>& air, const PanoramaSettings& settin
   }
 }
 
+/// Five rows of five bits each, the left one highest.
+using Letter = std::array<unsigned, 5>;
+constexpr std::array<Letter, 4> kCompassLetters{{
+    {0b10001, 0b11001, 0b10101, 0b10011, 0b10001},  // N
+    {0b11111, 0b10000, 0b11110, 0b10000, 0b11111},  // E
+    {0b01111, 0b10000, 0b01110, 0b00001, 0b11110},  // S
+    {0b10001, 0b10001, 0b10101, 0b10101, 0b01010},  // W
+}};
+
+// As bright as the brightest pixel of the picture's middle row, in letters 10 degrees high.
+void PaintCompass(const Grid& grid, Image& image) {
+  float ink = 1e-3F;
+  for (int x = 0; x < grid.width; ++x) ink = std::max(ink, image.at(x, grid.height / 2)[1]);
+  constexpr double kCell_rad = 2.0 * kRadiansPerDegree;
+  for (int y = 0; y < grid.height; ++y) {
+    const double down = (grid.ZenithAngle(y + 0.5) - 0.5 * kPi) / kCell_rad + 2.5;
+    for (int x = 0; x < grid.width; ++x) {
+      const double quarter = 2.0 * grid.Azimuth(x + 0.5) / kPi;
+      const double nearest = std::round(quarter);
+      const double across = (quarter - nearest) * 0.5 * kPi / kCell_rad + 2.5;
+      if (down < 0.0 || down >= 5.0 || across < 0.0 || across >= 5.0) continue;
+      const auto letter = static_cast<std::size_t>(static_cast<int>(nearest + 8.0) % 4);
+      const unsigned row = kCompassLetters[letter][static_cast<std::size_t>(down)];
+      if ((row >> (4U - static_cast<unsigned>(across)) & 1U) != 0U)
+        image.at(x, y) = {ink, ink, ink};
+    }
+  }
+}
+
 }  // namespace
 
 PanoramaOrientation PanoramaOrientationFromName(const std::string& name) {
@@ -182,8 +211,27 @@ Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffus
     row_done();
   });
   ThrowIfInterrupted();
+  if (settings.compass) PaintCompass(grid, image);
   if (settings.sun_disk) DrawSunDisk(air, settings, grid, srgb, image);
   return image;
+}
+
+double HorizontalIlluminance(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                             double altitude_m, const PanoramaSun& sun) {
+  const Medium& medium = air.medium();
+  const double h = std::max(altitude_m, 0.0);
+  const double mu_s = std::sin(sun.elevation_rad);
+  const double horizon = std::cos(SkyViewMap(medium, h, mu_s).horizon_zenith_angle_rad());
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad);
+  const double mu = disk.mu_s_effective;
+  const Bands<float> direct = air.TransmittanceToSpace(h, mu);
+  const Bands<float> sky = diffuse.SkyIrradiance(h, mu_s);
+  std::vector<double> light;
+  for (std::size_t band = 0; band < sky.count; ++band) {
+    light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *
+                    (double{sky[band]} + disk.fraction * std::max(mu, 0.0) * double{direct[band]}));
+  }
+  return BandColour(medium.wavelengths_nm).Xyz(light)[1];
 }
 
 }  // namespace alpenglow

@@ -51,6 +51,7 @@ struct PanoramaSettings {
   PanoramaSun sun;
   PanoramaOrientation orientation = PanoramaOrientation::kNorth;
   bool sun_disk = false;  // draw the sun itself: a few pixels of some 1e9 cd/m^2
+  bool compass = false;   // paint N, E, S and W on the horizontal
   /// Of the sky view; SkyViewSizeFor when not given.
   std::optional<SkyViewSize> view_size;
 };
@@ -63,5 +64,11 @@ struct PanoramaSettings {
 [[nodiscard]] Image RenderPanorama(
     const AirIntegrator<float>& air, const DiffuseLight& diffuse, const PanoramaSettings& settings,
     const std::function<void()>& row_done = [] {});
+
+/// Light [lx] of sun and sky on a horizontal plane at the observer, the sun's disk cut by the
+/// horizon.
+[[nodiscard]] double HorizontalIlluminance(const AirIntegrator<float>& air,
+                                           const DiffuseLight& diffuse, double altitude_m,
+                                           const PanoramaSun& sun);
 
 }  // namespace alpenglow

@@ -8,6 +8,7 @@
 #include "atmosphere/medium.h"
 #include "atmosphere/refraction.h"
 #include "atmosphere/sun.h"
+#include "lut/look.h"
 #include "lut/panorama.h"
 #include "lut/picture_text.h"
 
@@ -19,7 +20,7 @@ struct SkyOptions {
   std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx";
   std::optional<double> sun_elevation, latitude, longitude;
   double sun_azimuth = 180.0, altitude = 2.0;
-  bool sun_disk = false;
+  bool sun_disk = false, night_vision = false, compass = false;
 };
 
 /// A panorama ready to be rendered.
@@ -54,6 +55,7 @@ SkyJob JobFrom(const SkyOptions& options) {
   job.settings.altitude_m = options.altitude;
   job.settings.orientation = PanoramaOrientationFromName(options.orientation);
   job.settings.sun_disk = options.sun_disk;
+  job.settings.compass = options.compass;
   if (options.sun_elevation) {
     job.settings.sun = SunFromAngles(options);
   } else {
@@ -82,30 +84,52 @@ void Describe(SkyJob& job) {
   metadata["alpenglow.sun_azimuth_deg"] = Degrees(sun.azimuth_rad);
   metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance);
   metadata["alpenglow.sun_disk"] = settings.sun_disk ? "drawn" : "left out";
+  if (settings.compass) metadata["alpenglow.compass"] = "painted";
   metadata["alpenglow.orientation"] = NameOf(settings.orientation);
   metadata["alpenglow.centre_azimuth_deg"] = Degrees(CentreAzimuth(settings.orientation));
 }
 
-Image Rendered(const SkyJob& job, ProgressStyle style) {
+/// The picture, and the light on a horizontal plane where it is seen from.
+struct RenderedSky {
+  Image image;
+  double illuminance_lux;
+};
+
+RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
   const AirIntegrator<float> air(job.medium);
   const DiffuseLight diffuse(job.medium);
   Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
-  return RenderPanorama(air, diffuse, job.settings, [&] { progress.Advance(); });
+  return {RenderPanorama(air, diffuse, job.settings, [&] { progress.Advance(); }),
+          HorizontalIlluminance(air, diffuse, job.settings.altitude_m, job.settings.sun)};
+}
+
+double Ev100Of(const RenderedSky& sky, const ExposureRule& rule, const Look& look) {
+  switch (rule.kind) {
+    case ExposureRule::Kind::kFixed:
+      return rule.ev100;
+    case ExposureRule::Kind::kIncident:
+      return IncidentEv100(sky.illuminance_lux);
+    case ExposureRule::Kind::kMetered:
+      break;
+  }
+  return MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2);
 }
 
 void MakeSky(const SkyOptions& options, const CommonOptions& common) {
-  const std::optional<double> fixed_ev100 = Ev100FromText(options.exposure);
-  const ToneCurve curve = ToneCurveFromName(options.curve);
+  const ExposureRule rule = ExposureRuleFromText(options.exposure);
+  Look look = LookFromName(options.curve);
+  look.night_vision = options.night_vision;
   SkyJob job = JobFrom(options);
-  const Image image = Rendered(job, common.progress_style());
-  const double ev100 = fixed_ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2));
+  const RenderedSky sky = Rendered(job, common.progress_style());
+  const double ev100 = Ev100Of(sky, rule, look);
   Describe(job);
+  job.metadata["alpenglow.illuminance_lux"] = fmt::format("{:.6g}", sky.illuminance_lux);
   job.metadata["alpenglow.ev100"] = fmt::format("{:.4f}", ev100);
-  job.metadata["alpenglow.exposure"] = fixed_ev100 ? "fixed" : "metered";
-  WriteExr(options.out, image, job.metadata, Projection::kLatitudeLongitude);
+  job.metadata["alpenglow.exposure"] = NameOf(rule.kind);
+  WriteExr(options.out, sky.image, job.metadata, Projection::kLatitudeLongitude);
   if (options.png) {
-    job.metadata["alpenglow.tone_curve"] = NameOf(curve);
-    WritePng(*options.png, Develop(image, ev100, curve), job.metadata);
+    job.metadata["alpenglow.tone_curve"] = NameOf(look);
+    WritePng(*options.png, Develop(Seen(sky.image, look), ev100, look), job.metadata);
   }
 }
 
@@ -149,13 +173,22 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
       ->capture_default_str();
   sky.add_flag("--sun-disk", options.sun_disk,
                "Draw the sun's disk: pixels of some 1e9 cd/m^2 that bring its whole light");
-  sky.add_option("--exposure", options.exposure, "auto (metered) or EV at ISO 100, -30 to 30")
-      ->check(ReadableBy([](const std::string& text) { (void)Ev100FromText(text); }))
+  sky.add_flag("--compass", options.compass,
+               "Paint N, E, S and W on the horizon, to see how a program turns the picture");
+  sky.add_option("--exposure", options.exposure,
+                 "auto (the picture is metered), incident (the light on a horizontal plane is "
+                 "metered) or EV at ISO 100, -30 to 30")
+      ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  sky.add_option("--tone-map", options.curve, "Curve of the PNG")
-      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear"}))
+  sky.add_option("--tone-map", options.curve,
+                 "Curve of the PNG; local: an exposure of its own for every part, and agx")
+      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
       ->needs(png)
       ->capture_default_str();
+  sky.add_flag("--night-vision", options.night_vision,
+               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
+               "grows brighter")
+      ->needs(png);
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s)
     return altitude_m > 1e6 ? SkyViewSize{48, 48, 97, 14} : SkyViewSize{44, 36, 61, 14};
   }
   if (altitude_m > kHigh_m) return {38, 26, 25, 16};
-  if (mu_s > kDay) return {28, 16, 9, 12};
+  if (mu_s > kDay) return {28, 16, 13, 12};
   return altitude_m > 2000.0 ? SkyViewSize{36, 24, 25, 16} : SkyViewSize{32, 16, 21, 16};
 }
 

@@ -57,6 +57,13 @@ class SkyAzimuths {
 };
 
 /// Immutable; look-ups are safe from many threads.
+///
+/// Error of the size that SkyViewSizeFor gives, over the whole sphere and against direct evaluation
+/// (AirIntegrator<double> of many nodes, DiffuseLight), relative to the radiance or to a thousandth
+/// of its mean where that is more: rms below 0.3 %, below 0.6 % for 95 % of directions and bands,
+/// for the atmospheres of the earth, from the ground to 400 km, the sun from the zenith to 10
+/// degrees below the horizon. The rest is where light dies within a degree: at the edge of the
+/// planet's shadow in red light, and on the limb behind the terminator.
 class SkyView {
  public:
   /// @param mu_s  cosine of the sun's zenith angle at the observer.

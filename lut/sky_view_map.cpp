@@ -14,6 +14,20 @@ double DipTo(double depth_m, double r_m) {
   return std::atan2(std::sqrt(depth_m * (2.0 * r_m - depth_m)), r_m - depth_m);
 }
 
+// v of w = v + v^2 - v^3 in [0, 1], where w never falls: Newton's method inside a shrinking
+// bracket.
+double CoordinateOfEdgedAir(double w) {
+  double low = 0.0, high = 1.0, v = w;
+  for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
+    const double excess = v + v * v * (1.0 - v) - w;
+    (excess < 0.0 ? low : high) = v;
+    const double slope = (1.0 - v) * (1.0 + 3.0 * v);
+    const double next = v - excess / slope;
+    v = slope > 0.0 && next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return v;
+}
+
 // Around the azimuth where the sun stands a little below the horizontal of the points of the
 // horizon, which lie a dip away from the observer along the ground: there the light on the limb
 // dies within a few degrees.
@@ -51,8 +65,11 @@ SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
   ground_.b = std::acosh(1.0 + (kPi - horizon_) / ground_.a);
 }
 
+// At the air's upper edge paths through it shorten as the square root of the angle: nodes there are
+// quadratic in v, w = v + v^2 - v^3.
 double SkyViewMap::SkyZenithAngle(double v) const {
-  return horizon_ - sky_.a * std::sinh(sky_.b * v);
+  const double w = outside_ ? v + v * v * (1.0 - v) : v;
+  return horizon_ - sky_.a * std::sinh(sky_.b * w);
 }
 
 double SkyViewMap::GroundZenithAngle(double v) const {
@@ -60,7 +77,9 @@ double SkyViewMap::GroundZenithAngle(double v) const {
 }
 
 double SkyViewMap::SkyCoordinate(double zenith_angle_rad) const {
-  return std::asinh((horizon_ - zenith_angle_rad) / sky_.a) / sky_.b;
+  const double w =
+      std::clamp(std::asinh((horizon_ - zenith_angle_rad) / sky_.a) / sky_.b, 0.0, 1.0);
+  return outside_ ? CoordinateOfEdgedAir(w) : w;
 }
 
 double SkyViewMap::GroundCoordinate(double zenith_angle_rad) const {

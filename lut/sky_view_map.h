@@ -6,7 +6,8 @@
 //
 //   sky     e = a sinh(b v)        from the horizon up to the zenith, or, seen from outside the
 //   air,
-//                                  up to where rays begin to miss it; above, all is black
+//                                  up to where rays begin to miss it (there quadratic, see the
+//                                  source); above, all is black
 //   ground  e = a (cosh(b v) - 1)  from the horizon down to the nadir
 //
 // with v in [0, 1]. Columns are azimuths from the sun's, over half a turn; from high up, where the

@@ -82,7 +82,7 @@ inline SkyViewErrors ErrorsOf(const SkyView& view, const DirectSky& direct, doub
     const double u = RadicalInverse(i, 2), azimuth = kPi * RadicalInverse(i, 3);
     const double horizon = view.map().horizon_zenith_angle_rad();
     const double zenith =
-        i % 2 == 0 ? std::acos(1.0 - 2.0 * u) : std::clamp(horizon + 0.35 * (u - 0.75), 0.0, kPi);
+        i % 2 == 0 ? std::acos(1.0 - 2.0 * u) : std::clamp(horizon + 0.35 * (u - 0.7501), 0.0, kPi);
     const double mu = std::cos(zenith);
     const double nu =
         mu * mu_s + std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(azimuth);

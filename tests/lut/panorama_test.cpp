@@ -204,6 +204,31 @@ TEST(Panorama, ASunBelowTheHorizonHasNoDisk) {
   EXPECT_EQ(Air::Earth().Panorama(settings).rgb, without.rgb);
 }
 
+TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
+  PanoramaSettings settings = SunAtDegrees(5.0, 45.0);
+  settings.width = 720;
+  settings.height = 360;
+  const Image plain = Air::Earth().Panorama(settings);
+  settings.compass = true;
+  const Image painted = Air::Earth().Panorama(settings);
+  // Columns in which ink stands on the horizontal row of a letter's foot or head; azimuth 0 is the
+  // middle of the picture, 2 pixels are a degree.
+  const auto ink = [&](double azimuth_deg, double across_deg, double up_deg) {
+    const int x = static_cast<int>(360.0 + 2.0 * (azimuth_deg + across_deg) + 720.0) % 720;
+    const int y = static_cast<int>(180.0 - 2.0 * up_deg);
+    return painted.at(x, y) != plain.at(x, y);
+  };
+  for (const double azimuth : {0.0, 90.0, 180.0, 270.0}) {
+    EXPECT_TRUE(ink(azimuth, 0.0, azimuth == 0.0 || azimuth == 270.0 ? 0.0 : 4.0)) << azimuth;
+    EXPECT_FALSE(ink(azimuth, 7.0, 0.0)) << azimuth;
+  }
+  // E has its stem on the left, N has stems on both sides, S none at the left foot.
+  EXPECT_TRUE(ink(90.0, -4.0, 2.0));
+  EXPECT_FALSE(ink(90.0, 4.0, 2.0));
+  EXPECT_TRUE(ink(0.0, 4.0, 2.0) && ink(0.0, -4.0, 2.0));
+  EXPECT_FALSE(ink(180.0, -4.0, -2.0));
+}
+
 TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
   const PanoramaSettings settings = SunAtDegrees(3.0, 30.0);
   std::vector<Image> images;

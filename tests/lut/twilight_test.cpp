@@ -19,8 +19,7 @@
 #include "atmosphere/constants.h"
 #include "atmosphere/spectrum.h"
 #include "atmosphere/sun.h"
-#include "atmosphere/sun_disk.h"
-#include "lut/multiple_scattering.h"
+#include "lut/panorama.h"
 
 namespace alpenglow {
 namespace {
@@ -58,18 +57,9 @@ class Daylight {
   explicit Daylight(const Medium& medium) : air_(medium), diffuse_(medium) {}
 
   [[nodiscard]] double Lux(double true_elevation_rad) const {
-    const Medium& medium = air_.medium();
-    const double mu_s = std::sin(true_elevation_rad);
-    const VisibleDisk disk = DiskOverHorizon(mu_s, 0.0, kSunAngularRadius_rad);
-    const double mu = std::max(disk.mu_s_effective, 0.0);
-    const Bands<float> sun = air_.TransmittanceToSpace(0.0, mu);
-    const Bands<float> sky = diffuse_.SkyIrradiance(0.0, mu_s);
-    std::vector<double> light;
-    for (std::size_t band = 0; band < sky.count; ++band) {
-      light.push_back(medium.solar_irradiance[band] *
-                      (double{sky[band]} + disk.fraction * mu * double{sun[band]}));
-    }
-    return BandColour(medium.wavelengths_nm).Xyz(light)[1] + kNightSky_lux;
+    PanoramaSun sun;
+    sun.elevation_rad = true_elevation_rad;
+    return HorizontalIlluminance(air_, diffuse_, 0.0, sun) + kNightSky_lux;
   }
 
  private:
