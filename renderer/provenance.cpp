@@ -64,14 +64,28 @@ std::string TerrainText(const TerrainSource& terrain) {
 }
 
 std::string LightText(const Light& light) {
-  std::string text = fmt::format("{} at {}, {}, {}: {} cd, {} K",
-                                 light.type == Light::Type::kSpot ? "spot" : "point",
-                                 Degrees(light.latitude_rad), Degrees(light.longitude_rad),
-                                 HeightText(light.height), light.intensity_cd, light.temperature_k);
-  if (light.type == Light::Type::kPoint) return text;
-  return text + fmt::format(", heading {}, pitch {}, cone {} to {}", Degrees(light.heading_rad),
-                            Degrees(light.pitch_rad), Degrees(light.inner_rad),
-                            Degrees(light.outer_rad));
+  std::string text =
+      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m",
+                  light.type == Light::Type::kSpot ? "spot" : "point", Degrees(light.latitude_rad),
+                  Degrees(light.longitude_rad), HeightText(light.height),
+                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+                  light.temperature_k, light.radius_m);
+  if (light.ies) {
+    text += fmt::format(", {}, hash {}", light.ies->filename().string(), HashOfFile(*light.ies));
+  } else if (light.type == Light::Type::kPoint) {
+    return text;
+  }
+  text +=
+      fmt::format(", heading {}, pitch {}", Degrees(light.heading_rad), Degrees(light.pitch_rad));
+  if (light.ies) return text;
+  return text + fmt::format(", cone {} to {}", Degrees(light.inner_rad), Degrees(light.outer_rad));
+}
+
+std::string FogText(const Fog& fog) {
+  return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {} g {}",
+                     fog.extinction_per_m,
+                     fog.base_height_m ? fmt::format("{} m", *fog.base_height_m) : "the ground",
+                     fog.scale_height_m, fog.albedo, NameOf(fog.phase.kind), fog.phase.g);
 }
 
 }  // namespace
@@ -98,6 +112,7 @@ Metadata SceneMetadata(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
   }
+  if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
   return metadata;
 }
 

@@ -20,6 +20,7 @@
 #include "lut/program.h"
 #include "renderer/aerial_perspective.h"
 #include "renderer/camera_rays.h"
+#include "renderer/lamp_light.h"
 #include "renderer/scene_ground.h"
 #include "renderer/surface.h"
 #include "renderer/terrain_sunlight.h"
@@ -66,6 +67,16 @@ struct Lighting {
   MountainSurface surface;  // as the season covers it
 };
 
+/// The lamps that a pixel can see.
+struct LampsHere {
+  const LampPlan& plan;
+  int x, y;
+  double pixel_angle_rad;
+  int nodes;
+
+  [[nodiscard]] const LampTile& tile() const { return plan.At(x, y); }
+};
+
 /// What a ray of the camera meets first.
 enum class HitKind { kSky, kTerrain, kPlanet };
 struct Hit {
@@ -85,7 +96,10 @@ struct SharedAir {
   glm::dvec3 direction_sum;  // of unit vectors
   double distance_sum_m;
   int rays;
-  AirAlongRay air{};  // along the mean of their directions, to their mean distance
+  // Along the mean of their directions, to their mean distance:
+  AirAlongRay air{};
+  BandLight fog{};         // what fog leaves of light from the end
+  BandLight lamp_light{};  // of lamps in the air, W m^-2 sr^-1 nm^-1
 
   [[nodiscard]] bool Takes(const Hit& hit) const {
     constexpr double kSameDistance = 0.01;
@@ -99,6 +113,7 @@ struct SharedAir {
 struct Shaded {
   BandLight radiance;  // W m^-2 sr^-1 nm^-1
   BandLight inscatter, transmittance, albedo;
+  BandLight lamps;  // of radiance, what comes from lamps
   Hit hit;
   float sun_visibility = 0.0F;
 };
@@ -115,8 +130,9 @@ double HashedUnit(std::uint32_t x, std::uint32_t y, std::uint32_t dimension) {
 }  // namespace
 
 const std::vector<std::string>& KnownLayers() {
-  static const std::vector<std::string> layers{
-      "depth", "normal", "albedo", "inscatter", "transmittance", "sun_visibility", kScotopicLayer};
+  static const std::vector<std::string> layers{"depth",     "normal",        "albedo",
+                                               "inscatter", "transmittance", "sun_visibility",
+                                               "lamps",     kScotopicLayer};
   return layers;
 }
 
@@ -127,7 +143,8 @@ struct SceneRenderer::State {
         air(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
         diffuse(air.medium()),
         aerial(air, diffuse),
-        colour(air.medium().wavelengths_nm) {}
+        colour(air.medium().wavelengths_nm),
+        lamps(scene, ground, air.medium(), colour) {}
 
   [[nodiscard]] double radius() const { return air.medium().planet_radius_m; }
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
@@ -137,12 +154,16 @@ struct SceneRenderer::State {
   [[nodiscard]] Hit Trace(const glm::dvec3& direction, double pixel_angle_rad) const;
   [[nodiscard]] AirAlongRay AirAlong(const SharedAir& rays, const Lighting& light,
                                      const TerrainSunlight& sunlight, int nodes) const;
-  [[nodiscard]] Shaded Shade(const Hit& hit, const AirAlongRay& through,
-                             const glm::dvec3& direction, const Lighting& light,
+  void AddLamps(SharedAir& rays, const LampsHere& near) const;
+  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const glm::dvec3& direction,
+                             const Lighting& light, const LampsHere& near,
                              std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
   [[nodiscard]] Lighting LightingAt(const SunPosition& sun, const UtcInstant& instant) const;
+  [[nodiscard]] double Illuminance(const Lighting& light) const;  // see SceneRenderer
+  [[nodiscard]] LampPlan PlanLamps(const CameraRays& camera, const Lighting& light,
+                                   const RenderSettings& settings) const;
 
   Scene scene;
   SceneGround ground;
@@ -150,6 +171,7 @@ struct SceneRenderer::State {
   DiffuseLight diffuse;
   AerialPerspective aerial;
   BandColour colour;
+  LampLight lamps;
 };
 
 // |p - c| - R with the centre c at (0, 0, -R), without cancelling.
@@ -227,6 +249,14 @@ AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Lighting
   return aerial.Along(ray, path, {.sky = nodes});
 }
 
+void SceneRenderer::State::AddLamps(SharedAir& rays, const LampsHere& near) const {
+  const LampRayEnd end{glm::normalize(rays.direction_sum),
+                       rays.kind == HitKind::kSky ? std::numeric_limits<double>::infinity()
+                                                  : rays.distance_sum_m / rays.rays};
+  rays.fog = lamps.FogTransmittance(end.direction, end.length_m);
+  rays.lamp_light = lamps.InAir(near.plan, near.x, near.y, end, near.pixel_angle_rad, near.nodes);
+}
+
 BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                         const Lighting& light) const {
   // Angle from the chord: the arc cosine of a number near 1 has no digits left.
@@ -237,17 +267,18 @@ BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAl
   return scale * (light.irradiance * through.transmittance);
 }
 
-Shaded SceneRenderer::State::Shade(const Hit& hit, const AirAlongRay& through,
+Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through,
                                    const glm::dvec3& direction, const Lighting& light,
-                                   std::array<double, 2> disk_sample) const {
+                                   const LampsHere& near, std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.hit = hit;
-  shaded.inscatter = light.irradiance * through.inscatter;
-  shaded.transmittance = through.transmittance;
+  shaded.inscatter = through.fog * (light.irradiance * through.air.inscatter);
+  shaded.transmittance = through.fog * through.air.transmittance;
   shaded.albedo = BandLight(air.bands());
-  shaded.radiance = shaded.inscatter;
+  shaded.lamps = through.lamp_light + lamps.Seen(near.tile().seen, direction, near.pixel_angle_rad);
+  shaded.radiance = shaded.inscatter + shaded.lamps;
   if (hit.kind == HitKind::kSky) {
-    shaded.radiance = shaded.radiance + SunDisk(direction, through, light);
+    shaded.radiance = shaded.radiance + through.fog * SunDisk(direction, through.air, light);
     return shaded;
   }
   const double altitude = std::max(AltitudeOf(hit.point), 0.0);
@@ -292,9 +323,13 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const AirAlongRay& through,
       shaded.albedo[band] = static_cast<float>(air.medium().ground_albedo[band]);
     }
   }
-  const BandLight reflected =
-      static_cast<float>(1.0 / kPi) * (shaded.albedo * (light.irradiance * irradiance));
-  shaded.radiance = shaded.radiance + shaded.transmittance * reflected;
+  const BandLight towards_eye =
+      static_cast<float>(1.0 / kPi) * (shaded.albedo * shaded.transmittance);
+  const BandLight lamp_light =
+      towards_eye *
+      lamps.OnSurface(near.tile().surface, {hit.point, hit.normal, hit.geometric_normal});
+  shaded.lamps = shaded.lamps + lamp_light;
+  shaded.radiance = shaded.radiance + lamp_light + towards_eye * (light.irradiance * irradiance);
   return shaded;
 }
 
@@ -308,6 +343,31 @@ Lighting SceneRenderer::State::LightingAt(const SunPosition& sun, const UtcInsta
                                                 (sun.distance_au * sun.distance_au));
   }
   return light;
+}
+
+double SceneRenderer::State::Illuminance(const Lighting& light) const {
+  const double altitude = std::max(ground.eye_height_m, 0.0);
+  const double mu_s = std::clamp(light.to_sun.z, -1.0, 1.0);
+  const double horizon = -std::sqrt(altitude * (2.0 * radius() + altitude)) / (radius() + altitude);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, light.sun_radius_rad);
+  const auto direct = static_cast<float>(disk.fraction * std::max(disk.mu_s_effective, 0.0));
+  const BandLight irradiance = direct * air.TransmittanceToSpace(altitude, disk.mu_s_effective) +
+                               diffuse.SkyIrradiance(altitude, mu_s);
+  return colour.Xyz(InDouble(light.irradiance * irradiance))[1];
+}
+
+LampPlan SceneRenderer::State::PlanLamps(const CameraRays& camera, const Lighting& light,
+                                         const RenderSettings& settings) const {
+  // Lamps are too dim to see where all that are left out together change a grey card in daylight
+  // by less than a thousandth.
+  constexpr double kGreyCard = 0.18;
+  LampSettings lamp_settings = settings.lamps;
+  lamp_settings.floor_cd_per_m2 =
+      std::max(lamp_settings.floor_cd_per_m2, 1e-3 * kGreyCard / kPi * Illuminance(light));
+  return lamps.PlanFor(camera, settings.width, settings.height, lamp_settings,
+                       [&](const glm::dvec3& direction) {
+                         return Trace(direction, camera.PixelAngle()).distance_m;
+                       });
 }
 
 namespace {
@@ -390,12 +450,14 @@ class PixelWriter {
     for (const Shaded& ray : rays) {
       mean = mean + share * (layer == "albedo"          ? ray.albedo
                              : layer == "transmittance" ? ray.transmittance
+                             : layer == "lamps"         ? ray.lamps
                              : layer == kScotopicLayer  ? ray.radiance
                                                         : ray.inscatter);
     }
     if (layer == kScotopicLayer)
       return {static_cast<float>(colour_.ScotopicLuminance(InDouble(mean)))};
-    const auto rgb = layer == "inscatter" ? Rgb(mean) : RgbOfFactor(mean);
+    const bool is_light = layer == "inscatter" || layer == "lamps";
+    const auto rgb = is_light ? Rgb(mean) : RgbOfFactor(mean);
     return {rgb[0], rgb[1], rgb[2]};
   }
 
@@ -448,17 +510,7 @@ SunPosition SceneRenderer::ApparentSun(const UtcInstant& instant) const {
 }
 
 double SceneRenderer::Illuminance(const UtcInstant& instant) const {
-  const Lighting light = state_->LightingAt(ApparentSun(instant), instant);
-  const double altitude = std::max(eye_height_m(), 0.0);
-  const double mu_s = std::clamp(light.to_sun.z, -1.0, 1.0);
-  const double horizon =
-      -std::sqrt(altitude * (2.0 * state_->radius() + altitude)) / (state_->radius() + altitude);
-  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, light.sun_radius_rad);
-  const auto direct = static_cast<float>(disk.fraction * std::max(disk.mu_s_effective, 0.0));
-  const BandLight irradiance =
-      direct * state_->air.TransmittanceToSpace(altitude, disk.mu_s_effective) +
-      state_->diffuse.SkyIrradiance(altitude, mu_s);
-  return state_->colour.Xyz(InDouble(light.irradiance * irradiance))[1];
+  return state_->Illuminance(state_->LightingAt(ApparentSun(instant), instant));
 }
 
 Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {
@@ -468,6 +520,8 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
   PixelWriter writer(state_->colour, settings);
   const int grid = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));
   const TerrainSunlight sunlight(state_->ground, light.to_sun, light.sun_radius_rad);
+  const LampPlan plan = state_->PlanLamps(camera, light, settings);
+  ThrowIfInterrupted();
   tbb::parallel_for(0, settings.height, [&](int y) {
     if (Interrupted()) return;
     std::vector<PixelRay> rays;
@@ -483,15 +537,18 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
         const Hit hit = state_->Trace(direction, camera.PixelAngle());
         rays.push_back({direction, hit, AirFor(hit, direction, airs)});
       }
-      for (SharedAir& shared : airs)
+      const LampsHere near{plan, x, y, camera.PixelAngle(), settings.lamps.nodes};
+      for (SharedAir& shared : airs) {
         shared.air = state_->AirAlong(shared, light, sunlight, settings.air_nodes);
+        state_->AddLamps(shared, near);
+      }
       for (std::size_t s = 0; s < rays.size(); ++s) {
         const auto seed = [&](std::uint32_t dimension) {
           return HashedUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                             2U * static_cast<std::uint32_t>(s) + dimension);
         };
-        shaded.push_back(state_->Shade(rays[s].hit, airs[rays[s].air].air, rays[s].direction, light,
-                                       {seed(0), seed(1)}));
+        shaded.push_back(state_->Shade(rays[s].hit, airs[rays[s].air], rays[s].direction, light,
+                                       near, {seed(0), seed(1)}));
       }
       writer.Write(x, y, shaded);
     }

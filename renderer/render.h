@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a scene: terrain, sky, sun disk, and the air in front of everything.
+// Pictures of a scene: terrain, sky, sun disk, lamps, and the air in front of everything.
 //
 // Frame: ENU at the foot of the eye on the ellipsoid. The atmosphere is a shell on the sphere that
 // osculates the ellipsoid there, so the altitude of a point is its distance from that sphere. The
@@ -18,6 +18,7 @@
 #include "atmosphere/sun.h"
 #include "atmosphere/time.h"
 #include "lut/image.h"
+#include "renderer/lamp_light.h"
 #include "renderer/scene.h"
 
 namespace alpenglow {
@@ -28,10 +29,12 @@ struct RenderSettings {
   int samples_per_pixel = 4;        // rays against the terrain, a square number
   int air_nodes = 12;               // Gauss nodes along a ray to the sky
   std::vector<std::string> layers;  // of KnownLayers()
+  LampSettings lamps = {};
 };
 
-/// "depth" [m], "normal" (ENU), "albedo", "transmittance", "inscatter" [cd/m^2], "sun_visibility"
-/// (0 to 1) and kScotopicLayer: what `layers` may name.
+/// "depth" [m], "normal" (ENU), "albedo", "transmittance", "inscatter" (of the sun, without fog's
+/// and lamps') and "lamps" (all that comes from lamps) [cd/m^2], "sun_visibility" (0 to 1) and
+/// kScotopicLayer: what `layers` may name.
 [[nodiscard]] const std::vector<std::string>& KnownLayers();
 
 /// The layer of what rods see [scotopic cd/m^2]; its channel is kScotopicChannel.

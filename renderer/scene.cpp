@@ -2,6 +2,8 @@
 #include "renderer/scene.h"
 
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
@@ -13,6 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHighestEye_m = 1e9;
+// Optical depth at which a black object is just seen against the horizon: -ln 0.02, Koschmieder
+// (1924).
+constexpr double kContrastThreshold = 3.912;
 constexpr double kDeepestPlace_m = -12000.0;  // as PlaceFromDegrees
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
@@ -163,9 +168,12 @@ Light::Type LightTypeOf(const TomlTable& table) {
                                  table.FullName("type"), type));
 }
 
-void ReadCone(const TomlTable& table, Light& light) {
+void ReadAxis(const TomlTable& table, double pitch_default_deg, Light& light) {
   light.heading_rad = Radians(table.Number("heading", -360.0, 360.0).value_or(0.0));
-  light.pitch_rad = Radians(table.Number("pitch", -90.0, 90.0).value_or(0.0));
+  light.pitch_rad = Radians(table.Number("pitch", -90.0, 90.0).value_or(pitch_default_deg));
+}
+
+void ReadCone(const TomlTable& table, Light& light) {
   const std::optional<std::vector<double>> cone = table.Numbers("cone", 0.0, 180.0);
   if (!cone || cone->size() != 2 || !((*cone)[0] < (*cone)[1])) {
     table.Fail("cone", fmt::format("{} must be two half angles, the smaller one first",
@@ -175,26 +183,73 @@ void ReadCone(const TomlTable& table, Light& light) {
   light.outer_rad = Radians((*cone)[1]);
 }
 
-Light LightOf(const TomlTable& table) {
+void RefuseKeys(const TomlTable& table, std::initializer_list<const char*> keys,
+                const std::string& why) {
+  for (const char* key : keys) {
+    if (table.Has(key)) table.Fail(key, fmt::format("{} {}", table.FullName(key), why));
+  }
+}
+
+void ReadDistribution(const TomlTable& table, const fs::path& folder, Light& light) {
+  const std::optional<std::string> ies = table.Text("ies");
+  if (light.type == Light::Type::kSpot) {
+    RefuseKeys(table, {"ies"}, "is for a point; this is a spot");
+    ReadAxis(table, 0.0, light);
+    ReadCone(table, light);
+    return;
+  }
+  if (!ies) {
+    RefuseKeys(table, {"heading", "pitch", "cone"}, "is for a spot; this is a point");
+    return;
+  }
+  RefuseKeys(table, {"cone"}, "is for a spot; this is a point");
+  light.ies = folder / *ies;
+  ReadAxis(table, -90.0, light);
+}
+
+Light LightOf(const TomlTable& table, const fs::path& folder) {
   table.AllowOnly({"type", "latitude", "longitude", "height_m", "above_ground_m", "intensity_cd",
-                   "temperature_k", "heading", "pitch", "cone"});
+                   "temperature_k", "radius_m", "ies", "heading", "pitch", "cone"});
   Light light;
   light.type = LightTypeOf(table);
   light.latitude_rad = Radians(Required(table, "latitude", -90.0, 90.0));
   light.longitude_rad = Radians(Required(table, "longitude", -180.0, 360.0));
   light.height = HeightOf(table, Height{});
-  light.intensity_cd = Required(table, "intensity_cd", 0.0, 1e12);
   light.temperature_k = table.Number("temperature_k", 500.0, 50000.0).value_or(3000.0);
-  if (light.type == Light::Type::kSpot) {
-    ReadCone(table, light);
-    return light;
-  }
-  for (const char* key : {"heading", "pitch", "cone"}) {
-    if (table.Has(key)) {
-      table.Fail(key, fmt::format("{} is for a spot; this is a point", table.FullName(key)));
-    }
-  }
+  light.radius_m = table.Number("radius_m", 0.001, 100.0).value_or(0.1);
+  ReadDistribution(table, folder, light);
+  light.intensity_cd = table.Number("intensity_cd", 0.0, 1e12);
+  if (!light.intensity_cd && !light.ies) (void)Required(table, "intensity_cd", 0.0, 1e12);
   return light;
+}
+
+std::optional<Fog> FogOf(const TomlTable& document) {
+  const std::optional<TomlTable> table = document.Table("fog");
+  if (!table) return std::nullopt;
+  table->AllowOnly({"visibility_m", "extinction_per_m", "scale_height_m", "base_height_m", "albedo",
+                    "droplet_diameter_um", "g"});
+  const std::optional<double> visibility = table->Number("visibility_m", 1.0, 1e6);
+  const std::optional<double> extinction = table->Number("extinction_per_m", 0.0, 10.0);
+  if (visibility.has_value() == extinction.has_value()) {
+    table->Fail("visibility_m", "give one of fog.visibility_m and fog.extinction_per_m");
+  }
+  Fog fog;
+  fog.extinction_per_m = extinction ? *extinction : kContrastThreshold / *visibility;
+  fog.scale_height_m =
+      table->Number("scale_height_m", 1.0, 1e5).value_or(std::numeric_limits<double>::infinity());
+  fog.base_height_m = table->Number("base_height_m", kDeepestPlace_m, 1e5);
+  fog.albedo = table->Number("albedo", 0.0, 1.0).value_or(1.0);
+  const std::optional<double> g = table->Number("g", -0.99, 0.99);
+  const std::optional<double> droplet =
+      table->Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
+  if (g && droplet) table->Fail("g", "fog.g and fog.droplet_diameter_um are both given; give one");
+  if (g) {
+    fog.phase.kind = PhaseKind::kHenyeyGreenstein;
+    fog.phase.g = *g;
+  } else {
+    fog.phase = FogPhase(droplet.value_or(15.0));
+  }
+  return fog;
 }
 
 }  // namespace
@@ -218,7 +273,7 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
 
 Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder) {
   const TomlTable document(text, origin);
-  document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "light"});
+  document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "light", "fog"});
   const Place place = PlaceOf(document);
   Scene scene;
   scene.place = place.position;
@@ -227,7 +282,10 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   scene.camera = CameraOf(document);
   scene.medium = MediumOf(document, folder);
   scene.terrain = TerrainOf(document, folder);
-  for (const TomlTable& light : document.Tables("light")) scene.lights.push_back(LightOf(light));
+  for (const TomlTable& light : document.Tables("light")) {
+    scene.lights.push_back(LightOf(light, folder));
+  }
+  scene.fog = FogOf(document);
   return scene;
 }
 

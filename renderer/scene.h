@@ -65,12 +65,24 @@ struct Light {
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
   Height height;
-  double intensity_cd = 0.0;
-  double temperature_k = 3000.0;  // of the black body whose colour it has
-  double heading_rad = 0.0;       // of a spot's axis
+  std::optional<double> intensity_cd;        // the largest; nothing: as the IES file says
+  double temperature_k = 3000.0;             // of the black body whose colour it has
+  double radius_m = 0.1;                     // of the luminous sphere that it is
+  std::optional<std::filesystem::path> ies;  // how its light is distributed, see ReadIes
+  double heading_rad = 0.0;                  // of the axis of a spot or of an IES file
   double pitch_rad = 0.0;
   double inner_rad = 0.0;  // half angles of a spot: full inside the first, none outside the second
   double outer_rad = 0.0;
+};
+
+/// Fog of exponential density over the ellipsoid. It scatters the light of lamps, and dims what is
+/// behind it; light of sun and sky it does not scatter.
+struct Fog {
+  double extinction_per_m = 0.0;        // at its base
+  double scale_height_m = 0.0;          // may be infinite
+  std::optional<double> base_height_m;  // over the ellipsoid; nothing: the ground under the eye
+  double albedo = 1.0;
+  PhaseFunction phase;
 };
 
 struct Scene {
@@ -81,6 +93,7 @@ struct Scene {
   Medium medium;  // "earth" when nothing is said
   TerrainSource terrain;
   std::vector<Light> lights;
+  std::optional<Fog> fog;
 };
 
 /// Reads scene.toml. Names of files in it are relative to it. Throws InputError "file:line: key

@@ -28,10 +28,6 @@ std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene)
 
 /// What the scene asks for and this version does not do is said, not passed over.
 void SayWhatIsLeftOut(const Scene& scene) {
-  if (!scene.lights.empty()) {
-    fmt::print(stderr, "skyseries: note: {} lamps of the scene are not rendered by this version\n",
-               scene.lights.size());
-  }
   if (scene.camera.lens) {
     fmt::print(stderr, "skyseries: note: depth of field is not rendered by this version\n");
   }

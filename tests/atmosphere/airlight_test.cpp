@@ -258,6 +258,36 @@ TEST(Airlight, EveryBandHasItsOwnExtinction) {
   }
 }
 
+TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
+  for (const double g : {0.0, 0.85}) {
+    const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(g));
+    for (const double cos_normal : {1.0, 0.5, 0.0, -0.5}) {
+      // By plain quadrature around the normal, finest at the lamp: radiance is 1/sin(alpha) there.
+      const glm::dvec3 normal(cos_normal, std::sqrt(1.0 - cos_normal * cos_normal), 0.0);
+      const Lamp lamp = LampAt({30.0, 0.0, 0.0});
+      double sum = 0.0;
+      constexpr int kSteps = 240, kTurns = 48;
+      for (int i = 0; i < kSteps; ++i) {
+        const double low = kPi * std::pow((i + 0.0) / kSteps, 2.0);
+        const double high = kPi * std::pow((i + 1.0) / kSteps, 2.0);
+        const double alpha = 0.5 * (low + high);
+        const double radiance =
+            judge::AirlightAlong(air, lamp, Along({std::cos(alpha), std::sin(alpha), 0.0}, 2000.0))
+                .radiance[0];
+        for (int j = 0; j < kTurns; ++j) {
+          const double phi = 2.0 * kPi * (j + 0.5) / kTurns;
+          const double facing =
+              normal.x * std::cos(alpha) + normal.y * std::sin(alpha) * std::cos(phi);
+          sum += std::max(facing, 0.0) * radiance * std::sin(alpha) * (high - low) * 2.0 * kPi /
+                 kTurns;
+        }
+      }
+      EXPECT_NEAR(AirlightOnSurface(air, 30.0, cos_normal)[0] / sum, 1.0, 1e-2)
+          << "g " << g << ", cosine " << cos_normal;
+    }
+  }
+}
+
 TEST(Airlight, NothingInTheAirScattersNothing) {
   const LampAir air = HomogeneousAir(0.0, 0.0, HenyeyGreenstein(0.0));
   EXPECT_EQ(Airlight(air, LampAt({30.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, kInfinite))[0], 0.0);

@@ -90,6 +90,45 @@ intensity_cd = 0
   EXPECT_EQ(scene.lights[1].height, (Height{700.0, false}));
 }
 
+TEST(Scene, LampsMayBeMeasuredAndFogMayLie) {
+  const Scene scene = Read(kPlace + R"(
+[fog]
+visibility_m = 391.2
+scale_height_m = 30.0
+base_height_m = 100.0
+droplet_diameter_um = 10.0
+[[light]]
+latitude = 35.37
+longitude = 138.73
+ies = "lamp.ies"
+heading = 10.0
+radius_m = 0.2
+)");
+  ASSERT_TRUE(scene.fog.has_value());
+  EXPECT_DOUBLE_EQ(scene.fog->extinction_per_m, 0.01) << "3.912 optical depths are the visibility";
+  EXPECT_DOUBLE_EQ(scene.fog->scale_height_m, 30.0);
+  EXPECT_EQ(scene.fog->phase, FogPhase(10.0));
+  ASSERT_EQ(scene.lights.size(), 1U);
+  EXPECT_EQ(scene.lights[0].ies, "folder/lamp.ies");
+  EXPECT_EQ(scene.lights[0].intensity_cd, std::nullopt) << "the file says it";
+  EXPECT_DOUBLE_EQ(scene.lights[0].pitch_rad, -0.5 * kPi) << "down, as lamps are measured";
+  EXPECT_EQ(scene.lights[0].radius_m, 0.2);
+}
+
+TEST(Scene, FogAndLampsThatMakeNoSenseAreRefusedByKey) {
+  const std::string light = "[[light]]\nlatitude = 35\nlongitude = 138\n";
+  EXPECT_THAT(FaultOf(kPlace + "[fog]\nscale_height_m = 30\n"), HasSubstr("fog.visibility_m"));
+  EXPECT_THAT(FaultOf(kPlace + "[fog]\nvisibility_m = 300\nextinction_per_m = 0.1\n"),
+              HasSubstr("give one of"));
+  EXPECT_THAT(FaultOf(kPlace + "[fog]\nvisibility_m = 300\ng = 0.5\ndroplet_diameter_um = 9\n"),
+              HasSubstr("give one"));
+  EXPECT_THAT(FaultOf(kPlace + light), HasSubstr("intensity_cd is missing"));
+  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = -1\n"), HasSubstr("intensity_cd is -1"));
+  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = inf\n"), HasSubstr("intensity_cd"));
+  EXPECT_THAT(FaultOf(kPlace + light + "ies = \"a\"\ncone = [1, 2]\n"), HasSubstr("cone is for"));
+  EXPECT_THAT(FaultOf(kPlace + light + "type = \"spot\"\nies = \"a\"\n"), HasSubstr("ies is for"));
+}
+
 TEST(Scene, APlaceIsEnough) {
   const Scene scene = Read(kPlace);
   EXPECT_EQ(scene.medium.name, "earth");

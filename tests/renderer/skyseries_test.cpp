@@ -147,13 +147,22 @@ TEST_F(Skyseries, AnOutputThatCannotBeWrittenExitsWith4) {
   EXPECT_THAT(outcome.error, HasSubstr((folder_ / "file").string()));
 }
 
-TEST_F(Skyseries, LampsOfTheSceneAreNotPassedOverInSilence) {
-  WriteText(folder_ / "s.toml", ContentOf(folder_ / "s.toml") +
-                                    "[[light]]\nlatitude = 46.51\nlongitude = 8.0\n"
-                                    "intensity_cd = 100\n");
+TEST_F(Skyseries, WhatIsNotRenderedIsNotPassedOverInSilence) {
+  WriteText(folder_ / "s.toml",
+            ContentOf(folder_ / "s.toml") +
+                "[camera]\nf_number = 2.8\nfocal_length_mm = 50\nfocus_m = 9\n");
   WriteText(folder_ / "file", "in the way, so that nothing is rendered");
   const Outcome outcome = Run(InFolder("s.toml") + " --out " + InFolder("file/a.exr"));
-  EXPECT_THAT(outcome.error, HasSubstr("1 lamps of the scene are not rendered by this version"));
+  EXPECT_THAT(outcome.error, HasSubstr("depth of field is not rendered by this version"));
+}
+
+TEST_F(Skyseries, AMeasuredLampThatIsNotThereExitsWith3) {
+  WriteText(folder_ / "s.toml", ContentOf(folder_ / "s.toml") +
+                                    "[[light]]\nlatitude = 46.51\nlongitude = 8.0\n"
+                                    "ies = \"none.ies\"\n");
+  const Outcome outcome = Run(InFolder("s.toml") + " --size 16x9 --out " + InFolder("a.exr"));
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("none.ies"));
 }
 
 TEST_F(Skyseries, OneAndManyThreadsMakeTheSamePixels) {
