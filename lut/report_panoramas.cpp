@@ -307,10 +307,7 @@ ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
   if (!effort.quick)
     topic.AddSkyView(SkyViewSize{.sky_rows = 80, .ground_rows = 48, .azimuths = 33});
   topic.AddLatitudes(96, 54, false);
-  if (!effort.quick) {
-    topic.AddLatitudes(192, 108, true);
-    topic.AddLatitudes(384, 216, false);
-  }
+  if (!effort.quick) topic.AddLatitudes(192, 108, true);
   const int width = effort.quick ? 128 : 2048;
   const std::string notes = fmt::format(
       "Nine suns, three a column, seen from 2 m; half of the directions anywhere on the sphere, "
