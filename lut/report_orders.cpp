@@ -5,12 +5,15 @@
 #include "lut/multiple_scattering.h"
 #include "lut/report_baselines.h"
 #include "lut/report_measure.h"
+#include "lut/table_folder.h"
 
 namespace alpenglow {
 namespace {
 
 // Lines of the plot.
 enum Style { kDegree4 = 0, kIsotropic = 1, kDegree2 = 2, kNothing = 5, kDegree6 = 6 };
+
+int StyleOf(int degree) { return degree == 2 ? kDegree2 : degree == 4 ? kDegree4 : kDegree6; }
 
 // What a renderer takes: one set of samples for all orders.
 constexpr Sampling kSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
@@ -57,20 +60,16 @@ class Topic : public TopicWork {
         [&](const RaySamples<float>& samples, double) { return table.InscatterAlong(samples); });
   }
 
-  void AddDiffuse(int degree, int altitudes, int sun_angles) {
-    DiffuseLightOptions options;
-    const bool usual = degree == options.degree && altitudes == options.altitudes &&
-                       sun_angles == options.sun_angles;
-    options.degree = degree;
-    options.altitudes = altitudes;
-    options.sun_angles = sun_angles;
+  void AddDiffuse(const DiffuseLightOptions& options) {
+    const DiffuseLightOptions usual;
+    const bool in_summary = options.degree == usual.degree &&
+                            options.altitudes == usual.altitudes &&
+                            options.sun_angles == usual.sun_angles;
     const auto [light, seconds] = Built([&] { return DiffuseLight(medium_, options); });
-    Add({.series = fmt::format("moments to degree {}", degree),
-         .parameter = fmt::format("{} x {}", altitudes, sun_angles),
-         .style = degree == 2   ? kDegree2
-                  : degree == 4 ? kDegree4
-                                : kDegree6,
-         .in_summary = usual,
+    Add({.series = fmt::format("moments to degree {}", options.degree),
+         .parameter = fmt::format("{} x {}", options.altitudes, options.sun_angles),
+         .style = StyleOf(options.degree),
+         .in_summary = in_summary,
          .memory_bytes = light.values().size() * sizeof(float),
          .build_s = seconds},
         [&](const RaySamples<float>& samples, double nu) {
@@ -86,20 +85,19 @@ class Topic : public TopicWork {
 
 ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   Topic topic(medium, effort);
-  const DiffuseLightOptions usual;
   topic.AddNothing();
   topic.AddIsotropic({}, true);
   if (!effort.quick) topic.AddIsotropic({.side = 32, .directions_side = 16, .steps = 20}, false);
-  topic.AddDiffuse(2, 12, 24);
+  topic.AddDiffuse({.altitudes = 12, .sun_angles = 24, .degree = 2});
   if (!effort.quick) {
-    topic.AddDiffuse(2, 20, 40);
-    topic.AddDiffuse(4, 12, 24);
+    topic.AddDiffuse({.degree = 2});
+    topic.AddDiffuse({.altitudes = 12, .sun_angles = 24});
   }
-  topic.AddDiffuse(usual.degree, usual.altitudes, usual.sun_angles);
+  topic.AddDiffuse({});
   if (!effort.quick) {
-    topic.AddDiffuse(4, 28, 56);
-    topic.AddDiffuse(6, 20, 40);
-    topic.AddDiffuse(6, 28, 56);
+    topic.AddDiffuse({.altitudes = 28, .sun_angles = 56});
+    topic.AddDiffuse({.degree = 6});
+    topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
   }
   return std::move(topic).Finished(
       {.key = "all_orders",
@@ -111,8 +109,9 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
        .error_unit = "parts of the whole radiance",
        .notes = "The isotropic table is the one of Hillaire (2020), its integrals taken as "
                 "published (64 directions, 20 steps) and with four times the directions. Moments "
-                "are this library's "
-                "spherical-harmonic moments of the diffuse light over altitude and sun.",
+                "are this library's spherical-harmonic moments of the diffuse light over altitude "
+                "and sun; the "
+                "largest is the quality fine of skylut build, which also has more directions.",
        .wanted = 0.02,
        .cost = CostAxis::kTimeToBuild});
 }

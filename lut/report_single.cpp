@@ -5,12 +5,20 @@
 #include "lut/report_baselines.h"
 #include "lut/report_measure.h"
 #include "lut/scattering_table.h"
+#include "lut/table_folder.h"
 
 namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kGauss = 0, kMidpoint = 1, kTable = 3, kQuadratic = 4, kGaussSplit = 6 };
+enum Style {
+  kGauss = 0,
+  kMidpoint = 1,
+  kTable = 3,
+  kQuadratic = 4,
+  kAzimuthTable = 2,
+  kGaussSplit = 6
+};
 
 class Topic : public TopicWork {
  public:
@@ -47,13 +55,15 @@ class Topic : public TopicWork {
         [&](const ViewRay&) { return steps; });
   }
 
-  void AddTable(const ScatteringTableSize& size, bool in_summary) {
-    const auto [table, seconds] =
-        Built([&] { return ScatteringTable(medium_, {.size = size, .lowest_mu_s = {}}); });
+  void AddTable(ScatteringAxes axes, const ScatteringTableSize& size, bool in_summary) {
+    const ScatteringTableOptions options{.size = size, .lowest_mu_s = {}, .axes = axes};
+    const auto [table, seconds] = Built([&] { return ScatteringTable(medium_, options); });
+    const bool azimuth = axes == ScatteringAxes::kAzimuth;
     AddRow(
-        {.series = "4-D table",
+        {.series = azimuth ? "table by azimuth" : "4-D table (Bruneton)",
          .parameter = fmt::format("{} x {} x {} x {}", size.altitudes, size.mu, size.mu_s, size.nu),
-         .style = kTable,
+         .origin = azimuth ? MethodOrigin::kOurs : MethodOrigin::kLiterature,
+         .style = azimuth ? kAzimuthTable : kTable,
          .in_summary = in_summary,
          .memory_bytes = table.bytes(),
          .build_s = seconds},
@@ -76,10 +86,13 @@ ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& ef
     topic.AddMarch(MarchRule::kMidpoint, steps, steps == 64);
   for (const int steps : {16, 32, 64, 128, 256, 512})
     topic.AddMarch(MarchRule::kQuadratic, steps, steps == 32);
-  topic.AddTable({.nu = 8, .mu_s = 24, .mu = 64, .altitudes = 16}, false);
-  if (!effort.quick) {
-    topic.AddTable({}, true);
-    topic.AddTable({.nu = 16, .mu_s = 48, .mu = 192, .altitudes = 48}, false);
+  topic.AddTable(ScatteringAxes::kBruneton, {.nu = 8, .mu_s = 24, .mu = 64, .altitudes = 16},
+                 false);
+  if (!effort.quick) topic.AddTable(ScatteringAxes::kBruneton, {}, true);
+  for (const char* quality : {"preview", "standard", "fine"}) {
+    topic.AddTable(ScatteringAxes::kAzimuth, TableQualityFromName(quality).single_scattering,
+                   quality[0] == 's');
+    if (effort.quick) break;
   }
   return std::move(topic).Finished(
       {.key = "single_scattering",
@@ -89,10 +102,10 @@ ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& ef
        .error_unit = "parts of the radiance",
        .notes = "The marches are given this library's exact columns, its planet's shadow and "
                 "its SIMD kernel: only where they look at the air differs, so they are better "
-                "and faster here than as published. The 4-D table has the size of Bruneton "
-                "(2017), 32 x 128 x 32 x 8 (altitude, view, sun, angle between), filled with "
-                "12 Gauss nodes a panel; the others are the qualities preview and fine of "
-                "skylut build.",
+                "and faster here than as published. The table on Bruneton's axes has his "
+                "(2017) size, 32 x 128 x 32 x 8 (altitude, view, sun, angle between view and "
+                "sun), and a smaller one, filled exactly; his own 50 trapezoids would add their "
+                "error. Tables by azimuth are those of skylut build: preview, standard, fine.",
        .wanted = 0.01,
        .cost = CostAxis::kTimeOfAnswer});
 }
