@@ -135,10 +135,10 @@ constexpr std::array<Letter, 4> kCompassLetters{{
     {0b10001, 0b10001, 0b10101, 0b10101, 0b01010},  // W
 }};
 
-// As bright as the brightest pixel of the picture's middle row, in letters 10 degrees high.
+// Twice as bright as the brightest pixel of the middle row, in letters 10 degrees high.
 void PaintCompass(const Grid& grid, Image& image) {
   float ink = 1e-3F;
-  for (int x = 0; x < grid.width; ++x) ink = std::max(ink, image.at(x, grid.height / 2)[1]);
+  for (int x = 0; x < grid.width; ++x) ink = std::max(ink, 2.0F * image.at(x, grid.height / 2)[1]);
   constexpr double kCell_rad = 2.0 * kRadiansPerDegree;
   for (int y = 0; y < grid.height; ++y) {
     const double down = (grid.ZenithAngle(y + 0.5) - 0.5 * kPi) / kCell_rad + 2.5;
@@ -153,6 +153,11 @@ void PaintCompass(const Grid& grid, Image& image) {
         image.at(x, y) = {ink, ink, ink};
     }
   }
+}
+
+// A picture has time for a finer view than one that is built for every frame.
+SkyViewSize FineSize(const SkyViewSize& size) {
+  return {size.sky_rows * 3 / 2, size.ground_rows * 3 / 2, 2 * size.azimuths - 1, 24};
 }
 
 }  // namespace
@@ -192,9 +197,9 @@ Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffus
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
   Image image(settings.width, settings.height);
   const double mu_s = std::sin(settings.sun.elevation_rad);
-  const SkyView view(
-      air, diffuse, settings.altitude_m, mu_s,
-      settings.view_size.value_or(SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s)));
+  const SkyView view(air, diffuse, settings.altitude_m, mu_s,
+                     settings.view_size.value_or(
+                         FineSize(SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))));
   const Grid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
   std::vector<double> from_sun;
   for (int x = 0; x < grid.width; ++x)

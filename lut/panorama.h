@@ -52,13 +52,15 @@ struct PanoramaSettings {
   PanoramaOrientation orientation = PanoramaOrientation::kNorth;
   bool sun_disk = false;  // draw the sun itself: a few pixels of some 1e9 cd/m^2
   bool compass = false;   // paint N, E, S and W on the horizontal
-  /// Of the sky view; SkyViewSizeFor when not given.
+  /// Of the sky view; when not given, finer than SkyViewSizeFor.
   std::optional<SkyViewSize> view_size;
 };
 
 /// Linear sRGB in cd/m^2. Sky of all orders of scattering; below the horizon the medium's Lambert
 /// ground lit by sun and sky, behind the air before it. The sun's disk, on request, brings its
 /// whole light, spread over the pixels that it touches. The same bytes for any number of threads.
+/// Error of luminance against direct evaluation of the pixels' middles, relative to it or to 1e-4
+/// of the brightest pixel: rms below 0.1 % with the sun over 10 degrees, below 0.3 % down to -10.
 /// @param row_done  called once a row, from any thread.
 /// Throws InputError for a size outside [1, kLargestImageSide].
 [[nodiscard]] Image RenderPanorama(

@@ -11,6 +11,7 @@
 #include "atmosphere/error.h"
 #include "atmosphere/spectrum.h"
 #include "atmosphere/sun.h"
+#include "tests/sky_view_errors.h"
 
 namespace alpenglow {
 namespace {
@@ -171,6 +172,43 @@ TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
     EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
         << "sun at " << elevation_deg << ": the pixels of the aureole are 1.4 degrees wide, and "
         << "the table of irradiance is interpolated between its nodes";
+  }
+}
+
+TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
+  const Air& earth = Air::Earth();
+  const DirectSky direct(earth.medium, earth.diffuse);
+  for (const double altitude_m : {2.0, 10e3, 400e3}) {
+    for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
+      PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
+      settings.altitude_m = altitude_m;
+      const Image image = earth.Panorama(settings);
+      const double mu_s = std::sin(settings.sun.elevation_rad);
+      double brightest = 0.0;
+      for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
+      double squares = 0.0;
+      constexpr int kPixels = 200;
+      for (int i = 1; i <= kPixels; ++i) {
+        const int x = static_cast<int>(RadicalInverse(i, 2) * settings.width);
+        const int y = static_cast<int>(RadicalInverse(i, 3) * settings.height);
+        const double zenith = kPi * (y + 0.5) / settings.height;
+        const double from_sun =
+            2.0 * kPi * ((x + 0.5) / settings.width - 0.5) - settings.sun.azimuth_rad;
+        const double nu = std::cos(zenith) * mu_s +
+                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(from_sun);
+        const Bands<double> bands =
+            direct.Radiance({altitude_m, std::cos(zenith), mu_s, std::clamp(nu, -1.0, 1.0)});
+        Bands<float> light(bands.count);
+        for (std::size_t band = 0; band < bands.count; ++band)
+          light[band] = static_cast<float>(bands[band]);
+        const double exact = LuminanceOf(earth.medium, light);
+        const double error =
+            (Luminance(image.at(x, y)) - exact) / std::max(exact, 1e-4 * brightest);
+        squares += error * error;
+      }
+      EXPECT_LT(std::sqrt(squares / kPixels), elevation_deg >= 10.0 ? 0.001 : 0.003)
+          << altitude_m << " m, sun at " << elevation_deg;
+    }
   }
 }
 
