@@ -152,15 +152,31 @@ SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s)
   return altitude_m > 2000.0 ? SkyViewSize{36, 24, 25, 16} : SkyViewSize{32, 16, 21, 16};
 }
 
+namespace {
+
+/// Where an azimuth lies between columns.
+struct AzimuthTap {
+  std::int32_t cell;
+  std::array<float, 4> weights;
+  float half_sine2;
+};
+
+AzimuthTap TapAt(const SkyViewMap& map, int columns, double azimuth_rad) {
+  const double half_turn = std::abs(std::remainder(azimuth_rad, 2.0 * kPi));
+  const CellPosition at = PositionOf(map.AzimuthCoordinate(half_turn), columns);
+  const double sine = std::sin(0.5 * half_turn);
+  return {at.cell, SplineWeights(at.fraction), static_cast<float>(sine * sine)};
+}
+
+}  // namespace
+
 SkyAzimuths::SkyAzimuths(const SkyView& view, std::span<const double> azimuth_rad)
     : columns_(view.size().azimuths) {
   for (const double azimuth : azimuth_rad) {
-    const double half_turn = std::abs(std::remainder(azimuth, 2.0 * kPi));
-    const CellPosition at = PositionOf(view.map().AzimuthCoordinate(half_turn), columns_);
-    cell_.push_back(at.cell);
-    for (const float weight : SplineWeights(at.fraction)) weights_.push_back(weight);
-    const double sine = std::sin(0.5 * half_turn);
-    half_sine2_.push_back(static_cast<float>(sine * sine));
+    const AzimuthTap tap = TapAt(view.map(), columns_, azimuth);
+    cell_.push_back(tap.cell);
+    weights_.insert(weights_.end(), tap.weights.begin(), tap.weights.end());
+    half_sine2_.push_back(tap.half_sine2);
   }
 }
 
@@ -366,41 +382,68 @@ std::size_t SkyView::bytes() const {
   return floats * sizeof(float);
 }
 
+/// Where a zenith angle lies between rows.
+struct SkyView::RowPosition {
+  std::size_t first_row;
+  std::array<float, 4> weights;
+  float offset, scale;  // sin^2 of half the angle to the sun: offset + scale sin^2(azimuth / 2)
+};
+
+std::optional<SkyView::RowPosition> SkyView::PositionOfRow(double zenith_angle_rad) const {
+  const bool ground = zenith_angle_rad > map_.horizon_zenith_angle_rad();
+  if (!ground && map_.sees_upper_edge() && zenith_angle_rad <= map_.upper_edge_zenith_angle_rad())
+    return std::nullopt;
+  const CellPosition at =
+      ground ? PositionOf(map_.GroundCoordinate(zenith_angle_rad), size_.ground_rows)
+             : PositionOf(map_.SkyCoordinate(zenith_angle_rad), size_.sky_rows);
+  const double sine = std::sin(0.5 * (zenith_angle_rad - sun_zenith_angle_rad_));
+  return RowPosition{
+      static_cast<std::size_t>(at.cell + (ground ? size_.sky_rows + 2 : 0)),
+      SplineWeights(at.fraction), static_cast<float>(sine * sine),
+      static_cast<float>(std::sin(zenith_angle_rad) * std::sin(sun_zenith_angle_rad_))};
+}
+
 void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
                       std::span<float> radiance) const {
   ALPENGLOW_ENSURE(azimuths.columns_, ==, size_.azimuths);
   ALPENGLOW_ENSURE(radiance.size(), ==, azimuths.count() * stride());
-  const bool ground = zenith_angle_rad > map_.horizon_zenith_angle_rad();
-  if (!ground && zenith_angle_rad <= map_.upper_edge_zenith_angle_rad() && map_.sees_upper_edge()) {
+  const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);
+  if (!at) {
     std::fill(radiance.begin(), radiance.end(), 0.0F);
     return;
   }
-  const CellPosition at =
-      ground ? PositionOf(map_.GroundCoordinate(zenith_angle_rad), size_.ground_rows)
-             : PositionOf(map_.SkyCoordinate(zenith_angle_rad), size_.sky_rows);
-  const auto first_row = static_cast<std::size_t>(at.cell + (ground ? size_.sky_rows + 2 : 0));
-  const std::array<float, 4> weight = SplineWeights(at.fraction);
   const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
   std::vector<float> row(width);
   const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
-  const double sine = std::sin(0.5 * (zenith_angle_rad - sun_zenith_angle_rad_));
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    kernel.blend(
-        {&blocks_[i].coefficients[first_row * width], width, width, weight.data(), row.data()});
+    kernel.blend({&blocks_[i].coefficients[at->first_row * width], width, width, at->weights.data(),
+                  row.data()});
     kernel.fill({row.data(), blocks_[i].phase.data(), azimuths.cell_.data(),
-                 azimuths.weights_.data(), azimuths.half_sine2_.data(),
-                 static_cast<float>(sine * sine),
-                 static_cast<float>(std::sin(zenith_angle_rad) * std::sin(sun_zenith_angle_rad_)),
+                 azimuths.weights_.data(), azimuths.half_sine2_.data(), at->offset, at->scale,
                  azimuths.count(), radiance.data() + kLanes * i, stride()});
   }
 }
 
+// Of the row only the four nodes that are looked up are added.
 Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) const {
-  const SkyAzimuths azimuth(*this, std::span(&azimuth_rad, 1));
-  std::vector<float> values(stride());
-  FillRow(zenith_angle_rad, azimuth, values);
   Bands<float> radiance(bands_);
-  std::copy_n(values.begin(), bands_, radiance.value.begin());
+  const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);
+  if (!at) return radiance;
+  const AzimuthTap tap = TapAt(map_, size_.azimuths, azimuth_rad);
+  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
+  const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
+  std::array<float, 4 * kSkyNodeFloats> nodes;
+  std::array<float, kLanes> light;
+  constexpr std::int32_t kFirst = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    kernel.blend({&blocks_[i].coefficients[at->first_row * width +
+                                           static_cast<std::size_t>(tap.cell) * kSkyNodeFloats],
+                  width, nodes.size(), at->weights.data(), nodes.data()});
+    kernel.fill({nodes.data(), blocks_[i].phase.data(), &kFirst, tap.weights.data(),
+                 &tap.half_sine2, at->offset, at->scale, 1, light.data(), kLanes});
+    for (std::size_t lane = 0; lane < kLanes && kLanes * i + lane < bands_; ++lane)
+      radiance[kLanes * i + lane] = light[lane];
+  }
   return radiance;
 }
 

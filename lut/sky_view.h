@@ -18,6 +18,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -99,6 +100,9 @@ class SkyView {
     std::vector<float> phase;  // of the aerosol, four a node
   };
   class Builder;
+  struct RowPosition;
+  /// Nothing above the upper edge of the air.
+  [[nodiscard]] std::optional<RowPosition> PositionOfRow(double zenith_angle_rad) const;
 
   SkyViewMap map_;
   SkyViewSize size_;

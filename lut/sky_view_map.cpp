@@ -60,6 +60,7 @@ SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
   sky_.a = outside_ ? 4.0 * per_layer : per_layer;
   sky_.b = std::asinh((horizon_ - edge_) / sky_.a);
   crowd_ = CrowdAtTerminator(dip, mu_s);
+  half_turn_integral_ = AzimuthIntegral(kPi);
   constexpr double kSmallestDip = 1e-4;
   ground_.a = std::max(dip, kSmallestDip);
   ground_.b = std::acosh(1.0 + (kPi - horizon_) / ground_.a);
@@ -88,6 +89,7 @@ double SkyViewMap::GroundCoordinate(double zenith_angle_rad) const {
 }
 
 double SkyViewMap::AzimuthIntegral(double azimuth_rad) const {
+  if (crowd_.strength == 0.0) return azimuth_rad;
   const auto bell = [&](double centre) {
     return std::atan((azimuth_rad - centre) / crowd_.width) + std::atan(centre / crowd_.width);
   };
@@ -97,12 +99,12 @@ double SkyViewMap::AzimuthIntegral(double azimuth_rad) const {
 }
 
 double SkyViewMap::AzimuthCoordinate(double azimuth_rad) const {
-  return AzimuthIntegral(azimuth_rad) / AzimuthIntegral(kPi);
+  return AzimuthIntegral(azimuth_rad) / half_turn_integral_;
 }
 
 // By bisection: the integral grows, and nodes are few.
 double SkyViewMap::Azimuth(double x) const {
-  const double wanted = x * AzimuthIntegral(kPi);
+  const double wanted = x * half_turn_integral_;
   double low = 0.0, high = kPi;
   if (x <= 0.0) return low;
   if (x >= 1.0) return high;

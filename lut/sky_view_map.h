@@ -66,6 +66,7 @@ class SkyViewMap {
   bool outside_;
   HorizonScale sky_, ground_;
   AzimuthCrowd crowd_;
+  double half_turn_integral_ = 0.0;
 };
 
 }  // namespace alpenglow
