@@ -33,6 +33,8 @@ class AirIntegrator {
 
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] std::size_t bands() const { return medium_.wavelengths_nm.size(); }
+  /// The medium as kernels read it.
+  [[nodiscard]] const AirConstants<Real>& constants() const { return constants_; }
 
   /// Columns [m] from a point along a direction of zenith cosine mu to space: molecules, aerosol,
   /// ozone. Relative error below 3e-6 (double) and 1.2e-5 (float) for altitudes in [0, top]. The

@@ -7,6 +7,7 @@
 
 #include "lut/cubic_taps.h"
 #include "lut/diffuse_fan_kernel.h"
+#include "lut/diffuse_grid.h"
 #include "lut/spherical_harmonics.h"
 
 namespace alpenglow {
@@ -22,13 +23,14 @@ constexpr double kMetresPerKilometre = 1000.0;
 struct DiffuseFan::Line {
   const RaySamples<float>& samples;
   std::size_t directions;
-  std::vector<float> position, cosine;  // [sample * directions + direction]
+  std::vector<float> position, twilight, cosine;  // [sample * directions + direction]
 };
 
 DiffuseFan::DiffuseFan(const DiffuseLight& light)
     : light_(light),
       stride_((light.bands() + kLanes - 1) / kLanes * kLanes),
-      chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)) {
+      chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)),
+      twilight_(TwilightAtNodes(light.grid())) {
   if (const std::size_t bands = light.bands(); stride_ != bands) {
     padded_.resize(light.values().size() / bands * stride_);
     for (std::size_t i = 0; i < light.values().size(); ++i)
@@ -38,6 +40,7 @@ DiffuseFan::DiffuseFan(const DiffuseLight& light)
     const double mu_s = 2.0 * i / kTableCells - 1.0;
     position_of_mu_s_.push_back(
         static_cast<float>(DiffuseLight::SunCoordinate(mu_s) * (light.options().sun_angles - 1)));
+    twilight_of_mu_s_.push_back(TwilightOf(light.grid(), mu_s));
   }
 }
 
@@ -106,6 +109,11 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
                              first_band;
     }
     kernel.contract(contraction);
+    for (std::size_t sun = 0; sun < contraction.suns; ++sun) {
+      const float twilight = twilight_[static_cast<std::size_t>(low) + sun];
+      float* row = contraction.rows + sun * orders * kLanes;
+      for (std::size_t k = 0; k < orders * kLanes; ++k) row[k] /= twilight;
+    }
 
     // Beyond the ends of the grid the line through the last two nodes goes on, as in TapsAt.
     const std::size_t width = orders * kLanes;
@@ -115,8 +123,9 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
       before[k] = 2.0F * before[width + k] - before[2 * width + k];
       after[k] = 2.0F * (after - width)[k] - (after - 2 * width)[k];
     }
-    kernel.gather({line.directions, position, &line.cosine[s * line.directions], low - 1,
-                   high - low + 3, options.degree, rows.data(), light.data()});
+    kernel.gather({line.directions, position, &line.twilight[s * line.directions],
+                   &line.cosine[s * line.directions], low - 1, high - low + 3, options.degree,
+                   rows.data(), light.data()});
   }
 }
 
@@ -124,6 +133,7 @@ std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, 
                                               std::span<const float> nus) const {
   const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
   Line line{samples, nus.size(), std::vector<float>(samples.count * nus.size()),
+            std::vector<float>(samples.count * nus.size()),
             std::vector<float>(samples.count * nus.size())};
   const double radius_km = light_.medium().planet_radius_m / kMetresPerKilometre;
   const double observer_km = radius_km + std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
@@ -133,8 +143,9 @@ std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, 
     kernel.find_suns({nus.size(), nus.data(), static_cast<float>(observer_km * ray.mu_s),
                       static_cast<float>(distance_km),
                       static_cast<float>(1.0 / (radius_km + double{samples.altitude[s]})),
-                      samples.mu[s], position_of_mu_s_.data(), static_cast<float>(kTableCells),
-                      &line.position[s * nus.size()], &line.cosine[s * nus.size()]});
+                      samples.mu[s], position_of_mu_s_.data(), twilight_of_mu_s_.data(),
+                      static_cast<float>(kTableCells), &line.position[s * nus.size()],
+                      &line.twilight[s * nus.size()], &line.cosine[s * nus.size()]});
   }
   const std::size_t bands = light_.bands();
   std::vector<float> all(nus.size() * bands);

@@ -40,6 +40,8 @@ class DiffuseFan {
   std::vector<float> padded_;    // the values of light_ at this stride; empty where it is theirs
   std::vector<double> chi_mie_;  // [l * bands + band]
   std::vector<float> position_of_mu_s_;  // over [-1, 1]: among the nodes of the sun's angle
+  std::vector<float> twilight_of_mu_s_;  // TwilightOf at the same places
+  std::vector<float> twilight_;          // and at the nodes
 };
 
 }  // namespace alpenglow

@@ -53,6 +53,8 @@ void FindSuns(const FanSuns& work) {
     const float t = work.position[k] - static_cast<float>(cell);
     const float* table = work.coordinate_of_mu_s + cell;
     work.position[k] = table[0] + t * (table[1] - table[0]);
+    const float* twilight = work.twilight_of_mu_s + cell;
+    work.twilight[k] = twilight[0] + t * (twilight[1] - twilight[0]);
   }
 }
 
@@ -81,6 +83,7 @@ void Gather(const FanGathering& work) {
       before = now;
       now = next;
     }
+    sum *= work.twilight[k];
     const Four dark = {};
     float* light = work.light + 4 * k;
     Store(light, Load(light) + (sum > dark ? sum : dark));

@@ -30,8 +30,10 @@ struct FanSuns {
   float inverse_radius;
   float mu;                         // of the view there
   const float* coordinate_of_mu_s;  // table over [-1, 1] of the position among the sun nodes
+  const float* twilight_of_mu_s;    // table of the same cells
   float table_cells;
   float* position;  // among the nodes of the sun's angle
+  float* twilight;  // what light is multiplied by after interpolation
   float* cosine;    // of the azimuth between view and sun
 };
 
@@ -39,6 +41,7 @@ struct FanSuns {
 struct FanGathering {
   std::size_t count;
   const float* position;
+  const float* twilight;
   const float* cosine;
   int first_sun, suns;  // of the rows: the nodes that they stand for
   int degree;

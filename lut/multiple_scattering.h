@@ -25,22 +25,27 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "atmosphere/medium.h"
 #include "atmosphere/single_scattering.h"
+#include "lut/diffuse_kernel.h"
 #include "lut/spherical_harmonics.h"
 
 namespace alpenglow {
 
 struct DiffuseLightOptions {
-  int altitudes = 20;     // nodes, quadratic in altitude, >= 4
-  int sun_angles = 40;    // nodes, dense around the terminator, >= 4
-  int degree = 4;         // largest l, in [2, kMaxDegree]
-  int zenith_nodes = 10;  // directions above and below the horizon, each
-  int azimuth_nodes = 8;  // over half a turn
+  int altitudes = 18;     // nodes, quadratic in altitude, >= 4
+  int sun_angles = 32;    // nodes, dense around the terminator, >= 4
+  int degree = 6;         // largest l, in [2, kMaxDegree]
+  int zenith_nodes = 14;  // directions above and below the horizon, each
+  int azimuth_nodes = 8;  // over half a turn, in [1, 32]
   int ray_nodes = 10;     // Gauss nodes along each direction
+  // The same for light scattered twice and more before it arrives, which is smooth: smaller numbers
+  // than those above, or they have no effect.
+  int later_zenith_nodes = 6;
+  int later_azimuth_nodes = 5;
+  int later_ray_nodes = 6;
   int max_orders = 200;
   double tolerance = 1e-2;  // share of the light that is summed as a geometric series, not computed
   /// Exactly so many orders of the diffuse light (1: scattered or reflected once), no rest summed:
@@ -70,6 +75,8 @@ class DiffuseLight {
   [[nodiscard]] bool converged() const { return converged_; }
   [[nodiscard]] int orders() const { return orders_; }
   [[nodiscard]] const DiffuseLightOptions& options() const { return options_; }
+  /// The axes, for those who interpolate values() themselves (diffuse_grid.h).
+  [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
   [[nodiscard]] std::size_t moments() const { return moments_; }
 
@@ -103,14 +110,18 @@ class DiffuseLight {
   /// Node coordinates: altitude = top u^2; mu_s = centre + width sinh(a + (b - a) v), u and v in
   /// [0, 1].
   static constexpr double kSunCentre = -0.05;
-  static constexpr double kSunWidth = 0.06;
+  static constexpr double kSunWidth = 0.10;
   static constexpr double kLowestMuS = -0.55;
   [[nodiscard]] static double SunCoordinate(double mu_s);
   [[nodiscard]] static double MuSFromCoordinate(double v);
 
  private:
-  // The moments at a point, by cubic interpolation: moments() x bands() values.
-  void Interpolate(double altitude_m, double mu_s, std::span<float> moments) const;
+  [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
+  [[nodiscard]] AlignedFloats Packed() const;
+  /// Calls visit(node, weight) with the 16 nodes around a point.
+  template <typename Visit>
+  void VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const;
+  [[nodiscard]] double AltitudeCoordinate(double altitude_m) const;
 
   Medium medium_;
   DiffuseLightOptions options_;
@@ -119,9 +130,9 @@ class DiffuseLight {
   int orders_ = 0;
   bool converged_ = false;
   std::vector<float> values_;
-  std::vector<std::array<float, 4>>
-      coefficients_;            // [1/km]: molecules, aerosol extinction, ozone, aerosol scattering
-  std::vector<float> chi_mie_;  // of the aerosol: [l * bands + band]
+  DiffuseGrid grid_;
+  std::vector<DiffuseBlock> blocks_;
+  AlignedFloats packed_;  // the moments again, as kernels read them
 };
 
 }  // namespace alpenglow
