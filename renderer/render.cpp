@@ -227,6 +227,7 @@ Hit SceneRenderer::State::Trace(const glm::dvec3& direction, double pixel_angle_
       return found;
     }
   }
+  if (direction.z >= 0.0) return {};
   const RayExtent extent = ExtentOf({ground.eye_height_m, direction.z, 1.0, direction.z}, radius(),
                                     air.medium().atmosphere_height_m);
   if (extent.end != RayEnd::kGround) return {};
@@ -519,7 +520,9 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
   const CameraRays camera(state_->scene.camera, settings.width, settings.height);
   PixelWriter writer(state_->colour, settings);
   const int grid = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));
-  const TerrainSunlight sunlight(state_->ground, light.to_sun, light.sun_radius_rad);
+  const TerrainSunlight sunlight =
+      settings.shafts ? TerrainSunlight(state_->ground, light.to_sun, light.sun_radius_rad)
+                      : TerrainSunlight();
   const LampPlan plan = state_->PlanLamps(camera, light, settings);
   ThrowIfInterrupted();
   tbb::parallel_for(0, settings.height, [&](int y) {

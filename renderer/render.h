@@ -28,6 +28,7 @@ struct RenderSettings {
   int height = 720;
   int samples_per_pixel = 4;        // rays against the terrain, a square number
   int air_nodes = 12;               // Gauss nodes along a ray to the sky
+  bool shafts = true;               // terrain shades the air; false for comparison
   std::vector<std::string> layers;  // of KnownLayers()
   LampSettings lamps = {};
 };

@@ -88,7 +88,10 @@ ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun,
   const Flat bounds = BoundsAlong(mesh, sunwards_, across_);
   const double width = bounds.u_high - bounds.u_low;
   const double depth = bounds.v_high - bounds.v_low;
-  const double wanted = options.cell_m > 0.0 ? options.cell_m : SpacingOf(mesh) / 1.5;
+  // A few large triangles have sharp edges, too.
+  constexpr double kFewestLines = 2048.0;
+  const double own = std::min(SpacingOf(mesh) / 1.5, std::max(width, depth) / kFewestLines);
+  const double wanted = options.cell_m > 0.0 ? options.cell_m : own;
   cell_m_ = std::max(wanted, std::sqrt(width * depth / static_cast<double>(options.most_cells)));
   // A free line on every side.
   first_u_m_ = bounds.u_low - cell_m_;

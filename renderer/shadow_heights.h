@@ -38,7 +38,8 @@ namespace alpenglow {
 class ShadowHeights {
  public:
   struct Options {
-    double cell_m = 0.0;  // distance of lines and bins; 0: two thirds of the mesh's spacing
+    double cell_m = 0.0;  // distance of lines and bins; 0: two thirds of the mesh's spacing,
+                          // at most a 2048th of its extent
     std::size_t most_cells = std::size_t{1} << 24;  // coarser cells rather than more than these
   };
 

@@ -36,7 +36,7 @@ struct SkyseriesOptions {
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx";
   int samples = 4;
   std::vector<std::string> layers;
-  bool png = false, night_vision = false, resume = false;
+  bool png = false, night_vision = false, no_shafts = false, resume = false;
 };
 
 inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
@@ -112,6 +112,8 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_flag("--night-vision", options.night_vision,
                "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
                "grows brighter");
+  app.add_flag("--no-shafts", options.no_shafts,
+               "Leave the air in the sun where terrain shades it, for comparison");
   app.add_flag("--resume", options.resume, "Keep intact frames that were made with these settings");
   app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small");
 }

@@ -16,6 +16,8 @@ namespace alpenglow {
 /// over the terrain have passed over the planet's horizon high above it.
 class TerrainSunlight {
  public:
+  /// Unbroken light.
+  TerrainSunlight() = default;
   /// Refers to the ground.
   TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_sun, double sun_radius_rad);
 
