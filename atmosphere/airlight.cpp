@@ -63,8 +63,10 @@ class LampRay {
       rho_lamp_[k] = std::exp(-z_lamp_ * inverse_h_[k]);
     }
     reference_ = air.bands() / 2;
+    const double end = std::isinf(segment.end_m) ? HomogeneousEnd() : segment.end_m;
     x_begin_ = XOf(segment.begin_m);
-    x_end_ = XOf(std::isinf(segment.end_m) ? HomogeneousEnd() : segment.end_m);
+    x_end_ = XOf(end);
+    ChooseLayers(z_eye_ + slope_ * segment.begin_m, z_eye_ + slope_ * end);
   }
 
   [[nodiscard]] double x_begin() const { return x_begin_; }
@@ -94,15 +96,17 @@ class LampRay {
     return Profile(std::tanh(x), 1.0 / std::cosh(x)) > 0.0;
   }
 
-  // The integrand in x, in the middle band.
+  // The integrand in x, in the middle band, of the layers that matter.
   [[nodiscard]] double Reference(double x) const {
     double value = 0.0;
-    At(x, reference_, reference_ + 1, [&](std::size_t, double found) { value = found; });
+    At(x, great_layers_, reference_, reference_ + 1,
+       [&](std::size_t, double found) { value = found; });
     return value;
   }
 
   void Accumulate(double x, double weight, Bands<double>& sum) const {
-    At(x, 0, sum.count, [&](std::size_t band, double found) { sum[band] += weight * found; });
+    At(x, all_layers_, 0, sum.count,
+       [&](std::size_t band, double found) { sum[band] += weight * found; });
   }
 
  private:
@@ -138,8 +142,27 @@ class LampRay {
     return RelativeIntensity(lamp_.profile, sine * along_ + cosine * across_);
   }
 
+  // Layers that scatter at least a fiftieth of the densest one, somewhere on the lamp's and the
+  // eye's ways: for scouting, where the shape of the integrand is enough.
+  void ChooseLayers(double begin_z, double end_z) {
+    std::array<double, kMostLampLayers> most{};
+    double greatest = 0.0;
+    for (std::size_t k = 0; k < air_.layers.size(); ++k) {
+      all_layers_.push_back(k);
+      const double lowest = std::min({z_eye_, z_lamp_, begin_z, end_z});
+      most[k] = air_.layers[k].scattering_per_m[reference_] * std::exp(-lowest * inverse_h_[k]);
+      greatest = std::max(greatest, most[k]);
+    }
+    for (const std::size_t k : all_layers_) {
+      if (most[k] >= 0.02 * greatest) great_layers_.push_back(k);
+    }
+  }
+
+  using Layers = Few<std::size_t, kMostLampLayers>;
+
   template <typename Take>
-  void At(double x, std::size_t first_band, std::size_t end_band, const Take& take) const {
+  void At(double x, const Layers& layers, std::size_t first_band, std::size_t end_band,
+          const Take& take) const {
     const double e = std::exp(x);
     const double cosh = 0.5 * (e + 1.0 / e);
     const double sinh = 0.5 * (e - 1.0 / e);
@@ -149,7 +172,7 @@ class LampRay {
     const double z = z_eye_ + slope_ * t;
     const double scale = sech / approach_m_ * Profile(sinh * sech, sech);
     std::array<double, kMostLampLayers> column{}, scattered{};
-    for (std::size_t k = 0; k < air_.layers.size(); ++k) {
+    for (const std::size_t k : layers) {
       const double rho = inverse_h_[k] == 0.0 ? 1.0 : std::exp(-z * inverse_h_[k]);
       column[k] = ExponentialColumn(t, rho_eye_[k], rho, (z - z_eye_) * inverse_h_[k]) +
                   ExponentialColumn(distance, rho_lamp_[k], rho, (z - z_lamp_) * inverse_h_[k]);
@@ -158,7 +181,7 @@ class LampRay {
     for (std::size_t band = first_band; band < end_band; ++band) {
       double tau = 0.0;
       double source = 0.0;
-      for (std::size_t k = 0; k < air_.layers.size(); ++k) {
+      for (const std::size_t k : layers) {
         tau += air_.layers[k].extinction_per_m[band] * column[k];
         source += air_.layers[k].scattering_per_m[band] * scattered[k];
       }
@@ -172,6 +195,7 @@ class LampRay {
   glm::dvec3 along_{0.0}, across_{0.0};
   double slope_, z_eye_, z_lamp_;
   std::array<double, kMostLampLayers> inverse_h_{}, rho_eye_{}, rho_lamp_{};
+  Layers all_layers_, great_layers_;
   std::size_t reference_ = 0;
   double x_begin_ = 0.0, x_end_ = 0.0;
 };
