@@ -593,6 +593,11 @@ struct TileRays {
     for (const LampRayEnd& ray : rays) most = std::max(most, ray.length_m);
     return most;
   }
+  [[nodiscard]] double shortest() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const LampRayEnd& ray : rays) least = std::min(least, ray.length_m);
+    return least;
+  }
   // How far the ends of the rays stay from a distance.
   [[nodiscard]] double GapTo(double distance_m) const {
     double least = std::numeric_limits<double>::infinity();
@@ -607,14 +612,19 @@ struct TileRays {
     if (apart <= radius_rad) return to_lamp;
     return glm::normalize(middle() + (to_lamp - middle()) * (radius_rad / apart));
   }
+  // And the one that is farthest from it.
+  [[nodiscard]] glm::dvec3 Farthest(const glm::dvec3& to_lamp) const {
+    const double apart = std::max(glm::length(to_lamp - middle()), 1e-9);
+    return glm::normalize(middle() - (to_lamp - middle()) * (radius_rad / apart));
+  }
 };
 
 /// A node as a tile sees it [cd/m^2].
 struct Share {
   std::uint32_t node;
-  double typical;  // in the middle of the tile
-  double most;     // anywhere in the tile
-  double error;    // of taking the node for the lamps below it, anywhere in the tile
+  double least;  // anywhere in the tile
+  double most;   // anywhere in the tile
+  double error;  // of taking the node for the lamps below it, anywhere in the tile
 
   bool operator<(const Share& other) const {
     return error != other.error ? error < other.error : node < other.node;
@@ -626,21 +636,21 @@ template <typename Weigh>
 LampNodes Cut(const std::vector<Node>& nodes, const LampNodes& roots, const LampSettings& settings,
               const Weigh& weigh) {
   std::priority_queue<Share> open;
-  double typical = 0.0, error = 0.0;
+  double least = 0.0, error = 0.0;
   const auto add = [&](std::uint32_t node) {
     const Share share = weigh(node);
-    typical += share.typical;
+    least += share.least;
     error += share.error;
     open.push(share);
   };
   for (const std::uint32_t root : roots) add(root);
   const auto budget = [&] {
-    return std::max(0.5 * settings.share_of_error * typical, 0.5 * settings.floor_cd_per_m2);
+    return std::max(0.5 * settings.share_of_error * least, 0.5 * settings.floor_cd_per_m2);
   };
   while (!open.empty() && open.top().error > 0.0 && error > budget()) {
     const Share worst = open.top();
     open.pop();
-    typical -= worst.typical;
+    least -= worst.least;
     error -= worst.error;
     for (const std::uint32_t child : nodes[worst.node].children.value()) add(child);
   }
@@ -670,7 +680,7 @@ Share WeighInAir(const Node& node, std::uint32_t number, const TileRays& tile,
     return light.candela * Airlight(light.middle_air, lamp, segment, kScoutNodes)[0];
   };
   Lamp bright = AsWideAsAPixel(light, pixel_angle_rad);
-  Share share{number, along(bright, tile.middle(), tile.rays[0].length_m), 0.0, 0.0};
+  Share share{number, along(bright, tile.Farthest(light.direction), tile.shortest()), 0.0, 0.0};
   bright.profile = {};  // as if its beam pointed everywhere
   const glm::dvec3 nearest = tile.Nearest(light.direction);
   share.most = along(bright, nearest, tile.longest());
@@ -693,12 +703,12 @@ Share WeighInAir(const Node& node, std::uint32_t number, const TileRays& tile,
 /// What a node is to the surfaces of a tile, if they faced it and reflected everything.
 Share WeighOnSurface(const Node& node, std::uint32_t number, const TileRays& tile) {
   const PlacedLamp& light = node.light;
-  const double typical_d = std::max(glm::length(*tile.surface - light.lamp.position_m), 0.3);
-  const double d = std::max(typical_d - tile.surface_spread_m, 0.3);
+  const double middle = glm::length(*tile.surface - light.lamp.position_m);
+  const double d = std::max(middle - tile.surface_spread_m, 0.3);
+  const double far = middle + tile.surface_spread_m + 0.3;
   const double t = TransmittanceBetween(light.middle_air, light.lamp.position_m, *tile.surface)[0];
   const double luminance = light.candela * t / kPi;
-  Share share{number, 0.1 * light.mean_share * luminance / (typical_d * typical_d),
-              luminance / (d * d), 0.0};
+  Share share{number, 0.1 * light.mean_share * luminance / (far * far), luminance / (d * d), 0.0};
   if (!node.children) return share;
   const double relative = (node.moments[0][0] + node.moments[1][1] + node.moments[2][2]) / (d * d);
   share.error = share.most * (d > 2.0 * node.radius_m ? relative : 10.0);

@@ -5,7 +5,7 @@
 Edge lights every 60 m, threshold, end and approach lights as on a precision runway (ICAO Annex 14,
 volume I, chapter 5), and the landing light of the aeroplane ahead or of the eye's own.
 
-  runway.py > runway.toml && skyseries runway.toml --out runway.exr --png --night-vision
+  runway.py --eye grass > runway.toml && skyseries runway.toml --out runway.exr --png --exposure 2
 """
 import argparse
 import math
@@ -15,6 +15,7 @@ parser.add_argument("--length", type=float, default=1800.0, help="of the runway 
 parser.add_argument("--lamps", type=int, help="that many lamps instead, along the edges")
 parser.add_argument("--visibility", type=float, default=900.0, help="in the fog at the ground [m]")
 parser.add_argument("--scale-height", type=float, default=25.0, help="of the fog [m]")
+parser.add_argument("--eye", choices=["approach", "grass"], default="approach")
 parser.add_argument("--no-beam", action="store_true", help="without landing lights")
 options = parser.parse_args()
 
@@ -31,17 +32,23 @@ def lamp(x, y, candela, kelvin=WHITE, height=0.35, extra=""):
           f"intensity_cd = {candela}\ntemperature_k = {kelvin}\nradius_m = 0.1\n{extra}")
 
 
+# (x, y) of the eye, its height and where it looks: from the glide path, or from the grass beside
+# the runway towards an aeroplane that lands.
+EYES = {"approach": (-420.0, 0.0, 38.0, 90.0, -4.0, 50.0),
+        "grass": (620.0, -75.0, 6.0, 289.0, 1.5, 52.0)}
+eye_x, eye_y, eye_height, heading, pitch, fov = EYES[options.eye]
+
 print(f"""[place]
-latitude = {LATITUDE}
-longitude = {LONGITUDE - 420.0 * EAST:.8f}
+latitude = {LATITUDE + eye_y * NORTH:.8f}
+longitude = {LONGITUDE + eye_x * EAST:.8f}
 zone = "Europe/Zurich"
 [time]
 local = "2026-01-15T23:30:00"
 [camera]
-height_m = 38.0
-heading = 90.0
-pitch = -4.0
-fov = 50.0
+height_m = {eye_height}
+heading = {heading}
+pitch = {pitch}
+fov = {fov}
 [terrain]
 none = true
 [fog]
@@ -69,10 +76,10 @@ else:
             lamp(-30.0 * i, 1.2 * j, 900.0, 3400.0, 1.0)
 
 if not options.no_beam:
-    # An aeroplane ahead, low over the threshold, with its landing lights on.
-    for side in (-1, 1):
-        lamp(120.0, 5.0 * side, 300000.0, 4000.0, 14.0,
-             'type = "spot"\nheading = 90.0\npitch = -5.0\ncone = [3.0, 8.0]\nradius_m = 0.15\n'.replace(
-                 "radius_m = 0.15\n", ""))
-    lamp(140.0, 70.0, 60000.0, 4000.0, 12.0,
-         'type = "spot"\nheading = 200.0\npitch = -6.0\ncone = [4.0, 9.0]\n')
+    # An aeroplane over the threshold with its landing lights on; its position lights are red, green
+    # and white.
+    for side in (-6.0, 6.0):
+        lamp(180.0, side, 400000.0, 4200.0, 24.0,
+             'type = "spot"\nheading = 90.0\npitch = -4.0\ncone = [2.5, 6.0]\n')
+    lamp(170.0, 15.0, 40.0, 1000.0, 24.5)
+    lamp(170.0, -15.0, 40.0, 9000.0, 24.5)
