@@ -482,7 +482,9 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
                const RaySamples<float>& samples, std::size_t sample, const DiffuseBlock& block,
                const float* moments, float* light) {
   constexpr std::size_t kNode = kPackedRow[kDegree + 1] * 8;
-  constexpr float kNoAerosol = 3e-5F;  // of the light of molecules
+  // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
+  // only those to degree 3.
+  constexpr float kNoAerosol = 3e-4F, kCoarseAerosol = 1e-3F;
   const auto first_altitude = static_cast<int>(chunk.altitude_cell[s]) - 1;
   const auto first_sun = static_cast<int>(chunk.sun_cell[s]) - 1;
   const auto last_altitude = static_cast<int>(grid.altitudes) - 1;
@@ -504,19 +506,19 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
     }
   }
   float rayleigh_share[kBlockBands], mie_share[kBlockBands];
-  bool aerosol = false;
+  bool aerosol = false, fine = false;
   for (std::size_t band = 0; band < kBlockBands; ++band) {
     rayleigh_share[band] = block.rayleigh[band] * samples.rayleigh_density[sample];
     mie_share[band] = block.mie_scattering[band] * samples.mie_density[sample];
     aerosol = aerosol || mie_share[band] > kNoAerosol * rayleigh_share[band];
+    fine = fine || mie_share[band] > kCoarseAerosol * rayleigh_share[band];
   }
   Eight rayleigh = Zero(), mie = Zero();
   if (aerosol) {
+    AddRows < kDegree, 0,
+        kDegree<3 ? kDegree : 3, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
     if constexpr (kDegree > 3) {
-      AddRows<kDegree, 0, 3, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
-      AddRows<kDegree, 4, kDegree, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
-    } else {
-      AddRows<kDegree, 0, kDegree, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
+      if (fine) AddRows<kDegree, 4, kDegree, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
     }
   } else {
     AddRows<kDegree, 0, 2, 2>(chunk, s, node, weight, block.chi, rayleigh, mie);
@@ -527,8 +529,8 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   for (std::size_t band = 0; band < kBlockBands; ++band) {
     const float r = of_rayleigh[band] + of_rayleigh[band + 4];
     const float m = of_mie[band] + of_mie[band + 4];
-    light[band] += rayleigh_share[band] * (r > 0.0F ? r : 0.0F) +
-                   mie_share[band] * (m > 0.0F && aerosol ? m : 0.0F);
+    light[band] +=
+        rayleigh_share[band] * (r > 0.0F ? r : 0.0F) + mie_share[band] * (m > 0.0F ? m : 0.0F);
   }
 }
 

@@ -132,6 +132,26 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
   return sum;
 }
 
+namespace {
+
+// P_l(x), the first even l that moments to this degree lack.
+float FirstMissingLegendre(int degree, float x) {
+  const int even = degree / 2 * 2 + 2;
+  float before = 1.0F, now = x;
+  for (int l = 1; l < even; ++l) {
+    const float next = (static_cast<float>(2 * l + 1) * x * now - static_cast<float>(l) * before) /
+                       static_cast<float>(l + 1);
+    before = now;
+    now = next;
+  }
+  return now;
+}
+
+}  // namespace
+
+// The clamped cosine has no odd terms beyond l = 1, so what the series misses on a surface that
+// looks up (where the truth is known: SkyIrradiance) it misses on one that looks down. Between them
+// it is taken to follow the first even Legendre polynomial that is missing.
 Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double normal_mu,
                                       double normal_cos_azimuth) const {
   // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients.
@@ -139,15 +159,21 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
       kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
   Moments factor = SphericalHarmonics(options_.degree, static_cast<float>(normal_mu),
                                       static_cast<float>(normal_cos_azimuth));
+  const Moments upward = SphericalHarmonics(options_.degree, 1.0F, 1.0F);
+  const float missing = FirstMissingLegendre(options_.degree, static_cast<float>(normal_mu));
   for (int l = 0; l <= options_.degree; ++l) {
-    for (int m = 0; m <= l; ++m)
-      factor[MomentIndex(l, m)] *= static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
+    for (int m = 0; m <= l; ++m) {
+      const std::size_t i = MomentIndex(l, m);
+      factor[i] = (factor[i] - missing * upward[i]) *
+                  static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
+    }
   }
   Bands<float> irradiance(bands_);
   VisitNodes(AltitudeCoordinate(altitude_m), mu_s, [&](const float* node, float weight) {
-    for (std::size_t i = 0; i < moments_; ++i) {
-      for (std::size_t band = 0; band < bands_; ++band)
-        irradiance[band] += weight * factor[i] * node[i * bands_ + band];
+    for (std::size_t band = 0; band < bands_; ++band) {
+      float sum = missing * node[moments_ * bands_ + band];
+      for (std::size_t i = 0; i < moments_; ++i) sum += factor[i] * node[i * bands_ + band];
+      irradiance[band] += weight * sum;
     }
   });
   for (std::size_t band = 0; band < bands_; ++band)

@@ -88,7 +88,8 @@ class DiffuseLight {
   /// Diffuse (sky and ground) irradiance on a surface [1], per unit solar irradiance.
   /// @param normal_mu   cosine of the angle between the surface's normal and the vertical.
   /// @param normal_cos_azimuth  cosine of the azimuth of the normal relative to the sun's.
-  /// From the moments by the clamped-cosine coefficients (Ramamoorthi, Hanrahan 2001).
+  /// From the moments by the clamped-cosine coefficients (Ramamoorthi, Hanrahan 2001), corrected
+  /// for what the series misses on horizontal surfaces: those within 2 %, with earth's air.
   [[nodiscard]] Bands<float> Irradiance(double altitude_m, double mu_s, double normal_mu,
                                         double normal_cos_azimuth) const;
 

@@ -67,14 +67,29 @@ vec4 DiffuseSource(AirPoint point, float nu) {
          mie_scattering * point.mie * max(mie, vec4(0.0));
 }
 
-// Diffuse irradiance on a surface, per unit solar irradiance.
+// P_l(x), the first even l that the moments lack.
+float FirstMissingLegendre(float x) {
+  float before = 1.0;
+  float now = x;
+  for (int l = 1; l < DEGREE / 2 * 2 + 2; ++l) {
+    float next = (float(2 * l + 1) * x * now - float(l) * before) / float(l + 1);
+    before = now;
+    now = next;
+  }
+  return now;
+}
+
+// Diffuse irradiance on a surface, per unit solar irradiance: DiffuseLight::Irradiance.
 // @param normal_mu  vertical component of the normal; cos_azimuth from the sun's azimuth to it.
 vec4 DiffuseIrradiance(float h, float mu_s, float normal_mu, float cos_azimuth) {
   float y[MOMENTS] = Harmonics(normal_mu, cos_azimuth);
+  float upward[MOMENTS] = Harmonics(1.0, 1.0);
+  float missing = FirstMissingLegendre(normal_mu);
   vec2 at = MomentsAt(h, mu_s);
-  vec4 irradiance = vec4(0.0);
+  vec4 irradiance = missing * texture(diffuse_moments, vec3(at, float(MOMENTS)));
   for (int i = 0; i < MOMENTS; ++i) {
-    irradiance += (y[i] * moment_factor[i].z) * texture(diffuse_moments, vec3(at, float(i)));
+    irradiance += ((y[i] - missing * upward[i]) * moment_factor[i].z) *
+                  texture(diffuse_moments, vec3(at, float(i)));
   }
   return max(irradiance, vec4(0.0));
 }

@@ -5,9 +5,11 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <set>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/instruction_set.h"
 #include "atmosphere/path_tracer.h"
 #include "atmosphere/quadrature.h"
 #include "tests/stored_cases.h"
@@ -186,7 +188,8 @@ TEST(DiffuseLight, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
 }
 
 // The share of diffuse light in the stored path-traced totals, by regime.
-void ExpectStoredTotals(const std::string& tag_filter, double relative_tolerance, int at_least) {
+void ExpectStoredTotals(const std::string& tag_filter, const std::set<std::string>& sets,
+                        double relative_tolerance, int at_least) {
   const auto media = stored::Media();
   const auto results = stored::Results("multiple_results.csv");
   std::map<std::string, DiffuseLight> lights;
@@ -194,8 +197,7 @@ void ExpectStoredTotals(const std::string& tag_filter, double relative_tolerance
   double squares = 0.0;
   for (const stored::Row& row : stored::Read("multiple.csv")) {
     const std::string set = row.at("set");
-    if (row.at("tag") != tag_filter || (set != "earth" && set != "earth_a03" && set != "rayleigh"))
-      continue;
+    if (row.at("tag") != tag_filter || !sets.contains(set)) continue;
     const Medium& medium = media.at(set);
     const DiffuseLight& light = lights.try_emplace(set, medium).first->second;
     const AirIntegrator<float> air(medium);
@@ -216,15 +218,119 @@ void ExpectStoredTotals(const std::string& tag_filter, double relative_tolerance
   EXPECT_LT(std::sqrt(squares / compared), relative_tolerance) << tag_filter;
 }
 
-TEST(DiffuseLight, DaylightAgreesWithPathTracingToAThirdOfAPercent) {
+TEST(DiffuseLight, DaylightAgreesWithPathTracingToAnEighthOfAPercent) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
-  ExpectStoredTotals("day", 3e-3, 9);
+  ExpectStoredTotals("day", {"earth", "earth_a03", "rayleigh"}, 1.25e-3, 9);
 }
 
-TEST(DiffuseLight, TwilightAgreesWithPathTracing) {
+TEST(DiffuseLight, TwilightAgreesWithPathTracingToOnePercent) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   // Includes two hazy rays with the sun 10 degrees down, where the stored sigma is 0.6 %.
-  ExpectStoredTotals("twilight", 3e-2, 9);
+  ExpectStoredTotals("twilight", {"earth", "earth_a03", "rayleigh", "spec5"}, 1e-2, 9);
+}
+
+TEST(DiffuseLight, AirBeforeALowSunAgreesWithPathTracing) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  // The glow around the sun of light scattered twice by aerosol is narrower than degree 6.
+  ExpectStoredTotals("aerial perspective", {"earth", "haze20mix", "spec5"}, 1.5e-2, 9);
+}
+
+// Views that nobody tuned to: the weak places of coarse moments.
+TEST(DiffuseLight, HazeAgreesWithTheJudgeAtLowSunAndInTwilight) {
+  struct View {
+    double altitude_m, zenith_deg, azimuth_deg, sun_deg;
+  };
+  const Medium medium = MediumPreset("hazy");
+  const DiffuseLight light(medium);
+  const AirIntegrator<float> air(medium);
+  for (const View& view : {View{3000.0, 84.0, 20.0, 4.0},
+                           {2.0, 82.0, 170.0, 2.0},
+                           {2.0, 40.0, 60.0, -2.0},
+                           {10000.0, 88.0, 40.0, -4.0}}) {
+    const ViewRay ray =
+        RayFromAngles(view.altitude_m, view.zenith_deg, view.azimuth_deg, 90.0 - view.sun_deg);
+    const auto samples = air.Sample(ray, {.nodes = 20, .split_ozone = true, .dark_samples = true});
+    const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
+    const auto more = light.InscatterAlong(samples, ray.nu);
+    const auto truth =
+        judge::TraceRadiance(medium, ray, {.max_paths = 30000, .relative_error = 0.003});
+    for (std::size_t band = 0; band < light.bands(); ++band) {
+      const double tolerance = 0.02 * truth.total[band] + 3.0 * truth.standard_error[band];
+      EXPECT_NEAR(static_cast<double>(once[band] + more[band]), truth.total[band], tolerance)
+          << "sun " << view.sun_deg << " band " << band << ": 2 % and three standard errors";
+    }
+  }
+}
+
+TEST(DiffuseLight, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
+  const Medium medium = MediumPreset("earth");
+  const DiffuseLight light(medium);
+  for (const double altitude_m : {0.0, 3000.0, 12000.0}) {
+    for (const double sun_deg : {40.0, 3.0, -5.0}) {
+      const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
+      for (const judge::PlaneSide side :
+           {judge::PlaneSide::kFromAbove, judge::PlaneSide::kFromBelow}) {
+        if (altitude_m == 0.0 && side == judge::PlaneSide::kFromBelow) continue;
+        const double up = side == judge::PlaneSide::kFromAbove ? 1.0 : -1.0;
+        const auto found = light.Irradiance(altitude_m, mu_s, up, 1.0);
+        const auto truth = judge::TraceIrradiance(medium, altitude_m, mu_s, side,
+                                                  {.max_paths = 30000, .relative_error = 0.003});
+        for (std::size_t band = 0; band < light.bands(); ++band) {
+          const double tolerance = 0.02 * truth.value[band] + 3.0 * truth.standard_error[band];
+          EXPECT_NEAR(static_cast<double>(found[band]), truth.value[band], tolerance)
+              << altitude_m << " m, sun " << sun_deg << ", from " << up
+              << ": 2 % and three standard errors";
+        }
+      }
+    }
+  }
+}
+
+TEST(DiffuseLight, IsNeverNegative) {
+  for (const char* name : {"hazy", "clear-mountain"}) {
+    const Medium medium = MediumPreset(name);
+    const DiffuseLight light(medium, kSmall);
+    const AirIntegrator<float> air(medium);
+    for (const double altitude_m : {0.0, 9000.0, 70000.0}) {
+      for (double sun_deg = -20.0; sun_deg <= 90.0; sun_deg += 11.0) {
+        const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
+        for (const double zenith_deg : {0.0, 60.0, 89.0, 91.0, 120.0, 180.0}) {
+          const ViewRay ray = RayFromAngles(altitude_m, zenith_deg, 150.0, 90.0 - sun_deg);
+          const auto samples = air.Sample(ray, {.nodes = 8, .dark_samples = true});
+          const auto inscatter = light.InscatterAlong(samples, ray.nu);
+          const auto irradiance =
+              light.Irradiance(altitude_m, mu_s, std::cos(zenith_deg * kRadiansPerDegree), -1.0);
+          for (std::size_t band = 0; band < light.bands(); ++band) {
+            EXPECT_GE(inscatter[band], 0.0F) << sun_deg << " " << zenith_deg;
+            EXPECT_GE(irradiance[band], 0.0F) << sun_deg << " " << zenith_deg;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
+  const Medium medium = MediumPreset("hazy");
+  const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, 88.0);
+  const auto both = [&] {
+    const DiffuseLight light(medium, kSmall);
+    const auto samples =
+        AirIntegrator<float>(medium).Sample(ray, {.nodes = 12, .dark_samples = true});
+    return std::pair(light.values(), light.InscatterAlong(samples, ray.nu));
+  };
+  const InstructionSetScope plain(InstructionSet::kBaseline);
+  const auto expected = both();
+  for (const InstructionSet set : AvailableInstructionSets()) {
+    const InstructionSetScope scope(set);
+    const auto found = both();
+    for (std::size_t i = 0; i < expected.first.size(); ++i) {
+      EXPECT_NEAR(found.first[i], expected.first[i], 1e-5F + 1e-4F * std::abs(expected.first[i]))
+          << NameOf(set) << ": float, summed in another order";
+    }
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
+      EXPECT_NEAR(found.second[band], expected.second[band], 1e-4F * expected.second[band]);
+  }
 }
 
 TEST(DiffuseLight, SkyIrradianceAgreesWithPathTracing) {
