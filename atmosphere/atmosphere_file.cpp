@@ -20,7 +20,10 @@
 //   [aerosol]            instead of the lists of [mie]: mixture (aerosol_mixture.h), or one of
 //                        visibility_m, turbidity, optical_depth_550, or both;
 //                        single_scattering_albedo; without a mixture angstrom_exponent
-//   [ozone]              absorption_per_m | dobson, bottom_m, peak_m, top_m
+//   [ozone]              absorption_per_m (at the peak) | dobson, profile ("smooth" | "tent";
+//   another
+//                        than the preset's keeps the column), peak_m; bottom_m and top_m of a tent,
+//                        which they make of it
 //
 // What people think in becomes the aerosol's extinction at 550 nm and the ground:
 //   visibility V             3.912 / V - molecules         Koschmieder (1924), 2 % contrast
@@ -71,7 +74,7 @@ const Names kAerosolKeys{"visibility_m",
                          "angstrom_exponent",
                          "single_scattering_albedo",
                          "mixture"};
-const Names kOzoneKeys{"absorption_per_m", "dobson", "bottom_m", "peak_m", "top_m"};
+const Names kOzoneKeys{"absorption_per_m", "dobson", "profile", "bottom_m", "peak_m", "top_m"};
 
 // Refuses two keys of a table that say the same thing.
 void RequireOneOf(const TomlTable& table, const Names& keys) {
@@ -479,12 +482,48 @@ class AtmosphereFile {
     }
   }
 
+  OzoneShape ShapeOfOzone(OzoneShape of_preset) const {
+    const TomlTable& table = *ozone_;
+    const bool edges = table.Has("bottom_m") || table.Has("top_m");
+    const auto name = table.Text("profile");
+    if (!name) return edges ? OzoneShape::kTent : of_preset;
+    if (*name == "tent") return OzoneShape::kTent;
+    if (*name != "smooth") {
+      table.Fail("profile",
+                 fmt::format("ozone.profile is \"{}\"; it must be one of smooth, tent", *name));
+    }
+    for (const char* edge : {"bottom_m", "top_m"}) {
+      if (table.Has(edge)) {
+        table.Fail(edge, fmt::format("ozone.{} has no effect: a smooth profile reaches from the "
+                                     "ground to three times ozone.peak_m",
+                                     edge));
+      }
+    }
+    return OzoneShape::kSmooth;
+  }
+
+  void ReadProfile(Medium& medium) const {
+    const TomlTable& table = *ozone_;
+    const OzoneLayer of_preset = medium.ozone;
+    OzoneLayer& ozone = medium.ozone;
+    const OzoneShape shape = ShapeOfOzone(of_preset.shape);
+    if (shape != of_preset.shape) {
+      ozone = shape == OzoneShape::kTent ? OzoneLayer{} : SmoothOzone();
+    }
+    ReadNumber(table, "bottom_m", ranges::kOzoneAltitude_m, ozone.bottom_m);
+    ReadNumber(table, "peak_m", ranges::kOzoneAltitude_m, ozone.peak_m);
+    ReadNumber(table, "top_m", ranges::kOzoneAltitude_m, ozone.top_m);
+    if (shape == OzoneShape::kSmooth) ozone = SmoothOzone(ozone.peak_m);
+    if (shape == of_preset.shape) return;
+    for (double& peak : medium.ozone_absorption_per_m) {
+      peak *= EquivalentDepth_m(of_preset) / EquivalentDepth_m(ozone);
+    }
+  }
+
   void ReadOzone(Medium& medium) const {
     const TomlTable& table = *ozone_;
     RequireOneOf(table, {"absorption_per_m", "dobson"});
-    ReadNumber(table, "bottom_m", ranges::kOzoneAltitude_m, medium.ozone.bottom_m);
-    ReadNumber(table, "peak_m", ranges::kOzoneAltitude_m, medium.ozone.peak_m);
-    ReadNumber(table, "top_m", ranges::kOzoneAltitude_m, medium.ozone.top_m);
+    ReadProfile(medium);
     if (!(medium.ozone.bottom_m < medium.ozone.top_m)) RequireFaultless(medium);
     ReadList(table, "absorption_per_m", ranges::kCoefficient_per_m, medium.ozone_absorption_per_m,
              medium.wavelengths_nm.size());

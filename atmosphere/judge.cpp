@@ -37,12 +37,17 @@ struct Line {
 };
 
 Columns Densities(const Medium& medium, Extended altitude) {
-  const OzoneTent& tent = medium.ozone;
+  const OzoneLayer& layer = medium.ozone;
   const double h = static_cast<double>(altitude);
   double ozone = 0.0;
-  if (h > tent.bottom_m && h <= tent.peak_m)
-    ozone = (h - tent.bottom_m) / (tent.peak_m - tent.bottom_m);
-  if (h > tent.peak_m && h < tent.top_m) ozone = (tent.top_m - h) / (tent.top_m - tent.peak_m);
+  if (layer.shape == OzoneShape::kSmooth) {
+    const double y = h / layer.top_m;
+    if (y > 0.0 && y < 1.0) ozone = std::pow(27.0 / 4.0 * y, 4) * std::pow(1.0 - y, 8);
+  } else if (h > layer.bottom_m && h <= layer.peak_m) {
+    ozone = (h - layer.bottom_m) / (layer.peak_m - layer.bottom_m);
+  } else if (h > layer.peak_m && h < layer.top_m) {
+    ozone = (layer.top_m - h) / (layer.top_m - layer.peak_m);
+  }
   return {std::exp(-h / medium.rayleigh_scale_height_m), std::exp(-h / medium.mie_scale_height_m),
           ozone};
 }

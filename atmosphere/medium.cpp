@@ -98,13 +98,19 @@ Fault FaultOfScalars(const Medium& medium) {
   for (const auto& scalar : scalars) {
     if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.range)) return fault;
   }
-  const OzoneTent& ozone = medium.ozone;
+  const OzoneLayer& ozone = medium.ozone;
   if (!(ozone.bottom_m < ozone.peak_m && ozone.peak_m < ozone.top_m)) {
     return MediumFault{
         "ozone.peak_m",
         fmt::format("ozone.peak_m is {}; it must lie between ozone.bottom_m, {}, and "
                     "ozone.top_m, {}",
                     ozone.peak_m, ozone.bottom_m, ozone.top_m)};
+  }
+  if (ozone.shape == OzoneShape::kSmooth && ozone != SmoothOzone(ozone.peak_m)) {
+    return MediumFault{"ozone.profile",
+                       fmt::format("ozone.profile is smooth; its bottom is 0 and its top three "
+                                   "times ozone.peak_m, not {} and {}",
+                                   ozone.bottom_m, ozone.top_m)};
   }
   return std::nullopt;
 }
@@ -156,6 +162,17 @@ std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) 
   return values;
 }
 
+OzoneLayer SmoothOzone(double peak_m) {
+  return {.bottom_m = 0.0, .peak_m = peak_m, .top_m = 3.0 * peak_m, .shape = OzoneShape::kSmooth};
+}
+
+double EquivalentDepth_m(const OzoneLayer& layer) {
+  if (layer.shape == OzoneShape::kTent) return 0.5 * (layer.top_m - layer.bottom_m);
+  constexpr double kPeak = 27.0 * 27.0 * 27.0 * 27.0 / 256.0;
+  constexpr double kBeta = 1.0 / 6435.0;  // integral of (y (1 - y)^2)^4: 4! 8! / 13!
+  return layer.top_m * kPeak * kBeta;
+}
+
 std::optional<MediumFault> FindFault(const Medium& medium) {
   if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm)) return fault;
   if (Fault fault = FaultOfScalars(medium)) return fault;
@@ -189,6 +206,7 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.ozone.bottom_m);
   fnv.Add(medium.ozone.peak_m);
   fnv.Add(medium.ozone.top_m);
+  if (medium.ozone.shape != OzoneShape::kTent) fnv.Add(std::uint64_t{1});
   return fnv.hash();
 }
 

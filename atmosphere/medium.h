@@ -3,7 +3,7 @@
 //
 //   molecules   sigma(h) = rayleigh_scattering exp(-h / H_R)                scattering only
 //   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering, absorption
-//   ozone       sigma(h) = ozone_absorption    tent(h)                      absorption only
+//   ozone       sigma(h) = ozone_absorption    layer(h)                     absorption only
 //
 // and nothing above the top. SI units except wavelengths [nm].
 #pragma once
@@ -20,14 +20,27 @@
 
 namespace alpenglow {
 
-/// Ozone's relative density: 0 at the bottom, 1 at the peak, 0 at the top, linear between.
-struct OzoneTent {
+/// Tent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017).
+/// Smooth: (27/4 y (1 - y)^2)^4 with y = h / top and the peak at top / 3. A tent bends the light of
+/// twilight at its edges, which no quadrature with few nodes can follow; this does not.
+enum class OzoneShape { kTent, kSmooth };
+
+/// Ozone's density relative to its peak, over altitude.
+struct OzoneLayer {
   double bottom_m = 10000.0;
   double peak_m = 25000.0;
   double top_m = 40000.0;
+  OzoneShape shape = OzoneShape::kTent;
 
-  bool operator==(const OzoneTent&) const = default;
+  bool operator==(const OzoneLayer&) const = default;
 };
+
+/// A smooth layer with its peak at `peak_m`. The default is that of the earth presets: peak at 22
+/// km, mean at 23.6 km, standard deviation 8.2 km.
+[[nodiscard]] OzoneLayer SmoothOzone(double peak_m = 22000.0);
+
+/// Height [m] of a layer of density 1 throughout that holds as much.
+[[nodiscard]] double EquivalentDepth_m(const OzoneLayer& layer);
 
 /// Lists hold one value per wavelength.
 struct Medium {
@@ -52,8 +65,8 @@ struct Medium {
   /// Of the aerosol: one for all wavelengths, or one per wavelength, all of one kind.
   std::vector<PhaseFunction> mie_phase{PhaseFunction{}};
 
-  std::vector<double> ozone_absorption_per_m;  // at the peak of the tent
-  OzoneTent ozone;
+  std::vector<double> ozone_absorption_per_m;  // at the peak of the layer
+  OzoneLayer ozone;
 
   bool operator==(const Medium&) const = default;
 };

@@ -79,7 +79,7 @@ Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) 
   medium.rayleigh_scattering_per_m = Evaluate(wavelengths_nm, RayleighScatteringAtSeaLevel);
   medium.rayleigh_scale_height_m = 8000.0;  // customary; 5 % less than the column of real air
   AddAerosol(aerosol, medium);
-  medium.ozone = OzoneTent{};  // Bruneton (2017), after the US Standard Atmosphere 1976
+  medium.ozone = SmoothOzone();
   medium.ozone_absorption_per_m = Evaluate(wavelengths_nm, [&](double wavelength_nm) {
     return OzoneAbsorptionAtPeak(300.0, medium.ozone, wavelength_nm);
   });
@@ -168,7 +168,7 @@ Medium Bruneton2017() {
   medium.mie_scale_height_m = 1200.0;
   medium.mie_phase = {{.kind = PhaseKind::kCornetteShanks, .g = 0.8}};
   medium.ozone_absorption_per_m = {0.085e-6, 1.881e-6, 0.650e-6};
-  medium.ozone = OzoneTent{};
+  medium.ozone = OzoneLayer{};
   return medium;
 }
 
@@ -189,10 +189,9 @@ void RequireTablesReach(std::string_view name, const std::vector<double>& wavele
 
 }  // namespace
 
-double OzoneAbsorptionAtPeak(double column_dobson, const OzoneTent& tent, double wavelength_nm) {
+double OzoneAbsorptionAtPeak(double column_dobson, const OzoneLayer& layer, double wavelength_nm) {
   constexpr double kMoleculesPerSquareMetreAndDobson = 2.6867811e20;
-  const double column_m = 0.5 * (tent.top_m - tent.bottom_m);
-  return column_dobson * kMoleculesPerSquareMetreAndDobson / column_m *
+  return column_dobson * kMoleculesPerSquareMetreAndDobson / EquivalentDepth_m(layer) *
          OzoneCrossSection(wavelength_nm);
 }
 

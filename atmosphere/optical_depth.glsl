@@ -86,6 +86,47 @@ SHARED Length TentColumnUp(Length h, Number mu, Length bottom, Length peak, Leng
          TentPieceColumn(h, mu, d_peak, d_top, bottom, peak, top, R);
 }
 
+// Relative density of the smooth layer of ozone, (27/4 y (1 - y)^2)^4 with y = h / top: 1 at top / 3, 0 at
+// the ground and from the top on.
+SHARED Number SmoothOzoneDensity(Length h, Length top) {
+  Number y = h / top;
+  Number rest = max(Number(1.0) - y, Number(0.0));
+  Number root = Number(6.75) * y * rest * rest;
+  Number square = root * root;
+  return square * square;
+}
+
+// Twice the mean of that density at distances `middle - offset` and `middle + offset` of a ray. The altitude
+// h + r (sqrt(1 + 2 x) - 1), x = d (d + 2 r mu) / 2 r^2, is a series, for a square root and a division a node
+// would cost more than all the rest: relative error 7/8 x^4, x < 0.011 below 70 km.
+SHARED Number SmoothOzonePair(Length h, Number mu, Length middle, Length offset, Length top, Length R) {
+  Length r = R + h;
+  Length a = Number(2.0) * r * mu;
+  Number inverse = Number(1.0) / r;
+  Number scale = Number(0.5) * inverse * inverse;
+  Length near = middle - offset;
+  Length far = middle + offset;
+  Number x = near * (near + a) * scale;
+  Number y = far * (far + a) * scale;
+  Length low = h + r * (x - x * x * (Number(0.5) - x * (Number(0.5) - Number(0.625) * x)));
+  Length high = h + r * (y - y * y * (Number(0.5) - y * (Number(0.5) - Number(0.625) * y)));
+  return SmoothOzoneDensity(low, top) + SmoothOzoneDensity(high, top);
+}
+
+// Column of the smooth layer from altitude h along mu >= 0 to space: Gauss-Legendre with 10 nodes in the
+// distance, in which the density is a polynomial of degree 24 but for the curvature of order 4. Relative error
+// 3e-6, the most on the horizontal ray from the ground.
+SHARED Length SmoothOzoneColumnUp(Length h, Number mu, Length top, Length R) {
+  Length d = select(h < top, DistanceUpTo(h, mu, max(h, top), R), Length(0.0));
+  Length m = Number(0.5) * d;
+  Number sum = Number(0.29552422471475287) * SmoothOzonePair(h, mu, m, m * Number(0.14887433898163122), top, R);
+  sum = sum + Number(0.26926671930999635) * SmoothOzonePair(h, mu, m, m * Number(0.43339539412924719), top, R);
+  sum = sum + Number(0.21908636251598204) * SmoothOzonePair(h, mu, m, m * Number(0.67940956829902441), top, R);
+  sum = sum + Number(0.14945134915058060) * SmoothOzonePair(h, mu, m, m * Number(0.86506336668898451), top, R);
+  sum = sum + Number(0.06667134430868814) * SmoothOzonePair(h, mu, m, m * Number(0.97390652851717172), top, R);
+  return m * sum;
+}
+
 // Joins upward columns into the column from the origin of a ray (upward column c_origin at its |mu|) to a
 // point on it (c_point at its |mu|): outward, inward, or through the perigee (upward column c_perigee).
 SHARED Length ColumnBetween(Number mu_origin, Number mu_point, Length c_origin, Length c_point, Length c_perigee) {

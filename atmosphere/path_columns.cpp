@@ -100,6 +100,22 @@ double ColumnTable::OzoneSide(const Line& line, std::size_t side, double s_m) co
   return ((planet_radius_m_ + ozone_.top_m) * s_m - of_radius) / (ozone_.top_m - ozone_.peak_m);
 }
 
+// The smooth layer between its bottom, or the perigee above it, and s.
+double ColumnTable::SmoothOzoneUpTo(const Line& line, double s_m) const {
+  const GaussRule& rule = GaussLegendre(14);
+  const double p = line.perigee_radius_m;
+  const double first = line.ozone_edge_m[0];
+  const double span = std::min(s_m, line.ozone_edge_m[2]) - first;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double s = first + span * rule.node[i];
+    const double y = (std::sqrt(p * p + s * s) - planet_radius_m_) / ozone_.top_m;
+    const double root = 6.75 * y * (1.0 - y) * (1.0 - y);
+    sum += rule.weight[i] * root * root * root * root;
+  }
+  return sum * std::max(span, 0.0);
+}
+
 ColumnTable::Line ColumnTable::LineAt(double perigee_radius_m) const {
   Line line;
   line.perigee_radius_m = perigee_radius_m;
@@ -109,6 +125,7 @@ ColumnTable::Line ColumnTable::LineAt(double perigee_radius_m) const {
     const double above = planet_radius_m_ + edge[i] - perigee_radius_m;
     line.ozone_edge_m[i] = above > 0.0 ? std::sqrt(above * (above + 2.0 * perigee_radius_m)) : 0.0;
   }
+  if (ozone_.shape == OzoneShape::kSmooth) return line;
   if (line.ozone_edge_m[1] > line.ozone_edge_m[0]) {
     line.ozone_offset_m[0] = OzoneSide(line, 0, line.ozone_edge_m[0]);
     line.ozone_below_peak_m = OzoneSide(line, 0, line.ozone_edge_m[1]) - line.ozone_offset_m[0];
@@ -124,7 +141,9 @@ AirColumns ColumnTable::Primitive(const Line& line, double s_m) const {
   const double r = std::sqrt(p * p + s * s);
   AirColumns columns{Beyond(rayleigh_, r, s), Beyond(mie_, r, s), 0.0};
   if (!has_ozone_ || s <= line.ozone_edge_m[0]) return columns;
-  if (s < line.ozone_edge_m[1]) {
+  if (ozone_.shape == OzoneShape::kSmooth) {
+    columns.ozone = SmoothOzoneUpTo(line, s);
+  } else if (s < line.ozone_edge_m[1]) {
     columns.ozone = OzoneSide(line, 0, s) - line.ozone_offset_m[0];
   } else {
     columns.ozone = line.ozone_below_peak_m;

@@ -16,18 +16,27 @@ struct ShellLengths {
         mie(air.mie_height),
         ozone_bottom(air.ozone_bottom),
         ozone_peak(air.ozone_peak),
-        ozone_top(air.ozone_top) {}
+        ozone_top(air.ozone_top),
+        smooth_ozone(air.smooth_ozone) {}
 
   T radius, top, rayleigh, mie, ozone_bottom, ozone_peak, ozone_top;
+  bool smooth_ozone;
 };
+
+template <typename Real, typename T>
+T OzoneColumnUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  if (shell.smooth_ozone) return SmoothOzoneColumnUp<T>(h, mu, shell.ozone_top, shell.radius);
+  return TentColumnUp<T>(h, mu, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top,
+                         shell.radius);
+}
 
 template <typename Real, typename T>
 ColumnSet<T> ColumnsUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
   using namespace shared;
-  return {
-      ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
-      ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
-      TentColumnUp<T>(h, mu, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top, shell.radius)};
+  return {ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
+          ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
+          OzoneColumnUp(shell, h, mu)};
 }
 
 // Points in the planet's shadow have perigees below the ground, whose columns nobody uses: they

@@ -16,6 +16,7 @@ struct AirConstants {
   Real radius, top;
   Real rayleigh_height, mie_height;
   Real ozone_bottom, ozone_peak, ozone_top;
+  bool smooth_ozone;
   std::size_t bands;
   std::array<Real, kMaxBands> rayleigh, mie_scattering, mie_extinction, ozone;
 };

@@ -30,6 +30,7 @@ AirConstants<Real> ConstantsOf(const Medium& medium) {
   air.ozone_bottom = km(medium.ozone.bottom_m);
   air.ozone_peak = km(medium.ozone.peak_m);
   air.ozone_top = km(medium.ozone.top_m);
+  air.smooth_ozone = medium.ozone.shape == OzoneShape::kSmooth;
   air.bands = medium.wavelengths_nm.size();
   for (std::size_t band = 0; band < air.bands; ++band) {
     const auto per_km = [band](const std::vector<double>& per_m) {
@@ -121,7 +122,7 @@ std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent,
   const bool any_dark = dark_begin < dark_end;
   std::vector<double> cuts{0.0, length, -(radius + entry.altitude_km) * entry.mu};
   if (any_dark) cuts.insert(cuts.end(), {dark_begin, dark_end});
-  if (sampling.split_ozone) {
+  if (sampling.split_ozone && medium.ozone.shape == OzoneShape::kTent) {
     for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
       AppendCrossings(entry.altitude_km, entry.mu, z / kMetresPerKilometre, radius, cuts);
       AppendSunPerigees(entry, ray.nu, z / kMetresPerKilometre, radius, cuts);
@@ -218,8 +219,8 @@ double ShortColumn(const RayEntry& entry, double begin, double end, double radiu
 }
 
 // The same for the ozone tent, piece by piece: a rule across an edge of the tent is wrong by 1 %.
-double ShortOzoneColumn(const RayEntry& entry, double length, double radius,
-                        const OzoneTent& tent) {
+double ShortTentColumn(const RayEntry& entry, double length, double radius,
+                       const OzoneLayer& tent) {
   const double bottom = tent.bottom_m / kMetresPerKilometre;
   const double peak = tent.peak_m / kMetresPerKilometre;
   const double top = tent.top_m / kMetresPerKilometre;
@@ -235,6 +236,14 @@ double ShortOzoneColumn(const RayEntry& entry, double length, double radius,
                        [&](double h) { return shared::TentDensity<double>(h, bottom, peak, top); });
   }
   return sum;
+}
+
+double ShortOzoneColumn(const RayEntry& entry, double length, double radius,
+                        const OzoneLayer& ozone) {
+  if (ozone.shape == OzoneShape::kTent) return ShortTentColumn(entry, length, radius, ozone);
+  const double top = ozone.top_m / kMetresPerKilometre;
+  return ShortColumn(entry, 0.0, length, radius,
+                     [top](double h) { return shared::SmoothOzoneDensity<double>(h, top); });
 }
 
 // Columns along a segment: the difference of two closed forms is good to 1e-7 of the whole column,

@@ -44,6 +44,14 @@ std::string PhaseLines(const std::vector<PhaseFunction>& phases) {
   return lines;
 }
 
+std::string LayerLines(const OzoneLayer& ozone) {
+  if (ozone.shape == OzoneShape::kSmooth) {
+    return fmt::format("profile = \"smooth\"\npeak_m = {}\n", ozone.peak_m);
+  }
+  return fmt::format("profile = \"tent\"\nbottom_m = {}\npeak_m = {}\ntop_m = {}\n", ozone.bottom_m,
+                     ozone.peak_m, ozone.top_m);
+}
+
 }  // namespace
 
 std::string TomlFromMedium(const Medium& medium) {
@@ -59,9 +67,8 @@ std::string TomlFromMedium(const Medium& medium) {
                   ListOf(medium.mie_scattering_per_m), ListOf(medium.mie_extinction_per_m),
                   medium.mie_scale_height_m) +
       PhaseLines(medium.mie_phase) +
-      fmt::format("[ozone]\nabsorption_per_m = {}\nbottom_m = {}\npeak_m = {}\ntop_m = {}\n",
-                  ListOf(medium.ozone_absorption_per_m), medium.ozone.bottom_m, medium.ozone.peak_m,
-                  medium.ozone.top_m);
+      fmt::format("[ozone]\nabsorption_per_m = {}\n", ListOf(medium.ozone_absorption_per_m)) +
+      LayerLines(medium.ozone);
   if (MediumHash(MediumFromToml(text, "medium")) != MediumHash(medium)) {
     throw InputError(fmt::format(
         "medium {}: its phase function has a parameter set that it does not use", medium.name));

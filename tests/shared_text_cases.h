@@ -267,6 +267,17 @@ inline std::vector<SharedTextCase> OpticalDepthCases() {
       ALPENGLOW_SHARED_CASE(
           TentColumnUp(a[0], a[1], Number(10.0), Number(25.0), Number(40.0), a[2]),
           grid::UpwardRays(120.0F)),
+      ALPENGLOW_SHARED_CASE(SmoothOzoneDensity(abs(a[0]), Number(66.0)), grid::Rays()),
+      ALPENGLOW_SHARED_CASE(
+          SmoothOzonePair(a[0], a[1], Number(30.0), Number(20.0), Number(66.0), a[2]),
+          grid::UpwardRays(30.0F)),
+      ALPENGLOW_SHARED_CASE(SmoothOzoneColumnUp(a[0], a[1], Number(66.0), a[2]),
+                            grid::UpwardRays(120.0F)),
+      ALPENGLOW_SHARED_CASE(
+          ColumnToSun(a[1], SmoothOzoneColumnUp(a[0], abs(a[1]), Number(66.0), a[2]),
+                      SmoothOzoneColumnUp(PerigeeAltitude(a[0], a[1], a[2]), Number(0.0),
+                                          Number(66.0), a[2])),
+          grid::RaysToSpace(120.0F)),
       ALPENGLOW_SHARED_CASE(
           ColumnToSun(a[1], ExponentialColumnUp(a[0], abs(a[1]), Number(8.0), a[3], a[2]),
                       ExponentialColumnUp(PerigeeAltitude(a[0], a[1], a[2]), Number(0.0),

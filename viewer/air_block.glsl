@@ -5,13 +5,13 @@ layout(std140) uniform Air {
   vec4 rayleigh_scattering;  // per km at altitude 0
   vec4 mie_scattering;
   vec4 mie_extinction;
-  vec4 ozone_absorption;  // per km at the peak of the tent
+  vec4 ozone_absorption;  // per km at the peak of the layer
   vec4 ground_albedo;
   vec4 red_from_bands;  // rows of the matrix to linear sRGB [cd m^-2 per W m^-2 sr^-1 nm^-1]
   vec4 green_from_bands;
   vec4 blue_from_bands;
   vec4 shell;        // radius of the planet, top of the air, scale heights of molecules and aerosol
-  vec4 ozone_tent;   // bottom, peak, top
+  vec4 ozone_layer;  // bottom, peak, top; 1 where it is smooth, 0 where it is a tent
   vec4 mie_options;  // kind of the phase function; largest extinction at altitude 0, per km;
                      // number of different phase functions: 1, or one a band
   vec4 mie_phase[4];  // of each band: g, g of the second lobe, its weight, alpha
@@ -55,11 +55,16 @@ vec4 PhaseMie(float cosine) {
   return value;
 }
 
+float OzoneColumnUp(float h, float mu) {
+  if (ozone_layer.w > 0.5) return SmoothOzoneColumnUp(h, mu, ozone_layer.z, RADIUS);
+  return TentColumnUp(h, mu, ozone_layer.x, ozone_layer.y, ozone_layer.z, RADIUS);
+}
+
 // Columns of molecules, aerosol and ozone [km] from altitude h upwards along mu >= 0 to space.
 vec3 ColumnsUp(float h, float mu) {
   return vec3(ExponentialColumnUp(h, mu, RAYLEIGH_HEIGHT, TOP, RADIUS),
               ExponentialColumnUp(h, mu, MIE_HEIGHT, TOP, RADIUS),
-              TentColumnUp(h, mu, ozone_tent.x, ozone_tent.y, ozone_tent.z, RADIUS));
+              OzoneColumnUp(h, mu));
 }
 
 // Columns of the whole line through its lowest point. Below the ground nobody uses them: they only

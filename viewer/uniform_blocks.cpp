@@ -67,8 +67,9 @@ AirBlock AirBlockOf(const Medium& medium) {
   block.blue_from_bands = row(2);
   block.shell = {Kilometres(medium.planet_radius_m), Kilometres(medium.atmosphere_height_m),
                  Kilometres(medium.rayleigh_scale_height_m), Kilometres(medium.mie_scale_height_m)};
-  block.ozone_tent = {Kilometres(medium.ozone.bottom_m), Kilometres(medium.ozone.peak_m),
-                      Kilometres(medium.ozone.top_m), 0.0F};
+  block.ozone_layer = {Kilometres(medium.ozone.bottom_m), Kilometres(medium.ozone.peak_m),
+                       Kilometres(medium.ozone.top_m),
+                       medium.ozone.shape == OzoneShape::kSmooth ? 1.0F : 0.0F};
   block.mie_options = {static_cast<float>(medium.mie_phase.front().kind),
                        extinction * kMetresPerKilometre,
                        static_cast<float>(medium.mie_phase.size()), 0.0F};

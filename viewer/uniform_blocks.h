@@ -23,7 +23,7 @@ inline constexpr std::size_t kGpuBands = 4;
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
-  glm::vec4 shell, ozone_tent, mie_options;
+  glm::vec4 shell, ozone_layer, mie_options;
   std::array<glm::vec4, kGpuBands> mie_phase;
 };
 static_assert(sizeof(AirBlock) == 15 * sizeof(glm::vec4));

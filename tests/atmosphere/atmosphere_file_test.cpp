@@ -146,18 +146,35 @@ TEST(AtmosphereFile, AerosolIsGivenInOneWayOnly) {
               StartsWith("a.toml:2: mie.scattering_per_m is given beside [aerosol]"));
 }
 
-TEST(AtmosphereFile, DobsonIsTheColumnOfTheTent) {
+TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
   const Medium thin = Read("[ozone]\ndobson = 150\n");
   const Medium narrow = Read("[ozone]\ndobson = 300\nbottom_m = 20000\ntop_m = 35000\n");
   const Medium earth = MediumPreset("earth");
   for (std::size_t i = 0; i < earth.wavelengths_nm.size(); ++i) {
     EXPECT_NEAR(thin.ozone_absorption_per_m[i], earth.ozone_absorption_per_m[i] / 2.0, 1e-18);
-    EXPECT_NEAR(narrow.ozone_absorption_per_m[i], earth.ozone_absorption_per_m[i] * 2.0, 1e-18);
+    EXPECT_NEAR(narrow.ozone_absorption_per_m[i],
+                earth.ozone_absorption_per_m[i] * EquivalentDepth_m(earth.ozone) / 7500.0, 1e-18);
   }
   EXPECT_THAT(FaultOf("[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n"),
               HasSubstr("give one of them"));
   EXPECT_THAT(FaultOf("[ozone]\ndobson = 300\nbottom_m = 40000\n"),
               HasSubstr("ozone.peak_m is 25000; it must lie between"));
+}
+
+TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
+  const Medium earth = MediumPreset("earth");
+  EXPECT_EQ(Read("[ozone]\nprofile = \"tent\"\n").ozone, OzoneLayer{});
+  EXPECT_EQ(Read("[ozone]\nbottom_m = 12000\n").ozone, (OzoneLayer{12e3, 25e3, 40e3}));
+  EXPECT_EQ(Read("[ozone]\npeak_m = 20000\n").ozone, SmoothOzone(20000.0));
+  EXPECT_EQ(Read("preset = \"bruneton2017\"\n[ozone]\nprofile = \"smooth\"\n").ozone,
+            SmoothOzone());
+  const Medium tent = Read("[ozone]\nprofile = \"tent\"\n");
+  EXPECT_NEAR(tent.ozone_absorption_per_m[1] * 15000.0,
+              earth.ozone_absorption_per_m[1] * EquivalentDepth_m(earth.ozone), 1e-12)
+      << "another profile keeps the column";
+  EXPECT_THAT(FaultOf("[ozone]\nprofile = \"box\"\n"), HasSubstr("one of smooth, tent"));
+  EXPECT_THAT(FaultOf("[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n"),
+              HasSubstr("ozone.top_m has no effect"));
 }
 
 TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
@@ -347,7 +364,8 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
       {"[mie]\nscattering_per_m = [1, 1, 1, 1]\n",
        "a.toml:2: mie.scattering_per_m is 1 at 445 nm; it must not exceed mie.extinction_per_m"},
       {"[mie]\nextinction_per_m = [0, 0, 0, 0]\n", "a.toml:1: mie.scattering_per_m is"},
-      {"[ozone]\npeak_m = 5000\n", "a.toml:2: ozone.peak_m is 5000; it must lie between"},
+      {"[ozone]\nprofile = \"tent\"\npeak_m = 5000\n",
+       "a.toml:3: ozone.peak_m is 5000; it must lie between"},
       {"[ozone]\ntop_m = 20000\n", "a.toml:1: ozone.peak_m is 25000; it must lie between"},
       {"[ozone]\ndobson = -1\n", "a.toml:2: ozone.dobson is -1"},
       {"a = 1\na = 2\n", "a.toml:2: not valid TOML"},

@@ -76,9 +76,12 @@ TEST(Medium, VisibilityOfEarthIsThatOfACleanDay) {
 
 TEST(Medium, OzoneColumnOfEarthIsThreeHundredDobson) {
   const Medium earth = MediumPreset("earth", {600.0});
-  const double column = earth.ozone_absorption_per_m[0] *
-                        (earth.ozone.top_m - earth.ozone.bottom_m) / 2.0 / OzoneCrossSection(600.0);
-  EXPECT_NEAR(column, 300.0 * 2.6867811e20, 1e15) << "molecules per square metre, rounding only";
+  double layer_m = 0.0;  // by the midpoint rule, exact for a smooth layer of compact support
+  for (double h = 5.0; h < 66000.0; h += 10.0) {
+    layer_m += 10.0 * std::pow(6.75 * (h / 66000.0) * std::pow(1.0 - h / 66000.0, 2), 4);
+  }
+  const double column = earth.ozone_absorption_per_m[0] * layer_m / OzoneCrossSection(600.0);
+  EXPECT_NEAR(column, 300.0 * 2.6867811e20, 1e15) << "molecules per square metre";
 }
 
 TEST(Medium, DustOfMarsAbsorbsBlueAndItsGasHardlyScatters) {
@@ -136,6 +139,7 @@ std::vector<Change> HashedChanges() {
       {"back_weight", [](Medium& m) { m.mie_phase.front().back_weight += 0.01; }},
       {"alpha", [](Medium& m) { m.mie_phase.front().alpha -= 0.01; }},
       {"ozone", [](Medium& m) { m.ozone_absorption_per_m[2] *= 1.1; }},
+      {"ozone shape", [](Medium& m) { m.ozone.shape = OzoneShape::kTent; }},
       {"ozone bottom", [](Medium& m) { m.ozone.bottom_m += 1.0; }},
       {"ozone peak", [](Medium& m) { m.ozone.peak_m += 1.0; }},
       {"ozone top", [](Medium& m) { m.ozone.top_m += 1.0; }},
@@ -206,7 +210,11 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
       {"mie.phase is table; it needs values",
        [](Medium& m) { m.mie_phase.front().kind = PhaseKind::kTable; }},
       {"ozone.absorption_per_m is -1", [](Medium& m) { m.ozone_absorption_per_m[0] = -1.0; }},
-      {"ozone.peak_m is 50000; it must lie between", [](Medium& m) { m.ozone.peak_m = 5e4; }},
+      {"ozone.peak_m is 50000; it must lie between",
+       [](Medium& m) {
+         m.ozone = {10e3, 50e3, 40e3};
+       }},
+      {"ozone.profile is smooth; its bottom is 0", [](Medium& m) { m.ozone.top_m = 5e4; }},
   };
   for (const Change& fault : faults) {
     Medium medium = MediumPreset("earth");

@@ -26,6 +26,15 @@ constexpr double kNothing_m = 1e-12;
 
 Medium Earth() { return MediumPreset("earth", WavelengthSet(4)); }
 
+double OzoneDensity(const OzoneLayer& layer, double h) {
+  const double y = h / layer.top_m;
+  if (layer.shape == OzoneShape::kSmooth) {
+    return y < 1.0 ? 2075.94140625 * std::pow(y, 4) * std::pow(1.0 - y, 8) : 0.0;
+  }
+  return std::fmax(0.0, std::fmin((h - layer.bottom_m) / (layer.peak_m - layer.bottom_m),
+                                  (layer.top_m - h) / (layer.top_m - layer.peak_m)));
+}
+
 /// Columns [m] along the whole straight line from altitude h [m] to the top, in extended precision.
 Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) {
   const long double radius = medium.planet_radius_m;
@@ -50,12 +59,9 @@ Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) 
   std::sort(points.begin(), points.end());
   const auto densities = [&](double t) {
     const double h = altitude(t);
-    const OzoneTent& tent = medium.ozone;
-    const double ozone =
-        std::fmax(0.0, std::fmin((h - tent.bottom_m) / (tent.peak_m - tent.bottom_m),
-                                 (tent.top_m - h) / (tent.top_m - tent.peak_m)));
     return std::vector<double>{std::exp(-h / medium.rayleigh_scale_height_m),
-                               std::exp(-h / medium.mie_scale_height_m), ozone};
+                               std::exp(-h / medium.mie_scale_height_m),
+                               OzoneDensity(medium.ozone, h)};
   };
   const AdaptiveResult result = IntegrateAdaptively(densities, 3, points, 1e-12);
   return {result.value[0], result.value[1], result.value[2]};
@@ -88,8 +94,9 @@ TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
     for (std::size_t species = 0; species < 3; ++species) {
       SCOPED_TRACE(::testing::Message()
                    << "species " << species << " from " << altitude_m << " m along mu " << mu);
-      EXPECT_NEAR(wide[species], exact[species], 3e-6 * exact[species] + kNothing_m)
-          << "series cut after 1/X: 4e-7 to 3e-6";
+      const double bound = species == 2 ? 6e-6 : 3e-6;
+      EXPECT_NEAR(wide[species], exact[species], bound * exact[species] + kNothing_m)
+          << "series cut after 1/X: 4e-7 to 3e-6; ten nodes through the smooth ozone, twice";
       EXPECT_NEAR(static_cast<double>(narrow[species]), exact[species],
                   1.2e-5 * exact[species] + kNothing_m)
           << "and rounding of the perigee, 1.5 cm of a scale height of 1200 m";

@@ -68,7 +68,7 @@ TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
                           {"green_from_bands", offsetof(AirBlock, green_from_bands)},
                           {"blue_from_bands", offsetof(AirBlock, blue_from_bands)},
                           {"shell", offsetof(AirBlock, shell)},
-                          {"ozone_tent", offsetof(AirBlock, ozone_tent)},
+                          {"ozone_layer", offsetof(AirBlock, ozone_layer)},
                           {"mie_options", offsetof(AirBlock, mie_options)},
                           {"mie_phase[0]", offsetof(AirBlock, mie_phase)}});
 }
