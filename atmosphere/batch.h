@@ -30,17 +30,19 @@ struct PlainNumber {
   static constexpr std::size_t kLanes = 1;
   static Type Load(const Real* from) { return *from; }
   static void Store(Real* to, Type value) { *to = value; }
+  static void StoreAnywhere(Real* to, Type value) { *to = value; }
   static Real Sum(Type value) { return value; }
 };
 
 #if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
-/// Loads and stores are aligned: rows begin at multiples of 64 bytes.
+/// Loads and stores are aligned but for StoreAnywhere: rows begin at multiples of 64 bytes.
 template <typename Real>
 struct BatchOf {
   using Type = xsimd::batch<Real>;
   static constexpr std::size_t kLanes = Type::size;
   static Type Load(const Real* from) { return Type::load_aligned(from); }
   static void Store(Real* to, const Type& value) { value.store_aligned(to); }
+  static void StoreAnywhere(Real* to, const Type& value) { value.store_unaligned(to); }
   static Real Sum(const Type& value) { return xsimd::hadd(value); }
 };
 #else

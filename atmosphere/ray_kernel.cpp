@@ -67,6 +67,32 @@ ColumnSet<T> Between(const T& mu_origin, const T& mu_point, const ColumnSet<T>& 
 }
 
 template <typename Real>
+void Place(const PanelRule<Real>& panel, RaySamples<Real>& samples) {
+  using namespace shared;
+  using Lanes = BatchOf<Real>;
+  using T = typename Lanes::Type;
+  const T length(panel.end - panel.begin), begin(panel.begin), end(panel.end);
+  const T lit(panel.lit ? Real(1) : Real(0));
+  const T b(panel.stretch), half(Real(0.5));
+  const T grown = exp(b);
+  const T scale = length / (half * (grown - T(Real(1)) / grown));
+  for (std::size_t i = 0; i < panel.count; i += Lanes::kLanes) {
+    const T v = Lanes::Load(panel.node + i), weight = Lanes::Load(panel.weight + i);
+    T t = length * v, derivative = length;
+    if (panel.stretch > Real(0)) {
+      const T e = exp(b * v), inverse = T(Real(1)) / e;
+      t = scale * half * (e - inverse);
+      derivative = scale * b * half * (e + inverse);
+    }
+    const std::size_t at = samples.count + i;
+    Lanes::StoreAnywhere(&samples.distance[at], T(panel.rises ? begin + t : end - t));
+    Lanes::StoreAnywhere(&samples.weight[at], T(weight * derivative));
+    Lanes::StoreAnywhere(&samples.lit[at], lit);
+  }
+  samples.count += panel.count;
+}
+
+template <typename Real>
 void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples) {
   using namespace shared;
   using Lanes = BatchOf<Real>;
@@ -154,8 +180,9 @@ void FindColumnsUp(const AirConstants<Real>& air, std::size_t n, const Real* alt
 }
 
 template <typename Real>
-constexpr RayKernel<Real> kRayKernel{BatchOf<Real>::kLanes, Fill<Real>, Scatter<Real>,
-                                     FindColumnsToSpace<Real>, FindColumnsUp<Real>};
+constexpr RayKernel<Real> kRayKernel{
+    BatchOf<Real>::kLanes,    Place<Real>,        Fill<Real>, Scatter<Real>,
+    FindColumnsToSpace<Real>, FindColumnsUp<Real>};
 
 }  // namespace
 

@@ -32,10 +32,24 @@ struct ColumnSet {
   T rayleigh, mie, ozone;
 };
 
+/// A panel of a ray (ray_panels.h) and the Gauss rule for it, both rows padded with zeros to whole
+/// lanes.
+template <typename Real>
+struct PanelRule {
+  Real begin, end;
+  Real stretch;  // b of t = length sinh(b v) / sinh(b); 0: t = length v
+  bool rises, lit;
+  std::size_t count;
+  const Real* node;
+  const Real* weight;
+};
+
 template <typename Real>
 struct RayKernel {
   /// Numbers that one instruction takes: samples are padded to a multiple.
   std::size_t lanes;
+  /// Distance, weight and lit of the samples of one panel, which follow those that are there.
+  void (*place)(const PanelRule<Real>& panel, RaySamples<Real>& samples);
   /// Everything at the samples that depends on their position, from distance, weight and lit.
   void (*fill)(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples);
   /// ScatteredOnce of all bands.

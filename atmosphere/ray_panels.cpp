@@ -107,8 +107,8 @@ double StretchOf(const LowerEnd& low, double length, double radius, double extin
   // Behind the edge of the shadow sunlight comes back slowly: the start wants fewer nodes.
   const double rise_km = low.at_shadow ? 12.0 : 10.0;
   const double strength = low.at_shadow ? 1.1 : 1.2;
-  double half = shared::DistanceUpTo<double>(low.altitude_km, low.cosine, low.altitude_km + rise_km,
-                                             radius);
+  double half =
+      shared::DistanceUpTo<double>(low.altitude_km, low.cosine, low.altitude_km + rise_km, radius);
   if (extinction_per_km > 0.0) half = std::min(half, 10.0 / extinction_per_km);
   return strength * std::log(std::max(2.0 * length / half, 1.0));
 }
@@ -166,15 +166,18 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
     if (!lit && !sampling.dark_samples) continue;
     const bool rises = middle > perigee;
     const double at = rises ? begin : end;
-    const double altitude = std::max(
-        shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, at, radius), 0.0);
+    const double altitude =
+        std::max(shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, at, radius), 0.0);
     const LowerEnd low{altitude,
                        std::abs(shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu,
                                                                      at, altitude, radius)),
                        lit && dark.begin < dark.end && (at == dark.begin || at == dark.end),
                        at == perigee};
     panels.panel[panels.count++] = {
-        begin, end, lit, rises,
+        begin,
+        end,
+        lit,
+        rises,
         StretchOf(low, end - begin, radius, extinction * std::exp(-altitude / 8.0)),
         NodesOf(low, sampling.nodes)};
   }

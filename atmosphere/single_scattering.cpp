@@ -7,6 +7,7 @@
 #include "atmosphere/error.h"
 #include "atmosphere/phase_table.h"
 #include "atmosphere/quadrature.h"
+#include "atmosphere/ray_panels.h"
 #include "atmosphere/shell.h"
 
 namespace alpenglow {
@@ -68,96 +69,6 @@ ColumnSet<Real> Between(Real mu_origin, Real mu_point, const ColumnSet<Real>& or
       ColumnBetween<Real>(mu_origin, mu_point, origin.ozone, point.ozone, perigee.ozone)};
 }
 
-RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
-  using namespace shared;
-  const double radius = medium.planet_radius_m / kMetresPerKilometre;
-  const double h = std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
-  const double d = extent.begin_m / kMetresPerKilometre;
-  if (d == 0.0) return {h, ray.mu, ray.mu_s, ray.nu};
-  const double altitude = medium.atmosphere_height_m / kMetresPerKilometre;
-  return {altitude, ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
-          SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius), ray.nu};
-}
-
-/// A stretch of the ray on which the integrand is smooth and the altitude monotone [km from the
-/// entry].
-struct RayPanel {
-  double begin, end;
-  bool lit;
-};
-
-void AppendCrossings(double h, double mu, double z, double radius, std::vector<double>& cuts) {
-  const double a = (radius + h) * mu;
-  const double discriminant = a * a - (h - z) * (2.0 * radius + h + z);
-  if (discriminant <= 0.0) return;
-  cuts.push_back(-a - std::sqrt(discriminant));
-  cuts.push_back(-a + std::sqrt(discriminant));
-}
-
-// Where the sunbeam that meets the ray at distance t has its perigee at altitude z: a cylinder of
-// radius R + z around the axis from the planet's centre to the sun. Only beams that come from below
-// the horizontal count.
-void AppendSunPerigees(const RayEntry& entry, double nu, double z, double radius,
-                       std::vector<double>& cuts) {
-  const double r = radius + entry.altitude_km;
-  const double a = (1.0 - nu) * (1.0 + nu);
-  const double b = r * (entry.mu - entry.mu_s * nu);
-  const double c = (entry.altitude_km - z) * (2.0 * radius + entry.altitude_km + z) -
-                   r * r * entry.mu_s * entry.mu_s;
-  const double discriminant = b * b - a * c;
-  if (a < 1e-12 || discriminant <= 0.0) return;
-  for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
-    if (r * entry.mu_s + t * nu < 0.0) cuts.push_back(t);
-  }
-}
-
-std::vector<RayPanel> CutIntoPanels(const ViewRay& ray, const RayExtent& extent,
-                                    const RayEntry& entry, const Medium& medium,
-                                    const Sampling& sampling) {
-  const double radius = medium.planet_radius_m / kMetresPerKilometre;
-  const double length = (extent.end_m - extent.begin_m) / kMetresPerKilometre;
-  const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
-  const double dark_begin = (shadow.dark_begin_m - extent.begin_m) / kMetresPerKilometre;
-  const double dark_end = (shadow.dark_end_m - extent.begin_m) / kMetresPerKilometre;
-  const bool any_dark = dark_begin < dark_end;
-  std::vector<double> cuts{0.0, length, -(radius + entry.altitude_km) * entry.mu};
-  if (any_dark) cuts.insert(cuts.end(), {dark_begin, dark_end});
-  if (sampling.split_ozone && medium.ozone.shape == OzoneShape::kTent) {
-    for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
-      AppendCrossings(entry.altitude_km, entry.mu, z / kMetresPerKilometre, radius, cuts);
-      AppendSunPerigees(entry, ray.nu, z / kMetresPerKilometre, radius, cuts);
-    }
-  }
-  for (double& cut : cuts) cut = std::clamp(cut, 0.0, length);
-  std::sort(cuts.begin(), cuts.end());
-  std::vector<RayPanel> panels;
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    if (cuts[i + 1] - cuts[i] <= 1e-12 * length) continue;
-    const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
-    const bool lit = !(any_dark && middle > dark_begin && middle < dark_end);
-    if (lit || sampling.dark_samples) panels.push_back({cuts[i], cuts[i + 1], lit});
-  }
-  return panels;
-}
-
-double LargestExtinction(const Medium& medium) {
-  double largest = 0.0;
-  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-    largest = std::max(largest,
-                       medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
-  }
-  return largest;
-}
-
-// Strength k of the map t = length v / (1 + k (1 - v)) for a panel whose lower end has altitude z
-// and zenith cosine c > 0 upwards: half of the nodes lie below z + 20 km and within 8 optical
-// depths.
-double MapStrength(double z, double c, double length, double radius, double extinction_per_km) {
-  double half = shared::DistanceUpTo<double>(z, c, z + 20.0, radius);
-  if (extinction_per_km > 0.0) half = std::min(half, 8.0 / extinction_per_km);
-  return std::max(length / half - 2.0, 0.0);
-}
-
 // Ends the rows after `count` samples, with weightless ones up to whole SIMD lanes.
 template <typename Real>
 void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
@@ -168,38 +79,60 @@ void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
   }
 }
 
+/// Gauss rules of 1 to kMaxGaussNodes nodes as kernels read them, padded with zeros.
+template <typename Real>
+class RuleRows {
+ public:
+  static constexpr std::size_t kLength = kMaxGaussNodes + 16;
+  struct alignas(64) Row {
+    alignas(64) std::array<Real, kLength> node{};
+    alignas(64) std::array<Real, kLength> weight{};
+  };
+
+  [[nodiscard]] static const Row& Of(int nodes) {
+    ALPENGLOW_ENSURE(nodes, >=, 1);
+    ALPENGLOW_ENSURE(nodes, <=, kMaxGaussNodes);
+    static const std::vector<Row> rows = Make();
+    return rows[static_cast<std::size_t>(nodes - 1)];
+  }
+
+ private:
+  static std::vector<Row> Make() {
+    std::vector<Row> rows(kMaxGaussNodes);
+    for (int n = 1; n <= kMaxGaussNodes; ++n) {
+      const GaussRule& rule = GaussLegendre(n);
+      Row& row = rows[static_cast<std::size_t>(n - 1)];
+      const auto real = [](double value) { return static_cast<Real>(value); };
+      std::transform(rule.node.begin(), rule.node.end(), row.node.begin(), real);
+      std::transform(rule.weight.begin(), rule.weight.end(), row.weight.begin(), real);
+    }
+    return rows;
+  }
+};
+
+// Below this stretch sinh(b v) / sinh(b) would cancel in float, and differs from v by 1 %.
+constexpr double kLeastStretch = 0.25;
+
 // Places Gauss nodes in every panel, in the order of the panels.
 template <typename Real>
-void PlaceSamples(const std::vector<RayPanel>& panels, const RayEntry& entry, const Medium& medium,
-                  const Sampling& sampling, RaySamples<Real>& samples) {
-  const double radius = medium.planet_radius_m / kMetresPerKilometre;
-  const double extinction = LargestExtinction(medium) * kMetresPerKilometre;
-  std::size_t count = 0;
-  for (const RayPanel& panel : panels) {
-    const double length = panel.end - panel.begin;
-    const double z_begin =
-        shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, panel.begin, radius);
-    const double z_end =
-        shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, panel.end, radius);
-    const bool up = z_end >= z_begin;
-    const double low = std::max(std::min(z_begin, z_end), 0.0);
-    const double at = up ? panel.begin : panel.end;
-    const double cosine = std::abs(
-        shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu, at, low, radius));
-    const double k = MapStrength(low, cosine, length, radius, extinction * std::exp(-low / 8.0));
-    const GaussRule& rule = GaussLegendre(sampling.nodes);
-    ALPENGLOW_ENSURE(count + rule.node.size() + 16, <=, kMaxRaySamples);
-    for (std::size_t i = 0; i < rule.node.size(); ++i, ++count) {
-      const double v = rule.node[i];
-      const double bend = 1.0 + k * (1.0 - v);
-      const double t = length * v / bend;
-      samples.distance[count] = static_cast<Real>(up ? panel.begin + t : panel.end - t);
-      samples.weight[count] =
-          static_cast<Real>(rule.weight[i] * length * (1.0 + k) / (bend * bend));
-      samples.lit[count] = panel.lit ? Real(1) : Real(0);
-    }
+void PlaceSamples(const RayPanels& panels, RaySamples<Real>& samples) {
+  const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
+  for (std::size_t i = 0; i < panels.count; ++i) {
+    const RayPanel& panel = panels.panel[i];
+    const auto count = static_cast<std::size_t>(panel.nodes);
+    ALPENGLOW_ENSURE(samples.count + count + 16, <=, kMaxRaySamples);
+    const auto& rule = RuleRows<Real>::Of(panel.nodes);
+    kernel.place({.begin = static_cast<Real>(panel.begin),
+                  .end = static_cast<Real>(panel.end),
+                  .stretch = static_cast<Real>(panel.stretch < kLeastStretch ? 0.0 : panel.stretch),
+                  .rises = panel.rises,
+                  .lit = panel.lit,
+                  .count = count,
+                  .node = rule.node.data(),
+                  .weight = rule.weight.data()},
+                 samples);
   }
-  CloseSamples(count, samples);
+  CloseSamples(samples.count, samples);
 }
 
 // Column of a layer along [begin, end] km from the entry by 8 Gauss nodes: exact to 1e-7 relative
@@ -225,8 +158,11 @@ double ShortTentColumn(const RayEntry& entry, double length, double radius,
   const double peak = tent.peak_m / kMetresPerKilometre;
   const double top = tent.top_m / kMetresPerKilometre;
   std::vector<double> cuts{0.0, length};
-  for (const double z : {bottom, peak, top})
-    AppendCrossings(entry.altitude_km, entry.mu, z, radius, cuts);
+  for (const double z : {bottom, peak, top}) {
+    const LineCrossings crossings = CrossingsOf(entry.altitude_km, entry.mu, z, radius);
+    cuts.insert(cuts.end(), crossings.distance.begin(),
+                crossings.distance.begin() + static_cast<std::ptrdiff_t>(crossings.count));
+  }
   for (double& cut : cuts) cut = std::clamp(cut, 0.0, length);
   std::sort(cuts.begin(), cuts.end());
   double sum = 0.0;
@@ -287,6 +223,13 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
 
 }  // namespace
 
+Sampling SamplingForError(double max_error) {
+  RequireInRange(max_error, 0.0, 1.0, "max_error");
+  const double digits = -std::log10(std::max(max_error, 1e-9));
+  const int nodes = std::clamp(static_cast<int>(std::ceil(8.0 + 4.0 * (digits - 3.0))), 5, 32);
+  return {.nodes = nodes, .split_ozone = max_error < 5e-3, .dark_samples = false};
+}
+
 template <typename Real>
 AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium), constants_{} {
   Validate(medium_);
@@ -345,8 +288,7 @@ RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling&
   RaySamples<Real> samples;
   samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   const RayEntry entry = EntryOf(ray, samples.extent, medium_);
-  PlaceSamples(CutIntoPanels(ray, samples.extent, entry, medium_, sampling), entry, medium_,
-               sampling, samples);
+  PlaceSamples(PanelsOf(ray, samples.extent, entry, medium_, sampling), samples);
   Kernel<RayKernel<Real>>().fill(constants_, entry, samples);
   return samples;
 }

@@ -4,9 +4,8 @@
 //   L = sum over species  phase(nu)  integral of  sigma_s(h) T(observer to point) T(point to sun)
 //   ds
 //
-// The ray is cut where the integrand is not smooth (the planet's shadow, the perigee, on request
-// the edges of the ozone tent); in each panel the distance is mapped by t = length v / (1 + k (1 -
-// v)), dense at the lower end, so that a few nodes see both scale heights. Transmittance needs no
+// The ray is cut where the integrand is not smooth and sampled densely in dense air (ray_panels.h),
+// so that a few nodes see both scale heights. Transmittance needs no
 // march: columns between any two points are differences of the closed form in optical_depth.glsl.
 //
 // Samples are shared by everything that is integrated along a ray: lights of any order, any band.

@@ -4,13 +4,13 @@
 
 uniform vec2 gauss[32];  // nodes in [0, 1] and weights of the rules
 
-// Strength of the map t = length v / (1 + k (1 - v)) of a panel whose lower end has altitude z and
-// zenith cosine c > 0 upwards: half of the nodes lie below z + 20 km and within 8 optical depths.
-float MapStrength(float z, float c, float panel) {
-  float half_way = DistanceUpTo(z, c, z + 20.0, RADIUS);
+// Stretch b of the map t = length sinh(b v) / sinh(b) of a panel whose lower end has altitude z and zenith
+// cosine c > 0 upwards, dense within 10 km and 10 optical depths of it: see ray_panels.h.
+float MapStretch(float z, float c, float panel) {
+  float near = DistanceUpTo(z, c, z + 10.0, RADIUS);
   float extinction = mie_options.y * exp(-z / 8.0);
-  half_way = min(half_way, 8.0 / max(extinction, 1e-20));
-  return max(panel / half_way - 2.0, 0.0);
+  near = min(near, 10.0 / max(extinction, 1e-20));
+  return 1.2 * log(max(2.0 * panel / near, 1.0));
 }
 
 void Order(inout float a, inout float b) {
@@ -59,13 +59,17 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
     bool up = z_end >= z_begin;
     float low = max(min(z_begin, z_end), 0.0);
     float cosine = abs(ZenithCosineAlongRay(ray.h, ray.mu, up ? begin : begin + span, low, RADIUS));
-    float k = MapStrength(low, cosine, span);
+    float b = MapStretch(low, cosine, span);
     for (int i = 0; i < count; ++i) {
       vec2 node = gauss[first + i];
-      float bend = 1.0 + k * (1.0 - node.x);
-      float t = span * node.x / bend;
+      float t = span * node.x;
+      float slope = span;
+      if (b >= 0.25) {
+        t = span * sinh(b * node.x) / sinh(b);
+        slope = span * b * cosh(b * node.x) / sinh(b);
+      }
       AirPoint point = PointAt(ray, up ? begin + t : begin + span - t,
-                               node.y * span * (1.0 + k) / (bend * bend));
+                               node.y * slope);
       vec3 view =
           ColumnsBetween(ray.mu, point.mu, origin, ColumnsUp(point.h, abs(point.mu)), lowest);
       vec4 tau = OpticalDepth(view);
