@@ -32,6 +32,8 @@ struct PlainNumber {
   static void Store(Real* to, Type value) { *to = value; }
   static void StoreAnywhere(Real* to, Type value) { *to = value; }
   static Real Sum(Type value) { return value; }
+  static bool All(bool condition) { return condition; }
+  static Real Last(Type value) { return value; }
 };
 
 #if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
@@ -44,6 +46,8 @@ struct BatchOf {
   static void Store(Real* to, const Type& value) { value.store_aligned(to); }
   static void StoreAnywhere(Real* to, const Type& value) { value.store_unaligned(to); }
   static Real Sum(const Type& value) { return xsimd::hadd(value); }
+  static bool All(const typename Type::batch_bool_type& condition) { return xsimd::all(condition); }
+  static Real Last(const Type& value) { return value.get(kLanes - 1); }
 };
 #else
 template <typename Real>

@@ -10,41 +10,53 @@
 // Chapman (1931) and Fitzmaurice (1964), and the series is that of Huestis (2001), JQSRT 69, 709. The
 // functions Jn know neither planet nor layer: one rational fit in u = 1 / (1 + y) serves all.
 
-// J0, rational (5/4) in u: relative error 1.7e-8.
-SHARED Number ColumnJ0(Number u) {
+// J0 = u P / Q, rational (5/4) in u: relative error 1.7e-8.
+SHARED Number ColumnJ0Numerator(Number u) {
   Number p = Number(3.7599521088357672) + u * Number(-0.45666849255125075);
   p = Number(4.6178636259970203) + u * p;
   p = Number(4.7885790402196191) + u * p;
   p = Number(1.4948750040038796) + u * p;
-  p = Number(0.99999997945504882) + u * p;
+  return Number(0.99999997945504882) + u * p;
+}
+
+SHARED Number ColumnJ0Denominator(Number u) {
   Number q = Number(1.0829487493940633) + u * Number(2.2069809883276656);
   q = Number(3.7934707763572888) + u * q;
   q = Number(0.49487729060583163) + u * q;
-  q = Number(1.0) + u * q;
-  return u * p / q;
+  return Number(1.0) + u * q;
 }
 
-// J2, rational (3/3) in u: relative error 1.6e-4, which enters the column divided by 2 X > 1000.
-SHARED Number ColumnJ2(Number u) {
+SHARED Number ColumnJ0(Number u) { return u * ColumnJ0Numerator(u) / ColumnJ0Denominator(u); }
+
+// J2 = u P / Q, rational (3/3) in u: relative error 1.6e-4, which enters the column divided by 2 X > 1000.
+SHARED Number ColumnJ2Numerator(Number u) {
   Number p = Number(4.8712710358375837) + u * Number(-0.22254811537963715);
   p = Number(6.1873477180424246) + u * p;
-  p = Number(2.0001234440078335) + u * p;
-  Number q = Number(0.54834473083938295) + u * Number(6.0033003663485607);
-  q = Number(2.1058187744751793) + u * q;
-  q = Number(1.0) + u * q;
-  return u * p / q;
+  return Number(2.0001234440078335) + u * p;
 }
 
-// Ch(X, mu) for mu >= 0: the column in units of the vertical one.
+SHARED Number ColumnJ2Denominator(Number u) {
+  Number q = Number(0.54834473083938295) + u * Number(6.0033003663485607);
+  q = Number(2.1058187744751793) + u * q;
+  return Number(1.0) + u * q;
+}
+
+SHARED Number ColumnJ2(Number u) { return u * ColumnJ2Numerator(u) / ColumnJ2Denominator(u); }
+
+// Ch(X, mu) for mu >= 0: the column in units of the vertical one. J0 + J2 / 2X over one denominator, for
+// divisions are what this costs.
 SHARED Number ChapmanUp(Number X, Number mu) {
   Number root = sqrt(Number(0.5) * X);
   Number u = Number(1.0) / (Number(1.0) + mu * root);
-  return root * (ColumnJ0(u) + ColumnJ2(u) / (Number(2.0) * X));
+  Number q0 = ColumnJ0Denominator(u);
+  Number q2 = Number(2.0) * X * ColumnJ2Denominator(u);
+  return root * u * (ColumnJ0Numerator(u) * q2 + ColumnJ2Numerator(u) * q0) / (q0 * q2);
 }
 
 // Column of the exponential layer from altitude h along mu >= 0 to infinity.
 SHARED Length ExponentialColumnToInfinity(Length h, Number mu, Length H, Length R) {
-  return H * exp(-h / H) * ChapmanUp((R + h) / H, mu);
+  Number inverse = Number(1.0) / H;
+  return H * exp(-h * inverse) * ChapmanUp((R + h) * inverse, mu);
 }
 
 // The same up to the top of the atmosphere (h <= top), above which there is nothing. The sine of the
@@ -88,29 +100,37 @@ SHARED Length TentColumnUp(Length h, Number mu, Length bottom, Length peak, Leng
 
 // Relative density of the smooth layer of ozone, (27/4 y (1 - y)^2)^4 with y = h / top: 1 at top / 3, 0 at
 // the ground and from the top on.
-SHARED Number SmoothOzoneDensity(Length h, Length top) {
-  Number y = h / top;
+SHARED Number SmoothOzoneAt(Number y) {
   Number rest = max(Number(1.0) - y, Number(0.0));
   Number root = Number(6.75) * y * rest * rest;
   Number square = root * root;
   return square * square;
 }
 
-// Twice the mean of that density at distances `middle - offset` and `middle + offset` of a ray. The altitude
-// h + r (sqrt(1 + 2 x) - 1), x = d (d + 2 r mu) / 2 r^2, is a series, for a square root and a division a node
-// would cost more than all the rest: relative error 7/8 x^4, x < 0.011 below 70 km.
+SHARED Number SmoothOzoneDensity(Length h, Length top) { return SmoothOzoneAt(h / top); }
+
+// (sqrt(1 + 2 x) - 1) / x as a series: a square root and a division at every node would cost more than all
+// the rest. Relative error 7/8 x^4; x < 0.011 on Earth below 70 km.
+SHARED Number ClimbSeries(Number x) {
+  return Number(1.0) - x * (Number(0.5) - x * (Number(0.5) - Number(0.625) * x));
+}
+
+// Twice the mean of that density at distances `middle - offset` and `middle + offset` of a ray, where the
+// altitude is h + r (sqrt(1 + 2 x) - 1), x = d (d + 2 r mu) / 2 r^2.
 SHARED Number SmoothOzonePair(Length h, Number mu, Length middle, Length offset, Length top, Length R) {
   Length r = R + h;
   Length a = Number(2.0) * r * mu;
   Number inverse = Number(1.0) / r;
   Number scale = Number(0.5) * inverse * inverse;
+  Number per_top = Number(1.0) / top;
+  Number y = h * per_top;
+  Number rise = r * per_top;
   Length near = middle - offset;
   Length far = middle + offset;
-  Number x = near * (near + a) * scale;
-  Number y = far * (far + a) * scale;
-  Length low = h + r * (x - x * x * (Number(0.5) - x * (Number(0.5) - Number(0.625) * x)));
-  Length high = h + r * (y - y * y * (Number(0.5) - y * (Number(0.5) - Number(0.625) * y)));
-  return SmoothOzoneDensity(low, top) + SmoothOzoneDensity(high, top);
+  Number x_near = near * (near + a) * scale;
+  Number x_far = far * (far + a) * scale;
+  return SmoothOzoneAt(y + rise * x_near * ClimbSeries(x_near)) +
+         SmoothOzoneAt(y + rise * x_far * ClimbSeries(x_far));
 }
 
 // Column of the smooth layer from altitude h along mu >= 0 to space: Gauss-Legendre with 10 nodes in the

@@ -17,10 +17,11 @@ struct ShellLengths {
         ozone_bottom(air.ozone_bottom),
         ozone_peak(air.ozone_peak),
         ozone_top(air.ozone_top),
-        smooth_ozone(air.smooth_ozone) {}
+        smooth_ozone(air.smooth_ozone),
+        mie_ends_below_top(air.mie_ends_below_top) {}
 
   T radius, top, rayleigh, mie, ozone_bottom, ozone_peak, ozone_top;
-  bool smooth_ozone;
+  bool smooth_ozone, mie_ends_below_top;
 };
 
 template <typename Real, typename T>
@@ -35,7 +36,9 @@ template <typename Real, typename T>
 ColumnSet<T> ColumnsUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
   using namespace shared;
   return {ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
-          ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
+          shell.mie_ends_below_top
+              ? ExponentialColumnToInfinity<T>(h, mu, shell.mie, shell.radius)
+              : ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
           OzoneColumnUp(shell, h, mu)};
 }
 
@@ -52,6 +55,7 @@ template <typename Real, typename T>
 ColumnSet<T> ColumnsTowards(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
   using namespace shared;
   const ColumnSet<T> up = ColumnsUp(shell, h, T(abs(mu)));
+  if (BatchOf<Real>::All(mu >= T(Real(0)))) return up;
   const ColumnSet<T> low = ColumnsAtPerigee(shell, h, mu);
   return {ColumnToSun<T>(mu, up.rayleigh, low.rayleigh), ColumnToSun<T>(mu, up.mie, low.mie),
           ColumnToSun<T>(mu, up.ozone, low.ozone)};
@@ -100,14 +104,24 @@ void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>
   const ShellLengths<Real, T> shell(air);
   const T h0(static_cast<Real>(entry.altitude_km)), mu0(static_cast<Real>(entry.mu));
   const T mu_s0(static_cast<Real>(entry.mu_s)), nu(static_cast<Real>(entry.nu)), zero(Real(0));
-  const ColumnSet<T> origin = ColumnsUp(shell, h0, T(abs(mu0)));
-  const ColumnSet<T> perigee = ColumnsAtPerigee(shell, h0, mu0);
+  const T up0(abs(mu0));
+  const ColumnSet<T> perigee =
+      entry.mu < 0.0 ? ColumnsAtPerigee(shell, h0, mu0) : ColumnSet<T>{zero, zero, zero};
+  // The last of a single load of samples is no sample, and stands at the entry.
+  const bool entry_among_samples =
+      samples.padded == Lanes::kLanes && samples.count < samples.padded;
+  ColumnSet<T> origin = perigee;
+  if (!entry_among_samples) origin = ColumnsUp(shell, h0, up0);
   for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
     const T d = Lanes::Load(&samples.distance[i]);
     const T h = max(AltitudeAlongRay<T>(h0, mu0, d, shell.radius), zero);
     const T mu = ZenithCosineAlongRay<T>(h0, mu0, d, h, shell.radius);
     const T mu_s = SunCosineAlongRay<T>(h0, mu_s0, nu, d, h, shell.radius);
     const ColumnSet<T> point = ColumnsUp(shell, h, T(abs(mu)));
+    if (entry_among_samples) {
+      origin = {T(Lanes::Last(point.rayleigh)), T(Lanes::Last(point.mie)),
+                T(Lanes::Last(point.ozone))};
+    }
     const ColumnSet<T> view = Between<T>(mu0, mu, origin, point, perigee);
     const ColumnSet<T> sun = ColumnsTowards(shell, h, mu_s);
     const auto put = [i](auto& row, const T& value) { Lanes::Store(&row[i], value); };

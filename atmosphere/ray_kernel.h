@@ -17,6 +17,7 @@ struct AirConstants {
   Real rayleigh_height, mie_height;
   Real ozone_bottom, ozone_peak, ozone_top;
   bool smooth_ozone;
+  bool mie_ends_below_top;  // its column beyond the top is below 1e-12 m
   std::size_t bands;
   std::array<Real, kMaxBands> rayleigh, mie_scattering, mie_extinction, ozone;
 };

@@ -6,13 +6,13 @@
 #include <span>
 
 #include "atmosphere/error.h"
+#include "atmosphere/quadrature.h"
 #include "atmosphere/shell.h"
 
 namespace alpenglow {
 namespace {
 
 constexpr double kMetresPerKilometre = 1000.0;
-constexpr int kMostNodes = 32;
 
 double Kilometres(double metres) { return metres / kMetresPerKilometre; }
 
@@ -100,7 +100,11 @@ double LargestExtinctionPerKm(const Medium& medium) {
 /// What the lower end of a panel is to the light along it.
 struct LowerEnd {
   double altitude_km, cosine;
-  bool at_shadow, at_perigee;
+  bool at_shadow;   // where the planet's shadow begins
+  bool grazed;      // by sunbeams from below the horizontal, or at the shadow
+  bool at_perigee;  // of the ray
+  bool ahead;       // the ray comes down to it
+  bool from_space;  // and began above the air
 };
 
 double StretchOf(const LowerEnd& low, double length, double radius, double extinction_per_km) {
@@ -113,11 +117,18 @@ double StretchOf(const LowerEnd& low, double length, double radius, double extin
   return strength * std::log(std::max(2.0 * length / half, 1.0));
 }
 
+// Extra nodes in halves of the ordinary ones. A long way down through the air hides its lower end,
+// where the nodes are; above 50 km the air is too thin for that.
 int NodesOf(const LowerEnd& low, int nodes) {
-  // Above 50 km the air along the perigee is so thin that its light hardly bends.
-  const bool limb = low.at_perigee && low.altitude_km < 50.0;
-  const int halves = 2 + (low.at_shadow ? 1 : 0) + (limb ? 1 : 0);
-  return std::min((nodes * halves + 1) / 2, std::max(nodes, kMostNodes));
+  int halves = low.grazed ? 3 : 2;
+  const bool slanting = low.ahead && low.cosine < 0.3;
+  if (low.altitude_km < 50.0) {
+    if (low.at_perigee || slanting)
+      halves += low.from_space || low.grazed ? 2 : 1;
+    else if (low.ahead && low.from_space)
+      halves += 1;
+  }
+  return std::min((nodes * halves + 1) / 2, kMaxGaussNodes);
 }
 
 }  // namespace
@@ -168,11 +179,16 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
     const double at = rises ? begin : end;
     const double altitude =
         std::max(shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, at, radius), 0.0);
+    const bool at_shadow = lit && dark.begin < dark.end && (at == dark.begin || at == dark.end);
+    const double sun = (radius + entry.altitude_km) * entry.mu_s + at * entry.nu;
     const LowerEnd low{altitude,
                        std::abs(shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu,
                                                                      at, altitude, radius)),
-                       lit && dark.begin < dark.end && (at == dark.begin || at == dark.end),
-                       at == perigee};
+                       at_shadow,
+                       lit && (at_shadow || sun < 0.0),
+                       at == perigee,
+                       !rises,
+                       extent.begin_m > 0.0};
     panels.panel[panels.count++] = {
         begin,
         end,

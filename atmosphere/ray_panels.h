@@ -39,9 +39,10 @@ struct RayPanels {
 /// The entry of a ray into the air: the observer, or the first point in the shell.
 [[nodiscard]] RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium);
 
-/// @param sampling  nodes of an ordinary panel. One that begins at the edge of the shadow or at the
-/// perigee of a ray through dense air gets 1.5 times as many, one with both 2 times, at most 32:
-/// then all have about the same error.
+/// @param sampling  nodes of an ordinary panel. One whose lower end sunbeams graze, or where the
+/// planet's shadow begins, gets half as many more; so does one that comes down through the air at a
+/// slant, or goes on from the perigee of such a ray, twice if the ray came from space or sunbeams
+/// graze it; at most 64. Then all have about the same error.
 [[nodiscard]] RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
                                  const Medium& medium, const Sampling& sampling);
 

@@ -11,8 +11,9 @@ namespace alpenglow {
 
 inline constexpr std::size_t kMaxBands = 40;
 /// Sixteen panels (a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee
-/// and the planet's shadow) of 32 nodes, and room for the last SIMD lanes.
-inline constexpr std::size_t kMaxRaySamples = 528;
+/// and the planet's shadow) of 32 nodes, 64 more at the perigee and at the shadow's edges, and room
+/// for the last SIMD lanes.
+inline constexpr std::size_t kMaxRaySamples = 592;
 
 /// One value a wavelength.
 template <typename Real>

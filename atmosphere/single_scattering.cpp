@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "atmosphere/error.h"
 #include "atmosphere/phase_table.h"
@@ -31,6 +32,10 @@ AirConstants<Real> ConstantsOf(const Medium& medium) {
   air.ozone_bottom = km(medium.ozone.bottom_m);
   air.ozone_peak = km(medium.ozone.peak_m);
   air.ozone_top = km(medium.ozone.top_m);
+  air.mie_ends_below_top = medium.mie_scale_height_m *
+                               std::exp(-medium.atmosphere_height_m / medium.mie_scale_height_m) *
+                               40.0 <
+                           1e-12;
   air.smooth_ozone = medium.ozone.shape == OzoneShape::kSmooth;
   air.bands = medium.wavelengths_nm.size();
   for (std::size_t band = 0; band < air.bands; ++band) {
@@ -45,11 +50,10 @@ AirConstants<Real> ConstantsOf(const Medium& medium) {
   return air;
 }
 
-/// Columns at up to kLanes points, through the kernel.
-template <typename Real>
+/// Columns at up to kLength points, through the kernel.
+template <typename Real, std::size_t kLength = 16>
 struct ColumnRows {
-  static constexpr std::size_t kLanes = 16;
-  alignas(64) std::array<Real, kLanes> altitude{}, mu{}, rayleigh, mie, ozone;
+  alignas(64) std::array<Real, kLength> altitude{}, mu{}, rayleigh, mie, ozone;
 
   void Set(std::size_t i, double altitude_km, double cosine) {
     altitude[i] = static_cast<Real>(altitude_km);
@@ -226,7 +230,7 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
 Sampling SamplingForError(double max_error) {
   RequireInRange(max_error, 0.0, 1.0, "max_error");
   const double digits = -std::log10(std::max(max_error, 1e-9));
-  const int nodes = std::clamp(static_cast<int>(std::ceil(8.0 + 4.0 * (digits - 3.0))), 5, 32);
+  const int nodes = std::clamp(static_cast<int>(std::ceil(8.0 + 4.0 * (digits - 3.0))), 6, 32);
   return {.nodes = nodes, .split_ozone = max_error < 5e-3, .dark_samples = false};
 }
 
@@ -248,6 +252,35 @@ std::array<Real, 3> AirIntegrator<Real>::ColumnsToSpace(double altitude_m, doubl
   const ColumnSet<Real> columns = rows.At(0);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   return {columns.rayleigh * metres, columns.mie * metres, columns.ozone * metres};
+}
+
+template <typename Real>
+std::array<std::vector<Real>, 3> AirIntegrator<Real>::ColumnsToSpace(
+    std::span<const Real> altitudes_m, std::span<const Real> mu) const {
+  ALPENGLOW_ENSURE(altitudes_m.size(), ==, mu.size());
+  constexpr std::size_t kBlock = 128;
+  const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
+  ColumnRows<Real, kBlock> rows;
+  std::array<std::vector<Real>, 3> columns;
+  for (auto& species : columns) species.reserve(mu.size());
+  const auto metres = [](Real km) { return km * static_cast<Real>(kMetresPerKilometre); };
+  for (std::size_t first = 0; first < mu.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, mu.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows.altitude[i] = altitudes_m[first + i] / static_cast<Real>(kMetresPerKilometre);
+      rows.mu[i] = mu[first + i];
+    }
+    kernel.columns_to_space(constants_, RoundUp(count, kernel.lanes), rows.altitude.data(),
+                            rows.mu.data(), rows.Targets());
+    const auto row_end = static_cast<std::ptrdiff_t>(count);
+    std::transform(rows.rayleigh.begin(), rows.rayleigh.begin() + row_end,
+                   std::back_inserter(columns[0]), metres);
+    std::transform(rows.mie.begin(), rows.mie.begin() + row_end, std::back_inserter(columns[1]),
+                   metres);
+    std::transform(rows.ozone.begin(), rows.ozone.begin() + row_end, std::back_inserter(columns[2]),
+                   metres);
+  }
+  return columns;
 }
 
 template <typename Real>

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "atmosphere/medium.h"
 #include "atmosphere/ray.h"
@@ -39,6 +40,11 @@ class AirIntegrator {
   /// ozone. Relative error below 3e-6 (double, ozone 6e-6) and 1.2e-5 (float) for altitudes in [0,
   /// top]. The direction must not meet the ground.
   [[nodiscard]] std::array<Real, 3> ColumnsToSpace(double altitude_m, double mu) const;
+
+  /// The same for many points and directions, as many of the one as of the other: molecules,
+  /// aerosol, ozone.
+  [[nodiscard]] std::array<std::vector<Real>, 3> ColumnsToSpace(std::span<const Real> altitudes_m,
+                                                                std::span<const Real> mu) const;
 
   /// Transmittance from a point to space along mu; 0 where the ground is in the way.
   [[nodiscard]] Bands<Real> TransmittanceToSpace(double altitude_m, double mu) const;

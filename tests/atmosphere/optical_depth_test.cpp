@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
+#include "atmosphere/instruction_set.h"
 #include "atmosphere/medium.h"
 #include "atmosphere/quadrature.h"
 #include "atmosphere/ray.h"
@@ -100,6 +102,40 @@ TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
       EXPECT_NEAR(static_cast<double>(narrow[species]), exact[species],
                   1.2e-5 * exact[species] + kNothing_m)
           << "and rounding of the perigee, 1.5 cm of a scale height of 1200 m";
+    }
+  }
+}
+
+TEST(OpticalDepth, FloatIsRightAtEveryAltitudeAndAngleInEveryInstructionSet) {
+  const Medium medium = Earth();
+  const AirIntegrator<double> in_double(medium);
+  const AirIntegrator<float> in_float(medium);
+  std::vector<float> altitudes, cosines;
+  for (float altitude_m = 0.0F; altitude_m <= 100e3F; altitude_m += 390.625F) {
+    for (int i = 0; i <= 160; ++i) {
+      const float mu = std::pow(static_cast<float>(i - 40) / 120.0F, 3.0F);
+      const double perigee = shared::PerigeeAltitude(double{altitude_m} / 1e3, double{mu},
+                                                     medium.planet_radius_m / 1e3);
+      if (mu < 0.0F && perigee < 0.0) continue;
+      altitudes.push_back(altitude_m);
+      cosines.push_back(mu);
+    }
+  }
+  ASSERT_GT(cosines.size(), 30000U);
+  for (const InstructionSet set : AvailableInstructionSets()) {
+    const InstructionSetScope scope(set);
+    const auto columns =
+        in_float.ColumnsToSpace(std::span<const float>(altitudes), std::span<const float>(cosines));
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      const auto exact = in_double.ColumnsToSpace(double{altitudes[i]}, double{cosines[i]});
+      for (std::size_t species = 0; species < 3; ++species) {
+        // Above 60 km the smooth ozone ends within float's step of the altitude.
+        const double floor_m = species == 2 ? 1e-7 * EquivalentDepth_m(medium.ozone) : kNothing_m;
+        ASSERT_NEAR(static_cast<double>(columns[species][i]), exact[species],
+                    1.2e-5 * exact[species] + floor_m)
+            << NameOf(set) << ", species " << species << " from " << altitudes[i] << " m along mu "
+            << cosines[i];
+      }
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "atmosphere/error.h"
 #include "atmosphere/judge.h"
+#include "tests/ray_regimes.h"
 #include "tests/stored_cases.h"
 
 namespace alpenglow {
@@ -89,6 +90,57 @@ TEST(SingleScattering, StoredCasesThatAreNotLimbRaysAgreeToOnePartInTenThousand)
     }
   }
   EXPECT_GT(compared, 300);
+}
+
+double ErrorOf(const Medium& medium, const tests::SunHeights& sun, tests::RayView view,
+               const Sampling& sampling) {
+  return tests::ErrorOfRegime(medium, sun, view, sampling, 200).rms;
+}
+
+TEST(SingleScattering, EightSamplesAreRightToOnePartInAThousandAndTwelveToTen) {
+  for (const char* name : {"earth", "hazy"}) {
+    const Medium medium = MediumPreset(name);
+    for (const auto& sun : tests::kSunHeights) {
+      for (const auto& view : tests::kRayViews) {
+        SCOPED_TRACE(::testing::Message() << name << ", sun " << sun.name << ", " << view.name);
+        EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 8}), 1e-3) << "rms";
+        EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 12}), 1e-4) << "rms";
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, SamplingForAnErrorKeepsIt) {
+  const Medium medium = MediumPreset("hazy");
+  for (const double error : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    const Sampling sampling = SamplingForError(error);
+    for (const auto& sun : tests::kSunHeights) {
+      for (const auto& view : tests::kRayViews) {
+        SCOPED_TRACE(::testing::Message() << "sun " << sun.name << ", " << view.name);
+        EXPECT_LT(ErrorOf(medium, sun, view.view, sampling), error) << sampling.nodes << " nodes";
+      }
+    }
+  }
+  EXPECT_THROW(static_cast<void>(SamplingForError(-1.0)), InputError);
+}
+
+// What ErrorOfRegime takes for the truth is right.
+TEST(SingleScattering, SixtyFourSamplesAreTheJudgeInEveryRegime) {
+  const Medium medium = MediumPreset("hazy");
+  const AirIntegrator<double> air(medium);
+  for (const auto& sun : tests::kSunHeights) {
+    for (const auto& view : tests::kRayViews) {
+      for (const int i : {1, 2, 3}) {
+        const ViewRay ray = tests::RayOfRegime(i, sun, view.view, medium);
+        const auto truth = judge::SingleScatteringAlong(medium, ray);
+        const auto fine = Inscatter(air, ray, {.nodes = 64});
+        for (std::size_t band = 0; band < air.bands(); ++band) {
+          EXPECT_NEAR(fine[band], truth.inscatter[band], 2e-6 * truth.inscatter[band] + 1e-14)
+              << "sun " << sun.name << ", " << view.name << ": the closed form of the columns";
+        }
+      }
+    }
+  }
 }
 
 TEST(SingleScattering, FloatAgreesWithDouble) {

@@ -3,6 +3,12 @@
 // README.md.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "atmosphere/instruction_set.h"
 #include "atmosphere/judge.h"
 #include "atmosphere/single_scattering.h"
 #include "lut/multiple_scattering.h"
@@ -12,6 +18,29 @@ namespace {
 
 ViewRay RayNumber(int i) { return RayFromAngles(1000.0, 20 + i % 69, i % 180, 60 + i % 29); }
 
+/// Rays of a sky by day and, from `sun_zenith_deg` on, of later hours.
+std::vector<ViewRay> Rays(int sun_zenith_deg) {
+  std::vector<ViewRay> rays;
+  for (int i = 0; i < 512; ++i) {
+    rays.push_back(RayFromAngles(1000.0, 20 + i % 69, i % 180, sun_zenith_deg + i % 6));
+  }
+  return rays;
+}
+
+/// The set number state.range(0); skips the benchmark where there is none.
+std::optional<InstructionSetScope> SetOf(benchmark::State& state) {
+  const auto& sets = AvailableInstructionSets();
+  const auto index = static_cast<std::size_t>(state.range(0));
+  std::optional<InstructionSetScope> scope;
+  if (index < sets.size()) {
+    scope.emplace(sets[index]);
+    state.SetLabel(std::string(NameOf(sets[index])));
+  } else {
+    state.SkipWithError("not available");
+  }
+  return scope;
+}
+
 void TransmittanceToSpace(benchmark::State& state) {
   const AirIntegrator<float> air(MediumPreset("earth"));
   int i = 0;
@@ -20,19 +49,36 @@ void TransmittanceToSpace(benchmark::State& state) {
 }
 BENCHMARK(TransmittanceToSpace);
 
-void SingleScatteringOfOneRay(benchmark::State& state) {
+// Three columns (molecules, aerosol, ozone) a point and direction; range 1: 0 upwards, 1 any angle.
+void ColumnsToSpace(benchmark::State& state) {
+  const auto scope = SetOf(state);
   const AirIntegrator<float> air(MediumPreset("earth"));
-  const Sampling sampling{.nodes = static_cast<int>(state.range(0)),
-                          .split_ozone = state.range(1) != 0};
-  int i = 0;
+  constexpr std::size_t kPoints = 1024;
+  std::vector<float> altitude_m(kPoints), mu(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    altitude_m[i] = 100e3F * static_cast<float>(i) / kPoints;
+    const float lowest = state.range(1) == 0 ? 0.0F : -0.01F;
+    mu[i] = lowest + static_cast<float>(i * 37 % kPoints) / kPoints;
+    if (altitude_m[i] < 1e3F) mu[i] = std::abs(mu[i]);
+  }
+  for (auto unused : state) benchmark::DoNotOptimize(air.ColumnsToSpace(altitude_m, mu));
+  state.counters["ns_per_column"] = benchmark::Counter(
+      3e-9 * kPoints, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(ColumnsToSpace)->ArgsProduct({{0, 1, 2}, {0, 1}})->ArgNames({"set", "any_angle"});
+
+void SingleScatteringOfOneRay(benchmark::State& state) {
+  const auto scope = SetOf(state);
+  const AirIntegrator<float> air(MediumPreset("earth"));
+  const Sampling sampling{.nodes = static_cast<int>(state.range(1))};
+  const std::vector<ViewRay> rays = Rays(static_cast<int>(state.range(2)));
+  std::size_t i = 0;
   for (auto unused : state)
-    benchmark::DoNotOptimize(air.Scatter(air.Sample(RayNumber(++i), sampling)));
+    benchmark::DoNotOptimize(air.Scatter(air.Sample(rays[++i % rays.size()], sampling)));
 }
 BENCHMARK(SingleScatteringOfOneRay)
-    ->Args({8, 0})
-    ->Args({12, 0})
-    ->Args({16, 1})
-    ->ArgNames({"nodes", "split"});
+    ->ArgsProduct({{0, 1, 2}, {8, 12}, {60, 91}})
+    ->ArgNames({"set", "nodes", "sun_zenith"});
 
 void SingleScatteringByTheJudge(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
