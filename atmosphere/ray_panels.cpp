@@ -104,7 +104,7 @@ struct LowerEnd {
   bool grazed;      // by sunbeams from below the horizontal, or at the shadow
   bool at_perigee;  // of the ray
   bool ahead;       // the ray comes down to it
-  bool from_space;  // and began above the air
+  bool from_above;  // and began in air too thin to hide anything
 };
 
 double StretchOf(const LowerEnd& low, double length, double radius, double extinction_per_km) {
@@ -124,8 +124,8 @@ int NodesOf(const LowerEnd& low, int nodes) {
   const bool slanting = low.ahead && low.cosine < 0.3;
   if (low.altitude_km < 50.0) {
     if (low.at_perigee || slanting)
-      halves += low.from_space || low.grazed ? 2 : 1;
-    else if (low.ahead && low.from_space)
+      halves += low.from_above || low.grazed ? 2 : 1;
+    else if (low.ahead && low.from_above)
       halves += 1;
   }
   return std::min((nodes * halves + 1) / 2, kMaxGaussNodes);
@@ -188,7 +188,7 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
                        lit && (at_shadow || sun < 0.0),
                        at == perigee,
                        !rises,
-                       extent.begin_m > 0.0};
+                       entry.altitude_km > 60.0};
     panels.panel[panels.count++] = {
         begin,
         end,

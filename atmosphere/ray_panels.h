@@ -41,7 +41,7 @@ struct RayPanels {
 
 /// @param sampling  nodes of an ordinary panel. One whose lower end sunbeams graze, or where the
 /// planet's shadow begins, gets half as many more; so does one that comes down through the air at a
-/// slant, or goes on from the perigee of such a ray, twice if the ray came from space or sunbeams
+/// slant, or goes on from the perigee of such a ray, twice if the ray began above 60 km or sunbeams
 /// graze it; at most 64. Then all have about the same error.
 [[nodiscard]] RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
                                  const Medium& medium, const Sampling& sampling);

@@ -37,8 +37,8 @@ class AirIntegrator {
   [[nodiscard]] const AirConstants<Real>& constants() const { return constants_; }
 
   /// Columns [m] from a point along a direction of zenith cosine mu to space: molecules, aerosol,
-  /// ozone. Relative error below 3e-6 (double, ozone 6e-6) and 1.2e-5 (float) for altitudes in [0,
-  /// top]. The direction must not meet the ground.
+  /// ozone. Relative error below 3e-6 (double, ozone 6e-6) and 1.2e-5 (float; ozone: or 1e-7 of its
+  /// depth) for altitudes in [0, top]. The direction must not meet the ground.
   [[nodiscard]] std::array<Real, 3> ColumnsToSpace(double altitude_m, double mu) const;
 
   /// The same for many points and directions, as many of the one as of the other: molecules,
