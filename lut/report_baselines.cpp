@@ -74,6 +74,15 @@ float ChapmanColumn(ChapmanRule rule, float altitude, float mu, float scale_heig
 
 }  // namespace
 
+float OzoneDensity(const OzoneLayer& layer, float altitude_km) {
+  const float top_km = Kilometres(layer.top_m);
+  if (layer.shape == OzoneShape::kSmooth) {
+    return shared::SmoothOzoneDensity<float>(altitude_km, top_km);
+  }
+  return shared::TentDensity<float>(altitude_km, Kilometres(layer.bottom_m),
+                                    Kilometres(layer.peak_m), top_km);
+}
+
 std::vector<RayNode> MarchNodes(MarchRule rule, int steps, const RayExtent& extent) {
   const double length = extent.end_m - extent.begin_m;
   const double n = steps;
@@ -108,9 +117,7 @@ Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray, Marc
                              0.0F);
     rayleigh += weight * std::exp(-h / rayleigh_height);
     mie += weight * std::exp(-h / mie_height);
-    ozone += weight * shared::TentDensity<float>(h, Kilometres(medium.ozone.bottom_m),
-                                                 Kilometres(medium.ozone.peak_m),
-                                                 Kilometres(medium.ozone.top_m));
+    ozone += weight * OzoneDensity(medium.ozone, h);
   };
   const float step = 1.0F / static_cast<float>(steps);
   const bool trapezoid = rule == MarchRule::kTrapezoid;

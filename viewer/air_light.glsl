@@ -5,12 +5,13 @@
 uniform vec2 gauss[32];  // nodes in [0, 1] and weights of the rules
 
 // Stretch b of the map t = length sinh(b v) / sinh(b) of a panel whose lower end has altitude z and zenith
-// cosine c > 0 upwards, dense within 10 km and 10 optical depths of it: see ray_panels.h.
-float MapStretch(float z, float c, float panel) {
-  float near = DistanceUpTo(z, c, z + 10.0, RADIUS);
+// cosine c > 0 upwards, dense within 10 km and 10 optical depths of it, and less so behind the edge of the
+// planet's shadow: see ray_panels.h.
+float MapStretch(float z, float c, float panel, bool at_shadow) {
+  float near = DistanceUpTo(z, c, z + (at_shadow ? 12.0 : 10.0), RADIUS);
   float extinction = mie_options.y * exp(-z / 8.0);
   near = min(near, 10.0 / max(extinction, 1e-20));
-  return 1.2 * log(max(2.0 * panel / near, 1.0));
+  return (at_shadow ? 1.1 : 1.2) * log(max(2.0 * panel / near, 1.0));
 }
 
 void Order(inout float a, inout float b) {
@@ -58,8 +59,10 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
     float z_end = AltitudeAlongRay(ray.h, ray.mu, begin + span, RADIUS);
     bool up = z_end >= z_begin;
     float low = max(min(z_begin, z_end), 0.0);
-    float cosine = abs(ZenithCosineAlongRay(ray.h, ray.mu, up ? begin : begin + span, low, RADIUS));
-    float b = MapStretch(low, cosine, span);
+    float at = up ? begin : begin + span;
+    float cosine = abs(ZenithCosineAlongRay(ray.h, ray.mu, at, low, RADIUS));
+    bool at_shadow = lit && shadow.x < shadow.y && (at == shadow.x || at == shadow.y);
+    float b = MapStretch(low, cosine, span, at_shadow);
     for (int i = 0; i < count; ++i) {
       vec2 node = gauss[first + i];
       float t = span * node.x;
