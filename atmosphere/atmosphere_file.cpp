@@ -14,7 +14,7 @@
 //     draine                                            g, alpha
 //     henyey-greenstein-draine                          g; g_back, alpha of Draine's lobe, its
 //                                                       share back_weight
-//     fog                                               droplet_diameter_um, in [5, 50]
+//     fog                                               droplet_diameter_um, in [1.5, 50]
 //     table                                             phase_file (CSV; phase_table.h), or
 //                                                       phase_angles_deg with phase_per_sr
 //   [aerosol]            instead of the lists of [mie]: mixture (aerosol_mixture.h), or one of

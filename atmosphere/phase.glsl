@@ -79,20 +79,30 @@ SHARED Number PhaseHenyeyGreensteinDraine(Number cos_scattering, Number g, Numbe
          draine_weight * PhaseDraine(cos_scattering, g_draine, alpha);
 }
 
-// Jendersie and d'Eon's fits to Lorenz-Mie theory for droplets of 5 to 50 micrometres. @param d
-// diameter of the droplets [um].
-SHARED Number FogForwardG(Number d) { return exp(Number(-0.0990567) / (d - Number(1.67154))); }
+// Jendersie and d'Eon's fits to Lorenz-Mie theory for droplets of 1.5 to 5 and of 5 to 50
+// micrometres. @param d  diameter of the droplets [um].
+SHARED Number FogForwardG(Number d) {
+  return select(d < Number(5.0), Number(0.0604931) * log(log(d)) + Number(0.940256),
+                exp(Number(-0.0990567) / (d - Number(1.67154))));
+}
 
 SHARED Number FogDraineG(Number d) {
-  return exp(Number(-2.20679) / (d + Number(3.91029)) - Number(0.428934));
+  Number l = log(d);
+  return select(d < Number(5.0),
+                Number(0.500411) - Number(0.081287) / (tan(l) - Number(2.0) * l + Number(1.27551)),
+                exp(Number(-2.20679) / (d + Number(3.91029)) - Number(0.428934)));
 }
 
 SHARED Number FogDraineAlpha(Number d) {
-  return exp(Number(3.62489) - Number(8.29288) / (d + Number(5.52825)));
+  return select(d < Number(5.0), Number(7.30354) * log(d) + Number(6.31675),
+                exp(Number(3.62489) - Number(8.29288) / (d + Number(5.52825))));
 }
 
 SHARED Number FogDraineWeight(Number d) {
-  return exp(Number(-0.599085) / (d - Number(0.641583)) - Number(0.665888));
+  Number l = log(d);
+  Number wave = cos(Number(5.68947) * (log(l) - Number(0.0292149)));
+  return select(d < Number(5.0), Number(0.026914) * (l - wave) + Number(0.376475),
+                exp(Number(-0.599085) / (d - Number(0.641583)) - Number(0.665888)));
 }
 
 SHARED Number PhaseFog(Number cos_scattering, Number d) {

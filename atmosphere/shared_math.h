@@ -14,6 +14,7 @@ using std::log;
 using std::pow;
 using std::sin;
 using std::sqrt;
+using std::tan;
 
 inline double max(double a, double b) { return a < b ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }

@@ -311,6 +311,7 @@ inline std::vector<SharedTextCase> PhaseCases() {
       ALPENGLOW_SHARED_CASE(PhaseHenyeyGreensteinDraine(a[0], a[1], a[2], a[3], Number(17.0)),
                             grid::Scattering()),
       ALPENGLOW_SHARED_CASE(PhaseFog(a[0], Number(5.0) + Number(45.0) * a[3]), grid::Scattering()),
+      ALPENGLOW_SHARED_CASE(PhaseFog(a[0], Number(2.0) + Number(4.0) * a[3]), grid::Scattering()),
   };
 }
 

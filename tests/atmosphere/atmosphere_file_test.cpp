@@ -141,7 +141,8 @@ TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
 TEST(AtmosphereFile, AerosolIsGivenInOneWayOnly) {
   EXPECT_THAT(FaultOf("[aerosol]\nturbidity = 2\nvisibility_m = 23000\n"),
               StartsWith("a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"));
-  EXPECT_THAT(FaultOf("[aerosol]\nangstrom_exponent = 1\n"), HasSubstr("aerosol needs mixture or one of"));
+  EXPECT_THAT(FaultOf("[aerosol]\nangstrom_exponent = 1\n"),
+              HasSubstr("aerosol needs mixture or one of"));
   EXPECT_THAT(FaultOf("[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n"),
               StartsWith("a.toml:2: mie.scattering_per_m is given beside [aerosol]"));
 }
@@ -210,7 +211,7 @@ TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
   EXPECT_EQ(medium.mie_phase.front(), FogPhase(12.0));
   EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\n"), HasSubstr("give mie.droplet_diameter_um too"));
   EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n"),
-              StartsWith("a.toml:3: mie.droplet_diameter_um is 60; it must lie in [5, 50]"));
+              StartsWith("a.toml:3: mie.droplet_diameter_um is 60; it must lie in [1.5, 50]"));
   EXPECT_THAT(FaultOf("[mie]\ndroplet_diameter_um = 10\n"),
               HasSubstr("no effect without phase = \"fog\""));
   EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n"),

@@ -49,6 +49,7 @@ std::shared_ptr<const PhaseTable> TabulatedLobe(double g) {
 std::vector<PhaseFunction> ManyPhases() {
   std::vector<PhaseFunction> phases{{.kind = PhaseKind::kTable, .table = TabulatedLobe(0.0)},
                                     {.kind = PhaseKind::kTable, .table = TabulatedLobe(0.9)},
+                                    FogPhase(2.0),
                                     FogPhase(5.0),
                                     FogPhase(20.0),
                                     FogPhase(50.0),
@@ -218,7 +219,10 @@ TEST(Phase, FogScattersForwardTheMoreTheLargerItsDroplets) {
       EXPECT_NEAR(Phase(fog, c) / shared::PhaseFog(c, diameter_um), 1.0, 1e-12);
     }
   }
-  EXPECT_THROW(static_cast<void>(FogPhase(4.9)), InputError);
+  EXPECT_NEAR(FogPhase(4.9999).g, FogPhase(5.0).g, 0.003) << "the two fits meet";
+  EXPECT_NEAR(FogPhase(4.9999).g_back, FogPhase(5.0).g_back, 0.01);
+  EXPECT_NEAR(FogPhase(4.9999).back_weight, FogPhase(5.0).back_weight, 0.01);
+  EXPECT_THROW(static_cast<void>(FogPhase(1.4)), InputError);
   EXPECT_THROW(static_cast<void>(FogPhase(51.0)), InputError);
 }
 
