@@ -301,9 +301,8 @@ class Topic {
 ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
   Topic topic(medium, effort);
   topic.AddDirect();
-  topic.AddSkyView({});
   topic.AddSkyView(SkyViewSize{.sky_rows = 20, .ground_rows = 12, .azimuths = 9});
-  topic.AddSkyView(SkyViewSize{});
+  topic.AddSkyView({});
   if (!effort.quick)
     topic.AddSkyView(SkyViewSize{.sky_rows = 80, .ground_rows = 48, .azimuths = 33});
   topic.AddLatitudes(96, 54, false);

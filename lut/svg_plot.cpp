@@ -20,6 +20,7 @@ constexpr double kLabelSize = 12.0, kNoteSize = 9.5;
 
 struct Box {
   double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
+  double penalty = 0.0;  // of a place for a text: how far from what it names
 
   [[nodiscard]] double Overlap(const Box& other) const {
     const double width = std::min(x1, other.x1) - std::max(x0, other.x0);
@@ -155,8 +156,6 @@ std::string Marker(int style, double x, double y) {
 std::vector<PlotPoint> DrawablePoints(const PlotSeries& series) {
   std::vector<PlotPoint> points;
   std::copy_if(series.points.begin(), series.points.end(), std::back_inserter(points), Drawable);
-  std::stable_sort(points.begin(), points.end(),
-                   [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
   return points;
 }
 
@@ -293,16 +292,16 @@ class Labels {
             std::pair{away, -away - 0.5 * height}, std::pair{away, away - 0.5 * height},
             std::pair{-away - width, -away - 0.5 * height},
             std::pair{-away - width, away - 0.5 * height}}) {
-        places.push_back({x + dx, y + dy, x + dx + width, y + dy + height});
+        places.push_back({x + dx, y + dy, x + dx + width, y + dy + height, 8.0 * (away - 7.0)});
       }
     }
     return places;
   }
 
   [[nodiscard]] double Cost(const Box& place) const {
-    double cost = 0.0;
+    double cost = place.penalty;
     for (const Box& box : taken_) cost += 20.0 * place.Overlap(box);
-    for (const Box& box : ink_) cost += 2.0 * place.Overlap(box);
+    for (const Box& box : ink_) cost += 3.0 * place.Overlap(box);
     const double area = (place.x1 - place.x0) * (place.y1 - place.y0);
     cost += 50.0 * (area - place.Overlap(Box{frame_.area.x0 + 2.0, frame_.area.y0 + 2.0,
                                              frame_.area.x1 - 2.0, frame_.area.y1 - 2.0}));
@@ -342,7 +341,6 @@ std::string PanelText(const Frame& frame, const Plot& plot, const PlotPanel& pan
   for (const PlotLevel& level : panel.levels) {
     const double at = frame.Y(level.y);
     text += LineElement(frame.area.x0, at, frame.area.x1, at, "level");
-    text += TextElement(frame.area.x1 - 4.0, at - 4.0, "tick", level.name, " text-anchor=\"end\"");
   }
   for (const PlotSeries& series : panel.series) text += SeriesText(frame, series);
   return text + LabelsText(frame, panel);
