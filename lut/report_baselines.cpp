@@ -60,6 +60,14 @@ Bands<float> TransmittanceOf(const Medium& medium, float rayleigh_km, float mie_
   return result;
 }
 
+/// Relative to the peak.
+float OzoneDensity(const OzoneLayer& layer, float altitude_km) {
+  if (layer.shape == OzoneShape::kSmooth)
+    return shared::SmoothOzoneDensity<float>(altitude_km, Kilometres(layer.top_m));
+  return shared::TentDensity<float>(altitude_km, Kilometres(layer.bottom_m),
+                                    Kilometres(layer.peak_m), Kilometres(layer.top_m));
+}
+
 /// Column [km] to space of an exponential layer; below the horizontal, twice the column at the
 /// perigee less the one behind the observer.
 float ChapmanColumn(ChapmanRule rule, float altitude, float mu, float scale_height, float radius) {
@@ -73,15 +81,6 @@ float ChapmanColumn(ChapmanRule rule, float altitude, float mu, float scale_heig
 }
 
 }  // namespace
-
-float OzoneDensity(const OzoneLayer& layer, float altitude_km) {
-  const float top_km = Kilometres(layer.top_m);
-  if (layer.shape == OzoneShape::kSmooth) {
-    return shared::SmoothOzoneDensity<float>(altitude_km, top_km);
-  }
-  return shared::TentDensity<float>(altitude_km, Kilometres(layer.bottom_m),
-                                    Kilometres(layer.peak_m), top_km);
-}
 
 std::vector<RayNode> MarchNodes(MarchRule rule, int steps, const RayExtent& extent) {
   const double length = extent.end_m - extent.begin_m;

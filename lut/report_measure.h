@@ -109,6 +109,11 @@ class TopicWork {
     rows_.push_back(Measured(std::move(row), judged_, effort_, answer, samples));
   }
 
+  /// Adds what was measured elsewhere.
+  void AddMeasured(ReportRow row) { rows_.push_back(std::move(row)); }
+
+  [[nodiscard]] const JudgedRays& judged() const { return judged_; }
+
   /// `words` with what was measured.
   [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
     words.medium = medium_;

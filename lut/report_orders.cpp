@@ -88,17 +88,20 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   topic.AddNothing();
   topic.AddIsotropic({}, true);
   if (!effort.quick) topic.AddIsotropic({.side = 32, .directions_side = 16, .steps = 20}, false);
-  topic.AddDiffuse({.altitudes = 12, .sun_angles = 24, .degree = 2});
-  if (!effort.quick) {
-    topic.AddDiffuse({.degree = 2});
-    topic.AddDiffuse({.altitudes = 12, .sun_angles = 24});
+  for (const int degree : {2, 4, 6}) {
+    DiffuseLightOptions options;
+    const bool usual = degree == options.degree;
+    options.degree = degree;
+    const DiffuseLightOptions same = options;
+    options.altitudes = 12;
+    options.sun_angles = 24;
+    if (degree == 2 || !effort.quick) topic.AddDiffuse(options);
+    if (usual || !effort.quick) topic.AddDiffuse(same);
+    options.altitudes = 28;
+    options.sun_angles = 56;
+    if (usual && !effort.quick) topic.AddDiffuse(options);
   }
-  topic.AddDiffuse({});
-  if (!effort.quick) {
-    topic.AddDiffuse({.altitudes = 28, .sun_angles = 56});
-    topic.AddDiffuse({.degree = 6});
-    topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
-  }
+  if (!effort.quick) topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
   return std::move(topic).Finished(
       {.key = "all_orders",
        .title = "All orders: the light of the sky as a whole",

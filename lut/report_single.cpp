@@ -79,9 +79,11 @@ class Topic : public TopicWork {
 
 ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort) {
   Topic topic(medium, effort);
-  for (const int nodes : {4, 6, 8, 12, 16, 24})
-    topic.AddGauss(nodes, false, nodes == 8 || nodes == 12);
-  for (const int nodes : {4, 6, 8, 12, 16, 24}) topic.AddGauss(nodes, true, nodes == 16);
+  for (const int nodes : {4, 6, 8, 12, 16, 20})
+    topic.AddGauss(nodes, false, nodes == 8 || nodes == 12 || nodes == 20);
+  if (medium.ozone.shape == OzoneShape::kTent) {
+    for (const int nodes : {4, 6, 8, 12, 16, 20}) topic.AddGauss(nodes, true, nodes == 16);
+  }
   for (const int steps : {16, 32, 64, 128, 256, 512})
     topic.AddMarch(MarchRule::kMidpoint, steps, steps == 64);
   for (const int steps : {16, 32, 64, 128, 256, 512})

@@ -2,6 +2,10 @@
 // Topic of the report: transmittance from a point to the sun.
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "lut/report_baselines.h"
 #include "lut/report_measure.h"
 #include "lut/transmittance_table.h"
@@ -13,6 +17,7 @@ namespace {
 enum Style {
   kClosedForm = 0,
   kMidpoint = 1,
+  kMany = 2,
   kTable = 3,
   kChapman = 4,
   kTrapezoid = 5,
@@ -22,7 +27,13 @@ enum Style {
 class Topic : public TopicWork {
  public:
   Topic(const Medium& medium, const ReportEffort& effort)
-      : TopicWork(medium, effort, JudgedSunbeams(medium, effort.rays)) {}
+      : TopicWork(medium, effort, JudgedSunbeams(medium, effort.rays)) {
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      sigma_.push_back({static_cast<float>(medium.rayleigh_scattering_per_m[band]),
+                        static_cast<float>(medium.mie_extinction_per_m[band]),
+                        static_cast<float>(medium.ozone_absorption_per_m[band])});
+    }
+  }
 
   template <typename Answer>
   void Add(ReportRow row, int samples, const Answer& answer) {
@@ -36,6 +47,40 @@ class Topic : public TopicWork {
     const AirIntegrator<double> exact(medium_);
     Add({.series = "closed form", .parameter = "double", .style = kClosedForm}, 0,
         [&](const ViewRay& ray) { return exact.TransmittanceToSpace(ray.altitude_m, ray.mu); });
+  }
+
+  /// Many points at once, as the kernels of this library take them.
+  void AddClosedFormOfMany() {
+    const AirIntegrator<float> air(medium_);
+    ReportRow row{.series = "closed form, many at once",
+                  .parameter = "float",
+                  .style = kMany,
+                  .in_summary = true};
+    for (std::size_t r = 0; r < kReportRegimes; ++r) {
+      const std::vector<JudgedRay>& rays = judged().rays[r];
+      std::vector<float> altitudes_m, mu;
+      for (const JudgedRay& one : rays) {
+        altitudes_m.push_back(static_cast<float>(one.ray.altitude_m));
+        mu.push_back(static_cast<float>(one.ray.mu));
+      }
+      std::vector<Bands<float>> answers(rays.size(), Bands<float>(air.bands()));
+      const auto pass = [&] {
+        const auto columns_m = air.ColumnsToSpace(altitudes_m, mu);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          for (std::size_t band = 0; band < air.bands(); ++band) {
+            answers[i][band] =
+                std::exp(-(sigma_[band][0] * columns_m[0][i] + sigma_[band][1] * columns_m[1][i] +
+                           sigma_[band][2] * columns_m[2][i]));
+          }
+        }
+        return answers[0][0];
+      };
+      TimePasses(rays.size(), effort_, pass, row.at[r]);
+      std::vector<std::vector<double>> values;
+      for (const Bands<float>& one : answers) values.push_back(ValuesOf(one));
+      row.at[r].error = StatisticsOf(rays, judged().kind, values);
+    }
+    AddMeasured(std::move(row));
   }
 
   void AddTable(const TransmittanceTableSize& size) {
@@ -70,6 +115,9 @@ class Topic : public TopicWork {
          .in_summary = true},
         0, [&](const ViewRay& ray) { return ChapmanTransmittance(air, rule, ray); });
   }
+
+ private:
+  std::vector<std::array<float, 3>> sigma_;  // [1/m] of molecules, aerosol, ozone, by wavelength
 };
 
 }  // namespace
@@ -77,6 +125,7 @@ class Topic : public TopicWork {
 ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort) {
   Topic topic(medium, effort);
   topic.AddClosedForms();
+  topic.AddClosedFormOfMany();
   topic.AddTable({.mu = 64, .altitudes = 16});
   topic.AddTable({.mu = 128, .altitudes = 32});
   topic.AddTable({.mu = 256, .altitudes = 64});
