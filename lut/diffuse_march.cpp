@@ -16,8 +16,8 @@ namespace {
 
 double Sine(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
 
-// Whether aerosol scatters less than 3e-4 of what molecules do, in every band: it then needs no more
-// moments than they.
+// Whether aerosol scatters less than 3e-4 of what molecules do, in every band: it then needs no
+// more moments than they.
 bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float mie_density) {
   for (std::size_t band = 0; band < air.bands; ++band) {
     if (air.mie_scattering[band] * mie_density > 3e-4F * air.rayleigh[band] * rayleigh_density)

@@ -103,8 +103,9 @@ class DiffuseLight {
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] std::size_t channels() const { return moments_ + 1; }
 
-  /// All channels [channel * bands() + band] at coordinates in [0, 1] (below), by the cubic
-  /// interpolation between nodes that every look-up uses.
+  /// All channels [channel * bands() + band] at coordinates in [0, 1] (below), by the interpolation
+  /// that every look-up uses: cubic, between sun angles after division by the usual fall of light
+  /// in twilight (DiffuseGrid).
   [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
                                             double sun_coordinate) const;
 

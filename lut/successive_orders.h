@@ -3,9 +3,10 @@
 //
 // One order's radiance at every node (altitude, sun angle), along directions of a Gauss grid split
 // at the horizon, is marched through the previous order's moments and projected onto moments again.
-// Altitudes, angles and interpolation along the marches depend on neither band nor order: they are
-// computed once, bands follow four at a time. When the orders have become a geometric series its
-// rest is summed in closed form.
+// Bands follow four at a time, in kernels (diffuse_kernel.h). Sunlight scattered once is integrated
+// over the lit pieces of each direction (first_order.h); light scattered more often is smooth, and
+// from the third step on fewer directions serve it. When the orders have become a geometric series
+// its rest is summed in closed form.
 #pragma once
 
 #include "lut/multiple_scattering.h"
