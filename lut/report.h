@@ -107,7 +107,7 @@ struct Report {
   std::vector<ReportTopic> topics{};
 };
 
-/// Measures everything, about two minutes on two cores. Stops between methods when the program is
+/// Measures everything: some minutes. Stops between methods when the program is
 /// interrupted.
 [[nodiscard]] Report MeasureReport(const ReportOptions& options);
 

@@ -20,7 +20,7 @@ struct ReportEffort {
   bool quick = false;
   int rays = 400;             // of a regime, for judges without noise
   int traced_rays = 36;       // of a regime, for the path tracer
-  std::size_t paths = 60000;  // of a traced ray
+  std::size_t paths = 30000;  // of a traced ray
   std::size_t passes = 7;     // at least so many over the rays of a regime
   double seconds = 0.02;      // and at least for so long
 
