@@ -22,6 +22,7 @@ struct BuildOptions {
   std::string out;
   bool single_scattering_only = false;
   std::string quality = "standard";
+  std::string tables = "smallest";
   std::string layout = "native";
   std::optional<std::string> type, format, max_error;
 };
@@ -78,7 +79,9 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
       options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
   if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
     MakeFolder(options.out);  // before the work
-    const TableChoice choice = ChooseTables(medium, {.max_error = *max_error});
+    const TableChoice choice = ChooseTables(
+        medium, {.max_error = *max_error,
+                 .wanted = options.tables == "all" ? TablesWanted::kAll : TablesWanted::kSmallest});
     WriteTables(choice, options.out);
     fmt::print("{}", ChoiceText(choice, *max_error));
     return;
@@ -114,6 +117,13 @@ Subcommand AddBuildCommand(CLI::App& app) {
                       "and irradiance stay below it (rms), and prints what it measured")
           ->check(FaultOfRelativeError)
           ->excludes(quality);
+  build
+      .add_option("--tables", options->tables,
+                  "With --max-error: smallest (whatever needs least memory; what closed forms and "
+                  "a few nodes along the ray do as well gets no table) or all three")
+      ->check(CLI::IsMember({"smallest", "all"}))
+      ->needs(max_error)
+      ->capture_default_str();
   build
       .add_flag("--single-scattering-only", options->single_scattering_only,
                 "Leave the table of multiple scattering out")

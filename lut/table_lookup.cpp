@@ -20,6 +20,16 @@ TableLookup::TableLookup(TableFolder tables) : tables_(std::move(tables)), air_(
   require_medium(tables_.multiple_scattering);
 }
 
+void TableLookup::ReplaceMultipleScattering(DiffuseLight light) {
+  tables_.multiple_scattering = std::move(light);
+}
+
+bool TableLookup::HasTableFor(const ViewRay& ray) const {
+  const Medium& air = tables_.medium;
+  return tables_.single_scattering &&
+         ExtentOf(ray, air.planet_radius_m, air.atmosphere_height_m).end != RayEnd::kLength;
+}
+
 const DiffuseLight& TableLookup::diffuse() const {
   if (!tables_.multiple_scattering) {
     throw InternalError("light of higher orders from tables of single scattering");
@@ -44,7 +54,7 @@ Bands<float> TableLookup::OpticalDepth(const ViewRay& ray) const {
 }
 
 Bands<float> TableLookup::InscatterOnce(const ViewRay& ray) const {
-  if (tables_.single_scattering) {
+  if (HasTableFor(ray)) {
     return air_.Inscatter(tables_.single_scattering->Lookup(ray), ray.nu);
   }
   const Sampling lit{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = false};

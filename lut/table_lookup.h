@@ -2,6 +2,9 @@
 // Light along rays from the tables of a folder; what they leave out is integrated: columns in
 // closed form, light scattered once on the folder's number of Gauss nodes.
 //
+// Segments that end in the air are integrated, too: the difference of two look-ups would have the
+// error of whole rays.
+//
 // Per unit solar irradiance. Light of higher orders is gathered along the ray from the moments of
 // multiple scattering, on the same nodes.
 #pragma once
@@ -15,6 +18,9 @@ class TableLookup {
  public:
   /// Throws InputError for tables of different media.
   explicit TableLookup(TableFolder tables);
+
+  /// Takes another table of multiple scattering, of the same medium.
+  void ReplaceMultipleScattering(DiffuseLight light);
 
   [[nodiscard]] const Medium& medium() const { return tables_.medium; }
   [[nodiscard]] const TableFolder& tables() const { return tables_; }
@@ -33,6 +39,7 @@ class TableLookup {
 
  private:
   [[nodiscard]] const DiffuseLight& diffuse() const;
+  [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;
 
   TableFolder tables_;
   AirIntegrator<float> air_;

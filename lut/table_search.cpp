@@ -18,12 +18,25 @@ constexpr std::array kRayNodes{4, 6, 8, 10, 12, 16, 20, 24, 28, 32};
 constexpr std::array kAltitudes{4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40};
 constexpr std::array kSunAngles{8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80};
 
+// Sizes of the tables that are made when all are wanted, by bytes.
+constexpr std::array kTransmittanceSizes{
+    TransmittanceTableSize{32, 8},    TransmittanceTableSize{64, 16},
+    TransmittanceTableSize{128, 32},  TransmittanceTableSize{128, 64},
+    TransmittanceTableSize{256, 64},  TransmittanceTableSize{256, 128},
+    TransmittanceTableSize{512, 256}, TransmittanceTableSize{1024, 512}};
+constexpr std::array kSingleScatteringSizes{
+    ScatteringTableSize{4, 12, 16, 16},   ScatteringTableSize{5, 16, 32, 24},
+    ScatteringTableSize{6, 20, 32, 32},   ScatteringTableSize{6, 24, 48, 48},
+    ScatteringTableSize{8, 32, 64, 64},   ScatteringTableSize{8, 32, 64, 96},
+    ScatteringTableSize{10, 48, 64, 128}, ScatteringTableSize{10, 48, 96, 160}};
+
 // Views that the search did not see are a little worse than those that it did.
 constexpr double kShareForUnseenViews = 0.85;
 // Standard error of path-traced views, at least: a quarter of it costs sixteen times as much.
 constexpr double kLeastNoise = 1e-3;
-// The part of the bound that the nodes along a ray may take.
+// The parts of the bound that the nodes along a ray may take, and with the other tables.
 constexpr double kShareOfNodes = 0.5;
+constexpr double kShareOfTables = 0.75;
 
 /// Whether look-ups stay under the bounds, and which kind is furthest off where they do not.
 struct Verdict {
@@ -111,17 +124,62 @@ int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Boun
                                 100.0 * best.error, NameOf(best.worst)));
 }
 
-DiffuseLight SmallestLight(const JudgedViews& views, const DiffuseLight& finest,
-                           const Bounds& bounds, int ray_nodes, double max_error) {
+/// Gives `tables` the first of these tables under a share of the bounds.
+template <typename Sizes, typename Put>
+TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const Bounds& bounds,
+                         double max_error, const Sizes& sizes, const TableFolder& tables,
+                         const Put& put) {
+  Verdict best;
+  for (const auto& size : sizes) {
+    ThrowIfInterrupted();
+    TableFolder with = tables;
+    put(with, size);
+    const TableLookup lookup(std::move(with));
+    best = Judge(views, lookup, bounds, kShareOfTables);
+    if (best.excess <= kShareOfTables) return lookup.tables();
+  }
+  Refuse(max_error, fmt::format("the largest table of {} leaves {:.2g} % ({})", name,
+                                100.0 * best.error, NameOf(best.worst)));
+}
+
+TableFolder WithAllTables(const JudgedViews& views, const Bounds& bounds, double max_error,
+                          const TableFolder& tables) {
+  const TableFolder with_transmittance =
+      WithSmallest("transmittance", views, bounds, max_error, kTransmittanceSizes, tables,
+                   [](TableFolder& folder, const TransmittanceTableSize& size) {
+                     folder.transmittance.emplace(folder.medium, size);
+                   });
+  return WithSmallest("single scattering", views, bounds, max_error, kSingleScatteringSizes,
+                      with_transmittance, [](TableFolder& folder, const ScatteringTableSize& size) {
+                        folder.single_scattering.emplace(
+                            folder.medium,
+                            ScatteringTableOptions{
+                                .size = size, .lowest_mu_s = {}, .axes = ScatteringAxes::kAzimuth});
+                      });
+}
+
+/// Replaces the finest light by the smallest that does.
+TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, double max_error,
+                              TableFolder tables) {
+  const DiffuseLight finest = *tables.multiple_scattering;
+  TableLookup lookup(std::move(tables));
   Verdict best;
   for (const Grid& grid : GridsBySize()) {
     ThrowIfInterrupted();
-    DiffuseLight light = Resampled(finest, grid.altitudes, grid.sun_angles, grid.degree);
-    best = Judge(views, TableLookup(Folder(finest.medium(), light, ray_nodes)), bounds, 1.0);
-    if (best.excess <= 1.0) return light;
+    lookup.ReplaceMultipleScattering(
+        Resampled(finest, grid.altitudes, grid.sun_angles, grid.degree));
+    best = Judge(views, lookup, bounds, 1.0);
+    if (best.excess <= 1.0) return lookup.tables();
   }
   Refuse(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
                                 NameOf(best.worst)));
+}
+
+std::uint64_t BytesOf(const TableFolder& tables) {
+  std::uint64_t bytes = tables.multiple_scattering->values().size() * sizeof(float);
+  if (tables.transmittance) bytes += tables.transmittance->bytes();
+  if (tables.single_scattering) bytes += tables.single_scattering->bytes();
+  return bytes;
 }
 
 std::string MeasuredText(const TableChoice& choice) {
@@ -184,9 +242,12 @@ TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) 
   }
   const Bounds bounds = BoundsOf(search.max_error, choice.measured);
   const int ray_nodes = FewestNodes(views, finest, bounds, search.max_error);
-  choice.tables =
-      Folder(medium, SmallestLight(views, finest, bounds, ray_nodes, search.max_error), ray_nodes);
-  choice.bytes = choice.tables.multiple_scattering->values().size() * sizeof(float);
+  TableFolder tables = Folder(medium, finest, ray_nodes);
+  if (search.wanted == TablesWanted::kAll) {
+    tables = WithAllTables(views, bounds, search.max_error, tables);
+  }
+  choice.tables = WithSmallestLight(views, bounds, search.max_error, std::move(tables));
+  choice.bytes = BytesOf(choice.tables);
   const TableLookup chosen(choice.tables);
   for (TableChoice::Measured& measured : choice.measured) {
     measured.errors = views.ErrorsOf(chosen, measured.kind);
@@ -195,16 +256,31 @@ TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) 
 }
 
 std::string ChoiceText(const TableChoice& choice, double max_error) {
-  const DiffuseLightOptions& grid = choice.tables.multiple_scattering->options();
-  return fmt::format(
-             "for errors below {:g} %: {} bytes\n"
-             "  transmittance          no table: closed form\n"
-             "  single scattering      no table: {} Gauss nodes on each smooth piece of a ray\n"
-             "  multiple scattering    {} sun angles x {} altitudes, moments to degree {}\n"
-             "measured, total light of all orders:\n",
-             100.0 * max_error, choice.bytes, choice.tables.ray_nodes, grid.sun_angles,
-             grid.altitudes, grid.degree) +
-         MeasuredText(choice);
+  const TableFolder& tables = choice.tables;
+  const DiffuseLightOptions& grid = tables.multiple_scattering->options();
+  std::string text =
+      fmt::format("for errors below {:g} %: {} bytes\n", 100.0 * max_error, choice.bytes);
+  text += "  transmittance          ";
+  if (tables.transmittance) {
+    const TransmittanceTableSize& size = tables.transmittance->size();
+    text += fmt::format("{} view angles x {} altitudes\n", size.mu, size.altitudes);
+  } else {
+    text += "no table: closed form\n";
+  }
+  text += "  single scattering      ";
+  if (tables.single_scattering) {
+    const ScatteringTableSize& size = tables.single_scattering->size();
+    text += fmt::format("{} azimuths x {} sun angles x {} view angles x {} altitudes; segments: ",
+                        size.nu, size.mu_s, size.mu, size.altitudes);
+  } else {
+    text += "no table: ";
+  }
+  text += fmt::format(
+      "{} Gauss nodes on each smooth piece of a ray\n"
+      "  multiple scattering    {} sun angles x {} altitudes, moments to degree {}\n"
+      "measured, total light of all orders:\n",
+      tables.ray_nodes, grid.sun_angles, grid.altitudes, grid.degree);
+  return text + MeasuredText(choice);
 }
 
 void WriteTables(const TableChoice& choice, const fs::path& folder) {
@@ -213,9 +289,15 @@ void WriteTables(const TableChoice& choice, const fs::path& folder) {
        {kMultipleScatteringFileName, kTransmittanceFileName, kSingleScatteringFileName}) {
     RemoveOld(folder / file);
   }
-  WriteTable(
-      folder / kMultipleScatteringFileName, *choice.tables.multiple_scattering,
-      {.ray_nodes = choice.tables.ray_nodes, .transmittance = false, .single_scattering = false});
+  const TableFolder& tables = choice.tables;
+  if (tables.transmittance) WriteTable(folder / kTransmittanceFileName, *tables.transmittance);
+  if (tables.single_scattering) {
+    WriteTable(folder / kSingleScatteringFileName, *tables.single_scattering);
+  }
+  WriteTable(folder / kMultipleScatteringFileName, *tables.multiple_scattering,
+             {.ray_nodes = tables.ray_nodes,
+              .transmittance = tables.transmittance.has_value(),
+              .single_scattering = tables.single_scattering.has_value()});
 }
 
 }  // namespace alpenglow

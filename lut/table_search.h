@@ -5,9 +5,9 @@
 // The error of each kind of view (table_views.h) is the rms over its views against the truth there,
 // and what that truth itself misses of a few path-traced views; both together must lie under the
 // bound for every kind. Moments are taken from one fine solution, so that a table is only as coarse
-// as its grid; the number of ray nodes is the smallest whose own error is half of the bound. A
-// table of transmittance or of single scattering is made only when asked for: closed forms and
-// nodes need no memory.
+// as its grid; the number of ray nodes is the smallest whose own error is half of the bound. Tables
+// of transmittance and of single scattering are made only when all are asked for, for programs that
+// want them: closed forms and nodes along the ray need no memory.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,13 @@
 
 namespace alpenglow {
 
+enum class TablesWanted { kSmallest, kAll };
+
 struct TableSearch {
   double max_error = 0.01;  // relative, in (0, 1]
   std::size_t views_of_a_kind = 160;
   std::size_t path_traced_views_of_a_kind = 6;
+  TablesWanted wanted = TablesWanted::kSmallest;
 };
 
 /// What was found, and how good it is.

@@ -72,6 +72,7 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
         "build --out t --threads -1",
         "build --out t --max-error much",
         "build --out t --max-error 1% --quality fine",
+        "build --out t --tables all",
         "build --out t --max-error 1% --layout takram",
         "build --out t --max-error 1% --single-scattering-only",
         "build --out t --layout takram --format dat",
