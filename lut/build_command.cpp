@@ -104,7 +104,7 @@ Subcommand AddBuildCommand(CLI::App& app) {
       build
           .add_option(
               "--quality", options->quality,
-              "preview (128x32; 6x16x32x24; 28x14), standard (256x64; 8x32x64x48; 40x20) or "
+              "preview (128x32; 6x16x32x24; 28x14), standard (256x64; 8x32x64x48; 32x18) or "
               "fine (512x128; 10x48x96x64; 64x32): sizes of transmittance mu x r; single "
               "scattering azimuth x mu_s x mu x r; multiple scattering mu_s x altitudes")
           ->check(CLI::IsMember({"preview", "standard", "fine"}))

@@ -20,7 +20,10 @@ constexpr DiffuseLightOptions kFinest{.altitudes = 40,
                                       .degree = 6,
                                       .zenith_nodes = 16,
                                       .azimuth_nodes = 12,
-                                      .ray_nodes = 14};
+                                      .ray_nodes = 14,
+                                      .later_zenith_nodes = 10,
+                                      .later_azimuth_nodes = 8,
+                                      .later_ray_nodes = 10};
 // Along the rays of truths.
 constexpr Sampling kFinestSampling{.nodes = 32, .split_ozone = true, .dark_samples = true};
 
