@@ -691,12 +691,15 @@ Share WeighInAir(const Node& node, std::uint32_t number, const TileRays& tile,
   const double spread_along = glm::dot(nearest, node.moments * nearest);
   const double spread_across =
       node.moments[0][0] + node.moments[1][1] + node.moments[2][2] - spread_along;
+  // One of the lamps below may be nearer to the ray than the middle of all, and light in the air
+  // falls with that distance.
+  share.most *= std::max(d / std::max(d - node.radius_m, bright.radius_m), 1.0);
   const double gap = tile.GapTo(ahead);
   // Second order in the lamps' places: 1/D across the ray, extinction and the ray's end along it.
   const double relative = std::max(spread_across, 0.0) / (d * d) +
                           spread_along * (2.0 * node.extinction_per_m * node.extinction_per_m +
                                           1.0 / (d * d + gap * gap));
-  share.error = share.most * (d > node.radius_m * 0.5 ? std::min(relative, kRefine) : kRefine);
+  share.error = share.most * (d > 2.0 * node.radius_m ? std::min(relative, kRefine) : kRefine);
   return share;
 }
 
