@@ -9,18 +9,12 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/halton.h"
 #include "atmosphere/judge.h"
 #include "lut/program.h"
 
 namespace alpenglow {
 namespace {
-
-// Point number i of a Halton sequence.
-double Halton(int i, int base) {
-  double value = 0.0, digit = 1.0;
-  for (; i > 0; i /= base) value += (digit /= base) * (i % base);
-  return value;
-}
 
 double SunElevation(int i, const ReportRegime& regime) {
   return regime.lowest_sun_deg + (regime.highest_sun_deg - regime.lowest_sun_deg) * Halton(i, 2);

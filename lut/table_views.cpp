@@ -8,6 +8,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/halton.h"
 #include "atmosphere/judge.h"
 #include "atmosphere/path_tracer.h"
 #include "lut/program.h"
@@ -29,16 +30,6 @@ constexpr Sampling kFinestSampling{.nodes = 32, .split_ozone = true, .dark_sampl
 
 constexpr std::size_t kMostPaths = 400000;
 
-// Van der Corput's sequence in a base, from 1 on: views fill their ranges evenly.
-double Halton(std::size_t i, std::size_t base) {
-  double value = 0.0, scale = 1.0;
-  for (std::size_t n = i + 1; n > 0; n /= base) {
-    scale /= static_cast<double>(base);
-    value += scale * static_cast<double>(n % base);
-  }
-  return value;
-}
-
 double Between(double low, double high, double share) { return low + (high - low) * share; }
 
 /// 2 m to 10 km, half of them below 140 m.
@@ -50,21 +41,22 @@ double SkyZenithOf(double share) {
 }
 
 ViewRay RayOf(ViewKind kind, std::size_t i, const Medium& medium) {
-  const double altitude_m = AltitudeOf(Halton(i, 2));
-  const double azimuth_deg = 180.0 * Halton(i, 5);
-  const double sun = Halton(i, 7);
+  const int point = static_cast<int>(i) + 1;  // point 0 is the corner of all ranges
+  const double altitude_m = AltitudeOf(Halton(point, 2));
+  const double azimuth_deg = 180.0 * Halton(point, 5);
+  const double sun = Halton(point, 7);
   if (kind == ViewKind::kAerialPerspective) {
-    ViewRay ray = RayFromAngles(altitude_m, Between(60.0, 100.0, Halton(i, 3)), azimuth_deg,
+    ViewRay ray = RayFromAngles(altitude_m, Between(60.0, 100.0, Halton(point, 3)), azimuth_deg,
                                 90.0 - Between(2.0, 90.0, sun));
     const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
     // Ends in the air, before the ground.
-    ray.length_m = std::min(500.0 * std::pow(200.0, Halton(i, 11)), 0.999 * extent.end_m);
+    ray.length_m = std::min(500.0 * std::pow(200.0, Halton(point, 11)), 0.999 * extent.end_m);
     return ray;
   }
   const double sun_deg = kind == ViewKind::kSky        ? Between(2.0, 90.0, sun)
                          : kind == ViewKind::kTwilight ? Between(-6.0, 2.0, sun)
                                                        : Between(-6.0, 90.0, sun);
-  return RayFromAngles(altitude_m, SkyZenithOf(Halton(i, 3)), azimuth_deg, 90.0 - sun_deg);
+  return RayFromAngles(altitude_m, SkyZenithOf(Halton(point, 3)), azimuth_deg, 90.0 - sun_deg);
 }
 
 double Length(const std::vector<double>& values) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/halton.h"
 #include "lut/eval.h"
 #include "lut/sky_view.h"
 
@@ -59,16 +60,6 @@ class DirectSky {
   const DiffuseLight& diffuse_;
 };
 
-/// Van der Corput's sequence.
-inline double RadicalInverse(int i, int base) {
-  double value = 0.0, digit = 1.0;
-  for (; i > 0; i /= base) {
-    digit /= base;
-    value += digit * (i % base);
-  }
-  return value;
-}
-
 /// Directions all over the sphere, every other one within 10 degrees of the horizon. Errors are
 /// relative to the radiance, or to a thousandth of the mean radiance where that is more.
 inline SkyViewErrors ErrorsOf(const SkyView& view, const DirectSky& direct, double altitude_m,
@@ -79,7 +70,7 @@ inline SkyViewErrors ErrorsOf(const SkyView& view, const DirectSky& direct, doub
   std::vector<Pair> pairs;
   double mean = 0.0;
   for (int i = 1; i <= directions; ++i) {
-    const double u = RadicalInverse(i, 2), azimuth = kPi * RadicalInverse(i, 3);
+    const double u = Halton(i, 2), azimuth = kPi * Halton(i, 3);
     const double horizon = view.map().horizon_zenith_angle_rad();
     const double zenith =
         i % 2 == 0 ? std::acos(1.0 - 2.0 * u) : std::clamp(horizon + 0.35 * (u - 0.7501), 0.0, kPi);

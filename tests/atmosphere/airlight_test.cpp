@@ -9,6 +9,7 @@
 
 #include "atmosphere/airlight_judge.h"
 #include "atmosphere/constants.h"
+#include "atmosphere/halton.h"
 #include "tests/lamp_cases.h"
 
 namespace alpenglow {
@@ -38,12 +39,6 @@ void ExpectNearTheJudge(const LampAir& air, const Lamp& lamp, const LampSegment&
   EXPECT_NEAR(Airlight(air, lamp, segment)[0] / truth.radiance[0], 1.0, tolerance) << what;
 }
 
-// Point number i of a Halton sequence.
-double Halton(int i, int base) {
-  double value = 0.0, digit = 1.0;
-  for (; i > 0; i /= base) value += (digit /= base) * (i % base);
-  return value;
-}
 double Logarithmic(double low, double high, double u) { return low * std::pow(high / low, u); }
 
 struct ErrorsOfSixteen {

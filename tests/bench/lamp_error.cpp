@@ -15,17 +15,11 @@
 #include "atmosphere/airlight.h"
 #include "atmosphere/airlight_judge.h"
 #include "atmosphere/constants.h"
+#include "atmosphere/halton.h"
 #include "atmosphere/quadrature.h"
 
 namespace alpenglow {
 namespace {
-
-// Point number i of a Halton sequence.
-double Halton(int i, int base) {
-  double value = 0.0, digit = 1.0;
-  for (; i > 0; i /= base) value += (digit /= base) * (i % base);
-  return value;
-}
 
 double Logarithmic(double low, double high, double u) { return low * std::pow(high / low, u); }
 

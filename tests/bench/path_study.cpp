@@ -12,18 +12,12 @@
 #include <vector>
 
 #include "atmosphere/constants.h"
+#include "atmosphere/halton.h"
 #include "atmosphere/path_tracer.h"
 #include "lut/eval.h"
 
 namespace alpenglow {
 namespace {
-
-// Point number i of a Halton sequence.
-double Halton(int i, int base) {
-  double value = 0.0, digit = 1.0;
-  for (; i > 0; i /= base) value += (digit /= base) * (i % base);
-  return value;
-}
 
 void PrintTimes() {
   struct View {

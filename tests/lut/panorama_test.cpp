@@ -189,8 +189,8 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
       double squares = 0.0;
       constexpr int kPixels = 200;
       for (int i = 1; i <= kPixels; ++i) {
-        const int x = static_cast<int>(RadicalInverse(i, 2) * settings.width);
-        const int y = static_cast<int>(RadicalInverse(i, 3) * settings.height);
+        const int x = static_cast<int>(Halton(i, 2) * settings.width);
+        const int y = static_cast<int>(Halton(i, 3) * settings.height);
         const double zenith = kPi * (y + 0.5) / settings.height;
         const double from_sun =
             2.0 * kPi * ((x + 0.5) / settings.width - 0.5) - settings.sun.azimuth_rad;
