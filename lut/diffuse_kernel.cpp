@@ -103,12 +103,28 @@ T SunPosition(const DiffuseGrid& grid, const T& mu_s) {
   return (signed_asinh - T(grid.first_asinh)) * T(grid.cells_a_unit);
 }
 
+// A batch of half of this set's size is another set's type: what the compiler does not inline of it
+// would have that set's name. Its exponential is taken in lanes of this set.
+template <typename T>
+T Exponential(const T& value) {
+  using namespace shared;
+  using Lanes = BatchOf<float>;
+  if constexpr (std::is_same_v<T, Lanes::Type>) {
+    return exp(value);
+  } else {
+    alignas(64) float lanes[Lanes::kLanes] = {};
+    Store(lanes, value);
+    Lanes::Store(lanes, exp(Lanes::Load(lanes)));
+    return Load(lanes);
+  }
+}
+
 template <typename T>
 T Twilight(const DiffuseGrid& grid, const T& mu_s) {
   using namespace shared;
   const T x = T(grid.twilight_start) - mu_s;
   const T width(grid.twilight_width);
-  return exp(T(-0.5F * grid.twilight_fall) * (x + sqrt(x * x + width * width)));
+  return Exponential<T>(T(-0.5F * grid.twilight_fall) * (x + sqrt(x * x + width * width)));
 }
 
 template <typename T>
