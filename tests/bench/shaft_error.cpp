@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     scene.terrain.file = argv[1];
   }
   const SceneGround ground = LoadGround(scene);
-  fmt::print("heading sun     shafts: rms  99 %%      512 rays: rms  99 %%      no shafts: rms\n");
+  fmt::print("heading sun     shafts: rms  99 %      512 rays: rms  99 %      no shafts: rms\n");
   for (const double heading : {90.0, 200.0}) {
     for (const double sun : {15.0, 8.0, 3.0, 1.0}) {
       const auto pixels =

@@ -116,8 +116,7 @@ TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
     for (const double elevation_deg : {90.0, 0.0, -6.0, -18.0, -60.0, -90.0}) {
       const SkyView view = earth.View(altitude_m, elevation_deg);
       for (int i = 1; i <= 200; ++i) {
-        const Bands<float> light =
-            view.Radiance(kPi * Halton(i, 2), 2.0 * kPi * Halton(i, 3));
+        const Bands<float> light = view.Radiance(kPi * Halton(i, 2), 2.0 * kPi * Halton(i, 3));
         for (std::size_t band = 0; band < light.count; ++band) {
           EXPECT_TRUE(std::isfinite(light[band]) && light[band] >= 0.0F)
               << altitude_m << " m, sun at " << elevation_deg;
