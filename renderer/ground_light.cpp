@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/constants.h"
+#include "atmosphere/sun_disk.h"
+
+namespace alpenglow {
+namespace {
+
+/// A direction to the sun's disk, uniform in its area.
+glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
+  const glm::dvec3 side = glm::normalize(glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
+  const double rho = light.sun_radius_rad * std::sqrt(sample[0]);
+  const double angle = 2.0 * kPi * sample[1];
+  return glm::normalize(light.to_sun + rho * (std::cos(angle) * side +
+                                              std::sin(angle) * glm::cross(light.to_sun, side)));
+}
+
+}  // namespace
+
+Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double latitude_rad,
+                    const Medium& medium) {
+  const MountainCover cover = CoverInSeason(latitude_rad, instant.modified_julian_day);
+  Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+                 sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
+                 MountainSurface(medium.wavelengths_nm, cover)};
+  for (std::size_t band = 0; band < light.irradiance.count; ++band) {
+    light.irradiance[band] =
+        static_cast<float>(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));
+  }
+  return light;
+}
+
+GroundLight::GroundLight(const SceneGround& ground, const SceneGeometry& geometry,
+                         const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                         const LampLight& lamps)
+    : ground_(ground), geometry_(geometry), air_(air), diffuse_(diffuse), lamps_(lamps) {}
+
+LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
+  const double altitude = std::max(geometry_.AltitudeOf(point), 0.0);
+  const double r = geometry_.radius_m();
+  const glm::dvec3 up = geometry_.UpAt(point);
+  const double mu_s = std::clamp(glm::dot(up, light.to_sun), -1.0, 1.0);
+  const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, light.sun_radius_rad);
+  return {altitude, up, mu_s, disk.fraction, disk.mu_s_effective};
+}
+
+double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
+                              std::array<double, 2> disk_sample) const {
+  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  const double cosine = glm::dot(hit.normal, to_disk);
+  const bool faces =
+      cosine > 0.0 && glm::dot(hit.geometric_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
+  const bool occluded = faces && ground_.terrain &&
+                        ground_.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
+                                                  std::numeric_limits<double>::infinity());
+  return faces && !occluded ? cosine : 0.0;
+}
+
+BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
+                                     const LocalSun& sun) const {
+  const glm::dvec3 flat_sun = light.to_sun - sun.mu_s * sun.up;
+  const double normal_mu = std::clamp(glm::dot(hit.normal, sun.up), -1.0, 1.0);
+  const glm::dvec3 flat_normal = hit.normal - normal_mu * sun.up;
+  const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
+  const double azimuth =
+      lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
+  return diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+}
+
+BandLight GroundLight::AlbedoOf(const Hit& hit, const Lighting& light, const glm::dvec3& up) const {
+  if (hit.kind == HitKind::kTerrain) {
+    return light.surface.Albedo(geometry_.GroundAt(hit.point, hit.footprint_m),
+                                glm::dot(hit.mesh_normal, up));
+  }
+  BandLight albedo(air_.bands());
+  for (std::size_t band = 0; band < albedo.count; ++band) {
+    albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);
+  }
+  return albedo;
+}
+
+GroundRadiance GroundLight::Towards(const Hit& hit, const Lighting& light, const LampNodes& near,
+                                    std::array<double, 2> disk_sample) const {
+  const LocalSun sun = LocalSunAt(hit.point, light);
+  BandLight irradiance(air_.bands());
+  GroundRadiance sent;
+  if (const double cosine = LitCosine(hit, light, sun, disk_sample); cosine > 0.0) {
+    sent.sun_visibility = static_cast<float>(sun.visible_fraction);
+    irradiance = static_cast<float>(sun.visible_fraction * cosine) *
+                 air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+  }
+  irradiance = irradiance + SkyIrradiance(hit, light, sun);
+  sent.albedo = AlbedoOf(hit, light, sun.up);
+  const BandLight lambert = static_cast<float>(1.0 / kPi) * sent.albedo;
+  sent.natural = lambert * (light.irradiance * irradiance);
+  sent.lamps = lambert * lamps_.OnSurface(near, {hit.point, hit.normal, hit.geometric_normal});
+  return sent;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// What a point of the ground sends towards the eye: light of the sun's disk, of the sky and of
+// lamps, reflected by what the ground is made of.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+
+#include "atmosphere/sun.h"
+#include "atmosphere/time.h"
+#include "lut/multiple_scattering.h"
+#include "renderer/band_light.h"
+#include "renderer/lamp_light.h"
+#include "renderer/scene_geometry.h"
+#include "renderer/surface.h"
+
+namespace alpenglow {
+
+/// Light in the air and on surfaces for one position of the sun.
+struct Lighting {
+  glm::dvec3 to_sun;  // unit
+  double sun_radius_rad;
+  BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
+  MountainSurface surface;  // as the season covers it
+};
+
+/// The sun as it stands, the ground as the season covers it at that latitude.
+[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
+                                  double latitude_rad, const Medium& medium);
+
+/// The sun over a point, terrain aside.
+struct LocalSun {
+  double altitude_m;
+  glm::dvec3 up;
+  double mu_s;
+  double visible_fraction;  // of the disk over the planet's horizon
+  double mu_s_effective;    // of that part
+};
+
+/// Light that leaves the ground towards the eye.
+struct GroundRadiance {
+  BandLight albedo;
+  BandLight natural;            // of sun and sky [W m^-2 sr^-1 nm^-1]
+  BandLight lamps;              // [W m^-2 sr^-1 nm^-1]
+  float sun_visibility = 0.0F;  // the part of the disk that is seen, 0 to 1
+};
+
+/// Immutable, safe to share between threads. Refers to what it was made from.
+class GroundLight {
+ public:
+  GroundLight(const SceneGround& ground, const SceneGeometry& geometry,
+              const AirIntegrator<float>& air, const DiffuseLight& diffuse, const LampLight& lamps);
+
+  /// @param hit  of terrain or planet.
+  /// @param near  lamps that may light it.
+  /// @param disk_sample  a point of the sun's disk, uniform in the unit square: penumbrae average
+  ///     over samples.
+  [[nodiscard]] GroundRadiance Towards(const Hit& hit, const Lighting& light, const LampNodes& near,
+                                       std::array<double, 2> disk_sample) const;
+
+  [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
+
+ private:
+  /// Cosine between the shading normal and a point of the disk; 0 where terrain or the planet
+  /// stands before it.
+  [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
+                                 std::array<double, 2> disk_sample) const;
+  [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const Lighting& light,
+                                        const LocalSun& sun) const;
+  [[nodiscard]] BandLight AlbedoOf(const Hit& hit, const Lighting& light,
+                                   const glm::dvec3& up) const;
+
+  const SceneGround& ground_;
+  const SceneGeometry& geometry_;
+  const AirIntegrator<float>& air_;
+  const DiffuseLight& diffuse_;
+  const LampLight& lamps_;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// From the rays of a pixel to the picture and its layers.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "atmosphere/spectrum.h"
+#include "lut/image.h"
+#include "renderer/band_light.h"
+#include "renderer/render.h"
+#include "renderer/scene_geometry.h"
+
+namespace alpenglow {
+
+/// One ray's contribution to a pixel.
+struct Shaded {
+  BandLight radiance;  // W m^-2 sr^-1 nm^-1
+  BandLight inscatter, transmittance, albedo;
+  BandLight lamps;  // of radiance, what comes from lamps
+  Hit hit;
+  float sun_visibility = 0.0F;
+};
+
+/// Accumulates the rays of a pixel into the picture.
+class PixelWriter {
+ public:
+  /// Throws InputError for a layer that is not of KnownLayers(). Refers to `colour`.
+  PixelWriter(const BandColour& colour, const RenderSettings& settings);
+
+  /// Not shared between pixels: rows may be written from any thread.
+  void Write(int x, int y, const std::vector<Shaded>& rays);
+
+  [[nodiscard]] Image Take();
+
+ private:
+  [[nodiscard]] std::array<float, 3> Rgb(const BandLight& light) const;
+  [[nodiscard]] std::array<float, 3> RgbOfFactor(const BandLight& factor) const;
+  [[nodiscard]] std::vector<float> ValuesOf(const std::string& layer,
+                                            const std::vector<Shaded>& rays) const;
+
+  const BandColour& colour_;
+  Image image_;
+  std::vector<std::string> layers_;
+};
+
+}  // namespace alpenglow
