@@ -24,6 +24,8 @@ class MeshBuilder {
   TriangleMesh Build() {
     AddVertices();
     const int last_column = grid_.ClosesAroundTheEarth() ? grid_.columns : grid_.columns - 1;
+    mesh_.triangles.reserve(2 * static_cast<std::size_t>(grid_.rows) *
+                            static_cast<std::size_t>(grid_.columns));
     for (int row = 0; row + 1 < grid_.rows; ++row) {
       for (int column = 0; column < last_column; ++column) AddCell(row, column);
     }

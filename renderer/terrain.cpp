@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <mutex>
@@ -203,25 +202,30 @@ struct Terrain::Scene {
   Scene& operator=(const Scene&) = delete;
 
   void Build() {
+    // Beyond this many triangles Embree's own copies of their corners are too much to keep (44
+    // bytes each); rays then fetch them from the mesh.
+    constexpr std::size_t kManyTriangles = std::size_t{1} << 23;
+    const bool many = mesh.triangles.size() > kManyTriangles;
     scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene,
+                     many ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    FillBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions);
-    FillBuffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+    ShareBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions);
+    ShareBuffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
   }
 
-  // Embree owns the copy, since it reads some bytes past the last element.
+  // Embree reads the mesh's own memory, by 16 bytes at a time: past the last element, too.
   template <typename Element>
-  void FillBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
-                  const std::vector<Element>& elements) {
-    void* copy =
-        rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
+  void ShareBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                   std::vector<Element>& elements) {
+    elements.reserve(elements.size() + 2);
+    rtcSetSharedGeometryBuffer(geometry, type, 0, format, elements.data(), 0, sizeof(Element),
+                               elements.size());
     ThrowFault();
-    if (!elements.empty()) std::memcpy(copy, elements.data(), elements.size() * sizeof(Element));
   }
 
   static void KeepFault(void* self, RTCError code, const char* text) {
