@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <sstream>
+#include <utility>
 
 #include "lut/program.h"
 #include "lut/report_measure.h"
@@ -69,26 +70,55 @@ ReportMaker Maker() {
           .date = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
 }
 
+ReportWords Words() {
+  return {
+      .title = "Alpenglow: speed and accuracy",
+      .lead =
+          "Every method of this library, and what the literature does in its place, answer the "
+          "same questions about the same rays in one run. This page holds what they got wrong "
+          "against what they cost.",
+      .minute =
+          "For each topic: the fastest method that nobody could tell from the truth, by day, at "
+          "sunset and in twilight. An error of 1 % in radiance is about the smallest step that an "
+          "eye sees side by side.",
+      .reading =
+          "Rays are points of Halton's sequence. Sun: elevation uniform over the range of the "
+          "column. Observer: 2 m, 1.5 km or 10 km above the ground. View: half of the rays "
+          "anywhere in the sky (uniform in solid angle), a quarter within 10° above the "
+          "horizontal, a quarter down to the ground; azimuth uniform. Beams to the sun "
+          "(transmittance) start in the lower half of the air, dense near the ground; in twilight "
+          "their lowest points are drawn so. Errors of radiance are relative to the radiance; what "
+          "is darker than a hundredth of the singly scattered light of the zenith, same place and "
+          "sun, counts as if it were that bright. Light is scalar, the sun a point, rays are "
+          "straight."};
+}
+
 }  // namespace
 
-Report MeasureReport(const ReportOptions& options) {
+Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
+                     const std::vector<MeasureTopic>& topics) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu_start = std::clock();
-  const ReportEffort effort = options.quick ? ReportEffort::Quick() : ReportEffort{};
-  Report report{.maker = Maker(), .quick = options.quick};
-  using Measure = std::function<ReportTopic(const Medium&, const ReportEffort&)>;
-  const std::vector<Measure> topics{MeasureTransmittance, MeasureSingleScattering, MeasureAllOrders,
-                                    MeasurePanoramas};
-  Progress progress("report", topics.size() * options.mediums.size(), options.progress);
-  for (const Measure& measure : topics) {
-    for (const Medium& medium : options.mediums) {
-      report.topics.push_back(measure(medium, effort));
-      progress.Advance();
-    }
+  Report report{.words = std::move(words), .maker = Maker(), .quick = quick};
+  Progress progress("report", topics.size(), style);
+  for (const MeasureTopic& measure : topics) {
+    report.topics.push_back(measure());
+    progress.Advance();
   }
   report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report.cpu_s = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   return report;
+}
+
+Report MeasureReport(const ReportOptions& options) {
+  const ReportEffort effort = options.quick ? ReportEffort::Quick() : ReportEffort{};
+  std::vector<MeasureTopic> topics;
+  for (const auto measure :
+       {MeasureTransmittance, MeasureSingleScattering, MeasureAllOrders, MeasurePanoramas}) {
+    for (const Medium& medium : options.mediums)
+      topics.emplace_back([measure, &medium, &effort] { return measure(medium, effort); });
+  }
+  return MeasureTopics(Words(), options.quick, options.progress, topics);
 }
 
 }  // namespace alpenglow

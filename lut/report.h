@@ -6,12 +6,17 @@
 // in twilight. Its error is the distance to a judge (judge.h, path_tracer.h); its cost is memory,
 // the time to get ready, and the time of one answer on one thread. Methods of the literature,
 // written anew from their publications (report_baselines.h), stand beside this library's.
+//
+// What a topic asks, and of what, is the topic's own: those of pictures (renderer/report.h) are
+// written into folders of the same form.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,17 +26,22 @@
 
 namespace alpenglow {
 
-/// A range of the sun's elevation.
+/// A range of the sun's elevation [degrees].
+struct SunRange {
+  double lowest_deg, highest_deg;
+};
+
+/// Conditions under which every method is measured: a panel of the plots, columns of the tables.
 struct ReportRegime {
   const char* key;
   const char* name;
-  double lowest_sun_deg, highest_sun_deg;
+  std::optional<SunRange> sun;  // nothing: the sun plays no part
 };
 inline constexpr std::size_t kReportRegimes = 3;
 inline constexpr std::array<ReportRegime, kReportRegimes> kRegimes = {{
-    {"day", "Day: sun above 5°", 5.0, 90.0},
-    {"sunset", "Sunset: sun 5° to 0°", 0.0, 5.0},
-    {"twilight", "Civil twilight: sun 0° to −6°", -6.0, 0.0},
+    {"day", "Day: sun above 5°", SunRange{5.0, 90.0}},
+    {"sunset", "Sunset: sun 5° to 0°", SunRange{0.0, 5.0}},
+    {"twilight", "Civil twilight: sun 0° to −6°", SunRange{-6.0, 0.0}},
 }};
 
 /// Of the errors of all rays and wavelengths of a regime.
@@ -47,6 +57,9 @@ struct RegimeResult {
   double time_s = 0.0;       // of one answer (a ray, all wavelengths), fastest pass over the rays
   double time_spread = 0.0;  // median pass over fastest pass, less 1: how noisy the machine was
   double samples = 0.0;      // points that the air is looked at for an answer, mean; 0: a look-up
+
+  /// Not every method can answer under all conditions.
+  [[nodiscard]] bool IsMeasured() const { return time_s > 0.0; }
 };
 
 enum class MethodOrigin { kOurs, kLiterature };
@@ -59,7 +72,8 @@ struct ReportRow {
   bool in_summary = false;  // among the few that summary.md shows
   std::uint64_t memory_bytes = 0;
   double build_s = 0.0;  // to get ready, all threads; 0: nothing to do
-  std::array<RegimeResult, kReportRegimes> at{};
+  std::vector<RegimeResult> at =
+      std::vector<RegimeResult>(kReportRegimes);  // by the topic's regimes
 
   [[nodiscard]] std::string Name() const {
     return parameter.empty() ? series : series + ", " + parameter;
@@ -68,9 +82,10 @@ struct ReportRow {
 
 /// What errors are measured against.
 struct ReportJudge {
-  std::string text;                            // in words
-  double time_s = 0.0;                         // of one answer, all threads
-  std::array<double, kReportRegimes> noise{};  // rms of its own standard errors; 0: none
+  std::string text;     // in words
+  double time_s = 0.0;  // of one answer, all threads
+  // Rms of its own standard errors, by regime; 0: none.
+  std::vector<double> noise = std::vector<double>(kReportRegimes);
 };
 
 /// What is on the x axis of a topic's plot.
@@ -83,8 +98,12 @@ struct ReportTopic {
   std::string notes;       // about the methods
   double wanted = 0.01;    // an error that nobody sees: 99 of 100 errors should be below it
   CostAxis cost = CostAxis::kTimeOfAnswer;
+  std::string answer = "ray";                   // what is answered
+  std::string everywhere = "whatever the sun";  // in all regimes, in words
+  std::string scene{};  // what else than the atmosphere was looked at; empty: nothing
+  std::vector<ReportRegime> regimes{kRegimes.begin(), kRegimes.end()};
   Medium medium{};
-  std::size_t rays = 0;  // in each regime
+  std::size_t rays = 0;  // answers asked for in each regime
   ReportJudge judge{};
   std::vector<ReportRow> rows{};
 };
@@ -100,12 +119,25 @@ struct ReportMaker {
   std::string machine, system, program, compiler, date;
 };
 
+/// What a page says apart from its topics.
+struct ReportWords {
+  std::string title, lead;
+  std::string minute;   // what the section "In one minute" holds
+  std::string reading;  // how topics are asked, after what is said of plots and tables
+};
+
 struct Report {
+  ReportWords words;
   ReportMaker maker;
   double wall_s = 0.0, cpu_s = 0.0;  // of the whole report
   bool quick = false;
   std::vector<ReportTopic> topics{};
 };
+
+/// Measures one topic after the other.
+using MeasureTopic = std::function<ReportTopic()>;
+[[nodiscard]] Report MeasureTopics(ReportWords words, bool quick, ProgressStyle progress,
+                                   const std::vector<MeasureTopic>& topics);
 
 /// Measures everything: some minutes. Stops between methods when the program is
 /// interrupted.

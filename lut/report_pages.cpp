@@ -28,15 +28,29 @@ std::string CsvText(const std::string& text) {
   return quoted;
 }
 
-/// Letters, digits and dashes only, for names of files and anchors.
+/// Letters, digits and single dashes only, for names of files and anchors.
 std::string FileKey(const std::string& text) {
   std::string key;
-  for (const char c : text) key += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (plain || (!key.empty() && key.back() != '-')) key += plain ? c : '-';
+  }
   return key;
 }
 
+/// "earth", "range, earth" or, where the scene is all that there is, "fog".
+std::string PlaceName(const ReportTopic& topic) {
+  if (topic.scene.empty()) return topic.medium.name;
+  return topic.medium.name.empty() ? topic.scene : topic.scene + ", " + topic.medium.name;
+}
+
 std::string TopicKey(const ReportTopic& topic) {
-  return topic.key + "." + FileKey(topic.medium.name);
+  return topic.key + "." + FileKey(PlaceName(topic));
+}
+
+bool IsMeasuredEverywhere(const ReportRow& row) {
+  return std::all_of(row.at.begin(), row.at.end(),
+                     [](const RegimeResult& result) { return result.IsMeasured(); });
 }
 
 double CostOf(const ReportTopic& topic, const ReportRow& row, std::size_t regime) {
@@ -52,11 +66,11 @@ PlotPoint PointOf(const ReportRow& row, double x, std::size_t regime) {
 template <typename Cost>
 std::vector<PlotPanel> PanelsOf(const ReportTopic& topic, const Cost& cost) {
   std::vector<PlotPanel> panels;
-  for (std::size_t regime = 0; regime < kReportRegimes; ++regime) {
-    PlotPanel panel{kRegimes[regime].name, {}, {}};
+  for (std::size_t regime = 0; regime < topic.regimes.size(); ++regime) {
+    PlotPanel panel{topic.regimes[regime].name, {}, {}};
     for (const ReportRow& row : topic.rows) {
       const double x = cost(row, regime);
-      if (!(x > 0.0)) continue;
+      if (!(x > 0.0) || !row.at[regime].IsMeasured()) continue;
       auto series = std::find_if(panel.series.begin(), panel.series.end(),
                                  [&](const PlotSeries& one) { return one.name == row.series; });
       if (series == panel.series.end()) {
@@ -73,9 +87,10 @@ std::vector<PlotPanel> PanelsOf(const ReportTopic& topic, const Cost& cost) {
 
 std::string PlotSubtitle(const ReportTopic& topic) {
   return fmt::format(
-      "Atmosphere {}. Marks: root mean square over {} rays a panel, {} wavelengths; "
+      "Atmosphere: {}. Marks: root mean square over {} {}s a panel, {} wavelength{}; "
       "thin lines: up to the 99th percentile. Lower left is better.",
-      topic.medium.name, topic.rays, topic.medium.wavelengths_nm.size());
+      PlaceName(topic), topic.rays, topic.answer, topic.medium.wavelengths_nm.size(),
+      topic.medium.wavelengths_nm.size() == 1 ? "" : "s");
 }
 
 /// The plot over samples, which no processor's speed is in; nothing where rows have none.
@@ -89,7 +104,7 @@ std::optional<Plot> PlotOverSamples(const ReportTopic& topic) {
   if (!any || topic.cost == CostAxis::kTimeToBuild) return {};
   return Plot{topic.title,
               PlotSubtitle(topic),
-              {"points of the air looked at, mean of the rays", PlotUnit::kCount},
+              {"points of the air looked at, mean of the " + topic.answer + "s", PlotUnit::kCount},
               {"error", PlotUnit::kShare},
               PanelsOf(topic, samples)};
 }
@@ -140,6 +155,7 @@ const ReportRow* FastestWithin(const ReportTopic& topic, MethodOrigin origin) {
   const ReportRow* fastest = nullptr;
   for (const ReportRow& row : topic.rows) {
     if (row.origin != origin || LargestPercentile99(row) > topic.wanted) continue;
+    if (!IsMeasuredEverywhere(row)) continue;
     if (fastest == nullptr || SlowestAnswer(row) < SlowestAnswer(*fastest)) fastest = &row;
   }
   return fastest;
@@ -149,14 +165,14 @@ const ReportRow* FastestWithin(const ReportTopic& topic, MethodOrigin origin) {
 const ReportRow* MostAccurate(const ReportTopic& topic, MethodOrigin origin) {
   const ReportRow* best = nullptr;
   for (const ReportRow& row : topic.rows) {
-    if (row.origin != origin) continue;
+    if (row.origin != origin || !IsMeasuredEverywhere(row)) continue;
     if (best == nullptr || LargestPercentile99(row) < LargestPercentile99(*best)) best = &row;
   }
   return best;
 }
 
-std::string CostText(const ReportRow& row) {
-  std::string text = QuantityText(SlowestAnswer(row), PlotUnit::kSeconds) + " a ray";
+std::string CostText(const ReportTopic& topic, const ReportRow& row) {
+  std::string text = QuantityText(SlowestAnswer(row), PlotUnit::kSeconds) + " a " + topic.answer;
   if (row.memory_bytes > 0)
     text += ", " + QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes);
   if (row.build_s > 0.0) text += ", ready in " + QuantityText(row.build_s, PlotUnit::kSeconds);
@@ -167,18 +183,18 @@ std::string CostText(const ReportRow& row) {
 std::string FindingOf(const ReportTopic& topic, MethodOrigin origin) {
   const std::string wanted = QuantityText(topic.wanted, PlotUnit::kShare);
   if (const ReportRow* row = FastestWithin(topic, origin)) {
-    return fmt::format("{}: {}. 99 of 100 errors below {} whatever the sun.", row->Name(),
-                       CostText(*row), QuantityText(LargestPercentile99(*row), PlotUnit::kShare));
+    return fmt::format("{}: {}. 99 of 100 errors below {} {}.", row->Name(), CostText(topic, *row),
+                       QuantityText(LargestPercentile99(*row), PlotUnit::kShare), topic.everywhere);
   }
   const ReportRow* best = MostAccurate(topic, origin);
   if (best == nullptr) return "none measured";
   std::string parts;
-  for (std::size_t r = 0; r < kReportRegimes; ++r)
+  for (std::size_t r = 0; r < topic.regimes.size(); ++r)
     parts += fmt::format("{}{} {}", r == 0 ? "" : ", ",
                          QuantityText(best->at[r].error.percentile_99, PlotUnit::kShare),
-                         kRegimes[r].key);
-  return fmt::format("none keeps 99 of 100 errors below {} at every sun; nearest {} ({}): {}",
-                     wanted, best->Name(), CostText(*best), parts);
+                         topic.regimes[r].key);
+  return fmt::format("none keeps 99 of 100 errors below {} {}; nearest {} ({}): {}", wanted,
+                     topic.everywhere, best->Name(), CostText(topic, *best), parts);
 }
 
 std::string CellClass(double error) {
@@ -197,6 +213,7 @@ std::string Cell(double value, PlotUnit unit, const std::string& kind = "",
 }
 
 std::string RegimeCells(const RegimeResult& result) {
+  if (!result.IsMeasured()) return "<td class=\"first\"></td><td></td><td></td><td></td>";
   const ErrorStatistics& error = result.error;
   return Cell(result.time_s, PlotUnit::kSeconds, "first") +
          Cell(error.rms, PlotUnit::kShare, CellClass(error.rms), error.rms_is_bound ? "< " : "") +
@@ -223,10 +240,10 @@ std::string TableOf(const ReportTopic& topic) {
   std::string text =
       "<div class=\"wide\"><table>\n<thead><tr><th rowspan=\"2\">method</th><th "
       "rowspan=\"2\">size</th><th rowspan=\"2\">memory</th><th rowspan=\"2\">build</th>";
-  for (const ReportRegime& regime : kRegimes)
+  for (const ReportRegime& regime : topic.regimes)
     text += fmt::format("<th colspan=\"4\" class=\"first\">{}</th>", regime.name);
   text += "<th rowspan=\"2\" class=\"first\">spread</th></tr>\n<tr>";
-  for (std::size_t r = 0; r < kReportRegimes; ++r)
+  for (std::size_t r = 0; r < topic.regimes.size(); ++r)
     text += "<th class=\"first\">time</th><th>rms</th><th>99 %</th><th>max</th>";
   text += "</tr></thead>\n<tbody>\n";
   for (const ReportRow& row : topic.rows) text += TableRow(row);
@@ -238,9 +255,10 @@ std::string JudgeText(const ReportTopic& topic) {
                                  QuantityText(topic.judge.time_s, PlotUnit::kSeconds));
   if (topic.judge.noise[0] > 0.0) {
     text += " Its own standard error, rms:";
-    for (std::size_t r = 0; r < kReportRegimes; ++r)
-      text += fmt::format("{} {} {}", r == 0 ? "" : ",",
-                          QuantityText(topic.judge.noise[r], PlotUnit::kShare), kRegimes[r].key);
+    for (std::size_t r = 0; r < topic.regimes.size(); ++r)
+      text +=
+          fmt::format("{} {} {}", r == 0 ? "" : ",",
+                      QuantityText(topic.judge.noise[r], PlotUnit::kShare), topic.regimes[r].key);
     text +=
         "; subtracted from the rms errors (not from percentiles and maxima), of which none "
         "below half of it can be told.";
@@ -248,10 +266,16 @@ std::string JudgeText(const ReportTopic& topic) {
   return text;
 }
 
+/// Atmosphere and scene, in words.
+std::string PlaceText(const ReportTopic& topic) {
+  if (topic.medium.name.empty()) return topic.scene;
+  const std::string place = "Atmosphere " + topic.medium.name + ": " + AerosolText(topic.medium);
+  return topic.scene.empty() ? place : topic.scene + "; " + place;
+}
+
 std::string SectionOf(const ReportTopic& topic) {
   std::string text =
-      fmt::format("<section id=\"{}\">\n<h3>Atmosphere {}: {}</h3>\n", TopicKey(topic),
-                  XmlText(topic.medium.name), XmlText(AerosolText(topic.medium)));
+      fmt::format("<section id=\"{}\">\n<h3>{}</h3>\n", TopicKey(topic), XmlText(PlaceText(topic)));
   text += fmt::format("<figure>{}</figure>\n", SvgOfPlot(PlotOfTopic(topic)));
   if (const auto plot = PlotOverSamples(topic)) {
     text +=
@@ -271,7 +295,7 @@ std::string CardsOf(const Report& report) {
         "100 errors below {}</p>\n"
         "<p><b>This library.</b> {}</p>\n<p><b>Literature.</b> {}</p></div>\n",
         TopicKey(topic), XmlText(topic.title.substr(0, topic.title.find(':'))),
-        XmlText(topic.medium.name), QuantityText(topic.wanted, PlotUnit::kShare),
+        XmlText(PlaceName(topic)), QuantityText(topic.wanted, PlotUnit::kShare),
         XmlText(FindingOf(topic, MethodOrigin::kOurs)),
         XmlText(FindingOf(topic, MethodOrigin::kLiterature)));
   }
@@ -313,9 +337,10 @@ std::string TopicsText(const Report& report) {
 }
 
 void Replace(std::string& text, const std::string& place, const std::string& value) {
-  const std::size_t at = text.find(place);
+  std::size_t at = text.find(place);
   ALPENGLOW_ENSURE(at, !=, std::string::npos);
-  text.replace(at, place.size(), value);
+  for (; at != std::string::npos; at = text.find(place, at + value.size()))
+    text.replace(at, place.size(), value);
 }
 
 std::string SummaryRow(const ReportRow& row) {
@@ -325,9 +350,12 @@ std::string SummaryRow(const ReportRow& row) {
                             : QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes),
       row.build_s == 0.0 ? "-" : QuantityText(row.build_s, PlotUnit::kSeconds),
       QuantityText(SlowestAnswer(row), PlotUnit::kSeconds));
-  for (const RegimeResult& result : row.at)
-    text += fmt::format(" {} / {} |", RmsText(result.error),
-                        QuantityText(result.error.percentile_99, PlotUnit::kShare));
+  for (const RegimeResult& result : row.at) {
+    text += result.IsMeasured()
+                ? fmt::format(" {} / {} |", RmsText(result.error),
+                              QuantityText(result.error.percentile_99, PlotUnit::kShare))
+                : " |";
+  }
   return text + "\n";
 }
 
@@ -343,9 +371,9 @@ Plot PlotOfTopic(const ReportTopic& topic) {
       PanelsOf(topic, [&](const ReportRow& row, std::size_t regime) {
         return CostOf(topic, row, regime);
       })};
-  for (std::size_t regime = 0; regime < kReportRegimes; ++regime) {
+  for (std::size_t regime = 0; regime < topic.regimes.size(); ++regime) {
     for (const ReportRow& row : topic.rows) {
-      if (!(CostOf(topic, row, regime) > 0.0))
+      if (row.at[regime].IsMeasured() && !(CostOf(topic, row, regime) > 0.0))
         plot.panels[regime].levels.push_back({row.Name(), row.at[regime].error.rms});
     }
   }
@@ -353,7 +381,8 @@ Plot PlotOfTopic(const ReportTopic& topic) {
 }
 
 std::string CsvHeader() {
-  return "topic,atmosphere,atmosphere_hash,series,parameter,origin,memory_bytes,build_s,regime,"
+  return "topic,scene,atmosphere,atmosphere_hash,series,parameter,origin,memory_bytes,build_s,"
+         "regime,"
          "sun_low_deg,sun_high_deg,rays,samples,time_s,time_spread,error_median,error_rms,"
          "error_rms_is_bound,error_99,error_max,judge_noise,machine,made_by,date\n";
 }
@@ -361,15 +390,20 @@ std::string CsvHeader() {
 std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
   std::string text;
   for (const ReportRow& row : topic.rows) {
-    for (std::size_t r = 0; r < kReportRegimes; ++r) {
+    for (std::size_t r = 0; r < topic.regimes.size(); ++r) {
       const RegimeResult& at = row.at[r];
-      text += fmt::format("{},{},{:016x},{},{},{},{},{},", topic.key, CsvText(topic.medium.name),
-                          MediumHash(topic.medium), CsvText(row.series), CsvText(row.parameter),
-                          row.origin == MethodOrigin::kOurs ? "this library" : "literature",
-                          row.memory_bytes, CsvNumber(row.build_s));
-      text += fmt::format("{},{},{},{},{},{},{},", kRegimes[r].key, kRegimes[r].lowest_sun_deg,
-                          kRegimes[r].highest_sun_deg, topic.rays, CsvNumber(at.samples),
-                          CsvNumber(at.time_s), CsvNumber(at.time_spread));
+      if (!at.IsMeasured()) continue;
+      const ReportRegime& regime = topic.regimes[r];
+      text +=
+          fmt::format("{},{},{},{:016x},{},{},{},{},{},", topic.key,
+                      topic.scene.empty() ? "" : CsvText(topic.scene), CsvText(topic.medium.name),
+                      MediumHash(topic.medium), CsvText(row.series), CsvText(row.parameter),
+                      row.origin == MethodOrigin::kOurs ? "this library" : "literature",
+                      row.memory_bytes, CsvNumber(row.build_s));
+      text += fmt::format(
+          "{},{},{},{},{},{},", regime.key,
+          regime.sun ? fmt::format("{},{}", regime.sun->lowest_deg, regime.sun->highest_deg) : ",",
+          topic.rays, CsvNumber(at.samples), CsvNumber(at.time_s), CsvNumber(at.time_spread));
       text += fmt::format("{},{},{},{},{},{},", CsvNumber(at.error.median), CsvNumber(at.error.rms),
                           at.error.rms_is_bound ? 1 : 0, CsvNumber(at.error.percentile_99),
                           CsvNumber(at.error.largest), CsvNumber(topic.judge.noise[r]));
@@ -383,12 +417,14 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
 std::string SummaryOf(const Report& report) {
   std::string text;
   for (const ReportTopic& topic : report.topics) {
-    text += fmt::format("**{}**, {} ({}), {} rays a column; error: rms / 99th percentile\n\n",
-                        topic.title.substr(0, topic.title.find(':')), topic.medium.name,
-                        AerosolText(topic.medium), topic.rays);
-    text += "| method | memory | build | time of a ray |";
-    for (const ReportRegime& regime : kRegimes) text += fmt::format(" {} |", regime.name);
-    text += "\n|---|---|---|---|---|---|---|\n";
+    text += fmt::format("**{}**. {}; {} {}s a column; error: rms / 99th percentile\n\n",
+                        topic.title.substr(0, topic.title.find(':')), PlaceText(topic), topic.rays,
+                        topic.answer);
+    text += fmt::format("| method | memory | build | time of a {} |", topic.answer);
+    for (const ReportRegime& regime : topic.regimes) text += fmt::format(" {} |", regime.name);
+    text += "\n|---|---|---|---|";
+    for (std::size_t r = 0; r < topic.regimes.size(); ++r) text += "---|";
+    text += "\n";
     for (const ReportRow& row : topic.rows) {
       if (row.in_summary) text += SummaryRow(row);
     }
@@ -401,6 +437,10 @@ std::string SummaryOf(const Report& report) {
 
 std::string PageOf(const Report& report) {
   std::string page(lut::EmbeddedText("lut/report_page.html"));
+  Replace(page, "@title@", XmlText(report.words.title));
+  Replace(page, "@lead@", XmlText(report.words.lead));
+  Replace(page, "@minute@", XmlText(report.words.minute));
+  Replace(page, "@reading@", XmlText(report.words.reading));
   Replace(page, "@findings@", CardsOf(report));
   Replace(page, "@maker@", MakerText(report));
   Replace(page, "@topics@", TopicsText(report));

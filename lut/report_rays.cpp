@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
@@ -17,7 +18,8 @@ namespace alpenglow {
 namespace {
 
 double SunElevation(int i, const ReportRegime& regime) {
-  return regime.lowest_sun_deg + (regime.highest_sun_deg - regime.lowest_sun_deg) * Halton(i, 2);
+  const SunRange sun = regime.sun.value();
+  return sun.lowest_deg + (sun.highest_deg - sun.lowest_deg) * Halton(i, 2);
 }
 
 /// Asks the judge about every ray, in parallel, and notes what an answer takes.
@@ -158,15 +160,18 @@ ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
                              const std::vector<std::vector<double>>& answers) {
   ALPENGLOW_ENSURE(answers.size(), ==, rays.size());
   std::vector<double> errors;
-  double squares = 0.0;
   ForEveryValue(rays, kind, [&](std::size_t i, std::size_t band, double scale) {
     errors.push_back(std::abs(answers[i][band] - rays[i].truth[band]) / scale);
-    squares += errors.back() * errors.back();
   });
+  return StatisticsOfErrors(std::move(errors), NoiseOf(rays, kind));
+}
+
+ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise) {
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end());
   const std::size_t n = errors.size();
-  const double noise = NoiseOf(rays, kind);
+  double squares = 0.0;
+  for (const double error : errors) squares += error * error;
   const double rms_squared = squares / static_cast<double>(n) - noise * noise;
   ErrorStatistics result;
   result.median = errors[n / 2];

@@ -73,6 +73,9 @@ struct JudgedRays {
 [[nodiscard]] ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
                                            const std::vector<std::vector<double>>& answers);
 
+/// Statistics of errors >= 0, of which a judge's noise makes a part.
+[[nodiscard]] ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise);
+
 /// Rms of the judge's standard errors over rays and wavelengths, as StatisticsOf counts errors.
 [[nodiscard]] double NoiseOf(const std::vector<JudgedRay>& rays, ErrorKind kind);
 

@@ -227,8 +227,8 @@ TEST(ReportRays, LieInTheirRegimeAndMeetAir) {
     for (int i = 1; i <= 600; ++i) {
       for (const ViewRay& ray : {ViewNumber(medium, i, regime), SunbeamNumber(medium, i, regime)}) {
         const double elevation_deg = std::asin(ray.mu_s) / kRadiansPerDegree;
-        EXPECT_GE(elevation_deg, regime.lowest_sun_deg - 1e-6);
-        EXPECT_LE(elevation_deg, regime.highest_sun_deg + 1e-6);
+        EXPECT_GE(elevation_deg, regime.sun->lowest_deg - 1e-6);
+        EXPECT_LE(elevation_deg, regime.sun->highest_deg + 1e-6);
       }
       const auto end = [&](const ViewRay& ray) {
         return ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m).end;
