@@ -201,10 +201,12 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
   return samples;
 }
 
-AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu) const {
+AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu,
+                                   bool higher_orders) const {
   const Medium& medium = air_.medium();
   const auto direct = air_.Inscatter(air_.Scatter(samples), nu);
-  const auto diffuse = diffuse_.InscatterAlong(samples, nu);
+  const auto diffuse =
+      higher_orders ? diffuse_.InscatterAlong(samples, nu) : Bands<float>(air_.bands());
   AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
@@ -220,12 +222,12 @@ AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu) 
 }
 
 AirAlongRay AerialPerspective::Along(const ViewRay& ray, const Nodes& nodes) const {
-  return Sum(Sample(ray, nullptr, nodes), ray.nu);
+  return Sum(Sample(ray, nullptr, nodes), ray.nu, nodes.higher_orders);
 }
 
 AirAlongRay AerialPerspective::Along(const ViewRay& ray, const SunlitPath& sunlit,
                                      const Nodes& nodes) const {
-  return Sum(Sample(ray, &sunlit, nodes), ray.nu);
+  return Sum(Sample(ray, &sunlit, nodes), ray.nu, nodes.higher_orders);
 }
 
 }  // namespace alpenglow

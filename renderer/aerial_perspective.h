@@ -38,7 +38,8 @@ class AerialPerspective {
   /// Nodes of a panel. Rays that end in the air (ViewRay::length_m) get as many as their length and
   /// the haze ask for.
   struct Nodes {
-    int sky = 12;  // rays that end in space or at the planet's own ground, in [2, 16]
+    int sky = 12;               // rays that end in space or at the planet's own ground, in [2, 16]
+    bool higher_orders = true;  // light scattered more than once
   };
 
   /// A ray in unbroken sunlight.
@@ -57,7 +58,8 @@ class AerialPerspective {
   [[nodiscard]] int NodesFor(double length_m, double low_m, double high_m, bool shafts) const;
 
  private:
-  [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, double nu,
+                                bool higher_orders) const;
 
   const AirIntegrator<float>& air_;
   const DiffuseLight& diffuse_;

@@ -57,7 +57,7 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
   const double cosine = glm::dot(hit.normal, to_disk);
   const bool faces =
       cosine > 0.0 && glm::dot(hit.geometric_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
-  const bool occluded = faces && ground_.terrain &&
+  const bool occluded = faces && ground_.terrain && light.effects.Has(Effect::kShadows) &&
                         ground_.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
                                                   std::numeric_limits<double>::infinity());
   return faces && !occluded ? cosine : 0.0;
@@ -96,7 +96,8 @@ GroundRadiance GroundLight::Towards(const Hit& hit, const Lighting& light, const
     irradiance = static_cast<float>(sun.visible_fraction * cosine) *
                  air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
   }
-  irradiance = irradiance + SkyIrradiance(hit, light, sun);
+  if (light.effects.Has(Effect::kSkylight))
+    irradiance = irradiance + SkyIrradiance(hit, light, sun);
   sent.albedo = AlbedoOf(hit, light, sun.up);
   const BandLight lambert = static_cast<float>(1.0 / kPi) * sent.albedo;
   sent.natural = lambert * (light.irradiance * irradiance);

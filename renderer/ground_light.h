@@ -10,6 +10,7 @@
 #include "atmosphere/time.h"
 #include "lut/multiple_scattering.h"
 #include "renderer/band_light.h"
+#include "renderer/effects.h"
 #include "renderer/lamp_light.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/surface.h"
@@ -22,6 +23,7 @@ struct Lighting {
   double sun_radius_rad;
   BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
   MountainSurface surface;  // as the season covers it
+  EffectSet effects = EffectSet::All();
 };
 
 /// The sun as it stands, the ground as the season covers it at that latitude.

@@ -121,7 +121,7 @@ Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
   metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
   metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
   metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
-  metadata["alpenglow.shafts"] = settings.shafts ? "terrain shades the air" : "none";
+  metadata["alpenglow.effects"] = NameOf(settings.effects);
   metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(settings.layers, ","));
   return metadata;
 }

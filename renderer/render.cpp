@@ -8,6 +8,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
+#include <mutex>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
@@ -30,15 +32,38 @@
 namespace alpenglow {
 namespace {
 
-/// The lamps that a pixel can see.
-struct LampsHere {
-  const LampPlan& plan;
-  int x, y;
-  double pixel_angle_rad;
-  int nodes;
+/// Air solved, with all that its light reaches.
+struct AirModel {
+  AirModel(const Medium& medium, const SceneGround& ground, const SceneGeometry& geometry,
+           const LampLight& lamps)
+      : air(medium),
+        diffuse(medium),
+        aerial(air, diffuse),
+        ground_light(ground, geometry, air, diffuse, lamps) {}
 
-  [[nodiscard]] const LampTile& tile() const { return plan.At(x, y); }
+  AirIntegrator<float> air;
+  DiffuseLight diffuse;
+  AerialPerspective aerial;
+  GroundLight ground_light;
 };
+
+/// What all pixels of a picture share.
+struct Frame {
+  const RenderSettings& settings;
+  const AirModel& model;
+  CameraRays camera;
+  Lighting light;
+  TerrainSunlight sunlight;
+  LampPlan plan;
+
+  [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
+};
+
+/// Lamps that no ray comes near.
+const LampTile& DarkTile() {
+  static const LampTile kDark;
+  return kDark;
+}
 
 /// Rays of a pixel that look through the same air, to the same place but for an edge's width.
 struct SharedAir {
@@ -75,26 +100,32 @@ struct SceneRenderer::State {
   explicit State(const Scene& of)
       : scene(of),
         ground(LoadGround(scene)),
-        air(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
-        diffuse(air.medium()),
-        aerial(air, diffuse),
-        colour(air.medium().wavelengths_nm),
-        lamps(scene, ground, air.medium(), colour),
+        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+        colour(medium.wavelengths_nm),
+        lamps(scene, ground, medium, colour),
         eye(0.0, 0.0, ground.eye_height_m),
         // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
-        geometry(ground, air.medium(), scene.terrain.kind != TerrainSource::Kind::kMesh),
-        ground_light(ground, geometry, air, diffuse, lamps) {}
+        geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
+        smooth_geometry(ground, medium, false),
+        model(medium, ground, geometry, lamps) {}
 
-  [[nodiscard]] AirAlongRay AirAlong(const SharedAir& rays, const Lighting& light,
-                                     const TerrainSunlight& sunlight, int nodes) const;
-  void AddLamps(SharedAir& rays, const LampsHere& near) const;
+  [[nodiscard]] const AirModel& ModelWith(EffectSet effects) const;
+  [[nodiscard]] Frame FrameAt(const UtcInstant& instant, const RenderSettings& settings,
+                              const SunPosition& sun) const;
+  [[nodiscard]] std::vector<Shaded> Pixel(const Frame& frame, int x, int y) const;
+  [[nodiscard]] Hit Trace(const glm::dvec3& direction, const Frame& frame) const {
+    return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
+        .Trace(eye, direction, frame.camera.PixelAngle());
+  }
+  [[nodiscard]] AirAlongRay AirAlong(const SharedAir& rays, const Frame& frame) const;
+  void AddLamps(SharedAir& rays, const Frame& frame, int x, int y) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const glm::dvec3& direction,
-                             const Lighting& light, const LampsHere& near,
+                             const Frame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
   [[nodiscard]] Lighting LightingAt(const SunPosition& sun, const UtcInstant& instant) const {
-    return LightingOf(sun, instant, scene.place.latitude_rad, air.medium());
+    return LightingOf(sun, instant, scene.place.latitude_rad, medium);
   }
   [[nodiscard]] double Illuminance(const Lighting& light) const;  // see SceneRenderer
   [[nodiscard]] LampPlan PlanLamps(const CameraRays& camera, const Lighting& light,
@@ -102,37 +133,77 @@ struct SceneRenderer::State {
 
   Scene scene;
   SceneGround ground;
-  AirIntegrator<float> air;
-  DiffuseLight diffuse;
-  AerialPerspective aerial;
+  Medium medium;
   BandColour colour;
   LampLight lamps;
   glm::dvec3 eye;
-  SceneGeometry geometry;
-  GroundLight ground_light;
+  SceneGeometry geometry, smooth_geometry;
+  AirModel model;  // with everything
+  mutable std::mutex partial_models_mutex;
+  mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_models;
 };
 
-AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Lighting& light,
-                                           const TerrainSunlight& sunlight, int nodes) const {
+namespace {
+
+constexpr EffectSet kConstituents{Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
+
+Medium OnlyWith(Medium medium, EffectSet effects) {
+  const std::vector<double> none(medium.wavelengths_nm.size(), 0.0);
+  if (!effects.Has(Effect::kMolecules)) medium.rayleigh_scattering_per_m = none;
+  if (!effects.Has(Effect::kAerosol))
+    medium.mie_scattering_per_m = medium.mie_extinction_per_m = none;
+  if (!effects.Has(Effect::kOzone)) medium.ozone_absorption_per_m = none;
+  return medium;
+}
+
+}  // namespace
+
+// Air that lacks something is solved when a picture first asks for it.
+const AirModel& SceneRenderer::State::ModelWith(EffectSet effects) const {
+  const EffectSet constituents = effects.And(kConstituents);
+  if (constituents == kConstituents) return model;
+  const std::lock_guard lock(partial_models_mutex);
+  std::unique_ptr<AirModel>& partial = partial_models[constituents];
+  if (!partial) {
+    partial = std::make_unique<AirModel>(OnlyWith(medium, constituents), ground, geometry, lamps);
+  }
+  return *partial;
+}
+
+AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Frame& frame) const {
+  const AirModel& in = frame.model;
+  AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
+  std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
+  if (rays.kind != HitKind::kSky && !frame.Has(Effect::kAerial)) return none;
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
   const glm::dvec3 up = geometry.UpAt(eye);
   ViewRay ray{geometry.AltitudeOf(eye), std::clamp(glm::dot(direction, up), -1.0, 1.0),
-              std::clamp(glm::dot(light.to_sun, up), -1.0, 1.0),
-              std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)};
+              std::clamp(glm::dot(frame.light.to_sun, up), -1.0, 1.0),
+              std::clamp(glm::dot(direction, frame.light.to_sun), -1.0, 1.0)};
   // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
   if (rays.kind == HitKind::kTerrain) ray.length_m = rays.distance_sum_m / rays.rays;
-  if (!sunlight.IsBroken()) return aerial.Along(ray, {.sky = nodes});
-  const RayExtent extent = ExtentOf(ray, geometry.radius_m(), air.medium().atmosphere_height_m);
-  const SunlitPath path = sunlight.Along(eye, direction, extent.end_m);
-  return aerial.Along(ray, path, {.sky = nodes});
+  if (rays.kind == HitKind::kSky && !frame.Has(Effect::kSky)) {
+    return {none.inscatter, in.air.TransmittanceAlong(ray)};
+  }
+  const int nodes = frame.settings.air_nodes;
+  const AerialPerspective::Nodes sampling{
+      .sky = frame.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
+      .higher_orders = frame.Has(Effect::kMultipleScattering)};
+  if (!frame.sunlight.IsBroken()) return in.aerial.Along(ray, sampling);
+  const RayExtent extent = ExtentOf(ray, geometry.radius_m(), medium.atmosphere_height_m);
+  const SunlitPath path = frame.sunlight.Along(eye, direction, extent.end_m);
+  return in.aerial.Along(ray, path, sampling);
 }
 
-void SceneRenderer::State::AddLamps(SharedAir& rays, const LampsHere& near) const {
+void SceneRenderer::State::AddLamps(SharedAir& rays, const Frame& frame, int x, int y) const {
   const LampRayEnd end{glm::normalize(rays.direction_sum),
                        rays.kind == HitKind::kSky ? std::numeric_limits<double>::infinity()
                                                   : rays.distance_sum_m / rays.rays};
   rays.fog = lamps.FogTransmittance(end.direction, end.length_m);
-  rays.lamp_light = lamps.InAir(near.plan, near.x, near.y, end, near.pixel_angle_rad, near.nodes);
+  rays.lamp_light = BandLight(medium.wavelengths_nm.size());
+  if (frame.plan.tiles.empty() || !frame.Has(Effect::kBeams)) return;
+  rays.lamp_light =
+      lamps.InAir(frame.plan, x, y, end, frame.camera.PixelAngle(), frame.settings.lamps.nodes);
 }
 
 BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
@@ -140,26 +211,27 @@ BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAl
   // Angle from the chord: the arc cosine of a number near 1 has no digits left.
   const double chord = glm::length(direction - light.to_sun);
   const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
-  if (rho >= 1.0) return BandLight(air.bands());
+  if (rho >= 1.0) return BandLight(light.irradiance.count);
   const auto scale = static_cast<float>(LimbDarkening(rho) / DiskSolidAngle(light.sun_radius_rad));
   return scale * (light.irradiance * through.transmittance);
 }
 
 Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through,
-                                   const glm::dvec3& direction, const Lighting& light,
-                                   const LampsHere& near, std::array<double, 2> disk_sample) const {
+                                   const glm::dvec3& direction, const Frame& frame,
+                                   const LampTile& near, std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.hit = hit;
-  shaded.inscatter = through.fog * (light.irradiance * through.air.inscatter);
+  shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
-  shaded.albedo = BandLight(air.bands());
-  shaded.lamps = through.lamp_light + lamps.Seen(near.tile().seen, direction, near.pixel_angle_rad);
+  shaded.albedo = BandLight(medium.wavelengths_nm.size());
+  shaded.lamps = through.lamp_light + lamps.Seen(near.seen, direction, frame.camera.PixelAngle());
   shaded.radiance = shaded.inscatter + shaded.lamps;
   if (hit.kind == HitKind::kSky) {
-    shaded.radiance = shaded.radiance + through.fog * SunDisk(direction, through.air, light);
+    shaded.radiance = shaded.radiance + through.fog * SunDisk(direction, through.air, frame.light);
     return shaded;
   }
-  const GroundRadiance sent = ground_light.Towards(hit, light, near.tile().surface, disk_sample);
+  const GroundRadiance sent =
+      frame.model.ground_light.Towards(hit, frame.light, near.surface, disk_sample);
   shaded.albedo = sent.albedo;
   shaded.sun_visibility = sent.sun_visibility;
   const BandLight lamp_light = shaded.transmittance * sent.lamps;
@@ -169,11 +241,11 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through,
 }
 
 double SceneRenderer::State::Illuminance(const Lighting& light) const {
-  const LocalSun sun = ground_light.LocalSunAt(eye, light);
+  const LocalSun sun = model.ground_light.LocalSunAt(eye, light);
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
-      direct * air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
-      diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s);
+      direct * model.air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
+      model.diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s);
   return colour.Xyz(InDouble(light.irradiance * irradiance))[1];
 }
 
@@ -224,7 +296,7 @@ void ValidateSettings(const RenderSettings& settings) {
 SceneRenderer::SceneRenderer(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
 SceneRenderer::~SceneRenderer() = default;
 
-const Medium& SceneRenderer::medium() const { return state_->air.medium(); }
+const Medium& SceneRenderer::medium() const { return state_->medium; }
 double SceneRenderer::eye_height_m() const { return state_->ground.eye_height_m; }
 const std::string& SceneRenderer::terrain_message() const { return state_->ground.message; }
 
@@ -240,47 +312,57 @@ double SceneRenderer::Illuminance(const UtcInstant& instant) const {
   return state_->Illuminance(state_->LightingAt(ApparentSun(instant), instant));
 }
 
+Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSettings& settings,
+                                    const SunPosition& sun) const {
+  Lighting light = LightingAt(sun, instant);
+  light.effects = settings.effects;
+  Frame frame{settings,
+              ModelWith(settings.effects),
+              CameraRays(scene.camera, settings.width, settings.height),
+              light,
+              settings.effects.Has(Effect::kShafts)
+                  ? TerrainSunlight(ground, light.to_sun, light.sun_radius_rad)
+                  : TerrainSunlight(),
+              LampPlan()};
+  if (frame.Has(Effect::kLights)) frame.plan = PlanLamps(frame.camera, light, settings);
+  return frame;
+}
+
+std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y) const {
+  const int grid = static_cast<int>(std::lround(std::sqrt(frame.settings.samples_per_pixel)));
+  std::vector<PixelRay> rays;
+  std::vector<SharedAir> airs;
+  for (int s = 0; s < grid * grid; ++s) {
+    const glm::dvec3 direction =
+        frame.camera.Direction(x + (s % grid + 0.5) / grid, y + (s / grid + 0.5) / grid);
+    const Hit hit = Trace(direction, frame);
+    rays.push_back({direction, hit, AirFor(hit, direction, airs)});
+  }
+  const LampTile& near = frame.plan.tiles.empty() ? DarkTile() : frame.plan.At(x, y);
+  for (SharedAir& shared : airs) {
+    shared.air = AirAlong(shared, frame);
+    AddLamps(shared, frame, x, y);
+  }
+  std::vector<Shaded> shaded;
+  for (std::size_t s = 0; s < rays.size(); ++s) {
+    const auto seed = [&](std::uint32_t dimension) {
+      return HashedUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                        2U * static_cast<std::uint32_t>(s) + dimension);
+    };
+    shaded.push_back(
+        Shade(rays[s].hit, airs[rays[s].air], rays[s].direction, frame, near, {seed(0), seed(1)}));
+  }
+  return shaded;
+}
+
 Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {
   ValidateSettings(settings);
-  const Lighting light = state_->LightingAt(ApparentSun(instant), instant);
-  const CameraRays camera(state_->scene.camera, settings.width, settings.height);
   PixelWriter writer(state_->colour, settings);
-  const int grid = static_cast<int>(std::lround(std::sqrt(settings.samples_per_pixel)));
-  const TerrainSunlight sunlight =
-      settings.shafts ? TerrainSunlight(state_->ground, light.to_sun, light.sun_radius_rad)
-                      : TerrainSunlight();
-  const LampPlan plan = state_->PlanLamps(camera, light, settings);
+  const Frame frame = state_->FrameAt(instant, settings, ApparentSun(instant));
   ThrowIfInterrupted();
   tbb::parallel_for(0, settings.height, [&](int y) {
     if (Interrupted()) return;
-    std::vector<PixelRay> rays;
-    std::vector<SharedAir> airs;
-    std::vector<Shaded> shaded;
-    for (int x = 0; x < settings.width; ++x) {
-      rays.clear();
-      airs.clear();
-      shaded.clear();
-      for (int s = 0; s < grid * grid; ++s) {
-        const glm::dvec3 direction =
-            camera.Direction(x + (s % grid + 0.5) / grid, y + (s / grid + 0.5) / grid);
-        const Hit hit = state_->geometry.Trace(state_->eye, direction, camera.PixelAngle());
-        rays.push_back({direction, hit, AirFor(hit, direction, airs)});
-      }
-      const LampsHere near{plan, x, y, camera.PixelAngle(), settings.lamps.nodes};
-      for (SharedAir& shared : airs) {
-        shared.air = state_->AirAlong(shared, light, sunlight, settings.air_nodes);
-        state_->AddLamps(shared, near);
-      }
-      for (std::size_t s = 0; s < rays.size(); ++s) {
-        const auto seed = [&](std::uint32_t dimension) {
-          return HashedUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                            2U * static_cast<std::uint32_t>(s) + dimension);
-        };
-        shaded.push_back(state_->Shade(rays[s].hit, airs[rays[s].air], rays[s].direction, light,
-                                       near, {seed(0), seed(1)}));
-      }
-      writer.Write(x, y, shaded);
-    }
+    for (int x = 0; x < settings.width; ++x) writer.Write(x, y, state_->Pixel(frame, x, y));
   });
   ThrowIfInterrupted();
   return writer.Take();

@@ -18,6 +18,7 @@
 #include "atmosphere/sun.h"
 #include "atmosphere/time.h"
 #include "lut/image.h"
+#include "renderer/effects.h"
 #include "renderer/lamp_light.h"
 #include "renderer/scene.h"
 
@@ -28,7 +29,7 @@ struct RenderSettings {
   int height = 720;
   int samples_per_pixel = 4;        // rays against the terrain, a square number
   int air_nodes = 12;               // Gauss nodes along a ray to the sky
-  bool shafts = true;               // terrain shades the air; false for comparison
+  EffectSet effects = EffectSet::All();
   std::vector<std::string> layers;  // of KnownLayers()
   LampSettings lamps = {};
 };

@@ -62,7 +62,7 @@ int Run(const SkyseriesOptions& options) {
   settings.width = size.width;
   settings.height = size.height;
   settings.samples_per_pixel = options.samples;
-  settings.shafts = !options.no_shafts;
+  if (options.no_shafts) settings.effects = settings.effects.Without(Effect::kShafts);
   settings.layers = options.layers;
   if (options.night_vision) settings.layers.emplace_back(kScotopicLayer);
   std::unique_ptr<SceneRenderer> loaded;

@@ -97,7 +97,7 @@ TEST_F(RenderAirFiles, AMountainBeforeTheSunHasNoGlowInItsShadedAir) {
       .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}};
   settings.layers = {"inscatter"};
   const Image shaded = renderer.Render(kMorning, settings);
-  settings.shafts = false;
+  settings.effects = settings.effects.Without(Effect::kShafts);
   const Image glowing = renderer.Render(kMorning, settings);
   EXPECT_LT(InscatterAt(shaded, 8, 4), 0.35 * InscatterAt(glowing, 8, 4))
       << "what is left was scattered before it came";

@@ -66,7 +66,8 @@ class SkyPainterTest : public tests::Headless {
     settings.width = kWidth;
     settings.height = kHeight;
     settings.samples_per_pixel = 1;
-    settings.shafts = false;  // the painter's air is lit wherever the planet does not shade it
+    settings.effects = settings.effects.Without(
+        Effect::kShafts);  // the painter's air is lit wherever the planet does not shade it
     const SceneGround ground = LoadGround(scene);
     SkyPainter painter(judge.medium(), Diffuse(judge.medium()),
                        ground.terrain ? ground.terrain->mesh() : TriangleMesh{}, ground.frame,
