@@ -223,6 +223,22 @@ Light LightOf(const TomlTable& table, const fs::path& folder) {
   return light;
 }
 
+// Of drops when nothing is said.
+PhaseFunction DropletPhaseOf(const TomlTable& table) {
+  const std::optional<double> g = table.Number("g", -0.99, 0.99);
+  const std::optional<double> droplet =
+      table.Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
+  if (g && droplet) {
+    table.Fail("g", fmt::format("{} and {} are both given; give one", table.FullName("g"),
+                                table.FullName("droplet_diameter_um")));
+  }
+  if (!g) return FogPhase(droplet.value_or(15.0));
+  PhaseFunction phase;
+  phase.kind = PhaseKind::kHenyeyGreenstein;
+  phase.g = *g;
+  return phase;
+}
+
 std::optional<Fog> FogOf(const TomlTable& document) {
   const std::optional<TomlTable> table = document.Table("fog");
   if (!table) return std::nullopt;
@@ -239,17 +255,90 @@ std::optional<Fog> FogOf(const TomlTable& document) {
       table->Number("scale_height_m", 1.0, 1e5).value_or(std::numeric_limits<double>::infinity());
   fog.base_height_m = table->Number("base_height_m", kDeepestPlace_m, 1e5);
   fog.albedo = table->Number("albedo", 0.0, 1.0).value_or(1.0);
-  const std::optional<double> g = table->Number("g", -0.99, 0.99);
-  const std::optional<double> droplet =
-      table->Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
-  if (g && droplet) table->Fail("g", "fog.g and fog.droplet_diameter_um are both given; give one");
-  if (g) {
-    fog.phase.kind = PhaseKind::kHenyeyGreenstein;
-    fog.phase.g = *g;
-  } else {
-    fog.phase = FogPhase(droplet.value_or(15.0));
-  }
+  fog.phase = DropletPhaseOf(*table);
   return fog;
+}
+
+// One value, or one for every wavelength.
+std::vector<double> PerBand(const TomlTable& table, const std::string& key, double high,
+                            std::size_t bands, double fallback) {
+  const std::optional<std::vector<double>> values = table.Numbers(key, 0.0, high);
+  if (!values) return {fallback};
+  if (values->size() != 1 && values->size() != bands) {
+    table.Fail(key, fmt::format("{} has {} values; give one, or {}: one per wavelength",
+                                table.FullName(key), values->size(), bands));
+  }
+  return *values;
+}
+
+std::array<double, 3> ThreeOf(const TomlTable& table, const std::string& key, double low,
+                              double high) {
+  const std::optional<std::vector<double>> values = table.Numbers(key, low, high);
+  if (!values) table.Fail(key, table.FullName(key) + " is missing");
+  if (values->size() != 3) {
+    table.Fail(key, fmt::format("{} has {} values; it must have three", table.FullName(key),
+                                values->size()));
+  }
+  return {(*values)[0], (*values)[1], (*values)[2]};
+}
+
+VolumePlacement::Shape ShapeOf(const TomlTable& table) {
+  const std::string shape = table.Text("shape").value_or("box");
+  if (shape == "box") return VolumePlacement::Shape::kBox;
+  if (shape == "ellipsoid") return VolumePlacement::Shape::kEllipsoid;
+  table.Fail("shape", fmt::format("{} is \"{}\"; it must be \"box\" or \"ellipsoid\"",
+                                  table.FullName("shape"), shape));
+}
+
+void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume) {
+  volume.scale_height_m = table.Number("scale_height_m", 0.1, 1e5);
+  const std::optional<std::string> grid = table.Text("grid");
+  if (!grid) {
+    RefuseKeys(table, {"grid_size"}, "needs a grid");
+    return;
+  }
+  RefuseKeys(table, {"scale_height_m"}, "is for a volume without a grid");
+  volume.grid = folder / *grid;
+  if (volume.grid.extension() == ".nrrd") {
+    RefuseKeys(table, {"grid_size"}, "is for a raw grid; an NRRD file says its own");
+    return;
+  }
+  const std::array<double, 3> sides = ThreeOf(table, "grid_size", 2.0, kMostGridSamples);
+  volume.grid_size.emplace();
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sides[i] != std::floor(sides[i])) {
+      table.Fail("grid_size", fmt::format("{} has {}; samples are counted in whole numbers",
+                                          table.FullName("grid_size"), sides[i]));
+    }
+    (*volume.grid_size)[i] = static_cast<int>(sides[i]);
+  }
+}
+
+Volume VolumeOf(const TomlTable& table, const fs::path& folder, std::size_t bands) {
+  table.AllowOnly({"shape", "latitude", "longitude", "height_m", "above_ground_m", "size_m",
+                   "heading", "scale_height_m", "grid", "grid_size", "extinction_per_m",
+                   "visibility_m", "albedo", "emission_per_m", "temperature_k",
+                   "droplet_diameter_um", "g"});
+  Volume volume;
+  volume.shape = ShapeOf(table);
+  volume.latitude_rad = Radians(Required(table, "latitude", -90.0, 90.0));
+  volume.longitude_rad = Radians(Required(table, "longitude", -180.0, 360.0));
+  volume.height = HeightOf(table, Height{0.0, true});
+  volume.size_m = ThreeOf(table, "size_m", 0.01, 2e5);
+  volume.heading_rad = Radians(table.Number("heading", -360.0, 360.0).value_or(0.0));
+  ReadDensity(table, folder, volume);
+  const std::optional<double> visibility = table.Number("visibility_m", 0.1, 1e6);
+  if (visibility.has_value() == table.Has("extinction_per_m")) {
+    table.Fail("visibility_m", fmt::format("give one of {} and {}", table.FullName("visibility_m"),
+                                           table.FullName("extinction_per_m")));
+  }
+  volume.extinction_per_m = visibility ? std::vector<double>{kContrastThreshold / *visibility}
+                                       : PerBand(table, "extinction_per_m", 1e4, bands, 0.0);
+  volume.albedo = PerBand(table, "albedo", 1.0, bands, 1.0);
+  volume.emission_per_m = PerBand(table, "emission_per_m", 1e12, bands, 0.0);
+  volume.temperature_k = table.Number("temperature_k", 100.0, 50000.0);
+  volume.phase = DropletPhaseOf(table);
+  return volume;
 }
 
 }  // namespace
@@ -273,7 +362,8 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
 
 Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder) {
   const TomlTable document(text, origin);
-  document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "light", "fog"});
+  document.AllowOnly(
+      {"place", "time", "camera", "atmosphere", "terrain", "light", "fog", "volume"});
   const Place place = PlaceOf(document);
   Scene scene;
   scene.place = place.position;
@@ -286,6 +376,9 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
     scene.lights.push_back(LightOf(light, folder));
   }
   scene.fog = FogOf(document);
+  for (const TomlTable& volume : document.Tables("volume")) {
+    scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));
+  }
   return scene;
 }
 

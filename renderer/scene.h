@@ -13,6 +13,7 @@
 #include "atmosphere/medium.h"
 #include "atmosphere/time.h"
 #include "renderer/elevation.h"
+#include "renderer/local_volume.h"
 
 namespace alpenglow {
 
@@ -85,6 +86,25 @@ struct Fog {
   PhaseFunction phase;
 };
 
+/// A body of air of its own, see LocalVolume: smoke, a fog bank, a glowing gas. Lists hold one
+/// value, or one per wavelength of the medium.
+struct Volume {
+  VolumePlacement::Shape shape = VolumePlacement::Shape::kBox;
+  double latitude_rad = 0.0;
+  double longitude_rad = 0.0;
+  Height height;                                // of its underside
+  std::array<double, 3> size_m{};               // across its heading, along it, up
+  double heading_rad = 0.0;                     // clockwise from north
+  std::optional<double> scale_height_m;         // nothing: homogeneous, or a grid
+  std::filesystem::path grid;                   // see ReadNrrd and ReadRawGrid; empty: none
+  std::optional<std::array<int, 3>> grid_size;  // of a raw grid
+  std::vector<double> extinction_per_m{0.0};    // where density is 1
+  std::vector<double> albedo{1.0};
+  std::vector<double> emission_per_m{0.0};  // W m^-2 sr^-1 nm^-1 a metre where density is 1
+  std::optional<double> temperature_k;      // glows as a black body as far as it absorbs
+  PhaseFunction phase;
+};
+
 struct Scene {
   GeodeticPosition place;           // height 0
   std::optional<std::string> zone;  // IANA name
@@ -94,6 +114,7 @@ struct Scene {
   TerrainSource terrain;
   std::vector<Light> lights;
   std::optional<Fog> fog;
+  std::vector<Volume> volumes;
 };
 
 /// Reads scene.toml. Names of files in it are relative to it. Throws InputError "file:line: key

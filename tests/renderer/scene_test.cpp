@@ -129,6 +129,83 @@ TEST(Scene, FogAndLampsThatMakeNoSenseAreRefusedByKey) {
   EXPECT_THAT(FaultOf(kPlace + light + "type = \"spot\"\nies = \"a\"\n"), HasSubstr("ies is for"));
 }
 
+TEST(Scene, VolumesOfAirArrive) {
+  const Scene scene = Read(kPlace + R"(
+[[volume]]
+shape = "ellipsoid"
+latitude = 35.37
+longitude = 138.73
+above_ground_m = 4.0
+size_m = [400, 900, 60]
+heading = 90
+scale_height_m = 25
+visibility_m = 391.2
+[[volume]]
+latitude = 35.37
+longitude = 138.73
+height_m = 1200
+size_m = [50, 60, 200]
+grid = "smoke.raw"
+grid_size = [32, 48, 64]
+extinction_per_m = [0.1, 0.2, 0.3, 0.4]
+albedo = 0.6
+emission_per_m = 2.5
+temperature_k = 900
+g = 0.3
+[[volume]]
+latitude = 35.37
+longitude = 138.73
+size_m = [50, 60, 200]
+grid = "smoke.nrrd"
+extinction_per_m = 0.1
+)");
+  ASSERT_EQ(scene.volumes.size(), 3U);
+  const Volume& bank = scene.volumes[0];
+  EXPECT_EQ(bank.shape, VolumePlacement::Shape::kEllipsoid);
+  EXPECT_EQ(bank.height, (Height{4.0, true}));
+  EXPECT_DOUBLE_EQ(bank.scale_height_m.value(), 25.0);
+  EXPECT_NEAR(bank.extinction_per_m.at(0), 0.01, 1e-12) << "3.912 optical depths";
+  EXPECT_EQ(bank.phase, FogPhase(15.0)) << "drops when nothing is said";
+  const Volume& plume = scene.volumes[1];
+  EXPECT_EQ(plume.height, (Height{1200.0, false}));
+  EXPECT_EQ(plume.grid, std::filesystem::path("folder/smoke.raw"));
+  EXPECT_EQ(plume.grid_size.value(), (std::array<int, 3>{32, 48, 64}));
+  EXPECT_EQ(plume.extinction_per_m, (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
+  EXPECT_EQ(plume.temperature_k.value(), 900.0);
+  EXPECT_EQ(plume.phase.g, 0.3);
+  EXPECT_FALSE(scene.volumes[2].grid_size.has_value());
+  EXPECT_EQ(scene.volumes[2].height, (Height{0.0, true})) << "it stands on the ground";
+}
+
+TEST(Scene, VolumesThatMakeNoSenseAreRefusedByKey) {
+  const std::string start = kPlace + "[[volume]]\nlatitude = 35\nlongitude = 138\n";
+  const std::string whole = start + "size_m = [9, 9, 9]\nvisibility_m = 50\n";
+  EXPECT_EQ(FaultOf(whole), "no fault");
+  const std::vector<std::pair<std::string, std::string>> faults{
+      {start + "visibility_m = 50\n", "volume[0].size_m is missing"},
+      {start + "size_m = [9, 9]\nvisibility_m = 50\n", "volume[0].size_m has 2 values"},
+      {start + "size_m = [9, 0, 9]\nvisibility_m = 50\n", "s.toml:7: volume[0].size_m[1] is 0"},
+      {start + "size_m = [9, nan, 9]\nvisibility_m = 50\n", "volume[0].size_m"},
+      {start + "size_m = [9, 9, 9]\n", "give one of volume[0].visibility_m and"},
+      {whole + "extinction_per_m = 0.1\n", "give one of volume[0].visibility_m and"},
+      {whole + "albedo = 1.5\n", "volume[0].albedo is 1.5"},
+      {whole + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
+      {whole + "emission_per_m = -1\n", "volume[0].emission_per_m is -1"},
+      {whole + "temperature_k = 5\n", "volume[0].temperature_k is 5"},
+      {whole + "shape = \"sphere\"\n", "it must be \"box\" or \"ellipsoid\""},
+      {whole + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
+      {whole + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
+      {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
+      {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 1]\n", "volume[0].grid_size[2] is 1"},
+      {whole + "grid = \"a.nrrd\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
+      {whole + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
+      {whole + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
+      {whole + "extinctoin = 1\n", "volume[0].extinctoin"}};
+  for (const auto& [text, fault] : faults) {
+    EXPECT_THAT(FaultOf(text), HasSubstr(fault)) << text;
+  }
+}
+
 TEST(Scene, APlaceIsEnough) {
   const Scene scene = Read(kPlace);
   EXPECT_EQ(scene.medium.name, "earth");

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/local_media.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+
+#include "atmosphere/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kAbove_m = 20000.0;
+
+// Of a list with one value, or one a band.
+double ValueAt(const std::vector<double>& values, std::size_t band) {
+  return values.size() == 1 ? values.front() : values[band];
+}
+
+MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengths_nm) {
+  const std::size_t bands = wavelengths_nm.size();
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
+                      volume.phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double extinction = ValueAt(volume.extinction_per_m, band);
+    const double albedo = ValueAt(volume.albedo, band);
+    optics.extinction_per_m[band] = extinction;
+    optics.scattering_per_m[band] = extinction * albedo;
+    optics.emission_per_m[band] = ValueAt(volume.emission_per_m, band);
+    // Kirchhoff: what absorbs shines.
+    if (volume.temperature_k) {
+      optics.emission_per_m[band] += extinction * (1.0 - albedo) *
+                                     BlackBodyRadiance(wavelengths_nm[band], *volume.temperature_k);
+    }
+  }
+  return optics;
+}
+
+MediumOptics OpticsOf(const Fog& fog, std::size_t bands) {
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands), fog.phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    optics.extinction_per_m[band] = fog.extinction_per_m;
+    optics.scattering_per_m[band] = fog.extinction_per_m * fog.albedo;
+  }
+  return optics;
+}
+
+VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
+  GeodeticPosition place{volume.latitude_rad, volume.longitude_rad, 0.0};
+  if (!volume.height.above_ground) place.height_m = volume.height.value_m;
+  VolumePlacement placement;
+  placement.bottom = ground.frame.EnuFromGeodetic(place).xyz;
+  place.height_m += 1000.0;
+  placement.up = (ground.frame.EnuFromGeodetic(place).xyz - placement.bottom) / 1000.0;
+  if (volume.height.above_ground) {
+    if (ground.terrain) {
+      const auto hit = ground.terrain->Intersect({placement.bottom.x, placement.bottom.y, kAbove_m},
+                                                 {0.0, 0.0, -1.0});
+      if (hit) placement.bottom.z = kAbove_m - hit->distance_m;
+    }
+    placement.bottom += volume.height.value_m * placement.up;
+  }
+  const glm::dvec3 ahead(std::sin(volume.heading_rad), std::cos(volume.heading_rad), 0.0);
+  placement.up = glm::normalize(placement.up);
+  placement.ahead = glm::normalize(ahead - glm::dot(ahead, placement.up) * placement.up);
+  placement.across = glm::cross(placement.ahead, placement.up);
+  placement.size_m = {volume.size_m[0], volume.size_m[1], volume.size_m[2]};
+  placement.shape = volume.shape;
+  return placement;
+}
+
+std::shared_ptr<const VolumeGrid> GridOf(const Volume& volume) {
+  if (volume.grid.empty()) return nullptr;
+  return std::make_shared<const VolumeGrid>(
+      volume.grid_size ? ReadRawGrid(volume.grid, *volume.grid_size) : ReadNrrd(volume.grid));
+}
+
+double FogBase(const Fog& fog, const SceneGround& ground) {
+  if (fog.base_height_m) return *fog.base_height_m;
+  if (!ground.terrain) return 0.0;
+  const auto hit = ground.terrain->Intersect({0.0, 0.0, kAbove_m}, {0.0, 0.0, -1.0});
+  return hit ? kAbove_m - hit->distance_m : 0.0;
+}
+
+}  // namespace
+
+double LocalMedium::DensityAt(const glm::dvec3& point) const {
+  return std::visit([&](const auto& of) { return of.DensityAt(point); }, body);
+}
+
+std::vector<DensePiece> LocalMedium::PiecesAlong(const glm::dvec3& origin,
+                                                 const glm::dvec3& direction,
+                                                 double length_m) const {
+  return std::visit([&](const auto& of) { return of.PiecesAlong(origin, direction, length_m); },
+                    body);
+}
+
+double LocalMedium::ColumnTowards(const glm::dvec3& point, const glm::dvec3& direction) const {
+  if (const FogLayer* layer = fog()) return layer->ColumnToSpace(point, direction);
+  return volume()->Column(point, direction, std::numeric_limits<double>::infinity());
+}
+
+LocalMedia::LocalMedia(const Scene& scene, const SceneGround& ground, const Medium& medium)
+    : bands_(medium.wavelengths_nm.size()) {
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    const Volume& volume = scene.volumes[i];
+    try {
+      all_.push_back(
+          {LocalVolume(PlacementOf(volume, ground), volume.scale_height_m, GridOf(volume)),
+           OpticsOf(volume, medium.wavelengths_nm)});
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("volume {}: {}", i + 1, error.what()));
+    }
+  }
+  if (scene.fog && scene.fog->extinction_per_m > 0.0) {
+    all_.push_back({FogLayer(FogBase(*scene.fog, ground), scene.fog->scale_height_m,
+                             medium.planet_radius_m, medium.atmosphere_height_m),
+                    OpticsOf(*scene.fog, bands_)});
+  }
+}
+
+LocalMedia::LocalMedia(std::vector<LocalMedium> all, std::size_t bands)
+    : all_(std::move(all)), bands_(bands) {}
+
+Bands<double> LocalMedia::OpticalDepthTowards(const glm::dvec3& point,
+                                              const glm::dvec3& direction) const {
+  Bands<double> depth(bands_);
+  for (const LocalMedium& medium : all_) {
+    const double column = medium.ColumnTowards(point, direction);
+    if (column == 0.0) continue;
+    for (std::size_t band = 0; band < bands_; ++band) {
+      depth[band] += column * medium.optics.extinction_per_m[band];
+    }
+  }
+  return depth;
+}
+
+double BlackBodyRadiance(double wavelength_nm, double temperature_k) {
+  constexpr double kC1_w_m2_per_sr = 1.191042972397188e-16;  // 2 h c^2
+  constexpr double kC2_m_k = 1.438776877503933e-2;           // h c / k
+  const double metres = 1e-9 * wavelength_nm;
+  const double per_metre =
+      kC1_w_m2_per_sr / std::pow(metres, 5.0) / std::expm1(kC2_m_k / (metres * temperature_k));
+  return 1e-9 * per_metre;
+}
+
+}  // namespace alpenglow
