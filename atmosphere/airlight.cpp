@@ -46,6 +46,7 @@ class LampRay {
  public:
   LampRay(const LampAir& air, const Lamp& lamp, const LampSegment& segment)
       : air_(air), lamp_(lamp) {
+    ALPENGLOW_ENSURE(air.layers.size(), <=, kMostLampLayers);
     const glm::dvec3 to_lamp = lamp.position_m - segment.origin_m;
     nearest_m_ = glm::dot(to_lamp, segment.direction);
     const glm::dvec3 off = nearest_m_ * segment.direction - to_lamp;
@@ -118,7 +119,7 @@ class LampRay {
 
   // Cosines of the ray and of the direction from the lamp to the nearest point, to the lamp's axes.
   void SetPlane(const glm::dvec3& ray, const glm::dvec3& off) {
-    const glm::dvec3 third = glm::cross(lamp_.axis, lamp_.side);
+    const glm::dvec3 third = glm::cross(lamp_.side, lamp_.axis);
     along_ = {glm::dot(ray, lamp_.axis), glm::dot(ray, lamp_.side), glm::dot(ray, third)};
     across_ = {glm::dot(off, lamp_.axis), glm::dot(off, lamp_.side), glm::dot(off, third)};
   }
@@ -226,6 +227,8 @@ class Scout {
     LookBeside(low, high);
     Refine();
   }
+
+  [[nodiscard]] std::size_t evaluations() const { return points_.size(); }
 
   // None where no light is (no air, or 700 optical depths of it).
   void AppendPanels(Panels& panels) const {
@@ -484,6 +487,26 @@ void ShareNodes(int nodes, Panels& panels) {
   }
 }
 
+struct FoundPanels {
+  Panels panels;  // with their nodes
+  std::size_t scouted = 0;
+};
+FoundPanels FindPanels(const LampRay& ray, const Lamp& lamp, int nodes) {
+  ALPENGLOW_ENSURE(nodes, >=, kFewestLampNodes);
+  ALPENGLOW_ENSURE(nodes, <=, kMostLampNodes);
+  const Cuts cuts = CutsOf(ray, lamp.profile);
+  FoundPanels found;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (cuts[i] < cuts[i + 1] && ray.IsLit(0.5 * (cuts[i] + cuts[i + 1]))) {
+      const Scout scout(ray, cuts[i], cuts[i + 1]);
+      scout.AppendPanels(found.panels);
+      found.scouted += scout.evaluations();
+    }
+  }
+  if (found.panels.size() > 0) ShareNodes(nodes, found.panels);
+  return found;
+}
+
 void Integrate(const LampRay& ray, const Panel& panel, Bands<double>& sum) {
   const GaussRule& rule = GaussLegendre(panel.nodes);
   const auto [low, high] = MappedPanel(panel);
@@ -499,23 +522,20 @@ void Integrate(const LampRay& ray, const Panel& panel, Bands<double>& sum) {
 
 Bands<double> Airlight(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
                        int nodes) {
-  ALPENGLOW_ENSURE(air.layers.size(), <=, kMostLampLayers);
-  ALPENGLOW_ENSURE(nodes, >=, kFewestLampNodes);
-  ALPENGLOW_ENSURE(nodes, <=, kMostLampNodes);
   Bands<double> sum(air.bands());
   if (!(segment.end_m > segment.begin_m)) return sum;
   const LampRay ray(air, lamp, segment);
-  const Cuts cuts = CutsOf(ray, lamp.profile);
-  Panels panels;
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    if (cuts[i] < cuts[i + 1] && ray.IsLit(0.5 * (cuts[i] + cuts[i + 1]))) {
-      Scout(ray, cuts[i], cuts[i + 1]).AppendPanels(panels);
-    }
-  }
-  if (panels.size() == 0) return sum;
-  ShareNodes(nodes, panels);
-  for (const Panel& panel : panels) Integrate(ray, panel, sum);
+  for (const Panel& panel : FindPanels(ray, lamp, nodes).panels) Integrate(ray, panel, sum);
   return sum;
+}
+
+AirlightEffort EffortOfAirlight(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
+                                int nodes) {
+  if (!(segment.end_m > segment.begin_m)) return {};
+  const FoundPanels found = FindPanels(LampRay(air, lamp, segment), lamp, nodes);
+  AirlightEffort effort{static_cast<int>(found.scouted), 0};
+  for (const Panel& panel : found.panels) effort.integrated += panel.nodes;
+  return effort;
 }
 
 namespace {

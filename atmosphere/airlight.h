@@ -52,6 +52,14 @@ inline constexpr int kMostLampNodes = 64;
 [[nodiscard]] Bands<double> Airlight(const LampAir& air, const Lamp& lamp,
                                      const LampSegment& segment, int nodes = 16);
 
+/// What Airlight costs: at how many points it looks at the ray.
+struct AirlightEffort {
+  int scouted = 0;     // in one band, and in the layers that matter: to find where the light is
+  int integrated = 0;  // in every band and layer: nodes
+};
+[[nodiscard]] AirlightEffort EffortOfAirlight(const LampAir& air, const Lamp& lamp,
+                                              const LampSegment& segment, int nodes = 16);
+
 /// Irradiance that the air's light of an isotropic lamp brings to a surface, for unit intensity
 /// [m^-2], in homogeneous air that fills all space: the integral of Airlight over the hemisphere.
 /// @param distance_m   of the lamp, > 0.

@@ -98,7 +98,7 @@ double RelativeIntensity(const Lamp& lamp, const glm::dvec3& direction) {
   if (lamp.profile.kind == LampProfile::Kind::kIsotropic) return 1.0;
   return RelativeIntensity(lamp.profile,
                            {glm::dot(direction, lamp.axis), glm::dot(direction, lamp.side),
-                            glm::dot(direction, glm::cross(lamp.axis, lamp.side))});
+                            glm::dot(direction, glm::cross(lamp.side, lamp.axis))});
 }
 
 void Validate(const LampProfile& profile, const std::string& prefix) {

@@ -23,7 +23,9 @@
 namespace alpenglow {
 
 /// Intensity measured over two angles, relative: gamma from the lamp's axis, C around it from its
-/// side vector towards axis x side. Linear between the angles, 0 beyond the last gamma.
+/// side vector towards side x axis: counterclockwise on a plan, that is for a lamp that shines down
+/// and is seen from above (ANSI/IESNA LM-63-2002, section 3, horizontal angles of type C). Linear
+/// between the angles, 0 beyond the last gamma.
 struct LampTable {
   std::vector<double> gamma_rad;  // ascending from >= 0 to <= pi, at least 2
   std::vector<double> c_rad;      // ascending in [0, 2 pi], 0 first; one: the same all around
@@ -59,7 +61,7 @@ struct Lamp {
 };
 
 /// Intensity relative to the lamp's, towards a direction given by its cosines to axis, side and
-/// axis x side.
+/// side x axis.
 [[nodiscard]] double RelativeIntensity(const LampProfile& profile, const glm::dvec3& cosines);
 /// Towards a unit direction.
 [[nodiscard]] double RelativeIntensity(const Lamp& lamp, const glm::dvec3& direction);

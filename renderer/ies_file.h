@@ -4,7 +4,9 @@
 // Read are absolute and relative files of photometric type C, with any number of vertical angles
 // from 0 (the lamp's axis, straight down as it was measured) to 90 or 180 degrees and horizontal
 // angles from 0 to 0, 90, 180 or 360 degrees (missing quadrants are mirrored, as the standard
-// says). TILT=NONE only. Sizes, watts and keywords are not used.
+// says). Horizontal angles go counterclockwise around a lamp that shines down and is seen from
+// above (LM-63-2002, section 3; types A and B go clockwise). TILT=NONE only. Sizes, watts and
+// keywords are not used.
 #pragma once
 
 #include <filesystem>

@@ -349,7 +349,7 @@ struct LampLight::State {
   }
 
   // Axis by heading and pitch; C of a measured lamp is 0 above the axis where it is level, towards
-  // the heading where it points down.
+  // the heading where it points down, and goes from there to the left.
   static void Aim(const Light& light, PlacedLamp& placed) {
     const double heading = light.heading_rad, pitch = light.pitch_rad;
     const glm::dvec3 ahead(std::sin(heading), std::cos(heading), 0.0);

@@ -283,6 +283,18 @@ TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
   }
 }
 
+TEST(Airlight, ItsEffortIsTheNodesAndWhatFindsThePanels) {
+  const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.8));
+  for (const int nodes : {8, 16, 32}) {
+    const AirlightEffort effort =
+        EffortOfAirlight(air, LampAt({40.0, 1.0, 0.0}), Along({1.0, 0.0, 0.0}, 100.0), nodes);
+    EXPECT_EQ(effort.integrated, nodes);
+    EXPECT_GE(effort.scouted, 4) << "three steps are the fewest";
+    EXPECT_LE(effort.scouted, 64);
+  }
+  EXPECT_EQ(EffortOfAirlight(air, LampAt({4.0, 1.0, 0.0}), Along({1.0, 0.0, 0.0}, 0.0)).scouted, 0);
+}
+
 TEST(Airlight, NothingInTheAirScattersNothing) {
   const LampAir air = HomogeneousAir(0.0, 0.0, HenyeyGreenstein(0.0));
   EXPECT_EQ(Airlight(air, LampAt({30.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, kInfinite))[0], 0.0);

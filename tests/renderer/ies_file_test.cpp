@@ -63,6 +63,25 @@ TEST(IesFile, QuadrantsAndHalvesAreMirrored) {
   EXPECT_NEAR(At(half, 90.0 - 1e-9, 180.0), 3.0, 1e-6);
 }
 
+TEST(IesFile, AnglesGoCounterclockwiseAroundALampThatIsSeenFromAbove) {
+  const IesLamp measured = IesFromText(kHead +
+                                           "1 1000 1 2 5 1 2 0 0 0 1 1 60\n0 90\n0 90 180 270 360\n"
+                                           "5 1 5 2 5 3 5 4 5 1\n",
+                                       "l.ies");
+  Lamp lamp;  // shines down, measured with C = 0 to the north
+  lamp.axis = {0.0, 0.0, -1.0};
+  lamp.side = {0.0, 1.0, 0.0};
+  lamp.profile.kind = LampProfile::Kind::kTable;
+  lamp.profile.table = measured.table;
+  const auto candela = [&](double east, double north) {
+    return measured.intensity_cd * RelativeIntensity(lamp, {east, north, 0.0});
+  };
+  EXPECT_NEAR(candela(0.0, 1.0), 1.0, 1e-9) << "north";
+  EXPECT_NEAR(candela(-1.0, 0.0), 2.0, 1e-9) << "C 90 is west, on a plan counterclockwise";
+  EXPECT_NEAR(candela(0.0, -1.0), 3.0, 1e-9) << "south";
+  EXPECT_NEAR(candela(1.0, 0.0), 4.0, 1e-9) << "east";
+}
+
 TEST(IesFile, FaultsAreNamedByLine) {
   EXPECT_THAT(FaultOf("hello"), HasSubstr("l.ies: has no TILT line"));
   EXPECT_THAT(FaultOf("TILT=INCLUDE\n1\n"), HasSubstr("l.ies:1: TILT=INCLUDE; only TILT=NONE"));
