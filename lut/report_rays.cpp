@@ -17,14 +17,22 @@
 namespace alpenglow {
 namespace {
 
-double SunElevation(int i, const ReportRegime& regime) {
-  const SunRange sun = regime.sun.value();
-  return sun.lowest_deg + (sun.highest_deg - sun.lowest_deg) * Halton(i, 2);
+/// Calls use(ray, band, scale) for every ray and wavelength; errors are divided by the scale.
+template <typename Use>
+void ForEveryValue(const std::vector<JudgedRay>& rays, ErrorKind kind, const Use& use) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const JudgedRay& ray = rays[i];
+    for (std::size_t band = 0; band < ray.truth.size(); ++band) {
+      const double floor = ray.floor.empty() ? 0.0 : ray.floor[band];
+      const double scale = kind == ErrorKind::kRelative ? std::max(ray.truth[band], floor) : 1.0;
+      if (scale > 0.0) use(i, band, scale);
+    }
+  }
 }
 
-/// Asks the judge about every ray, in parallel, and notes what an answer takes.
-template <typename Draw, typename Ask>
-JudgedRays Judged(ErrorKind kind, int count, const Draw& draw, const Ask& ask) {
+}  // namespace
+
+JudgedRays JudgeRays(ErrorKind kind, int count, const DrawRay& draw, const AskJudge& ask) {
   JudgedRays result;
   result.kind = kind;
   const auto start = std::chrono::steady_clock::now();
@@ -43,28 +51,17 @@ JudgedRays Judged(ErrorKind kind, int count, const Draw& draw, const Ask& ask) {
   return result;
 }
 
-/// Calls use(ray, band, scale) for every ray and wavelength; errors are divided by the scale.
-template <typename Use>
-void ForEveryValue(const std::vector<JudgedRay>& rays, ErrorKind kind, const Use& use) {
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const JudgedRay& ray = rays[i];
-    for (std::size_t band = 0; band < ray.truth.size(); ++band) {
-      const double floor = ray.floor.empty() ? 0.0 : ray.floor[band];
-      const double scale = kind == ErrorKind::kRelative ? std::max(ray.truth[band], floor) : 1.0;
-      if (scale > 0.0) use(i, band, scale);
-    }
-  }
+double SunElevationNumber(int i, const ReportRegime& regime) {
+  const SunRange sun = regime.sun.value();
+  return sun.lowest_deg + (sun.highest_deg - sun.lowest_deg) * Halton(i, 2);
 }
 
-/// The radiance below which errors count as if it were that bright.
-std::vector<double> FloorOf(const Medium& medium, const ViewRay& ray) {
+std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray) {
   std::vector<double> floor =
       judge::SingleScatteringAlong(medium, {ray.altitude_m, 1.0, ray.mu_s, ray.mu_s}).inscatter;
   for (double& value : floor) value *= kDarkestPart;
   return floor;
 }
-
-}  // namespace
 
 ViewRay ViewNumber(const Medium& medium, int i, const ReportRegime& regime) {
   constexpr std::array<double, 3> kAltitudes_m{2.0, 1500.0, 10000.0};
@@ -77,11 +74,11 @@ ViewRay ViewNumber(const Medium& medium, int i, const ReportRegime& regime) {
                             : kind < 0.75 ? 80.0 + 10.0 * share
                                           : horizon_deg + 1.0 + (179.0 - horizon_deg) * share;
   return RayFromAngles(altitude_m, zenith_deg, 180.0 * Halton(i, 5),
-                       90.0 - SunElevation(i, regime));
+                       90.0 - SunElevationNumber(i, regime));
 }
 
 ViewRay SunbeamNumber(const Medium& medium, int i, const ReportRegime& regime) {
-  const double elevation = SunElevation(i, regime) * kRadiansPerDegree;
+  const double elevation = SunElevationNumber(i, regime) * kRadiansPerDegree;
   const double share = Halton(i, 3);
   const double low_m = 0.5 * medium.atmosphere_height_m * share * share;
   const double radius_m = medium.planet_radius_m;
@@ -94,7 +91,7 @@ ViewRay SunbeamNumber(const Medium& medium, int i, const ReportRegime& regime) {
 }
 
 JudgedRays JudgedSunbeams(const Medium& medium, int count) {
-  JudgedRays result = Judged(
+  JudgedRays result = JudgeRays(
       ErrorKind::kAbsolute, count,
       [&](int i, const ReportRegime& regime) { return SunbeamNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
@@ -111,12 +108,14 @@ JudgedRays JudgedSunbeams(const Medium& medium, int count) {
 }
 
 JudgedRays JudgedViews(const Medium& medium, int count) {
-  JudgedRays result = Judged(
+  JudgedRays result = JudgeRays(
       ErrorKind::kRelative, count,
       [&](int i, const ReportRegime& regime) { return ViewNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
-        return JudgedRay{
-            ray, judge::SingleScatteringAlong(medium, ray).inscatter, {}, FloorOf(medium, ray)};
+        return JudgedRay{ray,
+                         judge::SingleScatteringAlong(medium, ray).inscatter,
+                         {},
+                         DarkestRadiance(medium, ray)};
       });
   result.judge.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error "
@@ -127,7 +126,7 @@ JudgedRays JudgedViews(const Medium& medium, int count) {
 JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths) {
   judge::PathOptions options{.max_paths = paths, .relative_error = 0.0};
   options.stopped = Interrupted;
-  JudgedRays result = Judged(
+  JudgedRays result = JudgeRays(
       ErrorKind::kRelative, count,
       [&](int i, const ReportRegime& regime) {
         ViewRay ray = ViewNumber(medium, i, regime);
@@ -138,7 +137,7 @@ JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths) {
       [&](const ViewRay& ray) {
         judge::PathTracedRadiance traced = judge::TraceRadiance(medium, ray, options);
         return JudgedRay{ray, std::move(traced.total), std::move(traced.standard_error),
-                         FloorOf(medium, ray)};
+                         DarkestRadiance(medium, ray)};
       });
   result.judge.text = fmt::format("backward path tracing of all orders, {} paths a ray", paths);
   return result;

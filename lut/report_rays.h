@@ -52,6 +52,21 @@ struct JudgedRays {
   std::array<std::vector<JudgedRay>, kReportRegimes> rays;
 };
 
+/// Ray number i >= 1 of a regime, and the judge's answer to it.
+using DrawRay = std::function<ViewRay(int i, const ReportRegime& regime)>;
+using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
+
+/// Asks the judge about `count` rays in each of kRegimes, in parallel, and notes what an answer
+/// takes. The text of the judge is left to the caller.
+[[nodiscard]] JudgedRays JudgeRays(ErrorKind kind, int count, const DrawRay& draw,
+                                   const AskJudge& ask);
+
+/// Elevation of the sun of ray number i [degrees], uniform over the regime.
+[[nodiscard]] double SunElevationNumber(int i, const ReportRegime& regime);
+
+/// Radiance, by wavelength, below which errors count as if it were that bright.
+[[nodiscard]] std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray);
+
 /// Beams to the sun and their transmittance, `count` a regime, by judge::OpticalDepthAlong.
 [[nodiscard]] JudgedRays JudgedSunbeams(const Medium& medium, int count);
 

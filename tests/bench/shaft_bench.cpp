@@ -3,6 +3,7 @@
 // shadow heights, shafts by 512 occlusion rays. Run by hand; results are in README.md.
 #include <benchmark/benchmark.h>
 
+#include "atmosphere/constants.h"
 #include "renderer/sun_probes.h"
 #include "tests/occlusion_march.h"
 
@@ -104,7 +105,7 @@ BENCHMARK(ShaftsOfOnePixel)->Arg(15)->Arg(8)->Arg(3)->Arg(1)->ArgName("sun");
 void ShaftsBy512OcclusionRays(benchmark::State& state) {
   const TerrainRays rays(static_cast<double>(state.range(0)));
   const World& world = TheWorld();
-  DiskPoints();
+  (void)DiskPoints();
   std::size_t i = 0;
   for (auto unused : state) {
     i = rays.Next(i, false);

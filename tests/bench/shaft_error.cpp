@@ -4,6 +4,7 @@
 //   shaft_error [elevation model around 35.5 N 138.75 E]
 #include <fmt/core.h>
 
+#include "atmosphere/constants.h"
 #include "tests/occlusion_march.h"
 
 int main(int argc, char** argv) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "atmosphere/constants.h"
+#include "atmosphere/sun_disk.h"
 #include "tests/occlusion_march.h"
 
 namespace alpenglow {
