@@ -38,15 +38,16 @@ std::uint32_t Scrambled(std::uint32_t bits, std::uint32_t seed) {
   return Mirrored(ScrambledUpwards(Mirrored(bits), seed));
 }
 
-/// Dimension 1 of Sobol's sequence (dimension 0 is the mirrored index): the direction numbers of
-/// the polynomial x + 1 are rows of Pascal's triangle modulo 2.
-std::uint32_t SobolSecond(std::uint32_t index) {
-  std::uint32_t point = 0;
-  for (std::uint32_t direction = 1U << 31U; index != 0; index >>= 1U) {
-    if ((index & 1U) != 0) point ^= direction;
-    direction ^= direction >> 1U;
-  }
-  return point;
+/// Dimension 1 of Sobol's sequence, mirrored (dimension 0, mirrored, is the index itself). Its
+/// direction numbers are the rows of Pascal's triangle modulo 2, in which C(j, i) is odd where the
+/// bits of i are among those of j (Lucas): bit i is the sum of the bits j of the index that contain
+/// i, one bit of the five of i and j at a time.
+std::uint32_t MirroredSobolSecond(std::uint32_t index) {
+  index ^= (index >> 1U) & 0x55555555U;
+  index ^= (index >> 2U) & 0x33333333U;
+  index ^= (index >> 4U) & 0x0F0F0F0FU;
+  index ^= (index >> 8U) & 0x00FF00FFU;
+  return index ^ (index >> 16U);
 }
 
 /// Bits of x on even places: half of Morton's code.
@@ -72,8 +73,8 @@ PixelSamples::PixelSamples(int x, int y, int samples_per_pixel) {
 std::array<double, 2> PixelSamples::Point(int sample, SampleOf decision) const {
   const std::uint32_t seed = Mixed(tile_ + 0x85EBCA77U * static_cast<std::uint32_t>(decision));
   const std::uint32_t index = Scrambled(first_ + static_cast<std::uint32_t>(sample), seed);
-  return {InUnit(Scrambled(Mirrored(index), Mixed(seed + 1U))),
-          InUnit(Scrambled(SobolSecond(index), Mixed(seed + 2U)))};
+  return {InUnit(Mirrored(ScrambledUpwards(index, Mixed(seed + 1U)))),
+          InUnit(Mirrored(ScrambledUpwards(MirroredSobolSecond(index), Mixed(seed + 2U))))};
 }
 
 }  // namespace alpenglow

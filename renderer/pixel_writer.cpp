@@ -17,6 +17,15 @@ std::vector<std::string> ChannelsOf(const std::string& layer) {
   return {layer + ".R", layer + ".G", layer + ".B"};
 }
 
+bool IsOfMiddle(const std::string& layer) { return layer == "depth" || layer == "normal"; }
+
+std::vector<float> ValuesOfMiddle(const std::string& layer, const Hit& hit) {
+  if (layer == "depth") return {static_cast<float>(hit.distance_m)};
+  if (hit.kind == HitKind::kSky) return {0.0F, 0.0F, 0.0F};
+  return {static_cast<float>(hit.normal.x), static_cast<float>(hit.normal.y),
+          static_cast<float>(hit.normal.z)};
+}
+
 }  // namespace
 
 const std::vector<std::string>& KnownLayers() {
@@ -45,12 +54,29 @@ void PixelWriter::Write(int x, int y, const std::vector<Shaded>& rays) {
   BandLight radiance(rays.front().radiance.count);
   for (const Shaded& ray : rays) radiance = radiance + share * ray.radiance;
   image_.at(x, y) = Rgb(radiance);
+  WriteLayers(x, y, false, [&](const std::string& layer) { return ValuesOf(layer, rays); });
+}
+
+void PixelWriter::WriteMiddle(int x, int y, const Hit& hit) {
+  WriteLayers(x, y, true, [&](const std::string& layer) { return ValuesOfMiddle(layer, hit); });
+}
+
+template <typename Values>
+void PixelWriter::WriteLayers(int x, int y, bool of_middle, const Values& values) {
   const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
                             static_cast<std::size_t>(x);
   std::size_t channel = 0;
   for (const std::string& layer : layers_) {
-    for (const float value : ValuesOf(layer, rays)) image_.layers[channel++].values[pixel] = value;
+    if (IsOfMiddle(layer) != of_middle) {
+      channel += ChannelsOf(layer).size();
+      continue;
+    }
+    for (const float value : values(layer)) image_.layers[channel++].values[pixel] = value;
   }
+}
+
+bool PixelWriter::AsksForMiddle() const {
+  return std::any_of(layers_.begin(), layers_.end(), IsOfMiddle);
 }
 
 Image PixelWriter::Take() { return std::move(image_); }
@@ -74,13 +100,6 @@ std::array<float, 3> PixelWriter::RgbOfFactor(const BandLight& factor) const {
 std::vector<float> PixelWriter::ValuesOf(const std::string& layer,
                                          const std::vector<Shaded>& rays) const {
   const auto share = 1.0F / static_cast<float>(rays.size());
-  if (layer == "depth") return {static_cast<float>(rays.front().hit.distance_m)};
-  if (layer == "normal") {
-    const glm::dvec3 normal =
-        rays.front().hit.kind == HitKind::kSky ? glm::dvec3(0.0) : rays.front().hit.normal;
-    return {static_cast<float>(normal.x), static_cast<float>(normal.y),
-            static_cast<float>(normal.z)};
-  }
   if (layer == "sun_visibility") {
     float visible = 0.0F;
     for (const Shaded& ray : rays) visible += share * ray.sun_visibility;

@@ -19,7 +19,6 @@ struct Shaded {
   BandLight radiance;  // W m^-2 sr^-1 nm^-1
   BandLight inscatter, transmittance, albedo;
   BandLight lamps;  // of radiance, what comes from lamps
-  Hit hit;
   float sun_visibility = 0.0F;
 };
 
@@ -29,8 +28,13 @@ class PixelWriter {
   /// Throws InputError for a layer that is not of KnownLayers(). Refers to `colour`.
   PixelWriter(const BandColour& colour, const RenderSettings& settings);
 
-  /// Not shared between pixels: rows may be written from any thread.
+  /// Whether a layer is of what stands in the middle of a pixel: see WriteMiddle.
+  [[nodiscard]] bool AsksForMiddle() const;
+
+  /// Means of the rays. Not shared between pixels: rows may be written from any thread.
   void Write(int x, int y, const std::vector<Shaded>& rays);
+  /// Depth and normal: a mean of two surfaces is the depth of neither.
+  void WriteMiddle(int x, int y, const Hit& hit);
 
   [[nodiscard]] Image Take();
 
@@ -39,6 +43,9 @@ class PixelWriter {
   [[nodiscard]] std::array<float, 3> RgbOfFactor(const BandLight& factor) const;
   [[nodiscard]] std::vector<float> ValuesOf(const std::string& layer,
                                             const std::vector<Shaded>& rays) const;
+  /// Writes the values of each layer that `values` knows.
+  template <typename Values>
+  void WriteLayers(int x, int y, bool of_middle, const Values& values);
 
   const BandColour& colour_;
   Image image_;

@@ -120,6 +120,7 @@ Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
   Metadata metadata = SceneMetadata(scene);
   metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
   metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
+  metadata["alpenglow.filter"] = NameOf(settings.filter);
   metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
   metadata["alpenglow.effects"] = NameOf(settings.effects);
   metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(settings.layers, ","));

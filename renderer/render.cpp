@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -24,6 +25,7 @@
 #include "renderer/camera_rays.h"
 #include "renderer/ground_light.h"
 #include "renderer/lamp_light.h"
+#include "renderer/pixel_samples.h"
 #include "renderer/pixel_writer.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/scene_ground.h"
@@ -52,6 +54,7 @@ struct Frame {
   const RenderSettings& settings;
   const AirModel& model;
   CameraRays camera;
+  PixelFilter filter;
   Lighting light;
   TerrainSunlight sunlight;
   LampPlan plan;
@@ -84,15 +87,6 @@ struct SharedAir {
            std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
   }
 };
-
-// A number in [0, 1) from pixel and dimension, the same on every machine: the finaliser of
-// MurmurHash3 (Appleby).
-double HashedUnit(std::uint32_t x, std::uint32_t y, std::uint32_t dimension) {
-  std::uint32_t h = x * 0x9E3779B1U ^ y * 0x85EBCA77U ^ dimension * 0xC2B2AE3DU;
-  h = (h ^ (h >> 16)) * 0x85EBCA6BU;
-  h = (h ^ (h >> 13)) * 0xC2B2AE35U;
-  return static_cast<double>(h ^ (h >> 16)) / 4294967296.0;
-}
 
 }  // namespace
 
@@ -220,7 +214,6 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through,
                                    const glm::dvec3& direction, const Frame& frame,
                                    const LampTile& near, std::array<double, 2> disk_sample) const {
   Shaded shaded;
-  shaded.hit = hit;
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
   shaded.albedo = BandLight(medium.wavelengths_nm.size());
@@ -273,9 +266,10 @@ struct PixelRay {
 };
 
 // Which of the airs of a pixel a ray looks through; makes a new one if none.
-std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, std::vector<SharedAir>& airs) {
+std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, bool share,
+                   std::vector<SharedAir>& airs) {
   auto known = std::find_if(airs.begin(), airs.end(),
-                            [&](const SharedAir& shared) { return shared.Takes(hit); });
+                            [&](const SharedAir& shared) { return share && shared.Takes(hit); });
   if (known == airs.end())
     known = airs.insert(airs.end(), {hit.kind, hit.distance_m, glm::dvec3(0.0), 0.0, 0});
   known->direction_sum += direction;
@@ -284,10 +278,17 @@ std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, std::vector<Shar
   return static_cast<std::size_t>(known - airs.begin());
 }
 
+/// Of a ray, from the pixel's upper left corner [pixels].
+glm::dvec2 PlaceInPixel(const PixelSamples& samples, int sample, const Frame& frame) {
+  if (frame.settings.samples_per_pixel == 1) return {0.5, 0.5};
+  const auto [u, v] = samples.Point(sample, SampleOf::kPixel);
+  return {0.5 + frame.filter.Offset(u), 0.5 + frame.filter.Offset(v)};
+}
+
 void ValidateSettings(const RenderSettings& settings) {
   RequireInRange(settings.width, 1, 16384, "picture width");
   RequireInRange(settings.height, 1, 16384, "picture height");
-  RequireInRange(settings.samples_per_pixel, 1, 1024, "samples per pixel");
+  RequireInRange(settings.samples_per_pixel, 1, PixelSamples::kMostSamples, "samples per pixel");
   RequireInRange(settings.air_nodes, 2, 32, "air nodes");
 }
 
@@ -319,6 +320,7 @@ Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSetti
   Frame frame{settings,
               ModelWith(settings.effects),
               CameraRays(scene.camera, settings.width, settings.height),
+              PixelFilter(settings.filter),
               light,
               settings.effects.Has(Effect::kShafts)
                   ? TerrainSunlight(ground, light.to_sun, light.sun_radius_rad)
@@ -329,28 +331,26 @@ Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSetti
 }
 
 std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y) const {
-  const int grid = static_cast<int>(std::lround(std::sqrt(frame.settings.samples_per_pixel)));
+  const PixelSamples samples(x, y, frame.settings.samples_per_pixel);
   std::vector<PixelRay> rays;
   std::vector<SharedAir> airs;
-  for (int s = 0; s < grid * grid; ++s) {
-    const glm::dvec3 direction =
-        frame.camera.Direction(x + (s % grid + 0.5) / grid, y + (s / grid + 0.5) / grid);
+  for (int i = 0; i < frame.settings.samples_per_pixel; ++i) {
+    const glm::dvec2 at = glm::dvec2(x, y) + PlaceInPixel(samples, i, frame);
+    const glm::dvec3 direction = frame.camera.Direction(at.x, at.y);
     const Hit hit = Trace(direction, frame);
-    rays.push_back({direction, hit, AirFor(hit, direction, airs)});
+    rays.push_back({direction, hit, AirFor(hit, direction, frame.settings.share_air, airs)});
   }
+  // The filter is symmetric: the mean of all its rays is known better than the mean of some.
+  if (airs.size() == 1) airs.front().direction_sum = frame.camera.Direction(x + 0.5, y + 0.5);
   const LampTile& near = frame.plan.tiles.empty() ? DarkTile() : frame.plan.At(x, y);
   for (SharedAir& shared : airs) {
     shared.air = AirAlong(shared, frame);
     AddLamps(shared, frame, x, y);
   }
   std::vector<Shaded> shaded;
-  for (std::size_t s = 0; s < rays.size(); ++s) {
-    const auto seed = [&](std::uint32_t dimension) {
-      return HashedUnit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                        2U * static_cast<std::uint32_t>(s) + dimension);
-    };
-    shaded.push_back(
-        Shade(rays[s].hit, airs[rays[s].air], rays[s].direction, frame, near, {seed(0), seed(1)}));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    shaded.push_back(Shade(rays[i].hit, airs[rays[i].air], rays[i].direction, frame, near,
+                           samples.Point(static_cast<int>(i), SampleOf::kSunDisk)));
   }
   return shaded;
 }
@@ -362,7 +362,12 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
   ThrowIfInterrupted();
   tbb::parallel_for(0, settings.height, [&](int y) {
     if (Interrupted()) return;
-    for (int x = 0; x < settings.width; ++x) writer.Write(x, y, state_->Pixel(frame, x, y));
+    for (int x = 0; x < settings.width; ++x) {
+      writer.Write(x, y, state_->Pixel(frame, x, y));
+      if (!writer.AsksForMiddle()) continue;
+      const glm::dvec3 middle = frame.camera.Direction(x + 0.5, y + 0.5);
+      writer.WriteMiddle(x, y, state_->Trace(middle, frame));
+    }
   });
   ThrowIfInterrupted();
   return writer.Take();

@@ -6,9 +6,10 @@
 // sun stands where refraction shows it: disk, light on the ground and light in the air use the
 // same, apparent direction.
 //
-// Per pixel: rays against the terrain, then the air along the mean of those that meet the same
-// surface (AerialPerspective): single scattering where terrain and planet let the sun in, light of
-// higher orders everywhere. Terrain behind the planet's own horizon is not seen.
+// Per pixel: rays against the terrain, spread as PixelFilter and PixelSamples say (a single one
+// goes through the middle), then the air along the mean of those that meet the same surface
+// (AerialPerspective): single scattering where terrain and planet let the sun in, light of higher
+// orders everywhere. Terrain behind the planet's own horizon is not seen.
 #pragma once
 
 #include <memory>
@@ -20,6 +21,7 @@
 #include "lut/image.h"
 #include "renderer/effects.h"
 #include "renderer/lamp_light.h"
+#include "renderer/pixel_filter.h"
 #include "renderer/scene.h"
 
 namespace alpenglow {
@@ -27,16 +29,19 @@ namespace alpenglow {
 struct RenderSettings {
   int width = 1280;
   int height = 720;
-  int samples_per_pixel = 4;        // rays against the terrain, a square number
-  int air_nodes = 12;               // Gauss nodes along a ray to the sky
+  int samples_per_pixel = 4;  // rays, in [1, 1024]; a power of two is spread best
+  PixelFilter::Kind filter = PixelFilter::Kind::kBlackmanHarris;
+  int air_nodes = 12;  // Gauss nodes along a ray to the sky
   EffectSet effects = EffectSet::All();
+  bool share_air = true;            // between rays of a pixel; false for comparison
   std::vector<std::string> layers;  // of KnownLayers()
   LampSettings lamps = {};
 };
 
-/// "depth" [m], "normal" (ENU), "albedo", "transmittance", "inscatter" (of the sun, without fog's
-/// and lamps') and "lamps" (all that comes from lamps) [cd/m^2], "sun_visibility" (0 to 1) and
-/// kScotopicLayer: what `layers` may name.
+/// "depth" [m] and "normal" (ENU) of what stands in the middle of the pixel, not mixed with what is
+/// beside it; means over the pixel as the picture is: "albedo", "transmittance", "inscatter" (of
+/// the sun, without fog's and lamps') and "lamps" (all that comes from lamps) [cd/m^2],
+/// "sun_visibility" (0 to 1) and kScotopicLayer: what `layers` may name.
 [[nodiscard]] const std::vector<std::string>& KnownLayers();
 
 /// The layer of what rods see [scotopic cd/m^2]; its channel is kScotopicChannel.

@@ -63,6 +63,7 @@ int Run(const SkyseriesOptions& options) {
   settings.height = size.height;
   settings.samples_per_pixel = options.samples;
   if (options.no_shafts) settings.effects = settings.effects.Without(Effect::kShafts);
+  settings.filter = PixelFilterFromName(options.filter);
   settings.layers = options.layers;
   if (options.night_vision) settings.layers.emplace_back(kScotopicLayer);
   std::unique_ptr<SceneRenderer> loaded;

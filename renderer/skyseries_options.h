@@ -10,6 +10,7 @@
 #include "lut/look.h"
 #include "lut/picture_text.h"
 #include "renderer/frame_times.h"
+#include "renderer/pixel_samples.h"
 #include "renderer/render.h"
 #include "renderer/scene_options.h"
 
@@ -33,7 +34,8 @@ struct SkyseriesOptions {
   SceneOptions scene;
   TimesText times;
   std::optional<std::string> date, zone, frames, contact_sheet;
-  std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx";
+  std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx",
+                   filter = "blackman-harris";
   int samples = 4;
   std::vector<std::string> layers;
   bool png = false, night_vision = false, no_shafts = false, resume = false;
@@ -93,8 +95,14 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
       ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();
-  app.add_option("--samples", options.samples, "Rays per pixel, a square number")
-      ->check(CLI::IsMember({1, 4, 9, 16, 25, 36, 49, 64, 100, 256, 1024}))
+  app.add_option("--samples", options.samples,
+                 "Rays per pixel, 1 to 1024; powers of two are spread best, 1 is not smoothed")
+      ->check(CLI::Range(1, PixelSamples::kMostSamples))
+      ->capture_default_str();
+  app.add_option("--filter", options.filter,
+                 "How rays are spread about a pixel: box is sharpest and has the most stair steps, "
+                 "gaussian the fewest")
+      ->check(CLI::IsMember(PixelFilterNames()))
       ->capture_default_str();
   app.add_option("--aov", options.layers, "More layers in the EXR, separated by commas")
       ->delimiter(',')

@@ -154,6 +154,7 @@ void Flythrough::WritePicture(const std::filesystem::path& file, int width, int 
   settings.width = width;
   settings.height = height;
   settings.samples_per_pixel = kSamples;
+  settings.filter = PixelFilter::Kind::kBox;
   Metadata metadata = PictureMetadata(seen, settings);
   metadata["alpenglow.time"] = FormatUtc(now_, 3);
   metadata["alpenglow.ev100"] = fmt::format("{}", ev100);

@@ -163,6 +163,7 @@ TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
   const RenderSettings settings{.width = 60,
                                 .height = 60,
                                 .samples_per_pixel = 4,
+                                .filter = PixelFilter::Kind::kBox,
                                 .air_nodes = 8,
                                 .layers = {"depth", "sun_visibility"}};
   const UtcInstant sunrise =

@@ -66,11 +66,11 @@ TEST_F(Skyseries, HelpIsTheManual) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0);
   for (const char* option :
-       {"--at",      "--from",          "--to",       "--every",    "--count",
-        "--date",    "--zone",          "--frames",   "--out",      "--png",
-        "--size",    "--samples",       "--aov",      "--exposure", "--tone-map",
-        "--resume",  "--contact-sheet", "--latitude", "--dem",      "--atmosphere",
-        "--threads", "--quiet",         "--progress", "--version",  "Example"}) {
+       {"--at",       "--from",   "--to",         "--every",    "--count",  "--date",
+        "--zone",     "--frames", "--out",        "--png",      "--size",   "--samples",
+        "--aov",      "--filter", "--exposure",   "--tone-map", "--resume", "--contact-sheet",
+        "--latitude", "--dem",    "--atmosphere", "--threads",  "--quiet",  "--progress",
+        "--version",  "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
@@ -95,14 +95,27 @@ TEST_F(Skyseries, AStillIsASeriesOfOne) {
 
 TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
   const std::string still = SmallStill();
-  for (const std::string& arguments :
-       {std::string("--nonsense"), std::string(""), InFolder("s.toml"), still + " --size 0x5",
-        still + " --size 5", still + " --exposure bright", still + " --exposure nan",
-        still + " --tone-map filmic", still + " --aov smell", still + " --samples 3",
-        still + " --threads -1", still + " --effects all", still + " --max-error 1%",
-        still + " --explain", still + " --from sunrise", still + " --progress loud",
-        still + " --at noon --from sunrise --to sunset",
-        still + " --from sunrise --to sunset --every 1h --count 3", still + " --latitude 3"}) {
+  for (const std::string& arguments : {std::string("--nonsense"),
+                                       std::string(""),
+                                       InFolder("s.toml"),
+                                       still + " --size 0x5",
+                                       still + " --size 5",
+                                       still + " --exposure bright",
+                                       still + " --exposure nan",
+                                       still + " --tone-map filmic",
+                                       still + " --aov smell",
+                                       still + " --samples 0",
+                                       still + " --samples 1025",
+                                       still + " --filter lanczos",
+                                       still + " --threads -1",
+                                       still + " --effects all",
+                                       still + " --max-error 1%",
+                                       still + " --explain",
+                                       still + " --from sunrise",
+                                       still + " --progress loud",
+                                       still + " --at noon --from sunrise --to sunset",
+                                       still + " --from sunrise --to sunset --every 1h --count 3",
+                                       still + " --latitude 3"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.error;
   }
