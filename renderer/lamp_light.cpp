@@ -37,7 +37,9 @@ struct PlacedLamp {
   double mean_share = 1.0;    // mean intensity over all directions, relative to the brightest
   double distance_m = 0.0;    // from the eye
   glm::dvec3 direction{0.0};  // from the eye, unit
-  Bands<float> towards_eye;   // intensity, dimmed by the air; 0 where terrain hides the lamp
+  double blur = 0.0;          // radius in the picture, as CameraRays::BlurRadius
+  bool is_hidden = false;     // from the eye, by terrain
+  Bands<float> towards_eye;   // intensity, dimmed by the air
 };
 
 /// A node of the tree: a lamp, or one that stands for others.
@@ -126,11 +128,13 @@ double BlackBody(double wavelength_nm, double temperature_k) {
 }
 
 /// The lamp as the air around it sees it in a picture: the mean of 1/D over a square of width w
-/// around it is that of D = w / (4 ln(1 + sqrt 2)).
+/// around it is that of D = w / (4 ln(1 + sqrt 2)), and over a disk of radius R that of R / 2.
 Lamp AsWideAsAPixel(const PlacedLamp& placed, double pixel_angle_rad) {
   constexpr double kPixelMean = 0.2836;
+  constexpr double kDiskMean = 0.5;
   Lamp lamp = placed.lamp;
-  lamp.radius_m = std::max(lamp.radius_m, kPixelMean * pixel_angle_rad * placed.distance_m);
+  const double angle = std::max(kPixelMean * pixel_angle_rad, kDiskMean * placed.blur);
+  lamp.radius_m = std::max(lamp.radius_m, angle * placed.distance_m);
   return lamp;
 }
 
@@ -190,6 +194,7 @@ struct LampLight::State {
   std::vector<LampLayer> layers;
   bool has_fog;
   glm::dvec3 eye;
+  std::optional<CameraRays> lens;  // of a camera that has one
   std::size_t bands;
   std::vector<Node> nodes;  // the scene's lamps, then those that stand for others
   std::size_t lamps = 0;
@@ -272,11 +277,25 @@ struct LampLight::State {
     placed.mean_share = MeanOverDirections(placed.lamp.profile);
     placed.intensity = IntensityOf(light.temperature_k, placed.candela, medium, colour);
     StandBeforeEye(placed);
-    if (IsLit(placed, eye)) {
-      AddScaled(placed.intensity, TransmittanceBetween(placed.air, eye, placed.lamp.position_m),
-                RelativeIntensity(placed.lamp, -placed.direction), placed.towards_eye);
-    }
+    ShineOnEye(placed);
     AddNode(std::move(placed));
+  }
+
+  void ShineOnEye(PlacedLamp& placed) const {
+    placed.is_hidden = !IsLit(placed, eye);
+    AddScaled(placed.intensity, TransmittanceBetween(placed.air, eye, placed.lamp.position_m),
+              RelativeIntensity(placed.lamp, -placed.direction), placed.towards_eye);
+  }
+
+  // Everything that depends on the eye, anew.
+  void StandBefore(const CameraRays& camera) {
+    eye = camera.eye();
+    lens.reset();
+    if (camera.HasLens()) lens = camera;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      StandBeforeEye(nodes[i].light);
+      if (i < lamps) ShineOnEye(nodes[i].light);
+    }
   }
 
   Node& AddNode(PlacedLamp placed) {
@@ -380,7 +399,25 @@ struct LampLight::State {
       layer.scattering_per_m = OneBand(layer.scattering_per_m, bands / 2);
       layer.extinction_per_m = OneBand(layer.extinction_per_m, bands / 2);
     }
+    placed.blur = lens ? lens->BlurRadius(to_lamp) : 0.0;
     placed.towards_eye = Bands<float>(bands);
+  }
+
+  // Of a lamp's light as the eye gets it, what a ray of the camera sees of it [1/sr].
+  [[nodiscard]] double SeenPerSr(const PlacedLamp& placed, const CameraRay& ray,
+                                 double pixel_angle_rad) const {
+    const double radius = std::max(placed.lamp.radius_m / placed.distance_m, 0.9 * pixel_angle_rad);
+    if (lens) {
+      const auto blur = lens->BlurAt(placed.lamp.position_m - eye, ray.through, radius);
+      if (!blur) return 0.0;
+      // In focus the light comes from all of the lens, else from one point of it.
+      const glm::dvec3& seen_from = placed.blur > radius ? blur->origin : ray.origin;
+      return IsLit(placed, seen_from) ? blur->per_sr : 0.0;
+    }
+    const double off = glm::length(ray.direction - placed.direction) / radius;
+    if (off >= 1.0 || placed.is_hidden) return 0.0;
+    // (1 - r^2)^2 over the disk integrates to pi / 3.
+    return (1.0 - off * off) * (1.0 - off * off) * 3.0 / (kPi * radius * radius);
   }
 
   // Whether no terrain stands between the lamp and a point in the air.
@@ -476,7 +513,15 @@ LampLight::LampLight(const Scene& scene, const SceneGround& ground, const Medium
   state_->MakeTree();
   state_->MakeGlows();
 }
+LampLight::LampLight(std::unique_ptr<State> state) : state_(std::move(state)) {}
+LampLight::LampLight(LampLight&&) noexcept = default;
 LampLight::~LampLight() = default;
+
+LampLight LampLight::SeenBy(const CameraRays& camera) const {
+  auto state = std::make_unique<State>(*state_);
+  state->StandBefore(camera);
+  return LampLight(std::move(state));
+}
 
 LampNodes LampLight::All() const {
   LampNodes all(state_->lamps);
@@ -540,17 +585,14 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
   return sum;
 }
 
-Bands<float> LampLight::Seen(const LampNodes& lamps, const glm::dvec3& direction,
+Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray,
                              double pixel_angle_rad) const {
   Bands<float> sum(state_->bands);
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = state_->nodes[index].light;
-    const double radius = std::max(placed.lamp.radius_m / placed.distance_m, 0.9 * pixel_angle_rad);
-    const double off = glm::length(direction - placed.direction) / radius;
-    if (off >= 1.0) continue;
-    // (1 - r^2)^2 over the disk integrates to pi / 3.
-    const double weight = (1.0 - off * off) * (1.0 - off * off) * 3.0 / (kPi * radius * radius);
-    const double share = weight / (placed.distance_m * placed.distance_m);
+    const double share =
+        state_->SeenPerSr(placed, ray, pixel_angle_rad) / (placed.distance_m * placed.distance_m);
+    if (share == 0.0) continue;
     for (std::size_t band = 0; band < sum.count; ++band) {
       sum[band] += placed.towards_eye[band] * static_cast<float>(share);
     }
@@ -560,31 +602,42 @@ Bands<float> LampLight::Seen(const LampNodes& lamps, const glm::dvec3& direction
 
 namespace {
 
-/// The rays of a tile's corners and its middle, and where they end.
+/// The rays of a tile's corners and its middle, and where they end; those of a lens by points of
+/// its iris, too.
 struct TileRays {
-  std::array<LampRayEnd, 5> rays;
+  std::vector<LampRayEnd> rays;
   double radius_rad = 0.0;  // of the cone around the middle that holds the tile
   // Of the ends on surfaces: the middle one (or any), and how far the others lie from it.
   std::optional<glm::dvec3> surface;
   double surface_spread_m = 0.0;
+  static constexpr int kPointsOfIris = 8;
 
-  TileRays(const CameraRays& camera, const glm::dvec3& eye, int x0, int y0, int x1, int y1,
+  TileRays(const CameraRays& camera, int x0, int y0, int x1, int y1,
            const LampLight::Trace& trace) {
     const std::array<std::array<double, 2>, 5> points{{{0.5 * (x0 + x1), 0.5 * (y0 + y1)},
                                                        {x0 + 0.5, y0 + 0.5},
                                                        {x1 - 0.5, y0 + 0.5},
                                                        {x0 + 0.5, y1 - 0.5},
                                                        {x1 - 0.5, y1 - 0.5}}};
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      rays[i].direction = camera.Direction(points[i][0], points[i][1]);
-      rays[i].length_m = trace(rays[i].direction);
-      radius_rad = std::max(radius_rad, glm::length(rays[i].direction - rays[0].direction));
-      if (std::isinf(rays[i].length_m)) continue;
-      const glm::dvec3 point = eye + rays[i].length_m * rays[i].direction;
-      if (!surface) surface = point;
-      surface_spread_m = std::max(surface_spread_m, glm::length(point - *surface));
+    for (const auto& [x, y] : points) {
+      Add(camera.MiddleRay(x, y), trace);
+      radius_rad = std::max(radius_rad, glm::length(rays.back().direction - middle()));
+    }
+    for (const auto& [x, y] : points) {
+      for (int i = 0; camera.HasLens() && i < kPointsOfIris; ++i) {
+        Add(camera.Ray(x, y, {(i + 0.5) / kPointsOfIris, i % 2 == 0 ? 0.95 : 0.4}), trace);
+      }
     }
     radius_rad += 2.0 * camera.PixelAngle();
+  }
+
+  void Add(const CameraRay& ray, const LampLight::Trace& trace) {
+    rays.push_back({ray.direction, trace(ray)});
+    const double length = rays.back().length_m;
+    if (std::isinf(length)) return;
+    const glm::dvec3 point = ray.origin + length * ray.direction;
+    if (!surface) surface = point;
+    surface_spread_m = std::max(surface_spread_m, glm::length(point - *surface));
   }
 
   [[nodiscard]] const glm::dvec3& middle() const { return rays[0].direction; }
@@ -752,7 +805,7 @@ LampTile LampLight::State::TileAt(const LampLight& light, const CameraRays& came
                                   const std::array<int, 4>& box, const LampSettings& settings,
                                   const Trace& trace) const {
   const double pixel = camera.PixelAngle();
-  const TileRays rays(camera, eye, box[0], box[1], box[2], box[3], trace);
+  const TileRays rays(camera, box[0], box[1], box[2], box[3], trace);
   LampTile tile;
   for (const std::uint32_t node : Cut(nodes, roots, settings, [&](std::uint32_t i) {
          return WeighInAir(nodes[i], i, rays, eye, pixel);
@@ -766,17 +819,16 @@ LampTile LampLight::State::TileAt(const LampLight& light, const CameraRays& came
   for (std::uint32_t i = 0; i < lamps; ++i) {
     const PlacedLamp& lamp = nodes[i].light;
     if (glm::length(lamp.direction - rays.middle()) <
-        rays.radius_rad + lamp.lamp.radius_m / lamp.distance_m) {
+        rays.radius_rad + lamp.blur + lamp.lamp.radius_m / lamp.distance_m) {
       tile.seen.push_back(i);
     }
   }
   if (tile.far_air.empty()) return tile;
   for (int j = 0; j < LampPlan::kLattice; ++j) {
     for (int i = 0; i < LampPlan::kLattice; ++i) {
-      LampRayEnd end;
-      end.direction =
-          camera.Direction(box[0] + LampPlan::kSpacing * i, box[1] + LampPlan::kSpacing * j);
-      end.length_m = trace(end.direction);
+      const CameraRay ray =
+          camera.MiddleRay(box[0] + LampPlan::kSpacing * i, box[1] + LampPlan::kSpacing * j);
+      const LampRayEnd end{ray.direction, trace(ray)};
       tile.lattice.push_back(light.InAir(tile.far_air, end, pixel, settings.nodes));
       tile.lattice_length_m.push_back(
           AllLit(tile.far_air, end) ? end.length_m : std::numeric_limits<double>::quiet_NaN());

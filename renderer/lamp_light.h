@@ -73,7 +73,7 @@ struct LampPlan {
   }
 };
 
-/// A ray of the camera, and where it meets something.
+/// A ray from the eye, and where it meets something.
 struct LampRayEnd {
   glm::dvec3 direction{0.0};
   double length_m = 0.0;
@@ -87,13 +87,18 @@ class LampLight {
   LampLight(const Scene& scene, const SceneGround& ground, const Medium& medium,
             const BandColour& colour);
   ~LampLight();
+  LampLight(LampLight&&) noexcept;
+
+  /// The same lamps as a camera sees them: from its eye, spread by its lens. The constructor's eye
+  /// is that of the scene's place, a pinhole.
+  [[nodiscard]] LampLight SeenBy(const CameraRays& camera) const;
 
   /// Nothing shines and no fog dims.
   [[nodiscard]] bool IsNothing() const;
   [[nodiscard]] std::size_t size() const;
 
   /// Where a ray of the camera ends [m]; infinite in the sky.
-  using Trace = std::function<double(const glm::dvec3& direction)>;
+  using Trace = std::function<double(const CameraRay& ray)>;
   [[nodiscard]] LampPlan PlanFor(const CameraRays& camera, int width, int height,
                                  const LampSettings& settings, const Trace& trace) const;
 
@@ -113,8 +118,9 @@ class LampLight {
   [[nodiscard]] Bands<float> OnSurface(const LampNodes& lamps, const LitPoint& at) const;
 
   /// Radiance of the lamps themselves. A lamp smaller than a pixel is drawn as a soft disk of that
-  /// size that has its light.
-  [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const glm::dvec3& direction,
+  /// size that has its light; a lens spreads it over the shape of its iris, where terrain does not
+  /// stand between.
+  [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
                                   double pixel_angle_rad) const;
 
   /// The scene's lamps, one by one.
@@ -122,6 +128,7 @@ class LampLight {
 
  private:
   struct State;
+  explicit LampLight(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

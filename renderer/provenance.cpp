@@ -106,8 +106,10 @@ Metadata SceneMetadata(const Scene& scene) {
       {"alpenglow.fov_deg", Degrees(camera.fov_rad)},
       {"alpenglow.terrain", TerrainText(scene.terrain)}};
   if (camera.lens) {
-    metadata["alpenglow.lens"] = fmt::format("f/{}, {} m, focus {} m", camera.lens->f_number,
-                                             camera.lens->focal_length_m, camera.lens->focus_m);
+    const ThinLens& lens = *camera.lens;
+    metadata["alpenglow.lens"] =
+        fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
+                    lens.focus_m, lens.blades, Degrees(lens.blade_rotation_rad));
   }
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);

@@ -57,6 +57,7 @@ struct Frame {
   PixelFilter filter;
   Lighting light;
   TerrainSunlight sunlight;
+  LampLight lamps;
   LampPlan plan;
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
@@ -107,13 +108,13 @@ struct SceneRenderer::State {
   [[nodiscard]] Frame FrameAt(const UtcInstant& instant, const RenderSettings& settings,
                               const SunPosition& sun) const;
   [[nodiscard]] std::vector<Shaded> Pixel(const Frame& frame, int x, int y) const;
-  [[nodiscard]] Hit Trace(const glm::dvec3& direction, const Frame& frame) const {
+  [[nodiscard]] Hit Trace(const CameraRay& ray, const Frame& frame) const {
     return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
-        .Trace(eye, direction, frame.camera.PixelAngle());
+        .Trace(ray.origin, ray.direction, frame.camera.PixelAngle());
   }
   [[nodiscard]] AirAlongRay AirAlong(const SharedAir& rays, const Frame& frame) const;
   void AddLamps(SharedAir& rays, const Frame& frame, int x, int y) const;
-  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const glm::dvec3& direction,
+  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                              const Frame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
@@ -122,8 +123,7 @@ struct SceneRenderer::State {
     return LightingOf(sun, instant, scene.place.latitude_rad, medium);
   }
   [[nodiscard]] double Illuminance(const Lighting& light) const;  // see SceneRenderer
-  [[nodiscard]] LampPlan PlanLamps(const CameraRays& camera, const Lighting& light,
-                                   const RenderSettings& settings) const;
+  [[nodiscard]] LampPlan PlanLamps(const Frame& frame) const;
 
   Scene scene;
   SceneGround ground;
@@ -170,8 +170,9 @@ AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Frame& f
   std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
   if (rays.kind != HitKind::kSky && !frame.Has(Effect::kAerial)) return none;
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
-  const glm::dvec3 up = geometry.UpAt(eye);
-  ViewRay ray{geometry.AltitudeOf(eye), std::clamp(glm::dot(direction, up), -1.0, 1.0),
+  const glm::dvec3& from = frame.camera.eye();
+  const glm::dvec3 up = geometry.UpAt(from);
+  ViewRay ray{geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up), -1.0, 1.0),
               std::clamp(glm::dot(frame.light.to_sun, up), -1.0, 1.0),
               std::clamp(glm::dot(direction, frame.light.to_sun), -1.0, 1.0)};
   // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
@@ -185,7 +186,7 @@ AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Frame& f
       .higher_orders = frame.Has(Effect::kMultipleScattering)};
   if (!frame.sunlight.IsBroken()) return in.aerial.Along(ray, sampling);
   const RayExtent extent = ExtentOf(ray, geometry.radius_m(), medium.atmosphere_height_m);
-  const SunlitPath path = frame.sunlight.Along(eye, direction, extent.end_m);
+  const SunlitPath path = frame.sunlight.Along(from, direction, extent.end_m);
   return in.aerial.Along(ray, path, sampling);
 }
 
@@ -193,11 +194,11 @@ void SceneRenderer::State::AddLamps(SharedAir& rays, const Frame& frame, int x, 
   const LampRayEnd end{glm::normalize(rays.direction_sum),
                        rays.kind == HitKind::kSky ? std::numeric_limits<double>::infinity()
                                                   : rays.distance_sum_m / rays.rays};
-  rays.fog = lamps.FogTransmittance(end.direction, end.length_m);
+  rays.fog = frame.lamps.FogTransmittance(end.direction, end.length_m);
   rays.lamp_light = BandLight(medium.wavelengths_nm.size());
   if (frame.plan.tiles.empty() || !frame.Has(Effect::kBeams)) return;
-  rays.lamp_light =
-      lamps.InAir(frame.plan, x, y, end, frame.camera.PixelAngle(), frame.settings.lamps.nodes);
+  rays.lamp_light = frame.lamps.InAir(frame.plan, x, y, end, frame.camera.PixelAngle(),
+                                      frame.settings.lamps.nodes);
 }
 
 BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
@@ -210,17 +211,18 @@ BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAl
   return scale * (light.irradiance * through.transmittance);
 }
 
-Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through,
-                                   const glm::dvec3& direction, const Frame& frame,
-                                   const LampTile& near, std::array<double, 2> disk_sample) const {
+Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
+                                   const Frame& frame, const LampTile& near,
+                                   std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
   shaded.albedo = BandLight(medium.wavelengths_nm.size());
-  shaded.lamps = through.lamp_light + lamps.Seen(near.seen, direction, frame.camera.PixelAngle());
+  shaded.lamps = through.lamp_light + frame.lamps.Seen(near.seen, ray, frame.camera.PixelAngle());
   shaded.radiance = shaded.inscatter + shaded.lamps;
   if (hit.kind == HitKind::kSky) {
-    shaded.radiance = shaded.radiance + through.fog * SunDisk(direction, through.air, frame.light);
+    shaded.radiance =
+        shaded.radiance + through.fog * SunDisk(ray.direction, through.air, frame.light);
     return shaded;
   }
   const GroundRadiance sent =
@@ -242,25 +244,25 @@ double SceneRenderer::State::Illuminance(const Lighting& light) const {
   return colour.Xyz(InDouble(light.irradiance * irradiance))[1];
 }
 
-LampPlan SceneRenderer::State::PlanLamps(const CameraRays& camera, const Lighting& light,
-                                         const RenderSettings& settings) const {
+LampPlan SceneRenderer::State::PlanLamps(const Frame& frame) const {
   // Lamps are too dim to see where all that are left out together change a grey card in daylight
   // by less than a thousandth.
   constexpr double kGreyCard = 0.18;
-  LampSettings lamp_settings = settings.lamps;
+  LampSettings lamp_settings = frame.settings.lamps;
   lamp_settings.floor_cd_per_m2 =
-      std::max(lamp_settings.floor_cd_per_m2, 1e-3 * kGreyCard / kPi * Illuminance(light));
-  return lamps.PlanFor(camera, settings.width, settings.height, lamp_settings,
-                       [&](const glm::dvec3& direction) {
-                         return geometry.Trace(eye, direction, camera.PixelAngle()).distance_m;
-                       });
+      std::max(lamp_settings.floor_cd_per_m2, 1e-3 * kGreyCard / kPi * Illuminance(frame.light));
+  return frame.lamps.PlanFor(
+      frame.camera, frame.settings.width, frame.settings.height, lamp_settings,
+      [&](const CameraRay& ray) {
+        return geometry.Trace(ray.origin, ray.direction, frame.camera.PixelAngle()).distance_m;
+      });
 }
 
 namespace {
 
 /// A ray of a pixel and the air it looks through.
 struct PixelRay {
-  glm::dvec3 direction;
+  CameraRay ray;
   Hit hit;
   std::size_t air;
 };
@@ -317,16 +319,18 @@ Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSetti
                                     const SunPosition& sun) const {
   Lighting light = LightingAt(sun, instant);
   light.effects = settings.effects;
+  const CameraRays camera(scene.camera, settings.width, settings.height, {eye});
   Frame frame{settings,
               ModelWith(settings.effects),
-              CameraRays(scene.camera, settings.width, settings.height),
+              camera,
               PixelFilter(settings.filter),
               light,
               settings.effects.Has(Effect::kShafts)
                   ? TerrainSunlight(ground, light.to_sun, light.sun_radius_rad)
                   : TerrainSunlight(),
+              lamps.SeenBy(camera),
               LampPlan()};
-  if (frame.Has(Effect::kLights)) frame.plan = PlanLamps(frame.camera, light, settings);
+  if (frame.Has(Effect::kLights)) frame.plan = PlanLamps(frame);
   return frame;
 }
 
@@ -336,9 +340,9 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y
   std::vector<SharedAir> airs;
   for (int i = 0; i < frame.settings.samples_per_pixel; ++i) {
     const glm::dvec2 at = glm::dvec2(x, y) + PlaceInPixel(samples, i, frame);
-    const glm::dvec3 direction = frame.camera.Direction(at.x, at.y);
-    const Hit hit = Trace(direction, frame);
-    rays.push_back({direction, hit, AirFor(hit, direction, frame.settings.share_air, airs)});
+    const CameraRay ray = frame.camera.Ray(at.x, at.y, samples.Point(i, SampleOf::kLens));
+    const Hit hit = Trace(ray, frame);
+    rays.push_back({ray, hit, AirFor(hit, ray.direction, frame.settings.share_air, airs)});
   }
   // The filter is symmetric: the mean of all its rays is known better than the mean of some.
   if (airs.size() == 1) airs.front().direction_sum = frame.camera.Direction(x + 0.5, y + 0.5);
@@ -349,7 +353,7 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y
   }
   std::vector<Shaded> shaded;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    shaded.push_back(Shade(rays[i].hit, airs[rays[i].air], rays[i].direction, frame, near,
+    shaded.push_back(Shade(rays[i].hit, airs[rays[i].air], rays[i].ray, frame, near,
                            samples.Point(static_cast<int>(i), SampleOf::kSunDisk)));
   }
   return shaded;
@@ -365,8 +369,7 @@ Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& set
     for (int x = 0; x < settings.width; ++x) {
       writer.Write(x, y, state_->Pixel(frame, x, y));
       if (!writer.AsksForMiddle()) continue;
-      const glm::dvec3 middle = frame.camera.Direction(x + 0.5, y + 0.5);
-      writer.WriteMiddle(x, y, state_->Trace(middle, frame));
+      writer.WriteMiddle(x, y, state_->Trace(frame.camera.MiddleRay(x + 0.5, y + 0.5), frame));
     }
   });
   ThrowIfInterrupted();

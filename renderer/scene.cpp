@@ -81,10 +81,21 @@ std::optional<UtcInstant> TimeOf(const TomlTable& document,
   return At(*table, "local", [&] { return ParseInstant(*local, zone); });
 }
 
+int BladesOf(const TomlTable& table) {
+  const double blades = table.Number("blades", 0.0, 64.0).value_or(0.0);
+  if (blades != std::floor(blades) || blades == 1.0 || blades == 2.0) {
+    table.Fail("blades", fmt::format("{} is {}; it must be 0, a round iris, or 3 to 64",
+                                     table.FullName("blades"), blades));
+  }
+  return static_cast<int>(blades);
+}
+
 std::optional<ThinLens> LensOf(const TomlTable& table) {
   const double f_number = table.Number("f_number", 0.0, 1000.0).value_or(0.0);
   const std::optional<double> focal_length_mm = table.Number("focal_length_mm", 0.1, 10000.0);
   const std::optional<double> focus_m = table.Number("focus_m", 0.01, 1e9);
+  const int blades = BladesOf(table);
+  const double rotation = table.Number("blade_rotation", -360.0, 360.0).value_or(0.0);
   if (f_number == 0.0) return std::nullopt;
   for (const auto& [key, value] :
        {std::pair{"focal_length_mm", focal_length_mm}, std::pair{"focus_m", focus_m}}) {
@@ -97,22 +108,48 @@ std::optional<ThinLens> LensOf(const TomlTable& table) {
     table.Fail("focus_m",
                fmt::format("camera.focus_m is {}; it must be beyond the focal length", *focus_m));
   }
-  return ThinLens{f_number, 1e-3 * *focal_length_mm, *focus_m};
+  return ThinLens{f_number, 1e-3 * *focal_length_mm, *focus_m, blades, Radians(rotation)};
+}
+
+/// Degrees that a sensor of `camera.sensor_width_mm` sees: behind the lens at f s / (s - f), where
+/// what is at the distance of focus s is sharp, or at f. Nothing when no sensor is given.
+std::optional<double> FovOfSensor(const TomlTable& table, const std::optional<ThinLens>& lens) {
+  const std::optional<double> width_mm = table.Number("sensor_width_mm", 0.1, 1e5);
+  if (!width_mm) return std::nullopt;
+  const double f = Required(table, "focal_length_mm", 0.1, 10000.0);
+  const double v = lens ? f / (1.0 - 1e-3 * f / lens->focus_m) : f;
+  return 2.0 * std::atan(0.5 * *width_mm / v) / kRadiansPerDegree;
+}
+
+/// The field of view: as it is given, as sensor and focal length make it, or 60 degrees. Said twice
+/// it may differ by as much as focusing and rounding make it differ.
+double FovOf(const TomlTable& table, const std::optional<ThinLens>& lens) {
+  constexpr double kSame = 0.05;
+  const std::optional<double> given = table.Number("fov", 0.1, 360.0);
+  const std::optional<double> of_sensor = FovOfSensor(table, lens);
+  if (given && of_sensor && !(std::abs(*given / *of_sensor - 1.0) <= kSame)) {
+    table.Fail("fov",
+               fmt::format("camera.fov is {}, but focal length and sensor make it {:.4g}; give one",
+                           *given, *of_sensor));
+  }
+  if (lens && given == 360.0) table.Fail("f_number", "camera.f_number: a panorama has no lens");
+  return given ? *given : of_sensor.value_or(60.0);
 }
 
 Camera CameraOf(const TomlTable& document) {
   const std::optional<TomlTable> table = document.Table("camera");
   if (!table) return {};
   table->AllowOnly({"height_m", "above_ground_m", "heading", "pitch", "roll", "fov", "f_number",
-                    "focal_length_mm", "focus_m"});
+                    "focal_length_mm", "focus_m", "sensor_width_mm", "blades", "blade_rotation"});
   const double heading = table->Number("heading", -360.0, 360.0).value_or(0.0);
   const double pitch = table->Number("pitch", -90.0, 90.0).value_or(0.0);
   const double roll = table->Number("roll", -180.0, 180.0).value_or(0.0);
-  const double fov = table->Number("fov", 0.1, 360.0).value_or(60.0);
+  const std::optional<ThinLens> lens = LensOf(*table);
+  const double fov = FovOf(*table, lens);
   const Height height = HeightOf(*table, Height{});
   Camera camera =
       At(*table, "fov", [&] { return CameraFromDegrees(height, heading, pitch, roll, fov); });
-  camera.lens = LensOf(*table);
+  camera.lens = lens;
   return camera;
 }
 

@@ -29,7 +29,9 @@ struct Height {
 struct ThinLens {
   double f_number;
   double focal_length_m;
-  double focus_m;  // distance of what is sharp
+  double focus_m;                   // distance of the plane across the view axis that is sharp
+  int blades = 0;                   // of the iris; 0: it is round
+  double blade_rotation_rad = 0.0;  // of a corner from the right, counterclockwise from behind
 };
 
 /// The eye stands at the scene's place.

@@ -26,13 +26,6 @@ std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene)
   return FramesFromTimes(options.times, day);
 }
 
-/// What the scene asks for and this version does not do is said, not passed over.
-void SayWhatIsLeftOut(const Scene& scene) {
-  if (scene.camera.lens) {
-    fmt::print(stderr, "skyseries: note: depth of field is not rendered by this version\n");
-  }
-}
-
 std::unique_ptr<SceneRenderer> Load(const Scene& scene) {
   auto renderer = std::make_unique<SceneRenderer>(scene);
   if (!renderer->terrain_message().empty()) {
@@ -48,7 +41,6 @@ int Run(const SkyseriesOptions& options) {
   const std::vector<Frame> frames = FramesOf(options, scene);
   const std::vector<Frame> selected =
       options.frames ? SelectFrames(frames, *options.frames) : frames;
-  SayWhatIsLeftOut(scene);
   output.png = options.png;
   output.exposure = ExposureRuleFromText(options.exposure);
   output.look = LookFromName(options.tone_curve);

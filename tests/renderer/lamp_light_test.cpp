@@ -136,7 +136,7 @@ TEST(LampLight, TheLampInThePictureHasItsIntensity) {
         for (const double t : {0.25, 0.75}) {
           illuminance +=
               0.25 * stage.Luminance(stage.light.Seen(
-                         stage.light.All(), camera.Direction(x + s, y + t), camera.PixelAngle()));
+                         stage.light.All(), camera.MiddleRay(x + s, y + t), camera.PixelAngle()));
         }
       }
     }
@@ -164,6 +164,46 @@ TEST(LampLight, ABeamLightsTheAirInItAndNoneBesideIt) {
   const double expected = 1e5 * 0.0096 * 0.01364 * 3.5 / 2500.0 * std::exp(-0.0096 * 150.0);
   EXPECT_NEAR(luminance({0.0, 1.0, 0.0}) / expected, 1.0, 0.2) << "the beam's edge is soft";
   EXPECT_EQ(luminance({0.0, 1.0, 0.2}), 0.0) << "over it";
+}
+
+/// Illuminance of the eye by lamps near the middle of a picture of 320 x 180 pixels, from 64 rays a
+/// pixel.
+double IlluminanceInPicture(const Stage& stage, const LampLight& light, const CameraRays& camera) {
+  constexpr int kSub = 8;
+  double sum = 0.0;
+  for (int y = 70 * kSub; y < 110 * kSub; ++y) {
+    for (int x = 140 * kSub; x < 185 * kSub; ++x) {
+      const CameraRay ray = camera.Ray((x + 0.5) / kSub, (y + 0.5) / kSub, {0.5, 0.5});
+      const double cosine = glm::dot(ray.through, camera.Direction(160.0, 90.0));
+      sum += stage.Luminance(light.Seen(light.All(), ray, camera.PixelAngle())) *
+             std::pow(camera.PixelAngle() / kSub, 2) * std::pow(cosine, 3);
+    }
+  }
+  return sum;
+}
+
+TEST(LampLight, ALensSpreadsALampOverItsIrisAndKeepsItsLight) {
+  Scene scene = NightScene();
+  scene.lights = {LightAt(500.0, 3.0, kEyeHeight_m, 1000.0)};
+  const Stage stage(scene);
+  const CameraRays pinhole(scene.camera, 320, 180, {kEye});
+  const double sharp = IlluminanceInPicture(stage, stage.light, pinhole);
+  for (const int blades : {0, 6}) {
+    scene.camera.lens = ThinLens{1.4, 0.085, 3.0, blades, 0.0};
+    const CameraRays camera(scene.camera, 320, 180, {kEye});
+    const LampLight light = stage.light.SeenBy(camera);
+    EXPECT_NEAR(IlluminanceInPicture(stage, light, camera) / sharp, 1.0, 0.01)
+        << "sums over points, " << blades << " blades";
+    // In the middle as bright as flux over area; that of a hexagon is smaller than its circle.
+    const double blur = camera.BlurRadius(stage.Place(scene.lights[0]) - kEye);
+    const glm::dvec3 towards = glm::normalize(stage.Place(scene.lights[0]) - kEye);
+    const double area = Iris(blades).area() * blur * blur;
+    EXPECT_NEAR(
+        stage.Luminance(light.Seen(light.All(), {kEye, towards, towards}, camera.PixelAngle())) *
+            area / sharp,
+        1.0, 0.25)
+        << blades << " blades: the edge is as soft as a pixel, the blur 4 pixels";
+  }
 }
 
 class LampShadows : public TemporaryFolder {
@@ -225,7 +265,9 @@ TEST_F(LampShadows, ALampBehindTheWallIsNotSeen) {
   const Stage stage(scene);
   const auto seen = [&](const Light& lamp) {
     const glm::dvec3 way = stage.Place(lamp) - glm::dvec3(0.0, 0.0, 20.0);
-    return stage.Luminance(stage.light.Seen(stage.light.All(), glm::normalize(way), 1e-3));
+    const glm::dvec3 to_lamp = glm::normalize(way);
+    return stage.Luminance(
+        stage.light.Seen(stage.light.All(), {glm::dvec3(0.0, 0.0, 20.0), to_lamp, to_lamp}, 1e-3));
   };
   EXPECT_EQ(seen(scene.lights[0]), 0.0);
   EXPECT_GT(seen(scene.lights[1]), 0.0);
@@ -258,8 +300,9 @@ Scene RunwayScene(int rows = 50) {
 
 /// Where rays meet a plane below the eye.
 LampLight::Trace ToPlane(double below_m) {
-  return [below_m](const glm::dvec3& direction) {
-    return direction.z < 0.0 ? below_m / -direction.z : std::numeric_limits<double>::infinity();
+  return [below_m](const CameraRay& ray) {
+    const double z = ray.direction.z;
+    return z < 0.0 ? below_m / -z : std::numeric_limits<double>::infinity();
   };
 }
 
@@ -278,7 +321,7 @@ PlanError ErrorOfPlan(const Scene& scene, int width, int height, const LampLight
   for (int y = 2; y < height; y += 9) {
     for (int x = 3; x < width; x += 13) {
       LampRayEnd ray{camera.Direction(x + 0.5, y + 0.5), 0.0};
-      ray.length_m = trace(ray.direction);
+      ray.length_m = trace(camera.MiddleRay(x + 0.5, y + 0.5));
       const double all =
           stage.Luminance(stage.light.InAir(stage.light.All(), ray, camera.PixelAngle(), 12));
       const double found =
@@ -347,7 +390,7 @@ TEST(LampLight, DaylightDrownsLampsThatCostNothingThen) {
   const Stage stage(scene);
   const CameraRays camera(scene.camera, 64, 36);
   const LampSettings day{.nodes = 12, .share_of_error = 5e-3, .floor_cd_per_m2 = 1e4};
-  const LampPlan plan = stage.light.PlanFor(camera, 64, 36, day, [](const glm::dvec3&) {
+  const LampPlan plan = stage.light.PlanFor(camera, 64, 36, day, [](const CameraRay&) {
     return std::numeric_limits<double>::infinity();
   });
   for (const LampTile& tile : plan.tiles) {

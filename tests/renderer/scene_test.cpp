@@ -30,6 +30,25 @@ std::string FaultOf(const std::string& text) {
   return "no fault";
 }
 
+TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
+  const auto fov = [](const std::string& camera) {
+    return Read(kPlace + "[camera]\n" + camera).camera.fov_rad;
+  };
+  const std::string sensor = "sensor_width_mm = 36\nfocal_length_mm = 50\n";
+  EXPECT_NEAR(fov(sensor), 2.0 * std::atan(18.0 / 50.0), 1e-12);
+  EXPECT_NEAR(fov(sensor + "f_number = 2\nfocus_m = 1\n"), 2.0 * std::atan(18.0 * 0.95 / 50.0),
+              1e-12)
+      << "in focus at 1 m the sensor stands at 50 / 0.95 mm";
+  EXPECT_NEAR(fov(sensor + "fov = 39.6\n"), 39.6 * kRadiansPerDegree, 1e-12)
+      << "said twice, and rounded";
+  const Camera bladed = Read(kPlace +
+                             "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 1\n"
+                             "blades = 7\nblade_rotation = 10\n")
+                            .camera;
+  EXPECT_EQ(bladed.lens->blades, 7);
+  EXPECT_NEAR(bladed.lens->blade_rotation_rad, 10.0 * kRadiansPerDegree, 1e-12);
+}
+
 TEST(Scene, EverythingThatTheFileSaysArrives) {
   const Scene scene = Read(R"(
 [place]
@@ -263,6 +282,13 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[camera]\nf_number = 2\n", "camera.focal_length_mm is missing"},
       {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 0.05\n", "beyond the"},
       {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
+      {kPlace + "[camera]\nblades = 2\n", "camera.blades is 2"},
+      {kPlace + "[camera]\nblades = 5.5\n", "camera.blades is 5.5"},
+      {kPlace + "[camera]\nsensor_width_mm = 36\n", "camera.focal_length_mm is missing"},
+      {kPlace + "[camera]\nfov = 60\nsensor_width_mm = 36\nfocal_length_mm = 50\n",
+       "camera.fov is 60, but focal length and sensor make it 39.6; give one"},
+      {kPlace + "[camera]\nfov = 360\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 5\n",
+       "a panorama has no lens"},
       {kPlace + "[camera]\nfov = 3\nfov = 4\n", "s.toml:6: not valid TOML"},
       {kPlace + "[time]\nutc = \"2024-02-30T00:00:00Z\"\n", "s.toml:5: time.utc"},
       {kPlace + "[time]\nutc = \"2026-06-21T04:00:00\"\n", "s.toml:5: time.utc"},

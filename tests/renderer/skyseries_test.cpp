@@ -160,13 +160,14 @@ TEST_F(Skyseries, AnOutputThatCannotBeWrittenExitsWith4) {
   EXPECT_THAT(outcome.error, HasSubstr((folder_ / "file").string()));
 }
 
-TEST_F(Skyseries, WhatIsNotRenderedIsNotPassedOverInSilence) {
+TEST_F(Skyseries, ALensIsPartOfThePictureAndOfItsHeader) {
   WriteText(folder_ / "s.toml",
             ContentOf(folder_ / "s.toml") +
-                "[camera]\nf_number = 2.8\nfocal_length_mm = 50\nfocus_m = 9\n");
-  WriteText(folder_ / "file", "in the way, so that nothing is rendered");
-  const Outcome outcome = Run(InFolder("s.toml") + " --out " + InFolder("file/a.exr"));
-  EXPECT_THAT(outcome.error, HasSubstr("depth of field is not rendered by this version"));
+                "[camera]\nf_number = 2.8\nfocal_length_mm = 50\nfocus_m = 9\nblades = 6\n");
+  const Outcome outcome = Run(SmallStill());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(ReadExrMetadata(folder_ / "still.exr").at("alpenglow.lens"),
+              HasSubstr("f/2.8, 0.05 m, focus 9 m, 6 blades"));
 }
 
 TEST_F(Skyseries, AMeasuredLampThatIsNotThereExitsWith3) {
