@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/camera_rays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -54,6 +55,19 @@ CameraRay CameraRays::Ray(double x, double y, std::array<double, 2> lens) const 
   const glm::dvec3 offset = point.x * right_ + point.y * up_;
   const glm::dvec3 in_focus = lens_->focus_m / glm::dot(through, forward_) * through;
   return {eye_ + offset, glm::normalize(in_focus - offset), through};
+}
+
+std::optional<std::array<double, 2>> CameraRays::PlaceOf(const glm::dvec3& direction) const {
+  const double ahead = glm::dot(direction, forward_);
+  const double right = glm::dot(direction, right_), up = glm::dot(direction, up_);
+  if (panorama_) {
+    const double elevation = std::asin(std::clamp(up / glm::length(direction), -1.0, 1.0));
+    return std::array{width_ * (0.5 + std::atan2(right, ahead) / (2.0 * kPi)),
+                      height_ * (0.5 - elevation / kPi)};
+  }
+  if (ahead <= 0.0) return std::nullopt;
+  const double scale = 2.0 * tangent_ / width_;
+  return std::array{0.5 * width_ + right / (ahead * scale), 0.5 * height_ - up / (ahead * scale)};
 }
 
 double CameraRays::PixelAngle() const {

@@ -54,6 +54,10 @@ class CameraRays {
   /// @param lens  uniform in the unit square; not used by a pinhole.
   [[nodiscard]] CameraRay Ray(double x, double y, std::array<double, 2> lens) const;
 
+  /// The point of the picture, or of the plane that it is a piece of, through which one looks in a
+  /// direction; nothing for directions behind a perspective.
+  [[nodiscard]] std::optional<std::array<double, 2>> PlaceOf(const glm::dvec3& direction) const;
+
   /// Angle between neighbouring pixels at the centre of the picture [rad].
   [[nodiscard]] double PixelAngle() const;
 

@@ -12,20 +12,20 @@ namespace alpenglow {
 namespace {
 
 constexpr std::array<EffectText, kEffects> kTexts{{
-    {Effect::kSky, "sky", "the air in front of space is black", false},
-    {Effect::kAerial, "aerial", "no air in front of the ground", false},
+    {Effect::kSky, "sky", "the air in front of space is black", false, false},
+    {Effect::kAerial, "aerial", "no air in front of the ground", false, false},
     {Effect::kMultipleScattering, "multiple-scattering",
-     "light comes to the eye scattered once, or not at all", false},
-    {Effect::kSkylight, "skylight", "the sky does not light the ground", false},
-    {Effect::kShafts, "shafts", "terrain does not shade the air", false},
-    {Effect::kShadows, "shadows", "terrain casts no shadows on the ground", false},
-    {Effect::kRelief, "relief", "ground between samples of elevation is smooth", false},
-    {Effect::kLights, "lights", "lamps are off", false},
-    {Effect::kBeams, "beams", "air does not scatter the light of lamps to the eye", false},
-    {Effect::kMolecules, "molecules", "air without molecules", true},
-    {Effect::kAerosol, "aerosol", "air without aerosol", true},
-    {Effect::kOzone, "ozone", "air without ozone", true},
-    {Effect::kFineAir, "fine-air", "half as many nodes along rays through the air", true},
+     "light comes to the eye scattered once, or not at all", false, false},
+    {Effect::kSkylight, "skylight", "the sky does not light the ground", false, false},
+    {Effect::kShafts, "shafts", "terrain does not shade the air", false, false},
+    {Effect::kShadows, "shadows", "terrain casts no shadows on the ground", false, false},
+    {Effect::kRelief, "relief", "ground between samples of elevation is smooth", false, false},
+    {Effect::kLights, "lights", "lamps are off", false, false},
+    {Effect::kBeams, "beams", "air does not scatter the light of lamps to the eye", false, false},
+    {Effect::kMolecules, "molecules", "air without molecules", true, true},
+    {Effect::kAerosol, "aerosol", "air without aerosol", true, true},
+    {Effect::kOzone, "ozone", "air without ozone", true, true},
+    {Effect::kFineAir, "fine-air", "half as many nodes along rays through the air", true, false},
 }};
 
 EffectSet PartsOfAir() {

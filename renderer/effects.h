@@ -40,6 +40,7 @@ struct EffectText {
   const char* name;      // as --effects takes it
   const char* left_out;  // "the sky is black"
   bool is_of_air;        // a part of the air: on unless a list names some of them
+  bool is_free;          // leaving it out saves no time: never left out to save some
 };
 
 /// All effects, in the order of Effect.

@@ -529,6 +529,13 @@ LampNodes LampLight::All() const {
   return all;
 }
 
+std::vector<glm::dvec3> LampLight::Directions() const {
+  std::vector<glm::dvec3> directions;
+  for (std::size_t i = 0; i < state_->lamps; ++i)
+    directions.push_back(state_->nodes[i].light.direction);
+  return directions;
+}
+
 Bands<float> LampLight::FogTransmittance(const glm::dvec3& direction, double length_m) const {
   Bands<float> left(state_->bands);
   std::fill_n(left.value.begin(), left.count, 1.0F);

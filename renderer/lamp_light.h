@@ -123,6 +123,9 @@ class LampLight {
   [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
                                   double pixel_angle_rad) const;
 
+  /// Unit directions from the eye to the scene's lamps.
+  [[nodiscard]] std::vector<glm::dvec3> Directions() const;
+
   /// The scene's lamps, one by one.
   [[nodiscard]] LampNodes All() const;
 

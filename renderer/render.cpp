@@ -9,8 +9,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <map>
-#include <mutex>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
@@ -21,6 +19,7 @@
 #include "lut/multiple_scattering.h"
 #include "lut/program.h"
 #include "renderer/aerial_perspective.h"
+#include "renderer/air_model.h"
 #include "renderer/band_light.h"
 #include "renderer/camera_rays.h"
 #include "renderer/ground_light.h"
@@ -34,31 +33,17 @@
 namespace alpenglow {
 namespace {
 
-/// Air solved, with all that its light reaches.
-struct AirModel {
-  AirModel(const Medium& medium, const SceneGround& ground, const SceneGeometry& geometry,
-           const LampLight& lamps)
-      : air(medium),
-        diffuse(medium),
-        aerial(air, diffuse),
-        ground_light(ground, geometry, air, diffuse, lamps) {}
-
-  AirIntegrator<float> air;
-  DiffuseLight diffuse;
-  AerialPerspective aerial;
-  GroundLight ground_light;
-};
-
-/// What all pixels of a picture share.
+/// What all pixels of a picture share. Copies share what took time to prepare.
 struct Frame {
-  const RenderSettings& settings;
-  const AirModel& model;
+  RenderSettings settings;
+  const AirModel* model;
   CameraRays camera;
   PixelFilter filter;
   Lighting light;
-  TerrainSunlight sunlight;
-  LampLight lamps;
-  LampPlan plan;
+  std::shared_ptr<const TerrainSunlight> sunlight;
+  std::shared_ptr<const LampLight> lamps;
+  std::shared_ptr<const LampPlan> plan;
+  double sunlight_s = 0.0, plan_s = 0.0;  // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
 };
@@ -102,11 +87,13 @@ struct SceneRenderer::State {
         // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
         geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
         smooth_geometry(ground, medium, false),
-        model(medium, ground, geometry, lamps) {}
+        models(medium, ground, geometry, lamps) {}
 
-  [[nodiscard]] const AirModel& ModelWith(EffectSet effects) const;
   [[nodiscard]] Frame FrameAt(const UtcInstant& instant, const RenderSettings& settings,
                               const SunPosition& sun) const;
+  [[nodiscard]] Frame Reduced(Frame frame, EffectSet effects) const;
+  [[nodiscard]] Image Pixels(const Frame& frame, const std::vector<PixelPlace>& places) const;
+  [[nodiscard]] Image Picture(const Frame& frame) const;
   [[nodiscard]] std::vector<Shaded> Pixel(const Frame& frame, int x, int y) const;
   [[nodiscard]] Hit Trace(const CameraRay& ray, const Frame& frame) const {
     return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
@@ -132,40 +119,11 @@ struct SceneRenderer::State {
   LampLight lamps;
   glm::dvec3 eye;
   SceneGeometry geometry, smooth_geometry;
-  AirModel model;  // with everything
-  mutable std::mutex partial_models_mutex;
-  mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_models;
+  AirModels models;
 };
 
-namespace {
-
-constexpr EffectSet kConstituents{Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
-
-Medium OnlyWith(Medium medium, EffectSet effects) {
-  const std::vector<double> none(medium.wavelengths_nm.size(), 0.0);
-  if (!effects.Has(Effect::kMolecules)) medium.rayleigh_scattering_per_m = none;
-  if (!effects.Has(Effect::kAerosol))
-    medium.mie_scattering_per_m = medium.mie_extinction_per_m = none;
-  if (!effects.Has(Effect::kOzone)) medium.ozone_absorption_per_m = none;
-  return medium;
-}
-
-}  // namespace
-
-// Air that lacks something is solved when a picture first asks for it.
-const AirModel& SceneRenderer::State::ModelWith(EffectSet effects) const {
-  const EffectSet constituents = effects.And(kConstituents);
-  if (constituents == kConstituents) return model;
-  const std::lock_guard lock(partial_models_mutex);
-  std::unique_ptr<AirModel>& partial = partial_models[constituents];
-  if (!partial) {
-    partial = std::make_unique<AirModel>(OnlyWith(medium, constituents), ground, geometry, lamps);
-  }
-  return *partial;
-}
-
 AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Frame& frame) const {
-  const AirModel& in = frame.model;
+  const AirModel& in = *frame.model;
   AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
   std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
   if (rays.kind != HitKind::kSky && !frame.Has(Effect::kAerial)) return none;
@@ -184,9 +142,9 @@ AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Frame& f
   const AerialPerspective::Nodes sampling{
       .sky = frame.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
       .higher_orders = frame.Has(Effect::kMultipleScattering)};
-  if (!frame.sunlight.IsBroken()) return in.aerial.Along(ray, sampling);
+  if (!frame.sunlight->IsBroken()) return in.aerial.Along(ray, sampling);
   const RayExtent extent = ExtentOf(ray, geometry.radius_m(), medium.atmosphere_height_m);
-  const SunlitPath path = frame.sunlight.Along(from, direction, extent.end_m);
+  const SunlitPath path = frame.sunlight->Along(from, direction, extent.end_m);
   return in.aerial.Along(ray, path, sampling);
 }
 
@@ -194,11 +152,11 @@ void SceneRenderer::State::AddLamps(SharedAir& rays, const Frame& frame, int x, 
   const LampRayEnd end{glm::normalize(rays.direction_sum),
                        rays.kind == HitKind::kSky ? std::numeric_limits<double>::infinity()
                                                   : rays.distance_sum_m / rays.rays};
-  rays.fog = frame.lamps.FogTransmittance(end.direction, end.length_m);
+  rays.fog = frame.lamps->FogTransmittance(end.direction, end.length_m);
   rays.lamp_light = BandLight(medium.wavelengths_nm.size());
-  if (frame.plan.tiles.empty() || !frame.Has(Effect::kBeams)) return;
-  rays.lamp_light = frame.lamps.InAir(frame.plan, x, y, end, frame.camera.PixelAngle(),
-                                      frame.settings.lamps.nodes);
+  if (frame.plan->tiles.empty() || !frame.Has(Effect::kBeams)) return;
+  rays.lamp_light = frame.lamps->InAir(*frame.plan, x, y, end, frame.camera.PixelAngle(),
+                                       frame.settings.lamps.nodes);
 }
 
 BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
@@ -218,7 +176,7 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
   shaded.albedo = BandLight(medium.wavelengths_nm.size());
-  shaded.lamps = through.lamp_light + frame.lamps.Seen(near.seen, ray, frame.camera.PixelAngle());
+  shaded.lamps = through.lamp_light + frame.lamps->Seen(near.seen, ray, frame.camera.PixelAngle());
   shaded.radiance = shaded.inscatter + shaded.lamps;
   if (hit.kind == HitKind::kSky) {
     shaded.radiance =
@@ -226,7 +184,7 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
     return shaded;
   }
   const GroundRadiance sent =
-      frame.model.ground_light.Towards(hit, frame.light, near.surface, disk_sample);
+      frame.model->ground_light.Towards(hit, frame.light, near.surface, disk_sample);
   shaded.albedo = sent.albedo;
   shaded.sun_visibility = sent.sun_visibility;
   const BandLight lamp_light = shaded.transmittance * sent.lamps;
@@ -236,11 +194,11 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
 }
 
 double SceneRenderer::State::Illuminance(const Lighting& light) const {
-  const LocalSun sun = model.ground_light.LocalSunAt(eye, light);
+  const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light);
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
-      direct * model.air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
-      model.diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s);
+      direct * models.whole().air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
+      models.whole().diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s);
   return colour.Xyz(InDouble(light.irradiance * irradiance))[1];
 }
 
@@ -251,7 +209,7 @@ LampPlan SceneRenderer::State::PlanLamps(const Frame& frame) const {
   LampSettings lamp_settings = frame.settings.lamps;
   lamp_settings.floor_cd_per_m2 =
       std::max(lamp_settings.floor_cd_per_m2, 1e-3 * kGreyCard / kPi * Illuminance(frame.light));
-  return frame.lamps.PlanFor(
+  return frame.lamps->PlanFor(
       frame.camera, frame.settings.width, frame.settings.height, lamp_settings,
       [&](const CameraRay& ray) {
         return geometry.Trace(ray.origin, ray.direction, frame.camera.PixelAngle()).distance_m;
@@ -317,21 +275,67 @@ double SceneRenderer::Illuminance(const UtcInstant& instant) const {
 
 Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSettings& settings,
                                     const SunPosition& sun) const {
-  Lighting light = LightingAt(sun, instant);
-  light.effects = settings.effects;
   const CameraRays camera(scene.camera, settings.width, settings.height, {eye});
   Frame frame{settings,
-              ModelWith(settings.effects),
+              &models.With(settings.effects),
               camera,
               PixelFilter(settings.filter),
-              light,
-              settings.effects.Has(Effect::kShafts)
-                  ? TerrainSunlight(ground, light.to_sun, light.sun_radius_rad)
-                  : TerrainSunlight(),
-              lamps.SeenBy(camera),
-              LampPlan()};
-  if (frame.Has(Effect::kLights)) frame.plan = PlanLamps(frame);
+              LightingAt(sun, instant),
+              std::make_shared<TerrainSunlight>(),
+              std::make_shared<LampLight>(lamps.SeenBy(camera)),
+              std::make_shared<LampPlan>()};
+  frame.light.effects = settings.effects;
+  if (frame.Has(Effect::kShafts)) {
+    const Stopwatch watch;
+    frame.sunlight =
+        std::make_shared<TerrainSunlight>(ground, frame.light.to_sun, frame.light.sun_radius_rad);
+    frame.sunlight_s = watch.seconds();
+  }
+  if (frame.Has(Effect::kLights)) {
+    const Stopwatch watch;
+    frame.plan = std::make_shared<LampPlan>(PlanLamps(frame));
+    frame.plan_s = watch.seconds();
+  }
   return frame;
+}
+
+// The same picture with fewer effects.
+Frame SceneRenderer::State::Reduced(Frame frame, EffectSet effects) const {
+  frame.settings.effects = frame.light.effects = effects;
+  frame.model = &models.With(effects);
+  if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
+  if (!effects.Has(Effect::kLights)) frame.plan = std::make_shared<LampPlan>();
+  return frame;
+}
+
+Image SceneRenderer::State::Pixels(const Frame& frame,
+                                   const std::vector<PixelPlace>& places) const {
+  RenderSettings row = frame.settings;
+  row.width = static_cast<int>(places.size());
+  row.height = 1;
+  row.layers.clear();
+  PixelWriter writer(colour, row);
+  tbb::parallel_for(0, row.width, [&](int i) {
+    const PixelPlace& at = places[static_cast<std::size_t>(i)];
+    if (!Interrupted()) writer.Write(i, 0, Pixel(frame, at.x, at.y));
+  });
+  ThrowIfInterrupted();
+  return writer.Take();
+}
+
+Image SceneRenderer::State::Picture(const Frame& frame) const {
+  PixelWriter writer(colour, frame.settings);
+  ThrowIfInterrupted();
+  tbb::parallel_for(0, frame.settings.height, [&](int y) {
+    if (Interrupted()) return;
+    for (int x = 0; x < frame.settings.width; ++x) {
+      writer.Write(x, y, Pixel(frame, x, y));
+      if (!writer.AsksForMiddle()) continue;
+      writer.WriteMiddle(x, y, Trace(frame.camera.MiddleRay(x + 0.5, y + 0.5), frame));
+    }
+  });
+  ThrowIfInterrupted();
+  return writer.Take();
 }
 
 std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y) const {
@@ -346,7 +350,7 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y
   }
   // The filter is symmetric: the mean of all its rays is known better than the mean of some.
   if (airs.size() == 1) airs.front().direction_sum = frame.camera.Direction(x + 0.5, y + 0.5);
-  const LampTile& near = frame.plan.tiles.empty() ? DarkTile() : frame.plan.At(x, y);
+  const LampTile& near = frame.plan->tiles.empty() ? DarkTile() : frame.plan->At(x, y);
   for (SharedAir& shared : airs) {
     shared.air = AirAlong(shared, frame);
     AddLamps(shared, frame, x, y);
@@ -361,19 +365,33 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y
 
 Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {
   ValidateSettings(settings);
-  PixelWriter writer(state_->colour, settings);
+  return state_->Picture(state_->FrameAt(instant, settings, ApparentSun(instant)));
+}
+
+ChosenPicture SceneRenderer::RenderWithin(const UtcInstant& instant, const RenderSettings& settings,
+                                          const EffectBudget& budget) const {
+  ValidateSettings(settings);
   const Frame frame = state_->FrameAt(instant, settings, ApparentSun(instant));
-  ThrowIfInterrupted();
-  tbb::parallel_for(0, settings.height, [&](int y) {
-    if (Interrupted()) return;
-    for (int x = 0; x < settings.width; ++x) {
-      writer.Write(x, y, state_->Pixel(frame, x, y));
-      if (!writer.AsksForMiddle()) continue;
-      writer.WriteMiddle(x, y, state_->Trace(frame.camera.MiddleRay(x + 0.5, y + 0.5), frame));
-    }
-  });
-  ThrowIfInterrupted();
-  return writer.Take();
+  Pilot pilot{PilotPixels(frame.camera, settings.width, settings.height, frame.light.to_sun,
+                          frame.lamps->Directions()),
+              {},
+              static_cast<double>(settings.width) * settings.height};
+  std::vector<PixelPlace> places;
+  for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
+  pilot.render = [&](EffectSet effects) {
+    const Frame reduced = state_->Reduced(frame, effects);
+    const Stopwatch watch;
+    Image image = state_->Pixels(reduced, places);
+    return PilotPicture{std::move(image), watch.seconds()};
+  };
+  pilot.preparation_s = [&](Effect effect) {
+    return effect == Effect::kShafts   ? frame.sunlight_s
+           : effect == Effect::kLights ? frame.plan_s
+                                       : 0.0;
+  };
+  EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
+  Image image = state_->Picture(state_->Reduced(frame, choice.effects));
+  return {std::move(image), std::move(choice)};
 }
 
 }  // namespace alpenglow

@@ -19,6 +19,7 @@
 #include "atmosphere/sun.h"
 #include "atmosphere/time.h"
 #include "lut/image.h"
+#include "renderer/effect_choice.h"
 #include "renderer/effects.h"
 #include "renderer/lamp_light.h"
 #include "renderer/pixel_filter.h"
@@ -47,6 +48,12 @@ struct RenderSettings {
 /// The layer of what rods see [scotopic cd/m^2]; its channel is kScotopicChannel.
 inline constexpr const char* kScotopicLayer = "scotopic";
 
+/// A picture of what a scene needs.
+struct ChosenPicture {
+  Image image;
+  EffectChoice choice;
+};
+
 /// A scene ready to be rendered at any time: terrain loaded, light of higher orders solved.
 /// Immutable.
 class SceneRenderer {
@@ -58,6 +65,12 @@ class SceneRenderer {
   /// Linear sRGB in cd/m^2. The same bytes for any number of threads. Throws InputError for a layer
   /// that is not known or a size out of [1, 16384]; stops early when Interrupted().
   [[nodiscard]] Image Render(const UtcInstant& instant, const RenderSettings& settings) const;
+
+  /// Render() with those of settings.effects that the picture needs (effect_choice.h). The choice
+  /// is the same for any number of threads; the times in it are this run's.
+  [[nodiscard]] ChosenPicture RenderWithin(const UtcInstant& instant,
+                                           const RenderSettings& settings,
+                                           const EffectBudget& budget) const;
 
   /// Of sun and sky on a horizontal plane at the eye, terrain aside [lux].
   [[nodiscard]] double Illuminance(const UtcInstant& instant) const;

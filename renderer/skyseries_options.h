@@ -38,7 +38,8 @@ struct SkyseriesOptions {
                    filter = "blackman-harris";
   int samples = 4;
   std::vector<std::string> layers;
-  bool png = false, night_vision = false, no_shafts = false, resume = false;
+  std::optional<std::string> effects, max_error;
+  bool png = false, night_vision = false, no_shafts = false, explain = false, resume = false;
 };
 
 inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
@@ -126,10 +127,31 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small");
 }
 
+inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
+  CLI::Option* effects = app.add_option(
+      "--effects", options.effects,
+      fmt::format(
+          "all, auto (only what each picture needs within --max-error), or a list that switches on "
+          "exactly these: {}; molecules, aerosol, ozone and fine-air are on unless one of them is "
+          "named; -NAME takes one away from all (default: all; with --max-error or --explain: "
+          "auto)",
+          NameOfEffects()));
+  effects->check(ReadableBy([](const std::string& text) {
+    if (text != "auto") (void)EffectsFromText(text);
+  }));
+  app.add_option("--max-error", options.max_error,
+                 "Root mean square of the relative change of the picture that leaving effects out "
+                 "may make, 1e-8 to 1 or in percent (default: 1%)")
+      ->check(FaultOfRelativeError);
+  app.add_flag("--explain", options.explain,
+               "Print what each effect changes and costs in each picture, and whether it is kept");
+}
+
 inline void AddSkyseriesOptions(CLI::App& app, SkyseriesOptions& options) {
   AddSceneOptions(app, options);
   AddTimeOptions(app, options);
   AddOutputOptions(app, options);
+  AddEffectOptions(app, options);
   AddCommonOptions(app, "skyseries", options.common);
   app.footer(kSkyseriesFooter);
 }

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Only what a scene needs: which effects a picture can do without, within a budget of change.
+//
+// A pilot decides: a few of the picture's own pixels, rendered with every effect on, and again with
+// each one off. Effects whose change (picture_change.h) is small are left out, smallest first, as
+// long as the pilot without all of them together stays within the budget:
+//
+//   rms of d at most the budget,    99th percentile of d at most four times the budget,
+//
+// both three standard errors up, of the picture as a whole and again of the lamps in it and of the
+// surroundings of the sun, each counted alone however small.
+//
+// The pilot's pixels are one in each cell of a grid over the picture, at a place in the cell that
+// looks random and is not. So nothing larger than a cell is missed; of smaller things that are
+// neither lamps nor near the sun, only as many as the pilot's pixels happen to meet.
+//
+// The decision depends on pixels alone. What the effects cost is measured beside, and told.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lut/image.h"
+#include "renderer/camera_rays.h"
+#include "renderer/effects.h"
+#include "renderer/picture_change.h"
+
+namespace alpenglow {
+
+struct PixelPlace {
+  int x, y;
+};
+
+/// Pixels that a picture is judged by: the first group stands for the whole, each other one for
+/// something small.
+using PilotGroups = std::vector<std::vector<PixelPlace>>;
+
+/// One pixel in each cell of a grid of about `count` square cells.
+[[nodiscard]] std::vector<PixelPlace> PilotGrid(int width, int height, int count);
+
+/// Pixels within `radius` around a place in the picture or beside it, about `count`, on a spiral.
+[[nodiscard]] std::vector<PixelPlace> PilotSpiral(int width, int height,
+                                                  const std::array<double, 2>& centre,
+                                                  double radius, int count);
+
+/// The groups of a picture: a grid, what surrounds the sun, lamps.
+/// @param lamps  unit directions from the eye.
+[[nodiscard]] PilotGroups PilotPixels(const CameraRays& camera, int width, int height,
+                                      const glm::dvec3& to_sun,
+                                      const std::vector<glm::dvec3>& lamps);
+
+/// Time since it was made.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// The pilot's pixels, group after group, as a picture of one row; and the time that took.
+struct PilotPicture {
+  Image image;
+  double seconds = 0.0;
+};
+
+struct Pilot {
+  PilotGroups groups;
+  std::function<PilotPicture(EffectSet)> render;
+  double pixels_of_picture = 0.0;
+  /// Of the picture, before any pixel: shadows of terrain, the plan of lamps [s].
+  std::function<double(Effect)> preparation_s = [](Effect) { return 0.0; };
+};
+
+/// An effect of a picture, as the pilot saw it.
+struct EffectEstimate {
+  Effect effect;
+  ChangeEstimate change;  // the worst of the groups
+  double cost_s = 0.0;    // of the picture's time, preparation included
+  bool kept = true;
+};
+
+struct EffectBudget {
+  double max_error = 0.01;  // rms of d, in (0, 1]
+  /// Estimates parts of the air too, which cost nothing and are always kept, and times each
+  /// picture of the pilot three times.
+  bool explain = false;
+};
+
+struct EffectChoice {
+  EffectSet effects;  // what to render
+  double max_error = 0.0;
+  std::vector<EffectEstimate> estimates;  // of what was asked for, in the order of Effect
+  ChangeEstimate together;                // of all that is left out
+  double all_s = 0.0, chosen_s = 0.0;     // the picture with everything, and as chosen
+  double pilot_s = 0.0;
+  std::size_t pilot_pixels = 0;
+
+  [[nodiscard]] EffectSet LeftOut() const;
+};
+
+/// @param wanted  what "everything" is.
+[[nodiscard]] EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted,
+                                         const EffectBudget& budget);
+
+/// A table of a choice, with a line for every effect.
+[[nodiscard]] std::string ExplainText(const EffectChoice& choice);
+
+/// "none", or the names of what is left out with commas between.
+[[nodiscard]] std::string LeftOutText(const EffectChoice& choice);
+
+}  // namespace alpenglow
