@@ -219,20 +219,25 @@ EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted, const EffectBud
   choice.all_s = judge.everything_s();
   std::vector<EffectEstimate> candidates;
   for (const Effect effect : wanted.List()) {
+    EffectEstimate estimate{effect, {}, 0.0};
+    estimate.present = pilot.present.Has(effect);
     if (TextOf(effect).is_free && !budget.explain) continue;
-    const Judge::Verdict without = judge.On(wanted.Without(effect));
-    const double preparation_s = pilot.preparation_s(effect);
-    choice.all_s += preparation_s;
-    choice.estimates.push_back(
-        {effect, without.change, judge.everything_s() - without.picture_s + preparation_s});
-    if (!TextOf(effect).is_free && IsWithin(without.change, budget.max_error))
-      candidates.push_back(choice.estimates.back());
+    if (estimate.present) {
+      const Judge::Verdict without = judge.On(wanted.Without(effect));
+      const double preparation_s = pilot.preparation_s(effect);
+      choice.all_s += preparation_s;
+      estimate.change = without.change;
+      estimate.cost_s = judge.everything_s() - without.picture_s + preparation_s;
+      if (!TextOf(effect).is_free && IsWithin(estimate.change, budget.max_error))
+        candidates.push_back(estimate);
+    }
+    choice.estimates.push_back(estimate);
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
     return a.change.at_most.rms < b.change.at_most.rms;
   });
   Chooser chooser(judge, wanted, budget.max_error);
-  chooser.LeaveOut(candidates);
+  if (budget.leave_out) chooser.LeaveOut(candidates);
   choice.effects = chooser.effects();
   choice.together = chooser.verdict().change;
   choice.chosen_s = chooser.verdict().picture_s;
@@ -245,10 +250,17 @@ EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted, const EffectBud
   return choice;
 }
 
-std::string LeftOutText(const EffectChoice& choice) {
+Metadata NotesOn(const EffectChoice& choice) {
   std::vector<std::string> names;
   for (const Effect effect : choice.LeftOut().List()) names.emplace_back(TextOf(effect).name);
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","));
+  const auto change = [](const PictureChange& of) {
+    return fmt::format("rms {}, 99th percentile {}", Percent(of.rms), Percent(of.at_99_percent));
+  };
+  return {
+      {"alpenglow.note.effects_left_out",
+       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","))},
+      {"alpenglow.note.effects_change", fmt::format("{} (at most {})", change(choice.together.seen),
+                                                    change(choice.together.at_most))}};
 }
 
 std::string ExplainText(const EffectChoice& choice) {
@@ -256,9 +268,10 @@ std::string ExplainText(const EffectChoice& choice) {
                                  "at most", "99 %", "saves", "of frame");
   for (const EffectEstimate& estimate : choice.estimates) {
     const EffectText& effect = TextOf(estimate.effect);
-    const std::string fate = !estimate.kept   ? fmt::format("left out: {}", effect.left_out)
-                             : effect.is_free ? "kept, free"
-                                              : "kept";
+    const std::string fate = !estimate.present ? "not in this scene"
+                             : !estimate.kept  ? fmt::format("left out: {}", effect.left_out)
+                             : effect.is_free  ? "kept, free"
+                                               : "kept";
     text += Line(effect.name, estimate.change, estimate.cost_s, choice.all_s, fate);
   }
   text += Line("all left out", choice.together, choice.all_s - choice.chosen_s, choice.all_s,

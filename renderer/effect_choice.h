@@ -18,7 +18,7 @@
 #pragma once
 
 #include <array>
-#include <chrono>
+#include <ctime>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <span>
@@ -54,15 +54,16 @@ using PilotGroups = std::vector<std::vector<PixelPlace>>;
                                       const glm::dvec3& to_sun,
                                       const std::vector<glm::dvec3>& lamps);
 
-/// Time since it was made.
+/// Time that the program's threads have worked since it was made, together: other programs on the
+/// machine do not count.
 class Stopwatch {
  public:
   [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC;
   }
 
  private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::clock_t begin_ = std::clock();
 };
 
 /// The pilot's pixels, group after group, as a picture of one row; and the time that took.
@@ -75,6 +76,7 @@ struct Pilot {
   PilotGroups groups;
   std::function<PilotPicture(EffectSet)> render;
   double pixels_of_picture = 0.0;
+  EffectSet present = EffectSet::All();  // others have nothing to do in this scene
   /// Of the picture, before any pixel: shadows of terrain, the plan of lamps [s].
   std::function<double(Effect)> preparation_s = [](Effect) { return 0.0; };
 };
@@ -83,8 +85,9 @@ struct Pilot {
 struct EffectEstimate {
   Effect effect;
   ChangeEstimate change;  // the worst of the groups
-  double cost_s = 0.0;    // of the picture's time, preparation included
+  double cost_s = 0.0;    // of the picture's time, preparation included, all threads together
   bool kept = true;
+  bool present = true;  // false: nothing to do in this scene
 };
 
 struct EffectBudget {
@@ -92,6 +95,7 @@ struct EffectBudget {
   /// Estimates parts of the air too, which cost nothing and are always kept, and times each
   /// picture of the pilot three times.
   bool explain = false;
+  bool leave_out = true;  // false: everything is kept, and only estimated
 };
 
 struct EffectChoice {
@@ -99,8 +103,9 @@ struct EffectChoice {
   double max_error = 0.0;
   std::vector<EffectEstimate> estimates;  // of what was asked for, in the order of Effect
   ChangeEstimate together;                // of all that is left out
-  double all_s = 0.0, chosen_s = 0.0;     // the picture with everything, and as chosen
-  double pilot_s = 0.0;
+  // Time of all threads together: of the picture with everything, of the picture as chosen, and of
+  // choosing.
+  double all_s = 0.0, chosen_s = 0.0, pilot_s = 0.0;
   std::size_t pilot_pixels = 0;
 
   [[nodiscard]] EffectSet LeftOut() const;
@@ -113,7 +118,7 @@ struct EffectChoice {
 /// A table of a choice, with a line for every effect.
 [[nodiscard]] std::string ExplainText(const EffectChoice& choice);
 
-/// "none", or the names of what is left out with commas between.
-[[nodiscard]] std::string LeftOutText(const EffectChoice& choice);
+/// What a file says of the choice: what is left out, and by how much that changes the picture.
+[[nodiscard]] Metadata NotesOn(const EffectChoice& choice);
 
 }  // namespace alpenglow

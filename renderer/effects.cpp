@@ -36,12 +36,17 @@ EffectSet PartsOfAir() {
   return parts;
 }
 
-Effect EffectFromName(std::string_view name) {
+std::vector<std::string> Names() {
   std::vector<std::string> names;
+  for (const EffectText& text : kTexts) names.emplace_back(text.name);
+  return names;
+}
+
+Effect EffectFromName(std::string_view name) {
   for (const EffectText& text : kTexts) {
     if (name == text.name) return text.effect;
-    names.emplace_back(text.name);
   }
+  const std::vector<std::string> names = Names();
   const auto nearest = NearestName(name, names);
   throw InputError(fmt::format("effect \"{}\" is not known; {}", name,
                                nearest ? fmt::format("did you mean {}?", *nearest)
@@ -69,6 +74,8 @@ std::vector<Effect> EffectSet::List() const {
   }
   return list;
 }
+
+std::string NamesOfEffects() { return fmt::format("{}", fmt::join(Names(), ", ")); }
 
 EffectSet EffectsFromText(std::string_view text) {
   EffectSet effects = text.starts_with('-') ? EffectSet::All() : EffectSet();

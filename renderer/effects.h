@@ -89,6 +89,9 @@ class EffectSet {
   unsigned bits_ = 0;
 };
 
+/// "sky, aerial, ...": the names of all effects.
+[[nodiscard]] std::string NamesOfEffects();
+
 /// Reads "all", or names separated by commas: exactly these effects, and of the parts of the air
 /// all unless one is named. "-NAME" takes an effect away; a list that begins so begins with all:
 /// "-shafts", "all,-ozone". Throws InputError for a name that is not known, with the nearest.

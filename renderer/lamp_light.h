@@ -93,10 +93,6 @@ class LampLight {
   /// is that of the scene's place, a pinhole.
   [[nodiscard]] LampLight SeenBy(const CameraRays& camera) const;
 
-  /// Nothing shines and no fog dims.
-  [[nodiscard]] bool IsNothing() const;
-  [[nodiscard]] std::size_t size() const;
-
   /// Where a ray of the camera ends [m]; infinite in the sky.
   using Trace = std::function<double(const CameraRay& ray)>;
   [[nodiscard]] LampPlan PlanFor(const CameraRays& camera, int width, int height,

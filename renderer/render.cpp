@@ -389,6 +389,13 @@ ChosenPicture SceneRenderer::RenderWithin(const UtcInstant& instant, const Rende
            : effect == Effect::kLights ? frame.plan_s
                                        : 0.0;
   };
+  if (!frame.sunlight->IsBroken()) pilot.present = pilot.present.Without(Effect::kShafts);
+  if (state_->lamps.All().empty()) {
+    pilot.present = pilot.present.Without(Effect::kLights).Without(Effect::kBeams);
+  }
+  if (!state_->ground.terrain) {
+    pilot.present = pilot.present.Without(Effect::kShadows).Without(Effect::kRelief);
+  }
   EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
   Image image = state_->Picture(state_->Reduced(frame, choice.effects));
   return {std::move(image), std::move(choice)};

@@ -49,11 +49,18 @@ std::string ExrValue(const fs::path& file, const std::string& name) {
   return HeaderValue([&] { return ReadExrMetadata(file); }, name);
 }
 
+Metadata NotesOf(const fs::path& exr) {
+  Metadata notes = ReadExrMetadata(exr);
+  std::erase_if(notes, [](const auto& entry) { return !entry.first.starts_with(kNotePrefix); });
+  return notes;
+}
+
 /// The picture, when it is whole and was made with these settings.
-std::optional<Image> KeptImage(const fs::path& file, const std::string& render_fingerprint) {
+std::optional<NotedPicture> KeptPicture(const fs::path& file,
+                                        const std::string& render_fingerprint) {
   if (ExrValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
   try {
-    return ReadExr(file);
+    return NotedPicture(ReadExr(file), NotesOf(file));
   } catch (const InputError&) {
     return std::nullopt;  // damaged: to be rendered again
   }
@@ -69,7 +76,7 @@ bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
   }
 }
 
-/// Everything that a frame's header says.
+/// Everything that a frame's header says but its notes.
 Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
                        double ev100) {
   Metadata metadata = RenderMetadata(source, frame);
@@ -96,13 +103,13 @@ class Series {
   bool Make(const Frame& frame) {
     const fs::path exr = output_.name.Exr(frame.number);
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
-    std::optional<Image> image;
-    if (output_.resume) image = KeptImage(exr, wanted);
-    const bool rendered = !image;
-    if (rendered) image = source_.render(frame.instant);
-    const double ev100 = Ev100Of(frame, *image);
-    Write(frame, *image, ev100, rendered);
-    if (output_.contact_sheet) AddThumbnail(frame, *image, ev100);
+    std::optional<NotedPicture> picture;
+    if (output_.resume) picture = KeptPicture(exr, wanted);
+    const bool rendered = !picture;
+    if (rendered) picture = source_.render(frame.instant);
+    const double ev100 = Ev100Of(frame, picture->image);
+    Write(frame, *picture, ev100, rendered);
+    if (output_.contact_sheet) AddThumbnail(frame, picture->image, ev100);
     return rendered;
   }
 
@@ -133,8 +140,10 @@ class Series {
     return MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2);
   }
 
-  void Write(const Frame& frame, const Image& image, double ev100, bool rendered) {
-    const Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
+  void Write(const Frame& frame, const NotedPicture& picture, double ev100, bool rendered) {
+    const Image& image = picture.image;
+    Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
+    metadata.insert(picture.notes.begin(), picture.notes.end());
     const fs::path exr = output_.name.Exr(frame.number);
     const fs::path png = output_.name.Png(frame.number);
     const bool keep_exr = !rendered && ExrValue(exr, kFingerprint) == metadata.at(kFingerprint);

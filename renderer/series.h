@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/geodesy.h"
@@ -17,9 +18,20 @@
 
 namespace alpenglow {
 
+/// A picture, and what was found out about it while it was made: not part of what its pixels depend
+/// on, written into its file beside that, and kept when the picture is developed again.
+struct NotedPicture {
+  NotedPicture(Image picture, Metadata found = {})  // NOLINT: a picture without notes is one
+      : image(std::move(picture)), notes(std::move(found)) {}
+
+  Image image;
+  Metadata notes;  // names begin with kNotePrefix
+};
+inline constexpr const char* kNotePrefix = "alpenglow.note.";
+
 /// What makes the pictures of a series.
 struct SeriesSource {
-  std::function<Image(const UtcInstant&)> render;
+  std::function<NotedPicture(const UtcInstant&)> render;
   /// Of sun and sky on a horizontal plane at the eye [lux], for ExposureRule::Kind::kIncident.
   std::function<double(const UtcInstant&)> illuminance;
   /// Everything that the pixels depend on but the instant (SceneMetadata, size, samples, layers).

@@ -34,6 +34,23 @@ std::unique_ptr<SceneRenderer> Load(const Scene& scene) {
   return renderer;
 }
 
+Metadata MetadataOf(const Scene& scene, const RenderSettings& settings,
+                    const SkyseriesOptions& options) {
+  Metadata metadata = PictureMetadata(scene, settings);
+  if (ChoosesEffects(options)) {
+    metadata["alpenglow.effects"] += fmt::format(" within {}", BudgetOf(options).max_error);
+  }
+  return metadata;
+}
+
+NotedPicture RenderFrame(const SceneRenderer& renderer, const UtcInstant& instant,
+                         const RenderSettings& settings, const SkyseriesOptions& options) {
+  if (!ChoosesEffects(options) && !options.explain) return renderer.Render(instant, settings);
+  ChosenPicture picture = renderer.RenderWithin(instant, settings, BudgetOf(options));
+  if (options.explain) fmt::print("{}\n{}\n", FormatUtc(instant), ExplainText(picture.choice));
+  return {std::move(picture.image), NotesOn(picture.choice)};
+}
+
 int Run(const SkyseriesOptions& options) {
   const ThreadLimit threads(options.common.threads);
   SeriesOutput output{FrameName(options.out)};
@@ -54,7 +71,7 @@ int Run(const SkyseriesOptions& options) {
   settings.width = size.width;
   settings.height = size.height;
   settings.samples_per_pixel = options.samples;
-  if (options.no_shafts) settings.effects = settings.effects.Without(Effect::kShafts);
+  settings.effects = EffectsOf(options);
   settings.filter = PixelFilterFromName(options.filter);
   settings.layers = options.layers;
   if (options.night_vision) settings.layers.emplace_back(kScotopicLayer);
@@ -64,9 +81,11 @@ int Run(const SkyseriesOptions& options) {
     return *loaded;
   };
   const SeriesSource source{
-      [&](const UtcInstant& instant) { return renderer().Render(instant, settings); },
+      [&](const UtcInstant& instant) {
+        return RenderFrame(renderer(), instant, settings, options);
+      },
       [&](const UtcInstant& instant) { return renderer().Illuminance(instant); },
-      PictureMetadata(scene, settings), scene.place, scene.zone};
+      MetadataOf(scene, settings, options), scene.place, scene.zone};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     fmt::print(stderr, "skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lut/command_line.h"
+#include "lut/eval.h"
 #include "lut/look.h"
 #include "lut/picture_text.h"
 #include "renderer/frame_times.h"
@@ -121,30 +122,53 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_flag("--night-vision", options.night_vision,
                "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
                "grows brighter");
-  app.add_flag("--no-shafts", options.no_shafts,
-               "Leave the air in the sun where terrain shades it, for comparison");
   app.add_flag("--resume", options.resume, "Keep intact frames that were made with these settings");
   app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small");
 }
 
 inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
-  CLI::Option* effects = app.add_option(
-      "--effects", options.effects,
-      fmt::format(
-          "all, auto (only what each picture needs within --max-error), or a list that switches on "
-          "exactly these: {}; molecules, aerosol, ozone and fine-air are on unless one of them is "
-          "named; -NAME takes one away from all (default: all; with --max-error or --explain: "
-          "auto)",
-          NameOfEffects()));
-  effects->check(ReadableBy([](const std::string& text) {
-    if (text != "auto") (void)EffectsFromText(text);
-  }));
+  CLI::Option* effects =
+      app.add_option("--effects", options.effects,
+                     "all; auto: what each picture needs within --max-error; or exactly these: " +
+                         NamesOfEffects() +
+                         ". molecules, aerosol, ozone, fine-air are on unless one of them is "
+                         "named; -NAME takes one away from all (default: all; auto with "
+                         "--max-error)")
+          ->check(ReadableBy([](const std::string& text) {
+            if (text != "auto") (void)EffectsFromText(text);
+          }));
   app.add_option("--max-error", options.max_error,
-                 "Root mean square of the relative change of the picture that leaving effects out "
-                 "may make, 1e-8 to 1 or in percent (default: 1%)")
+                 "Change of the picture that leaving effects out may make: root mean square of "
+                 "the pixels' relative changes, 1e-8 to 1 or in percent (default: 1%)")
       ->check(FaultOfRelativeError);
   app.add_flag("--explain", options.explain,
-               "Print what each effect changes and costs in each picture, and whether it is kept");
+               "Print for each picture what each effect changes, what it costs, and whether it is "
+               "kept");
+  app.add_flag("--no-shafts", options.no_shafts,
+               "Leave the air in the sun where terrain shades it, for comparison")
+      ->excludes(effects);
+  app.callback([&options] {
+    if (options.max_error && options.effects.value_or("auto") != "auto")
+      throw CLI::ValidationError("--max-error", "goes with --effects auto");
+  });
+}
+
+/// Whether each picture is to have only what it needs.
+inline bool ChoosesEffects(const SkyseriesOptions& options) {
+  return options.max_error || options.effects.value_or("all") == "auto";
+}
+
+/// What pictures may have.
+inline EffectSet EffectsOf(const SkyseriesOptions& options) {
+  if (options.no_shafts) return EffectSet::All().Without(Effect::kShafts);
+  return ChoosesEffects(options) ? EffectSet::All()
+                                 : EffectsFromText(options.effects.value_or("all"));
+}
+
+inline EffectBudget BudgetOf(const SkyseriesOptions& options) {
+  return {.max_error = RelativeErrorFromText(options.max_error.value_or("1%")).value_or(0.01),
+          .explain = options.explain,
+          .leave_out = ChoosesEffects(options)};
 }
 
 inline void AddSkyseriesOptions(CLI::App& app, SkyseriesOptions& options) {

@@ -49,6 +49,22 @@ TEST(CameraRays, PanoramaHasTheHeadingInItsCentreAndTheZenithOnTop) {
   ExpectDirection(all.Direction(123.0, 0.0), {0.0, 0.0, 1.0});
 }
 
+TEST(CameraRays, APlaceInThePictureIsFoundBackFromItsDirection) {
+  for (const double fov : {1.0, 60.0, 170.0, 360.0}) {
+    const CameraRays rays(CameraFromDegrees({}, 33.0, -20.0, 10.0, fov), 70, 50);
+    for (double y = 0.5; y < 50.0; y += 7.0) {
+      for (double x = 0.5; x < 70.0; x += 7.0) {
+        const auto place = rays.PlaceOf(rays.Direction(x, y));
+        ASSERT_TRUE(place.has_value());
+        EXPECT_NEAR((*place)[0], x, 1e-9) << fov;
+        EXPECT_NEAR((*place)[1], y, 1e-9) << fov;
+      }
+    }
+  }
+  const CameraRays north(CameraFromDegrees({}, 0.0, 0.0, 0.0, 60.0), 200, 100);
+  EXPECT_FALSE(north.PlaceOf({0.0, -1.0, 0.0}).has_value()) << "behind the camera";
+}
+
 TEST(CameraRays, DirectionsAreUnitVectorsForEveryFieldOfView) {
   for (const double fov : {0.1, 1.0, 60.0, 179.0, 360.0}) {
     const CameraRays rays(CameraFromDegrees({}, 33.0, -20.0, 10.0, fov), 7, 5);

@@ -18,6 +18,7 @@ namespace alpenglow {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 class Skyseries : public TemporaryFolder {
@@ -108,9 +109,13 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
                                        still + " --samples 1025",
                                        still + " --filter lanczos",
                                        still + " --threads -1",
-                                       still + " --effects all",
-                                       still + " --max-error 1%",
-                                       still + " --explain",
+                                       still + " --effects bloom",
+                                       still + " --effects auto,sky",
+                                       still + " --effects auto --no-shafts",
+                                       still + " --effects all --max-error 1%",
+                                       still + " --max-error 0",
+                                       still + " --max-error 1%%",
+                                       still + " --max-error 101%",
                                        still + " --from sunrise",
                                        still + " --progress loud",
                                        still + " --at noon --from sunrise --to sunset",
@@ -177,6 +182,45 @@ TEST_F(Skyseries, AMeasuredLampThatIsNotThereExitsWith3) {
   const Outcome outcome = Run(InFolder("s.toml") + " --size 16x9 --out " + InFolder("a.exr"));
   EXPECT_EQ(outcome.status, 3);
   EXPECT_THAT(outcome.error, HasSubstr("none.ies"));
+}
+
+TEST_F(Skyseries, EffectsThatAreLeftOutAreExplainedAndNotedInTheFile) {
+  const Outcome outcome = Run(SmallStill() + " --effects auto --max-error 2% --explain");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("2026-06-21T10:00:00Z"));
+  EXPECT_THAT(outcome.out, ContainsRegex("\nsky .* kept\n"));
+  EXPECT_THAT(outcome.out, ContainsRegex("\nshafts .* not in this scene\n"));
+  EXPECT_THAT(outcome.out, ContainsRegex("\nozone .* kept, free\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("budget 2.0 % rms"));
+  const Metadata metadata = ReadExrMetadata(folder_ / "still.exr");
+  EXPECT_EQ(metadata.at("alpenglow.effects"), "all within 0.02");
+  EXPECT_THAT(metadata.at("alpenglow.note.effects_left_out"), HasSubstr("aerial"))
+      << "the ground is out of sight";
+  EXPECT_THAT(metadata.at("alpenglow.note.effects_change"), HasSubstr("rms"));
+}
+
+TEST_F(Skyseries, ExplainingAloneLeavesNothingOut) {
+  ASSERT_EQ(Run(SmallStill()).status, 0);
+  const Image plain = ReadExr(folder_ / "still.exr");
+  const Outcome outcome = Run(SmallStill() + " --explain");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, ContainsRegex("\nsky .* kept\n"));
+  EXPECT_EQ(ReadExr(folder_ / "still.exr").rgb, plain.rgb);
+}
+
+TEST_F(Skyseries, AnotherBudgetOfEffectsIsRenderedAgainAndTheSameIsKept) {
+  const std::string still = SmallStill() + " --resume";
+  ASSERT_EQ(Run(still + " --effects all").status, 0);
+  EXPECT_THAT(Run(still).error, HasSubstr("0 rendered, 0 developed again, 1 kept")) << "all is all";
+  EXPECT_THAT(Run(still + " --effects auto").error, HasSubstr("1 rendered"));
+  const Metadata made = ReadExrMetadata(folder_ / "still.exr");
+  EXPECT_THAT(Run(still + " --max-error 1%").error, HasSubstr("1 kept"));
+  EXPECT_THAT(Run(still + " --effects auto --exposure 12").error, HasSubstr("1 developed again"));
+  EXPECT_EQ(ReadExrMetadata(folder_ / "still.exr").at("alpenglow.note.effects_left_out"),
+            made.at("alpenglow.note.effects_left_out"))
+      << "what was found out when the picture was made is kept with its pixels";
+  EXPECT_THAT(Run(still + " --max-error 2%").error, HasSubstr("1 rendered"));
+  EXPECT_THAT(Run(still + " --effects=-skylight").error, HasSubstr("1 rendered"));
 }
 
 TEST_F(Skyseries, OneAndManyThreadsMakeTheSamePixels) {
