@@ -48,6 +48,11 @@ std::string TopicKey(const ReportTopic& topic) {
   return topic.key + "." + FileKey(PlaceName(topic));
 }
 
+/// Of the atmosphere, where there is one.
+std::string HashText(const ReportTopic& topic) {
+  return topic.medium.name.empty() ? "" : fmt::format("{:016x}", MediumHash(topic.medium));
+}
+
 bool IsMeasuredEverywhere(const ReportRow& row) {
   return std::all_of(row.at.begin(), row.at.end(),
                      [](const RegimeResult& result) { return result.IsMeasured(); });
@@ -394,12 +399,11 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
       const RegimeResult& at = row.at[r];
       if (!at.IsMeasured()) continue;
       const ReportRegime& regime = topic.regimes[r];
-      text +=
-          fmt::format("{},{},{},{:016x},{},{},{},{},{},", topic.key,
-                      topic.scene.empty() ? "" : CsvText(topic.scene), CsvText(topic.medium.name),
-                      MediumHash(topic.medium), CsvText(row.series), CsvText(row.parameter),
-                      row.origin == MethodOrigin::kOurs ? "this library" : "literature",
-                      row.memory_bytes, CsvNumber(row.build_s));
+      text += fmt::format(
+          "{},{},{},{},{},{},{},{},{},", topic.key, topic.scene.empty() ? "" : CsvText(topic.scene),
+          CsvText(topic.medium.name), HashText(topic), CsvText(row.series), CsvText(row.parameter),
+          row.origin == MethodOrigin::kOurs ? "this library" : "literature", row.memory_bytes,
+          CsvNumber(row.build_s));
       text += fmt::format(
           "{},{},{},{},{},{},", regime.key,
           regime.sun ? fmt::format("{},{}", regime.sun->lowest_deg, regime.sun->highest_deg) : ",",

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "renderer/provenance.h"
+#include "renderer/report_command.h"
 #include "renderer/series.h"
 #include "renderer/skyseries_options.h"
 
@@ -99,8 +100,11 @@ int Main(int argc, char** argv) {
                "skyseries");
   SkyseriesOptions options;
   AddSkyseriesOptions(app, options);
+  const std::function<void()> report = AddPictureReportCommand(app);
   if (const std::optional<int> status = ParseCommandLine(app, argc, argv)) return *status;
-  return Run(options);
+  if (!app.got_subcommand("report")) return Run(options);
+  report();
+  return 0;
 }
 
 }  // namespace

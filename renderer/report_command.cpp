@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/report_command.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "atmosphere/medium.h"
+#include "renderer/report.h"
+
+namespace alpenglow {
+namespace {
+
+struct PictureReportOptions {
+  CommonOptions common;
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool quick = false;
+};
+
+void WriteMeasuredReport(const PictureReportOptions& options) {
+  const ThreadLimit threads(options.common.threads);
+  std::vector<Medium> mediums;
+  if (options.atmosphere) {
+    mediums.push_back(ReadMedium(*options.atmosphere));
+  } else {
+    mediums = {MediumPreset("earth"), MediumPreset("hazy")};
+    if (options.quick) mediums.pop_back();
+  }
+  const Report report = MeasurePictureReport(
+      {.mediums = mediums, .quick = options.quick, .progress = options.common.progress_style()});
+  WriteReport(report, options.out);
+  if (!options.common.quiet) fmt::print("{}", SummaryOf(report));
+}
+
+}  // namespace
+
+std::function<void()> AddPictureReportCommand(CLI::App& app) {
+  const auto options = std::make_shared<PictureReportOptions>();
+  CLI::App& report = *app.add_subcommand(
+      "report",
+      "Measure the air before mountains, shafts, lamps and whole pictures against slow judges, "
+      "error against time: CSV, SVG plots, summary.md and a page, index.html.");
+  report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
+  report.add_option("--out", options->out, "Folder for the report; made when missing")->required();
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) of the air before mountains; without it the presets "
+                    "earth and hazy");
+  report.add_flag("--quick", options->quick,
+                  "Few rays and small pictures: a test of the report, not of the methods");
+  AddCommonOptions(report, "skyseries", options->common);
+  report.footer("Example: skyseries report --out report");
+  return [options] { WriteMeasuredReport(*options); };
+}
+
+}  // namespace alpenglow
