@@ -52,7 +52,8 @@ class PicturesTopic {
       : effort_(effort), width_(effort.quick ? 24 : 96), height_(effort.quick ? 14 : 54) {
     const std::uint64_t before = ResidentBytes();
     const auto [range, range_s] = Once([&] { return Range(effort.quick); });
-    const auto [runway, runway_s] = Once([] { return RunwayScene(100, true); });
+    const auto [runway, runway_s] =
+        Once([&] { return RunwayScene(effort.quick ? 10 : 100, true); });
     range_bytes_ = std::max(ResidentBytes(), before) - before;
     load_s_ = std::max(range_s, runway_s);
     for (std::size_t r = 0; r < kScenes; ++r)

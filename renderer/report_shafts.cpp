@@ -67,7 +67,7 @@ Place Waves() {
     }
   }
   mesh.normals.assign(mesh.positions.size(), {0.0F, 0.0F, 1.0F});  // not looked at
-  return {Terrain(std::move(mesh)), kHeight_m + 300.0};
+  return {Terrain(std::move(mesh)), static_cast<double>(kHeight_m) + 300.0};
 }
 
 Place OverTheRange() {

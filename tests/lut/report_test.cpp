@@ -7,16 +7,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "lut/multiple_scattering.h"
 #include "lut/report_baselines.h"
 #include "lut/report_rays.h"
+#include "tests/report_files.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -49,28 +48,6 @@ std::string UsualMoments() {
   const DiffuseLightOptions usual;
   return fmt::format("moments to degree {}, {} x {}", usual.degree, usual.altitudes,
                      usual.sun_angles);
-}
-
-std::vector<std::string> Lines(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// Cells of a line of CSV, without quotation marks.
-std::vector<std::string> Cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  return cells;
 }
 
 class ReportFiles : public TemporaryFolder {};
@@ -107,16 +84,15 @@ TEST_F(ReportFiles, NumbersOfThePageAreThoseOfTheTables) {
     shown.push_back((*at)[1]);
   std::vector<std::string> expected;
   for (const ReportTopic& topic : QuickReport().topics) {
-    const std::vector<std::string> header = Cells(Lines(CsvHeader())[0]);
-    const std::vector<std::string> lines = Lines(CsvOfTopic(topic, QuickReport().maker));
+    const std::vector<std::string> header = CellsOf(LinesOf(CsvHeader())[0]);
+    const std::vector<std::string> lines = LinesOf(CsvOfTopic(topic, QuickReport().maker));
     for (std::size_t i = 0; i < lines.size(); i += kReportRegimes) {
       double spread = -1.0;
       std::string spread_text;
       for (std::size_t r = 0; r < kReportRegimes; ++r) {
-        const std::vector<std::string> cells = Cells(lines[i + r]);
+        const std::vector<std::string> cells = CellsOf(lines[i + r]);
         ASSERT_EQ(cells.size(), header.size());
-        std::map<std::string, std::string> value;
-        for (std::size_t k = 0; k < cells.size(); ++k) value[header[k]] = cells[k];
+        auto value = ValuesByName(header, cells);
         EXPECT_EQ(value["regime"], kRegimes[r].key);
         if (r == 0) expected.insert(expected.end(), {value["memory_bytes"], value["build_s"]});
         for (const char* name : {"time_s", "error_rms", "error_99", "error_max"})
