@@ -143,19 +143,23 @@ class LampRay {
     return RelativeIntensity(lamp_.profile, sine * along_ + cosine * across_);
   }
 
-  // Layers that scatter at least a fiftieth of the densest one, somewhere on the lamp's and the
-  // eye's ways: for scouting, where the shape of the integrand is enough.
+  // Layers that scatter at least a fiftieth of the densest one there, somewhere on the ray: for
+  // scouting, where the shape of the integrand is enough. Over fog it is the clear air's.
   void ChooseLayers(double begin_z, double end_z) {
-    std::array<double, kMostLampLayers> most{};
-    double greatest = 0.0;
+    constexpr int kHeights = 4;
+    std::array<bool, kMostLampLayers> is_great{};
+    for (int i = 0; i < kHeights; ++i) {
+      const double z = begin_z + (end_z - begin_z) * i / (kHeights - 1.0);
+      std::array<double, kMostLampLayers> here{};
+      for (std::size_t k = 0; k < air_.layers.size(); ++k)
+        here[k] = air_.layers[k].scattering_per_m[reference_] * std::exp(-z * inverse_h_[k]);
+      const double greatest = *std::max_element(here.begin(), here.end());
+      for (std::size_t k = 0; k < air_.layers.size(); ++k)
+        is_great[k] = is_great[k] || here[k] >= 0.02 * greatest;
+    }
     for (std::size_t k = 0; k < air_.layers.size(); ++k) {
       all_layers_.push_back(k);
-      const double lowest = std::min({z_eye_, z_lamp_, begin_z, end_z});
-      most[k] = air_.layers[k].scattering_per_m[reference_] * std::exp(-lowest * inverse_h_[k]);
-      greatest = std::max(greatest, most[k]);
-    }
-    for (const std::size_t k : all_layers_) {
-      if (most[k] >= 0.02 * greatest) great_layers_.push_back(k);
+      if (is_great[k]) great_layers_.push_back(k);
     }
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/airlight.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -279,6 +280,26 @@ TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
       }
       EXPECT_NEAR(AirlightOnSurface(air, 30.0, cos_normal)[0] / sum, 1.0, 1e-2)
           << "g " << g << ", cosine " << cos_normal;
+    }
+  }
+}
+
+// Fixed on 2026-11-21: panels were made for the fog alone, and up to half of the light of rays that
+// leave it was missed, whatever the number of nodes.
+TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
+  LampAir air = HomogeneousAir(4e-3, 4e-3, HenyeyGreenstein(0.8));
+  air.layers[0].scale_height_m = 25.0;
+  air.layers.push_back(air.layers[0]);
+  air.layers[1].scale_height_m = 8000.0;
+  air.layers[1].scattering_per_m[0] = air.layers[1].extinction_per_m[0] = 1.2e-5;
+  air.layers[1].phase = {.kind = PhaseKind::kRayleigh};
+  air.altitude_at_origin_m = 38.0;
+  for (const double distance : {430.0, 1200.0, 2200.0}) {
+    for (const double climb : {0.05, 0.2}) {
+      Lamp lamp = LampAt({distance, 23.0, -37.0});
+      lamp.radius_m = 0.1;
+      ExpectNearTheJudge(air, lamp, Along({1.0, 0.0, climb}, 4.0 * distance + 20e3), 2e-3,
+                         fmt::format("a lamp at {} m, a ray that climbs {}", distance, climb));
     }
   }
 }
