@@ -15,6 +15,20 @@ namespace {
 
 double Logarithmic(double low, double high, double u) { return low * std::pow(high / low, u); }
 
+/// Molecules and a little haze at 550 nm, as the default air has them at the ground.
+void AddClearAir(LampAir& air) {
+  LampLayer molecules = air.layers[0];
+  molecules.scale_height_m = 8000.0;
+  molecules.scattering_per_m[0] = molecules.extinction_per_m[0] = 1.2e-5;
+  molecules.phase = {.kind = PhaseKind::kRayleigh};
+  LampLayer haze = air.layers[0];
+  haze.scale_height_m = 1200.0;
+  haze.scattering_per_m[0] = 3.8e-5;
+  haze.extinction_per_m[0] = 4.2e-5;
+  air.layers.push_back(molecules);
+  air.layers.push_back(haze);
+}
+
 void MakeBeam(int i, Lamp& lamp) {
   lamp.profile.kind = LampProfile::Kind::kCone;
   lamp.profile.inner_rad = 0.05 + 0.3 * Halton(i, 17);
@@ -44,12 +58,15 @@ double SourceAt(const LampWork& work, const Approach& approach, double t) {
   const glm::dvec3 point = work.segment.origin_m + t * work.segment.direction;
   const double sinh = approach.Sinh(t);
   const double squared = 1.0 + sinh * sinh;
-  const LampLayer& layer = work.air.layers[0];
-  return TransmittanceBetween(work.air, work.segment.origin_m, point)[0] *
+  double scattered = 0.0;
+  for (const LampLayer& layer : work.air.layers) {
+    scattered += layer.scattering_per_m[0] *
+                 std::exp(-work.air.AltitudeOf(point) / layer.scale_height_m) *
+                 Phase(layer.phase, -sinh / std::sqrt(squared));
+  }
+  return scattered * TransmittanceBetween(work.air, work.segment.origin_m, point)[0] *
          TransmittanceBetween(work.air, point, work.lamp.position_m)[0] *
-         RelativeIntensity(work.lamp, glm::normalize(point - work.lamp.position_m)) *
-         layer.scattering_per_m[0] * std::exp(-work.air.AltitudeOf(point) / layer.scale_height_m) *
-         Phase(layer.phase, -sinh / std::sqrt(squared)) /
+         RelativeIntensity(work.lamp, glm::normalize(point - work.lamp.position_m)) /
          (approach.distance_m * approach.distance_m * squared);
 }
 
@@ -99,6 +116,7 @@ LampWork LampWorkNumber(int i, const LampWorkKind& kind) {
   work.air =
       HomogeneousAir(0.9 * sigma, sigma, {.kind = PhaseKind::kHenyeyGreenstein, .g = kind.g});
   work.air.layers[0].scale_height_m = kind.scale_height_m;
+  if (kind.clear_air) AddClearAir(work.air);
   const glm::dvec3 forward(std::cos(pitch), 0.0, std::sin(pitch));
   const glm::dvec3 lift(-std::sin(pitch), 0.0, std::cos(pitch));
   const glm::dvec3 off = std::cos(turn) * lift + std::sin(turn) * glm::dvec3(0.0, 1.0, 0.0);

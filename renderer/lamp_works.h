@@ -12,10 +12,11 @@ struct LampWorkKind {
   double g = 0.8;                                                   // Henyey-Greenstein
   double scale_height_m = std::numeric_limits<double>::infinity();  // of the fog
   bool beam = false;                                                // a cone instead of all around
-  bool through = false;  // the ray meets the lamp, a ball of 0.1 m
+  bool through = false;    // the ray meets the lamp, a ball of 0.1 m
+  bool clear_air = false;  // molecules and aerosol stand with the fog and over it
 };
 
-/// A lamp, a ray and one layer of fog.
+/// A lamp, a ray and the air around them.
 struct LampWork {
   LampAir air;
   Lamp lamp;

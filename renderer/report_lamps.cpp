@@ -40,9 +40,9 @@ const std::array<LampWorkKind, kKinds>& Kinds() {
   static const std::array<LampWorkKind, kKinds> kinds{
       {{.g = 0.0},
        {.g = 0.8},
-       {.g = 0.8, .scale_height_m = 30.0},
-       {.g = 0.8, .scale_height_m = 30.0, .beam = true},
-       {.g = 0.8, .scale_height_m = 30.0, .through = true}}};
+       {.g = 0.8, .scale_height_m = 30.0, .clear_air = true},
+       {.g = 0.8, .scale_height_m = 30.0, .beam = true, .clear_air = true},
+       {.g = 0.8, .scale_height_m = 30.0, .through = true, .clear_air = true}}};
   return kinds;
 }
 
@@ -114,7 +114,8 @@ class AirlightTopic {
     topic_.title = "A lamp in fog: light of one lamp that the air scatters towards the eye";
     topic_.what =
         "Lamps 0.1 to 100 m beside rays of 10 to 1000 m, or behind them, in fog of extinction "
-        "1e-4 to 0.1 per metre; the question is the radiance that the fog on the ray scatters "
+        "1e-4 to 0.1 per metre, of one density, or of a scale height of 30 m under clear air; the "
+        "question is the radiance that the fog on the ray scatters "
         "once.";
     topic_.error_unit = "parts of the radiance, which may be as faint as it likes";
     topic_.notes =

@@ -3,9 +3,9 @@
 // long anything takes.
 #include "renderer/report.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -19,7 +19,6 @@ namespace alpenglow {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 /// A quick report of the default air, measured once.
 const Report& QuickReport() {
@@ -95,7 +94,8 @@ TEST_F(PictureReportFiles, LinesHaveAllColumnsAndEveryNumberIsOne) {
 
 TEST_F(PictureReportFiles, ThePageHoldsEverySectionAndNoOtherFile) {
   const std::string page = PageOf(QuickReport());
-  for (const ReportTopic& topic : QuickReport().topics) EXPECT_THAT(page, HasSubstr(topic.title));
+  for (const ReportTopic& topic : QuickReport().topics)
+    EXPECT_NE(page.find(XmlText(topic.title)), std::string::npos) << topic.title;
   for (const char* outside : {"<link", "<script", "<img", "src=", ">nan", ">inf", "@reading@"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
 }
