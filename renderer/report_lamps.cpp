@@ -209,8 +209,10 @@ class ManyLampsTopic {
     const LampSettings settings{.share_of_error = share_of_error};
     for (std::size_t r = 0; r < stages_.size(); ++r) {
       const CameraRays camera = CameraOf(r);
-      const auto [plan, seconds] =
-          Built([&] { return light_[r]->PlanFor(camera, kWidth, kHeight, settings, trace_); });
+      const auto [plan, seconds] = Built([&] {
+        return light_[r]->PlanFor(camera, kWidth, kHeight, settings,
+                                  [this](const CameraRay& ray) { return LengthOf(ray.direction); });
+      });
       row.build_s = std::max(row.build_s, tree_s_ + seconds);
       Measure(r, row, [&, &shared = plan](std::size_t i) {
         const auto [x, y] = pixels_[i];
@@ -265,18 +267,20 @@ class ManyLampsTopic {
   [[nodiscard]] CameraRays CameraOf(std::size_t r) const {
     return {stages_[r]->scene.camera, kWidth, kHeight};
   }
+  /// To the ground below the eye [m].
+  [[nodiscard]] double LengthOf(const glm::dvec3& direction) const {
+    return direction.z < 0.0 ? eye_height_m_ / -direction.z
+                             : std::numeric_limits<double>::infinity();
+  }
   [[nodiscard]] LampRayEnd RayEnd(std::size_t r, std::size_t i) const {
     const glm::dvec3 direction = CameraOf(r).Direction(pixels_[i][0] + 0.5, pixels_[i][1] + 0.5);
-    return {direction, trace_(direction)};
+    return {direction, LengthOf(direction)};
   }
 
   void Judge(std::size_t r) {
     stages_.push_back(std::make_unique<LampStage>(RunwayScene(kLampCounts[r], false)));
     const LampStage& stage = *stages_.back();
-    const double height_m = stage.ground.eye_height_m;
-    trace_ = [height_m](const glm::dvec3& direction) {
-      return direction.z < 0.0 ? height_m / -direction.z : std::numeric_limits<double>::infinity();
-    };
+    eye_height_m_ = stage.ground.eye_height_m;
     auto [light, seconds] = Built([&] {
       return std::make_unique<LampLight>(stage.scene, stage.ground, stage.medium, stage.colour);
     });
@@ -328,7 +332,7 @@ class ManyLampsTopic {
   std::vector<std::array<int, 2>> pixels_;
   std::vector<std::unique_ptr<LampStage>> stages_;  // lamps refer to their grounds
   std::vector<std::unique_ptr<LampLight>> light_;
-  LampLight::Trace trace_;  // to the ground below the eye
+  double eye_height_m_ = 0.0;
   std::vector<std::vector<Bands<float>>> truth_;
   double tree_s_ = 0.0, judge_s_ = 0.0;
   ReportTopic topic_;

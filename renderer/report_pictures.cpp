@@ -13,7 +13,7 @@
 #include "atmosphere/constants.h"
 #include "lut/program.h"
 #include "renderer/frame_times.h"
-#include "renderer/picture_error.h"
+#include "renderer/picture_change.h"
 #include "renderer/render.h"
 #include "renderer/report_measure.h"
 #include "renderer/scene_options.h"
@@ -101,8 +101,10 @@ class PicturesTopic {
         "aeroplane's landing lights in height fog; sky, air, shafts, shadows and lamps are "
         "rendered as skyseries renders them.";
     topic_.error_unit =
-        "parts of linear red, green and blue of the pixel; what is darker than a hundredth of the "
-        "mean counts as if it were that bright";
+        "parts of the pixel, as a distance of linear red, green and blue; what is darker than a "
+        "sixteenth of middle grey counts as if it were that bright, and 2 is the most (light in "
+        "one "
+        "picture and not in the other)";
     topic_.notes =
         "Most of the error of few samples is at edges of terrain, which are thinner than a pixel: "
         "a sample sees one side of them. Time is the processor time of all threads for a pixel; "
@@ -147,7 +149,7 @@ class PicturesTopic {
     return {std::move(renderer), ProcessorSeconds() - start};
   }
 
-  [[nodiscard]] int ReferenceSamples() const { return effort_.quick ? 36 : 100; }
+  [[nodiscard]] int ReferenceSamples() const { return effort_.quick ? 32 : 128; }
 
   [[nodiscard]] static UtcInstant InstantOf(std::size_t r) {
     const Scene range = SceneFromOptions({});
@@ -198,7 +200,7 @@ class PicturesTopic {
       const double start = ProcessorSeconds();
       const Image image = scene.renderer->Render(scene.instant, settings);
       seconds.push_back(ProcessorSeconds() - start);
-      result.error = StatisticsOfErrors(ErrorsOfPicture(image, scene.reference), 0.0);
+      result.error = StatisticsOfErrors(ChangesOf(scene.reference, image), 0.0);
       ThrowIfInterrupted();
     }
     std::sort(seconds.begin(), seconds.end());
@@ -206,6 +208,14 @@ class PicturesTopic {
     // Processors' clocks tick in microseconds: a small picture may take none.
     result.time_s = std::max(seconds.front() - (shafts ? scene.frame_s : 0.0), 1e-6) / Pixels();
     result.time_spread = seconds.back() / seconds.front() - 1.0;
+  }
+
+  [[nodiscard]] static std::vector<double> ChangesOf(const Image& reference, const Image& image) {
+    const double floor = ChangeFloor(reference);
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+      changes.push_back(PixelChange(reference.rgb[i], image.rgb[i], floor));
+    return changes;
   }
 
   [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
@@ -284,7 +294,7 @@ ReportTopic MeasurePictures(const ReportEffort& effort) {
   for (const int samples : {1, 4, 16}) topic.AddSamples(samples);
   topic.AddNodes(4);
   if (!effort.quick) {
-    topic.AddSamples(36);
+    topic.AddSamples(64);
     for (const int nodes : {2, 6, 8}) topic.AddNodes(nodes);
     topic.AddWithout(Effect::kShafts, "shafts");
   }

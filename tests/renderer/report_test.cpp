@@ -11,7 +11,6 @@
 
 #include "atmosphere/error.h"
 #include "renderer/lamp_works.h"
-#include "renderer/picture_error.h"
 #include "tests/report_files.h"
 #include "tests/temporary_folder.h"
 
@@ -145,28 +144,6 @@ TEST(LampWorks, RulesAgreeWithTheJudgeWhenTheyTakeManyPoints) {
     EXPECT_NEAR(AirlightByRule(LampRule::kHalfAngle, work, 64) / work.truth, 1.0, 1e-3);
     EXPECT_NEAR(AirlightByRule(LampRule::kAsinh, work, 64) / work.truth, 1.0, 1e-3);
   }
-}
-
-TEST(PictureError, IsRelativeAndDarkPixelsCountAsAHundredthOfTheMean) {
-  Image reference(10, 10);
-  for (auto& pixel : reference.rgb) pixel = {1.0F, 2.0F, 4.0F};
-  Image picture = reference;
-  picture.rgb[7] = {1.1F, 2.0F, 4.0F};
-  reference.rgb[8] = picture.rgb[8] = {0.0F, 2.0F, 4.0F};
-  picture.rgb[8][0] = 1e-3F;
-  const std::vector<double> errors = ErrorsOfPicture(picture, reference);
-  ASSERT_EQ(errors.size(), 300U);
-  EXPECT_NEAR(errors[7], 0.1, 1e-6);
-  EXPECT_NEAR(errors[8], 1e-3 / (0.01 * 98.0 / 99.0), 1e-3)
-      << "the mean leaves out the brightest of the hundred pixels, one of 99 others is black";
-  for (std::size_t i = 9; i < errors.size(); ++i) EXPECT_EQ(errors[i], 0.0);
-}
-
-TEST(PictureError, PicturesThatCannotBeComparedAreRefused) {
-  EXPECT_THROW((void)ErrorsOfPicture(Image(4, 3), Image(3, 4)), InputError);
-  Image broken(2, 2);
-  broken.rgb[1][1] = std::nanf("");
-  EXPECT_THROW((void)ErrorsOfPicture(broken, Image(2, 2)), InputError);
 }
 
 }  // namespace
