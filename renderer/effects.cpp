@@ -22,6 +22,8 @@ constexpr std::array<EffectText, kEffects> kTexts{{
     {Effect::kRelief, "relief", "ground between samples of elevation is smooth", false, false},
     {Effect::kLights, "lights", "lamps are off", false, false},
     {Effect::kBeams, "beams", "air does not scatter the light of lamps to the eye", false, false},
+    {Effect::kFogGlow, "fog-glow", "fog scatters light of lamps alone", false, false},
+    {Effect::kVolumes, "volumes", "volumes of smoke and fog are not there", false, false},
     {Effect::kMolecules, "molecules", "air without molecules", true, true},
     {Effect::kAerosol, "aerosol", "air without aerosol", true, true},
     {Effect::kOzone, "ozone", "air without ozone", true, true},

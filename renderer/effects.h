@@ -27,6 +27,8 @@ enum class Effect : std::size_t {
   kRelief,
   kLights,
   kBeams,
+  kFogGlow,
+  kVolumes,
   kMolecules,
   kAerosol,
   kOzone,

@@ -8,6 +8,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/sun_disk.h"
+#include "renderer/media_light.h"
 
 namespace alpenglow {
 namespace {
@@ -41,14 +42,19 @@ GroundLight::GroundLight(const SceneGround& ground, const SceneGeometry& geometr
                          const LampLight& lamps)
     : ground_(ground), geometry_(geometry), air_(air), diffuse_(diffuse), lamps_(lamps) {}
 
-LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
-  const double altitude = std::max(geometry_.AltitudeOf(point), 0.0);
-  const double r = geometry_.radius_m();
-  const glm::dvec3 up = geometry_.UpAt(point);
-  const double mu_s = std::clamp(glm::dot(up, light.to_sun), -1.0, 1.0);
+LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
+                    const glm::dvec3& to_sun, double sun_radius_rad) {
+  const double altitude = std::max(geometry.AltitudeOf(point), 0.0);
+  const double r = geometry.radius_m();
+  const glm::dvec3 up = geometry.UpAt(point);
+  const double mu_s = std::clamp(glm::dot(up, to_sun), -1.0, 1.0);
   const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
-  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, light.sun_radius_rad);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun_radius_rad);
   return {altitude, up, mu_s, disk.fraction, disk.mu_s_effective};
+}
+
+LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
+  return alpenglow::LocalSunAt(geometry_, point, light.to_sun, light.sun_radius_rad);
 }
 
 double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
@@ -71,7 +77,10 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
-  return diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+  const BandLight clear = diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+  if (light.media == nullptr) return clear;
+  const SkyThroughFog fog = light.media->SkyOnSurface(sun.altitude_m, normal_mu);
+  return fog.left * clear + fog.added;
 }
 
 BandLight GroundLight::AlbedoOf(const Hit& hit, const Lighting& light, const glm::dvec3& up) const {
@@ -95,6 +104,9 @@ GroundRadiance GroundLight::Towards(const Hit& hit, const Lighting& light, const
     sent.sun_visibility = static_cast<float>(sun.visible_fraction);
     irradiance = static_cast<float>(sun.visible_fraction * cosine) *
                  air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+    if (light.media != nullptr) {
+      irradiance = irradiance * light.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
+    }
   }
   if (light.effects.Has(Effect::kSkylight))
     irradiance = irradiance + SkyIrradiance(hit, light, sun);

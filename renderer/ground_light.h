@@ -17,6 +17,8 @@
 
 namespace alpenglow {
 
+class MediaLight;
+
 /// Light in the air and on surfaces for one position of the sun.
 struct Lighting {
   glm::dvec3 to_sun;  // unit
@@ -24,6 +26,7 @@ struct Lighting {
   BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
   MountainSurface surface;  // as the season covers it
   EffectSet effects = EffectSet::All();
+  const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: none
 };
 
 /// The sun as it stands, the ground as the season covers it at that latitude.
@@ -38,6 +41,10 @@ struct LocalSun {
   double visible_fraction;  // of the disk over the planet's horizon
   double mu_s_effective;    // of that part
 };
+
+/// @param to_sun  unit, towards the disk's centre.
+[[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
+                                  const glm::dvec3& to_sun, double sun_radius_rad);
 
 /// Light that leaves the ground towards the eye.
 struct GroundRadiance {

@@ -22,6 +22,7 @@
 #include "atmosphere/error.h"
 #include "atmosphere/quadrature.h"
 #include "lut/program.h"
+#include "renderer/band_light.h"
 #include "renderer/ies_file.h"
 
 namespace alpenglow {
@@ -592,16 +593,18 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
   return sum;
 }
 
-Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray,
-                             double pixel_angle_rad) const {
+Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray, double pixel_angle_rad,
+                             const std::function<Bands<float>(double)>& left) const {
   Bands<float> sum(state_->bands);
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = state_->nodes[index].light;
     const double share =
         state_->SeenPerSr(placed, ray, pixel_angle_rad) / (placed.distance_m * placed.distance_m);
     if (share == 0.0) continue;
+    Bands<float> arriving = placed.towards_eye;
+    if (left) arriving = left(placed.distance_m) * arriving;
     for (std::size_t band = 0; band < sum.count; ++band) {
-      sum[band] += placed.towards_eye[band] * static_cast<float>(share);
+      sum[band] += arriving[band] * static_cast<float>(share);
     }
   }
   return sum;

@@ -116,8 +116,10 @@ class LampLight {
   /// Radiance of the lamps themselves. A lamp smaller than a pixel is drawn as a soft disk of that
   /// size that has its light; a lens spreads it over the shape of its iris, where terrain does not
   /// stand between.
+  /// @param left  what but air and fog leaves of light from a distance; null: all.
   [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
-                                  double pixel_angle_rad) const;
+                                  double pixel_angle_rad,
+                                  const std::function<Bands<float>(double)>& left = nullptr) const;
 
   /// Unit directions from the eye to the scene's lamps.
   [[nodiscard]] std::vector<glm::dvec3> Directions() const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/local_media.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -83,6 +84,15 @@ double FogBase(const Fog& fog, const SceneGround& ground) {
   return hit ? kAbove_m - hit->distance_m : 0.0;
 }
 
+double FogBottom(const FogLayer& fog, const SceneGround& ground) {
+  if (!ground.terrain) return std::max(fog.base_m(), 0.0);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& [x, y, z] : ground.terrain->mesh().positions) {
+    lowest = std::min(lowest, fog.AltitudeOf({x, y, z}));
+  }
+  return std::max(fog.base_m(), lowest);
+}
+
 }  // namespace
 
 double LocalMedium::DensityAt(const glm::dvec3& point) const {
@@ -117,11 +127,22 @@ LocalMedia::LocalMedia(const Scene& scene, const SceneGround& ground, const Medi
     all_.push_back({FogLayer(FogBase(*scene.fog, ground), scene.fog->scale_height_m,
                              medium.planet_radius_m, medium.atmosphere_height_m),
                     OpticsOf(*scene.fog, bands_)});
+    fog_bottom_m_ = FogBottom(*all_.back().fog(), ground);
   }
 }
 
 LocalMedia::LocalMedia(std::vector<LocalMedium> all, std::size_t bands)
-    : all_(std::move(all)), bands_(bands) {}
+    : all_(std::move(all)), bands_(bands) {
+  if (fog() != nullptr) fog_bottom_m_ = all_.back().fog()->base_m();
+}
+
+LocalMedia LocalMedia::Only(bool volumes, bool with_fog) const {
+  LocalMedia some = *this;
+  std::erase_if(some.all_, [&](const LocalMedium& medium) {
+    return medium.fog() != nullptr ? !with_fog : !volumes;
+  });
+  return some;
+}
 
 Bands<double> LocalMedia::OpticalDepthTowards(const glm::dvec3& point,
                                               const glm::dvec3& direction) const {

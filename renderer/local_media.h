@@ -47,8 +47,10 @@ class LocalMedia {
  public:
   /// Reads the grids of volumes. Throws InputError "volume N: ..." for those that cannot be read.
   LocalMedia(const Scene& scene, const SceneGround& ground, const Medium& medium);
-  /// Any bodies, each of `bands` bands; fog, if there is any, last.
+  /// Any bodies, each of `bands` bands; fog, if there is any, last, over ground at its base.
   LocalMedia(std::vector<LocalMedium> all, std::size_t bands);
+  /// Some of them: the volumes or none, the fog or none.
+  [[nodiscard]] LocalMedia Only(bool volumes, bool fog) const;
 
   [[nodiscard]] bool IsNothing() const { return all_.empty(); }
   [[nodiscard]] bool HasVolumes() const {
@@ -60,6 +62,9 @@ class LocalMedia {
     return !all_.empty() && all_.back().fog() != nullptr ? &all_.back() : nullptr;
   }
 
+  /// Altitude of the ground under the fog: its base, or the lowest ground if that is higher.
+  [[nodiscard]] double fog_bottom_m() const { return fog_bottom_m_; }
+
   /// Of everything that stands between a point and the end of a direction.
   [[nodiscard]] Bands<double> OpticalDepthTowards(const glm::dvec3& point,
                                                   const glm::dvec3& direction) const;
@@ -67,6 +72,7 @@ class LocalMedia {
  private:
   std::vector<LocalMedium> all_;
   std::size_t bands_;
+  double fog_bottom_m_ = 0.0;
 };
 
 /// Planck's spectral radiance [W m^-2 sr^-1 nm^-1]. Constants of CODATA 2018, which are exact.

@@ -31,7 +31,7 @@ std::vector<float> ValuesOfMiddle(const std::string& layer, const Hit& hit) {
 const std::vector<std::string>& KnownLayers() {
   static const std::vector<std::string> layers{"depth",     "normal",        "albedo",
                                                "inscatter", "transmittance", "sun_visibility",
-                                               "lamps",     kScotopicLayer};
+                                               "lamps",     "volumes",       kScotopicLayer};
   return layers;
 }
 
@@ -110,12 +110,13 @@ std::vector<float> PixelWriter::ValuesOf(const std::string& layer,
     mean = mean + share * (layer == "albedo"          ? ray.albedo
                            : layer == "transmittance" ? ray.transmittance
                            : layer == "lamps"         ? ray.lamps
+                           : layer == "volumes"       ? ray.volumes
                            : layer == kScotopicLayer  ? ray.radiance
                                                       : ray.inscatter);
   }
   if (layer == kScotopicLayer)
     return {static_cast<float>(colour_.ScotopicLuminance(InDouble(mean)))};
-  const bool is_light = layer == "inscatter" || layer == "lamps";
+  const bool is_light = layer == "inscatter" || layer == "lamps" || layer == "volumes";
   const auto rgb = is_light ? Rgb(mean) : RgbOfFactor(mean);
   return {rgb[0], rgb[1], rgb[2]};
 }

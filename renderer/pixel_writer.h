@@ -18,7 +18,8 @@ namespace alpenglow {
 struct Shaded {
   BandLight radiance;  // W m^-2 sr^-1 nm^-1
   BandLight inscatter, transmittance, albedo;
-  BandLight lamps;  // of radiance, what comes from lamps
+  BandLight lamps;    // of radiance, what comes from lamps
+  BandLight volumes;  // of radiance, what volumes and fog send of sun, sky and their own
   float sun_visibility = 0.0F;
 };
 

@@ -18,7 +18,6 @@
 #include "atmosphere/sun_disk.h"
 #include "lut/multiple_scattering.h"
 #include "lut/program.h"
-#include "renderer/aerial_perspective.h"
 #include "renderer/air_model.h"
 #include "renderer/band_light.h"
 #include "renderer/camera_rays.h"
@@ -28,51 +27,17 @@
 #include "renderer/pixel_writer.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/scene_ground.h"
+#include "renderer/shared_air.h"
 #include "renderer/terrain_sunlight.h"
 
 namespace alpenglow {
 namespace {
-
-/// What all pixels of a picture share. Copies share what took time to prepare.
-struct Frame {
-  RenderSettings settings;
-  const AirModel* model;
-  CameraRays camera;
-  PixelFilter filter;
-  Lighting light;
-  std::shared_ptr<const TerrainSunlight> sunlight;
-  std::shared_ptr<const LampLight> lamps;
-  std::shared_ptr<const LampPlan> plan;
-  double sunlight_s = 0.0, plan_s = 0.0;  // time that they took
-
-  [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
-};
 
 /// Lamps that no ray comes near.
 const LampTile& DarkTile() {
   static const LampTile kDark;
   return kDark;
 }
-
-/// Rays of a pixel that look through the same air, to the same place but for an edge's width.
-struct SharedAir {
-  HitKind kind;
-  double first_distance_m;   // of the ray that began it
-  glm::dvec3 direction_sum;  // of unit vectors
-  double distance_sum_m;
-  int rays;
-  // Along the mean of their directions, to their mean distance:
-  AirAlongRay air{};
-  BandLight fog{};         // what fog leaves of light from the end
-  BandLight lamp_light{};  // of lamps in the air, W m^-2 sr^-1 nm^-1
-
-  [[nodiscard]] bool Takes(const Hit& hit) const {
-    constexpr double kSameDistance = 0.01;
-    if (hit.kind != kind) return false;
-    return hit.kind == HitKind::kSky ||
-           std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
-  }
-};
 
 }  // namespace
 
@@ -83,6 +48,7 @@ struct SceneRenderer::State {
         medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
         colour(medium.wavelengths_nm),
         lamps(scene, ground, medium, colour),
+        media(scene, ground, medium),
         eye(0.0, 0.0, ground.eye_height_m),
         // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
         geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
@@ -91,6 +57,7 @@ struct SceneRenderer::State {
 
   [[nodiscard]] Frame FrameAt(const UtcInstant& instant, const RenderSettings& settings,
                               const SunPosition& sun) const;
+  void LightMedia(Frame& frame) const;
   [[nodiscard]] Frame Reduced(Frame frame, EffectSet effects) const;
   [[nodiscard]] Image Pixels(const Frame& frame, const std::vector<PixelPlace>& places) const;
   [[nodiscard]] Image Picture(const Frame& frame) const;
@@ -99,8 +66,6 @@ struct SceneRenderer::State {
     return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
         .Trace(ray.origin, ray.direction, frame.camera.PixelAngle());
   }
-  [[nodiscard]] AirAlongRay AirAlong(const SharedAir& rays, const Frame& frame) const;
-  void AddLamps(SharedAir& rays, const Frame& frame, int x, int y) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                              const Frame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
@@ -117,47 +82,11 @@ struct SceneRenderer::State {
   Medium medium;
   BandColour colour;
   LampLight lamps;
+  LocalMedia media;
   glm::dvec3 eye;
   SceneGeometry geometry, smooth_geometry;
   AirModels models;
 };
-
-AirAlongRay SceneRenderer::State::AirAlong(const SharedAir& rays, const Frame& frame) const {
-  const AirModel& in = *frame.model;
-  AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
-  std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
-  if (rays.kind != HitKind::kSky && !frame.Has(Effect::kAerial)) return none;
-  const glm::dvec3 direction = glm::normalize(rays.direction_sum);
-  const glm::dvec3& from = frame.camera.eye();
-  const glm::dvec3 up = geometry.UpAt(from);
-  ViewRay ray{geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up), -1.0, 1.0),
-              std::clamp(glm::dot(frame.light.to_sun, up), -1.0, 1.0),
-              std::clamp(glm::dot(direction, frame.light.to_sun), -1.0, 1.0)};
-  // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
-  if (rays.kind == HitKind::kTerrain) ray.length_m = rays.distance_sum_m / rays.rays;
-  if (rays.kind == HitKind::kSky && !frame.Has(Effect::kSky)) {
-    return {none.inscatter, in.air.TransmittanceAlong(ray)};
-  }
-  const int nodes = frame.settings.air_nodes;
-  const AerialPerspective::Nodes sampling{
-      .sky = frame.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
-      .higher_orders = frame.Has(Effect::kMultipleScattering)};
-  if (!frame.sunlight->IsBroken()) return in.aerial.Along(ray, sampling);
-  const RayExtent extent = ExtentOf(ray, geometry.radius_m(), medium.atmosphere_height_m);
-  const SunlitPath path = frame.sunlight->Along(from, direction, extent.end_m);
-  return in.aerial.Along(ray, path, sampling);
-}
-
-void SceneRenderer::State::AddLamps(SharedAir& rays, const Frame& frame, int x, int y) const {
-  const LampRayEnd end{glm::normalize(rays.direction_sum),
-                       rays.kind == HitKind::kSky ? std::numeric_limits<double>::infinity()
-                                                  : rays.distance_sum_m / rays.rays};
-  rays.fog = frame.lamps->FogTransmittance(end.direction, end.length_m);
-  rays.lamp_light = BandLight(medium.wavelengths_nm.size());
-  if (frame.plan->tiles.empty() || !frame.Has(Effect::kBeams)) return;
-  rays.lamp_light = frame.lamps->InAir(*frame.plan, x, y, end, frame.camera.PixelAngle(),
-                                       frame.settings.lamps.nodes);
-}
 
 BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                         const Lighting& light) const {
@@ -176,8 +105,13 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
   shaded.albedo = BandLight(medium.wavelengths_nm.size());
-  shaded.lamps = through.lamp_light + frame.lamps->Seen(near.seen, ray, frame.camera.PixelAngle());
-  shaded.radiance = shaded.inscatter + shaded.lamps;
+  const auto left = [&](double distance_m) {
+    return LeftByVolumes(through.pieces, distance_m, through.media.count);
+  };
+  shaded.lamps =
+      through.lamp_light + frame.lamps->Seen(near.seen, ray, frame.camera.PixelAngle(), left);
+  shaded.volumes = through.media;
+  shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
     shaded.radiance =
         shaded.radiance + through.fog * SunDisk(ray.direction, through.air, frame.light);
@@ -283,7 +217,8 @@ Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSetti
               LightingAt(sun, instant),
               std::make_shared<TerrainSunlight>(),
               std::make_shared<LampLight>(lamps.SeenBy(camera)),
-              std::make_shared<LampPlan>()};
+              std::make_shared<LampPlan>(),
+              nullptr};
   frame.light.effects = settings.effects;
   if (frame.Has(Effect::kShafts)) {
     const Stopwatch watch;
@@ -296,7 +231,19 @@ Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSetti
     frame.plan = std::make_shared<LampPlan>(PlanLamps(frame));
     frame.plan_s = watch.seconds();
   }
+  LightMedia(frame);
   return frame;
+}
+
+void SceneRenderer::State::LightMedia(Frame& frame) const {
+  // By the light of less than a millionth of a lux fog is what lamps make of it.
+  const bool is_lit = frame.Has(Effect::kFogGlow) && Illuminance(frame.light) > 1e-6;
+  LocalMedia here = media.Only(frame.Has(Effect::kVolumes), is_lit);
+  frame.media = here.IsNothing()
+                    ? nullptr
+                    : std::make_shared<MediaLight>(std::move(here), geometry, frame.model->air,
+                                                   frame.model->diffuse, frame.light);
+  frame.light.media = frame.media.get();
 }
 
 // The same picture with fewer effects.
@@ -305,6 +252,7 @@ Frame SceneRenderer::State::Reduced(Frame frame, EffectSet effects) const {
   frame.model = &models.With(effects);
   if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
   if (!effects.Has(Effect::kLights)) frame.plan = std::make_shared<LampPlan>();
+  LightMedia(frame);
   return frame;
 }
 
@@ -352,8 +300,8 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y
   if (airs.size() == 1) airs.front().direction_sum = frame.camera.Direction(x + 0.5, y + 0.5);
   const LampTile& near = frame.plan->tiles.empty() ? DarkTile() : frame.plan->At(x, y);
   for (SharedAir& shared : airs) {
-    shared.air = AirAlong(shared, frame);
-    AddLamps(shared, frame, x, y);
+    AddAir(frame, geometry, medium, shared);
+    AddLamps(frame, x, y, shared);
   }
   std::vector<Shaded> shaded;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -396,6 +344,8 @@ ChosenPicture SceneRenderer::RenderWithin(const UtcInstant& instant, const Rende
   if (!state_->ground.terrain) {
     pilot.present = pilot.present.Without(Effect::kShadows).Without(Effect::kRelief);
   }
+  if (!state_->media.HasVolumes()) pilot.present = pilot.present.Without(Effect::kVolumes);
+  if (state_->media.fog() == nullptr) pilot.present = pilot.present.Without(Effect::kFogGlow);
   EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
   Image image = state_->Picture(state_->Reduced(frame, choice.effects));
   return {std::move(image), std::move(choice)};

@@ -40,9 +40,10 @@ struct RenderSettings {
 };
 
 /// "depth" [m] and "normal" (ENU) of what stands in the middle of the pixel, not mixed with what is
-/// beside it; means over the pixel as the picture is: "albedo", "transmittance", "inscatter" (of
-/// the sun, without fog's and lamps') and "lamps" (all that comes from lamps) [cd/m^2],
-/// "sun_visibility" (0 to 1) and kScotopicLayer: what `layers` may name.
+/// beside it; means over the pixel as the picture is: "albedo", "transmittance" (of
+/// air, fog and volumes), "inscatter" (of sun and sky in air), "volumes" (in fog and volumes, and
+/// what these emit) and "lamps" (all that comes from lamps) [cd/m^2], "sun_visibility" (0 to 1) and
+/// kScotopicLayer: what `layers` may name.
 [[nodiscard]] const std::vector<std::string>& KnownLayers();
 
 /// The layer of what rods see [scotopic cd/m^2]; its channel is kScotopicChannel.

@@ -78,8 +78,8 @@ struct Light {
   double outer_rad = 0.0;
 };
 
-/// Fog of exponential density over the ellipsoid. It scatters the light of lamps, and dims what is
-/// behind it; light of sun and sky it does not scatter.
+/// Fog of exponential density over the ellipsoid. It scatters the light of lamps once, that of sun
+/// and sky to all orders (FogLight).
 struct Fog {
   double extinction_per_m = 0.0;        // at its base
   double scale_height_m = 0.0;          // may be infinite
