@@ -43,7 +43,8 @@ bool HeaderNames(const std::filesystem::path& file, std::string_view column) {
   return std::find(fields.begin(), fields.end(), column) != fields.end();
 }
 
-CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns)
+CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
+                     std::size_t needed)
     : file_(file), columns_(columns.begin(), columns.end()) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
@@ -53,7 +54,7 @@ CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::str
   bytes_ = std::filesystem::file_size(file);
   stream_.open(file, std::ios::binary);
   if (!stream_) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  ReadHeader();
+  ReadHeader(needed);
 }
 
 void CsvReader::Fail(std::size_t line, const std::string& fault) const {
@@ -80,7 +81,7 @@ bool CsvReader::ReadLine() {
   return true;
 }
 
-void CsvReader::ReadHeader() {
+void CsvReader::ReadHeader(std::size_t needed) {
   if (!ReadLine()) throw InputError(fmt::format("{}: is empty", file_.string()));
   const std::size_t missing = columns_.size();
   position_.assign(columns_.size(), missing);
@@ -95,23 +96,33 @@ void CsvReader::ReadHeader() {
     if (position != missing) Fail(1, fmt::format("column {} twice", fields[field]));
     position = field;
   }
-  for (std::size_t column = 0; column < columns_.size(); ++column) {
+  fields_in_header_ = fields.size();
+  for (std::size_t column = 0; column < needed; ++column) {
     if (position_[column] == missing) {
       Fail(1, fmt::format("column {} is missing", columns_[column]));
     }
   }
 }
 
+bool CsvReader::ReadLineOfData() {
+  while (ReadLine()) {
+    if (!comments_) return true;
+    line_.resize(std::min(line_.size(), line_.find('#')));
+    if (line_.find_first_not_of(" \t") != std::string::npos) return true;
+  }
+  return false;
+}
+
 bool CsvReader::Next() {
-  if (!ReadLine()) {
-    if (!any_) throw InputError(fmt::format("{}: has no cases", file_.string()));
+  if (!ReadLineOfData()) {
+    if (!any_) throw InputError(fmt::format("{}: has no lines below its header", file_.string()));
     return false;
   }
   any_ = true;
   fields_ = FieldsOf(line_);
-  if (fields_.size() != columns_.size()) {
+  if (fields_.size() != fields_in_header_) {
     Fail(line_number_,
-         fmt::format("has {} fields; it must have {}", fields_.size(), columns_.size()));
+         fmt::format("has {} fields; it must have {}", fields_.size(), fields_in_header_));
   }
   return true;
 }

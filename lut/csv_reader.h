@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lines of numbers and names with a header (CSV): columns in any order, all of them, no others, no
-// quotes. Read a line at a time: a file of a million lines needs the memory of one.
+// Lines of numbers and names with a header (CSV): columns in any order, no quotes. Read a line at a
+// time: a file of a million lines needs the memory of one.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,17 @@ class CsvReader {
   /// file, line and what is wrong: a missing, unknown or repeated column, a field too few or too
   /// many, text that is no number, a value out of range, a file without lines.
   /// @param columns  their names; a column's index in the list is its number below.
-  CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns);
+  /// @param needed  the first so many of them must be there, the others may.
+  CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
+            std::size_t needed);
+  CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns)
+      : CsvReader(file, columns, columns.size()) {}
+
+  /// From now on, lines that are blank and what follows a `#` are passed over.
+  void PassOverComments() { comments_ = true; }
+
+  /// Whether the file has the column. Field and Number are of columns that it has.
+  [[nodiscard]] bool Has(std::size_t column) const { return position_[column] != columns_.size(); }
 
   /// Goes to the next line; false at the end.
   [[nodiscard]] bool Next();
@@ -44,7 +54,8 @@ class CsvReader {
 
  private:
   [[nodiscard]] bool ReadLine();
-  void ReadHeader();
+  [[nodiscard]] bool ReadLineOfData();
+  void ReadHeader(std::size_t needed);
 
   std::filesystem::path file_;
   std::vector<std::string_view> columns_;
@@ -53,9 +64,11 @@ class CsvReader {
   std::uint64_t bytes_read_ = 0;
   std::size_t line_number_ = 0;
   bool any_ = false;
+  bool comments_ = false;
+  std::size_t fields_in_header_ = 0;
   std::string line_;
   std::vector<std::string_view> fields_;  // of line_
-  std::vector<std::size_t> position_;     // of each column in the file
+  std::vector<std::size_t> position_;     // of each column in the file; columns_.size(): none
 };
 
 }  // namespace alpenglow

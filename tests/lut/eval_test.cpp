@@ -401,7 +401,7 @@ TEST_F(Eval, OrderOfResultsIsThatOfCasesForAnyNumberOfThreads) {
 TEST_F(Eval, BadCaseFilesAreRefusedWithTheirLine) {
   const std::string header = kHeader;
   ExpectRefused("", "is empty");
-  ExpectRefused(header, "has no cases");
+  ExpectRefused(header, "has no lines");
   ExpectRefused("id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg\n",
                 ":1: column distance_m is missing");
   ExpectRefused(

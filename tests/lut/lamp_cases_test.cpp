@@ -121,7 +121,7 @@ TEST_F(LampCases, BadCasesAreRefusedByLineAndName) {
               HasSubstr("exponent is \"\"; it must be a number"));
   EXPECT_THAT(with("a,airlight,nan,0.02,cornette-shanks,0.5,,10,1,iso,,,,,,\n"),
               HasSubstr("scattering_per_m is nan"));
-  EXPECT_THAT(with(""), HasSubstr("has no cases"));
+  EXPECT_THAT(with(""), HasSubstr("has no lines"));
 }
 
 }  // namespace
