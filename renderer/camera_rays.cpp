@@ -45,7 +45,7 @@ glm::dvec3 CameraRays::Direction(double x, double y) const {
 
 CameraRay CameraRays::MiddleRay(double x, double y) const {
   const glm::dvec3 direction = Direction(x, y);
-  return {eye_, direction, direction};
+  return {eye_, eye_, direction, direction};
 }
 
 CameraRay CameraRays::Ray(double x, double y, std::array<double, 2> lens) const {
@@ -54,7 +54,7 @@ CameraRay CameraRays::Ray(double x, double y, std::array<double, 2> lens) const 
   const glm::dvec2 point = lens_->radius_m * lens_->iris.Point(lens);
   const glm::dvec3 offset = point.x * right_ + point.y * up_;
   const glm::dvec3 in_focus = lens_->focus_m / glm::dot(through, forward_) * through;
-  return {eye_ + offset, glm::normalize(in_focus - offset), through};
+  return {eye_, eye_ + offset, glm::normalize(in_focus - offset), through};
 }
 
 std::optional<std::array<double, 2>> CameraRays::PlaceOf(const glm::dvec3& direction) const {
@@ -104,7 +104,18 @@ std::optional<CameraRays::Blur> CameraRays::BlurAt(const glm::dvec3& offset,
   const double falloff = 1.0 - std::pow(t, 2.0 * n);
   const double reach = lens_->radius_m / outer;  // of the lens, per unit of the blur
   const glm::dvec2 on_lens = reach * apart;
-  return Blur{eye_ + on_lens.x * right_ + on_lens.y * up_, falloff * falloff / (area * mean)};
+  return Blur{on_lens.x * right_ + on_lens.y * up_, falloff * falloff / (area * mean)};
+}
+
+CameraRays Between(const CameraRays& from, const CameraRays& to, double share) {
+  CameraRays between = from;
+  const auto mixed = [&](const auto& a, const auto& b) { return (1.0 - share) * a + share * b; };
+  between.eye_ = mixed(from.eye_, to.eye_);
+  between.tangent_ = mixed(from.tangent_, to.tangent_);
+  between.forward_ = glm::normalize(mixed(from.forward_, to.forward_));
+  between.right_ = glm::normalize(glm::cross(between.forward_, mixed(from.up_, to.up_)));
+  between.up_ = glm::cross(between.right_, between.forward_);
+  return between;
 }
 
 }  // namespace alpenglow

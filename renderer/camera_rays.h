@@ -25,6 +25,7 @@
 namespace alpenglow {
 
 struct CameraRay {
+  glm::dvec3 eye{0.0};        // middle of the lens
   glm::dvec3 origin{0.0};     // on the lens
   glm::dvec3 direction{0.0};  // unit
   glm::dvec3 through{0.0};    // unit, from the middle of the lens to the same point in focus
@@ -70,8 +71,8 @@ class CameraRays {
 
   /// A point of the iris, and how the light of a far or near point spreads there.
   struct Blur {
-    glm::dvec3 origin;  // the point of the lens that sees the point in this direction
-    double per_sr;      // share of the point's light; its integral over solid angle is 1
+    glm::dvec3 on_lens;  // from the eye to the point of the lens that sees the point there
+    double per_sr;       // share of the point's light; its integral over solid angle is 1
   };
   /// The blur of a point, `soft_radius` wider than the lens makes it so that it is never lost
   /// between pixels: (1 - t^2n)^2 of the relative distance t from its middle, where n grows from 1
@@ -79,6 +80,10 @@ class CameraRays {
   /// @param through  CameraRay::through. @param soft_radius  in the plane one metre ahead.
   [[nodiscard]] std::optional<Blur> BlurAt(const glm::dvec3& offset, const glm::dvec3& through,
                                            double soft_radius) const;
+
+  /// A camera on its way from one to another of the same picture and lens, `share` in [0, 1]; their
+  /// directions are so near to each other that the way between them is straight.
+  friend CameraRays Between(const CameraRays& from, const CameraRays& to, double share);
 
  private:
   struct Lens {

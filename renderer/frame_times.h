@@ -16,6 +16,7 @@ namespace alpenglow {
 struct Frame {
   int number;
   UtcInstant instant;
+  double path_s = 0.0;  // where on the path of the camera, if there is one
 };
 
 /// Where, and on which day, "sunrise" happens.

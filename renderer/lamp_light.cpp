@@ -408,14 +408,15 @@ struct LampLight::State {
   [[nodiscard]] double SeenPerSr(const PlacedLamp& placed, const CameraRay& ray,
                                  double pixel_angle_rad) const {
     const double radius = std::max(placed.lamp.radius_m / placed.distance_m, 0.9 * pixel_angle_rad);
+    const glm::dvec3 way = placed.lamp.position_m - ray.eye;
     if (lens) {
-      const auto blur = lens->BlurAt(placed.lamp.position_m - eye, ray.through, radius);
+      const auto blur = lens->BlurAt(way, ray.through, radius);
       if (!blur) return 0.0;
       // In focus the light comes from all of the lens, else from one point of it.
-      const glm::dvec3& seen_from = placed.blur > radius ? blur->origin : ray.origin;
+      const glm::dvec3 seen_from = placed.blur > radius ? ray.eye + blur->on_lens : ray.origin;
       return IsLit(placed, seen_from) ? blur->per_sr : 0.0;
     }
-    const double off = glm::length(ray.direction - placed.direction) / radius;
+    const double off = glm::length(ray.direction - glm::normalize(way)) / radius;
     if (off >= 1.0 || placed.is_hidden) return 0.0;
     // (1 - r^2)^2 over the disk integrates to pi / 3.
     return (1.0 - off * off) * (1.0 - off * off) * 3.0 / (kPi * radius * radius);
@@ -459,7 +460,7 @@ struct LampLight::State {
     return std::min(length_m, 4.0 * placed.distance_m + 20e3);
   }
 
-  [[nodiscard]] LampTile TileAt(const LampLight& light, const CameraRays& camera,
+  [[nodiscard]] LampTile TileAt(const LampLight& light, const MovingCamera& camera,
                                 const std::array<int, 4>& box, const LampSettings& settings,
                                 const Trace& trace) const;
   [[nodiscard]] bool AllLit(const LampNodes& members, const LampRayEnd& ray) const;
@@ -612,30 +613,35 @@ Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray, doubl
 
 namespace {
 
-/// The rays of a tile's corners and its middle, and where they end; those of a lens by points of
-/// its iris, too.
+/// The rays of a tile's corners and its middle, and where they end; more by points of the iris and
+/// of time where there are any.
 struct TileRays {
   std::vector<LampRayEnd> rays;
   double radius_rad = 0.0;  // of the cone around the middle that holds the tile
   // Of the ends on surfaces: the middle one (or any), and how far the others lie from it.
   std::optional<glm::dvec3> surface;
   double surface_spread_m = 0.0;
-  static constexpr int kPointsOfIris = 8;
+  static constexpr int kMoreRays = 8;
 
-  TileRays(const CameraRays& camera, int x0, int y0, int x1, int y1,
+  TileRays(const MovingCamera& moving, int x0, int y0, int x1, int y1,
            const LampLight::Trace& trace) {
     const std::array<std::array<double, 2>, 5> points{{{0.5 * (x0 + x1), 0.5 * (y0 + y1)},
                                                        {x0 + 0.5, y0 + 0.5},
                                                        {x1 - 0.5, y0 + 0.5},
                                                        {x0 + 0.5, y1 - 0.5},
                                                        {x1 - 0.5, y1 - 0.5}}};
+    const CameraRays& camera = moving.middle();
     for (const auto& [x, y] : points) {
       Add(camera.MiddleRay(x, y), trace);
       radius_rad = std::max(radius_rad, glm::length(rays.back().direction - middle()));
     }
     for (const auto& [x, y] : points) {
-      for (int i = 0; camera.HasLens() && i < kPointsOfIris; ++i) {
-        Add(camera.Ray(x, y, {(i + 0.5) / kPointsOfIris, i % 2 == 0 ? 0.95 : 0.4}), trace);
+      for (int i = 0; (moving.IsMoving() || camera.HasLens()) && i < kMoreRays; ++i) {
+        const double time = i / (kMoreRays - 1.0);
+        const CameraRay ray =
+            moving.Ray(x, y, {(i + 0.5) / kMoreRays, i % 2 == 0 ? 0.95 : 0.4}, time);
+        Add(ray, trace);
+        radius_rad = std::max(radius_rad, glm::length(ray.through - middle()));
       }
     }
     radius_rad += 2.0 * camera.PixelAngle();
@@ -792,7 +798,7 @@ bool IsFar(const Node& node, const TileRays& tile, double pixel_angle_rad) {
 
 }  // namespace
 
-LampPlan LampLight::PlanFor(const CameraRays& camera, int width, int height,
+LampPlan LampLight::PlanFor(const MovingCamera& camera, int width, int height,
                             const LampSettings& settings, const Trace& trace) const {
   LampPlan plan;
   plan.columns = (width + LampPlan::kTile - 1) / LampPlan::kTile;
@@ -811,10 +817,10 @@ LampPlan LampLight::PlanFor(const CameraRays& camera, int width, int height,
   return plan;
 }
 
-LampTile LampLight::State::TileAt(const LampLight& light, const CameraRays& camera,
+LampTile LampLight::State::TileAt(const LampLight& light, const MovingCamera& camera,
                                   const std::array<int, 4>& box, const LampSettings& settings,
                                   const Trace& trace) const {
-  const double pixel = camera.PixelAngle();
+  const double pixel = camera.middle().PixelAngle();
   const TileRays rays(camera, box[0], box[1], box[2], box[3], trace);
   LampTile tile;
   for (const std::uint32_t node : Cut(nodes, roots, settings, [&](std::uint32_t i) {
@@ -836,8 +842,8 @@ LampTile LampLight::State::TileAt(const LampLight& light, const CameraRays& came
   if (tile.far_air.empty()) return tile;
   for (int j = 0; j < LampPlan::kLattice; ++j) {
     for (int i = 0; i < LampPlan::kLattice; ++i) {
-      const CameraRay ray =
-          camera.MiddleRay(box[0] + LampPlan::kSpacing * i, box[1] + LampPlan::kSpacing * j);
+      const CameraRay ray = camera.middle().MiddleRay(box[0] + LampPlan::kSpacing * i,
+                                                      box[1] + LampPlan::kSpacing * j);
       const LampRayEnd end{ray.direction, trace(ray)};
       tile.lattice.push_back(light.InAir(tile.far_air, end, pixel, settings.nodes));
       tile.lattice_length_m.push_back(

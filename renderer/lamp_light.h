@@ -26,7 +26,7 @@
 
 #include "atmosphere/single_scattering.h"
 #include "atmosphere/spectrum.h"
-#include "renderer/camera_rays.h"
+#include "renderer/moving_camera.h"
 #include "renderer/scene.h"
 #include "renderer/scene_ground.h"
 
@@ -95,7 +95,7 @@ class LampLight {
 
   /// Where a ray of the camera ends [m]; infinite in the sky.
   using Trace = std::function<double(const CameraRay& ray)>;
-  [[nodiscard]] LampPlan PlanFor(const CameraRays& camera, int width, int height,
+  [[nodiscard]] LampPlan PlanFor(const MovingCamera& camera, int width, int height,
                                  const LampSettings& settings, const Trace& trace) const;
 
   /// What the fog leaves of the light from a distance along a ray.

@@ -118,6 +118,16 @@ Metadata SceneMetadata(const Scene& scene) {
   return metadata;
 }
 
+Metadata PoseMetadata(const CameraPose& pose) {
+  return {{"alpenglow.latitude_deg", Degrees(pose.place.latitude_rad)},
+          {"alpenglow.longitude_deg", Degrees(pose.place.longitude_rad)},
+          {"alpenglow.camera_height", HeightText({pose.place.height_m, false})},
+          {"alpenglow.heading_deg", Degrees(pose.heading_rad)},
+          {"alpenglow.pitch_deg", Degrees(pose.pitch_rad)},
+          {"alpenglow.roll_deg", Degrees(pose.roll_rad)},
+          {"alpenglow.fov_deg", Degrees(pose.fov_rad)}};
+}
+
 Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
   Metadata metadata = SceneMetadata(scene);
   metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "lut/image.h"
+#include "renderer/camera_path.h"
 #include "renderer/render.h"
 #include "renderer/scene.h"
 
@@ -16,6 +17,9 @@ namespace alpenglow {
 /// back exactly. The content of the terrain's file is hashed: throws InputError when it cannot be
 /// read.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene);
+
+/// Place, height and angles of a camera, over those of SceneMetadata.
+[[nodiscard]] Metadata PoseMetadata(const CameraPose& pose);
 
 /// SceneMetadata, and the settings that the pixels depend on.
 [[nodiscard]] Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings);

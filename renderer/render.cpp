@@ -20,7 +20,7 @@
 #include "lut/program.h"
 #include "renderer/air_model.h"
 #include "renderer/band_light.h"
-#include "renderer/camera_rays.h"
+#include "renderer/camera_stand.h"
 #include "renderer/ground_light.h"
 #include "renderer/lamp_light.h"
 #include "renderer/pixel_samples.h"
@@ -49,33 +49,33 @@ struct SceneRenderer::State {
         colour(medium.wavelengths_nm),
         lamps(scene, ground, medium, colour),
         media(scene, ground, medium),
-        eye(0.0, 0.0, ground.eye_height_m),
         // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
         geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
         smooth_geometry(ground, medium, false),
         models(medium, ground, geometry, lamps) {}
 
-  [[nodiscard]] Frame FrameAt(const UtcInstant& instant, const RenderSettings& settings,
-                              const SunPosition& sun) const;
-  void LightMedia(Frame& frame) const;
-  [[nodiscard]] Frame Reduced(Frame frame, EffectSet effects) const;
-  [[nodiscard]] Image Pixels(const Frame& frame, const std::vector<PixelPlace>& places) const;
-  [[nodiscard]] Image Picture(const Frame& frame) const;
-  [[nodiscard]] std::vector<Shaded> Pixel(const Frame& frame, int x, int y) const;
-  [[nodiscard]] Hit Trace(const CameraRay& ray, const Frame& frame) const {
+  [[nodiscard]] PictureFrame FrameAt(const Shot& shot, const RenderSettings& settings) const;
+  void LightMedia(PictureFrame& frame) const;
+  [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
+  [[nodiscard]] Image Pixels(const PictureFrame& frame,
+                             const std::vector<PixelPlace>& places) const;
+  [[nodiscard]] Image Picture(const PictureFrame& frame) const;
+  [[nodiscard]] std::vector<Shaded> Pixel(const PictureFrame& frame, int x, int y) const;
+  [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
     return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
-        .Trace(ray.origin, ray.direction, frame.camera.PixelAngle());
+        .Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
   }
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
-                             const Frame& frame, const LampTile& near,
+                             const PictureFrame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
-  [[nodiscard]] Lighting LightingAt(const SunPosition& sun, const UtcInstant& instant) const {
-    return LightingOf(sun, instant, scene.place.latitude_rad, medium);
-  }
-  [[nodiscard]] double Illuminance(const Lighting& light) const;  // see SceneRenderer
-  [[nodiscard]] LampPlan PlanLamps(const Frame& frame) const;
+  [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
+  [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
+  [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;
+  /// See SceneRenderer.
+  [[nodiscard]] double Illuminance(const glm::dvec3& eye, const Lighting& light) const;
+  [[nodiscard]] LampPlan PlanLamps(const PictureFrame& frame) const;
 
   Scene scene;
   SceneGround ground;
@@ -83,7 +83,6 @@ struct SceneRenderer::State {
   BandColour colour;
   LampLight lamps;
   LocalMedia media;
-  glm::dvec3 eye;
   SceneGeometry geometry, smooth_geometry;
   AirModels models;
 };
@@ -99,7 +98,7 @@ BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAl
 }
 
 Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
-                                   const Frame& frame, const LampTile& near,
+                                   const PictureFrame& frame, const LampTile& near,
                                    std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
@@ -109,7 +108,7 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
     return LeftByVolumes(through.pieces, distance_m, through.media.count);
   };
   shaded.lamps =
-      through.lamp_light + frame.lamps->Seen(near.seen, ray, frame.camera.PixelAngle(), left);
+      through.lamp_light + frame.lamps->Seen(near.seen, ray, frame.camera().PixelAngle(), left);
   shaded.volumes = through.media;
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
@@ -127,7 +126,7 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
   return shaded;
 }
 
-double SceneRenderer::State::Illuminance(const Lighting& light) const {
+double SceneRenderer::State::Illuminance(const glm::dvec3& eye, const Lighting& light) const {
   const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light);
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
@@ -136,17 +135,18 @@ double SceneRenderer::State::Illuminance(const Lighting& light) const {
   return colour.Xyz(InDouble(light.irradiance * irradiance))[1];
 }
 
-LampPlan SceneRenderer::State::PlanLamps(const Frame& frame) const {
+LampPlan SceneRenderer::State::PlanLamps(const PictureFrame& frame) const {
   // Lamps are too dim to see where all that are left out together change a grey card in daylight
   // by less than a thousandth.
   constexpr double kGreyCard = 0.18;
   LampSettings lamp_settings = frame.settings.lamps;
   lamp_settings.floor_cd_per_m2 =
-      std::max(lamp_settings.floor_cd_per_m2, 1e-3 * kGreyCard / kPi * Illuminance(frame.light));
+      std::max(lamp_settings.floor_cd_per_m2,
+               1e-3 * kGreyCard / kPi * Illuminance(frame.camera().eye(), frame.light));
   return frame.lamps->PlanFor(
-      frame.camera, frame.settings.width, frame.settings.height, lamp_settings,
+      frame.moving, frame.settings.width, frame.settings.height, lamp_settings,
       [&](const CameraRay& ray) {
-        return geometry.Trace(ray.origin, ray.direction, frame.camera.PixelAngle()).distance_m;
+        return geometry.Trace(ray.origin, ray.direction, frame.camera().PixelAngle()).distance_m;
       });
 }
 
@@ -159,24 +159,20 @@ struct PixelRay {
   std::size_t air;
 };
 
-// Which of the airs of a pixel a ray looks through; makes a new one if none.
-std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, bool share,
-                   std::vector<SharedAir>& airs) {
-  auto known = std::find_if(airs.begin(), airs.end(),
-                            [&](const SharedAir& shared) { return share && shared.Takes(hit); });
-  if (known == airs.end())
-    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, glm::dvec3(0.0), 0.0, 0});
-  known->direction_sum += direction;
-  known->distance_sum_m += hit.distance_m;
-  ++known->rays;
-  return static_cast<std::size_t>(known - airs.begin());
-}
-
 /// Of a ray, from the pixel's upper left corner [pixels].
-glm::dvec2 PlaceInPixel(const PixelSamples& samples, int sample, const Frame& frame) {
+glm::dvec2 PlaceInPixel(const PixelSamples& samples, int sample, const PictureFrame& frame) {
   if (frame.settings.samples_per_pixel == 1) return {0.5, 0.5};
   const auto [u, v] = samples.Point(sample, SampleOf::kPixel);
   return {0.5 + frame.filter.Offset(u), 0.5 + frame.filter.Offset(v)};
+}
+
+CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
+                const PictureFrame& frame) {
+  std::array<double, 2> lens{};
+  double time = 0.0;
+  if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
+  if (frame.moving.IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
+  return frame.moving.Ray(at.x, at.y, lens, time);
 }
 
 void ValidateSettings(const RenderSettings& settings) {
@@ -195,30 +191,45 @@ const Medium& SceneRenderer::medium() const { return state_->medium; }
 double SceneRenderer::eye_height_m() const { return state_->ground.eye_height_m; }
 const std::string& SceneRenderer::terrain_message() const { return state_->ground.message; }
 
-SunPosition SceneRenderer::ApparentSun(const UtcInstant& instant) const {
-  GeodeticPosition eye = state_->scene.place;
-  eye.height_m = state_->ground.eye_height_m;
-  SunPosition sun = SunAt(eye, instant);
+SunPosition SceneRenderer::State::ApparentSun(const Shot& shot) const {
+  GeodeticPosition eye = scene.place;
+  eye.height_m = ground.eye_height_m;
+  if (const auto pose = shot.middle()) eye = pose->place;
+  SunPosition sun = SunAt(eye, shot.instant);
   sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, eye.height_m);
   return sun;
 }
 
-double SceneRenderer::Illuminance(const UtcInstant& instant) const {
-  return state_->Illuminance(state_->LightingAt(ApparentSun(instant), instant));
+CameraStand SceneRenderer::State::StandOf(const Shot& shot) const {
+  const auto pose = shot.middle();
+  return pose ? StandAt(ground, pose->place) : StandOfScene(ground);
 }
 
-Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSettings& settings,
-                                    const SunPosition& sun) const {
-  const CameraRays camera(scene.camera, settings.width, settings.height, {eye});
-  Frame frame{settings,
-              &models.With(settings.effects),
-              camera,
-              PixelFilter(settings.filter),
-              LightingAt(sun, instant),
-              std::make_shared<TerrainSunlight>(),
-              std::make_shared<LampLight>(lamps.SeenBy(camera)),
-              std::make_shared<LampPlan>(),
-              nullptr};
+Lighting SceneRenderer::State::LightingAt(const Shot& shot, const CameraStand& stand) const {
+  Lighting light = LightingOf(ApparentSun(shot), shot.instant, scene.place.latitude_rad, medium);
+  light.to_sun = stand.frame_from_enu * light.to_sun;
+  return light;
+}
+
+SunPosition SceneRenderer::ApparentSun(const Shot& shot) const { return state_->ApparentSun(shot); }
+
+double SceneRenderer::Illuminance(const Shot& shot) const {
+  const CameraStand stand = state_->StandOf(shot);
+  return state_->Illuminance(stand.eye, state_->LightingAt(shot, stand));
+}
+
+PictureFrame SceneRenderer::State::FrameAt(const Shot& shot, const RenderSettings& settings) const {
+  const MovingCamera camera =
+      CameraOn(ground, scene.camera, shot.poses, settings.width, settings.height);
+  PictureFrame frame{settings,
+                     &models.With(settings.effects),
+                     camera,
+                     PixelFilter(settings.filter),
+                     LightingAt(shot, StandOf(shot)),
+                     std::make_shared<TerrainSunlight>(),
+                     std::make_shared<LampLight>(lamps.SeenBy(camera.middle())),
+                     std::make_shared<LampPlan>(),
+                     nullptr};
   frame.light.effects = settings.effects;
   if (frame.Has(Effect::kShafts)) {
     const Stopwatch watch;
@@ -235,9 +246,10 @@ Frame SceneRenderer::State::FrameAt(const UtcInstant& instant, const RenderSetti
   return frame;
 }
 
-void SceneRenderer::State::LightMedia(Frame& frame) const {
+void SceneRenderer::State::LightMedia(PictureFrame& frame) const {
   // By the light of less than a millionth of a lux fog is what lamps make of it.
-  const bool is_lit = frame.Has(Effect::kFogGlow) && Illuminance(frame.light) > 1e-6;
+  const bool is_lit =
+      frame.Has(Effect::kFogGlow) && Illuminance(frame.camera().eye(), frame.light) > 1e-6;
   LocalMedia here = media.Only(frame.Has(Effect::kVolumes), is_lit);
   frame.media = here.IsNothing()
                     ? nullptr
@@ -247,7 +259,7 @@ void SceneRenderer::State::LightMedia(Frame& frame) const {
 }
 
 // The same picture with fewer effects.
-Frame SceneRenderer::State::Reduced(Frame frame, EffectSet effects) const {
+PictureFrame SceneRenderer::State::Reduced(PictureFrame frame, EffectSet effects) const {
   frame.settings.effects = frame.light.effects = effects;
   frame.model = &models.With(effects);
   if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
@@ -256,7 +268,7 @@ Frame SceneRenderer::State::Reduced(Frame frame, EffectSet effects) const {
   return frame;
 }
 
-Image SceneRenderer::State::Pixels(const Frame& frame,
+Image SceneRenderer::State::Pixels(const PictureFrame& frame,
                                    const std::vector<PixelPlace>& places) const {
   RenderSettings row = frame.settings;
   row.width = static_cast<int>(places.size());
@@ -271,7 +283,7 @@ Image SceneRenderer::State::Pixels(const Frame& frame,
   return writer.Take();
 }
 
-Image SceneRenderer::State::Picture(const Frame& frame) const {
+Image SceneRenderer::State::Picture(const PictureFrame& frame) const {
   PixelWriter writer(colour, frame.settings);
   ThrowIfInterrupted();
   tbb::parallel_for(0, frame.settings.height, [&](int y) {
@@ -279,25 +291,25 @@ Image SceneRenderer::State::Picture(const Frame& frame) const {
     for (int x = 0; x < frame.settings.width; ++x) {
       writer.Write(x, y, Pixel(frame, x, y));
       if (!writer.AsksForMiddle()) continue;
-      writer.WriteMiddle(x, y, Trace(frame.camera.MiddleRay(x + 0.5, y + 0.5), frame));
+      writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
     }
   });
   ThrowIfInterrupted();
   return writer.Take();
 }
 
-std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y) const {
+std::vector<Shaded> SceneRenderer::State::Pixel(const PictureFrame& frame, int x, int y) const {
   const PixelSamples samples(x, y, frame.settings.samples_per_pixel);
   std::vector<PixelRay> rays;
   std::vector<SharedAir> airs;
   for (int i = 0; i < frame.settings.samples_per_pixel; ++i) {
     const glm::dvec2 at = glm::dvec2(x, y) + PlaceInPixel(samples, i, frame);
-    const CameraRay ray = frame.camera.Ray(at.x, at.y, samples.Point(i, SampleOf::kLens));
+    const CameraRay ray = RayOf(samples, i, at, frame);
     const Hit hit = Trace(ray, frame);
     rays.push_back({ray, hit, AirFor(hit, ray.direction, frame.settings.share_air, airs)});
   }
   // The filter is symmetric: the mean of all its rays is known better than the mean of some.
-  if (airs.size() == 1) airs.front().direction_sum = frame.camera.Direction(x + 0.5, y + 0.5);
+  if (airs.size() == 1) airs.front().direction_sum = frame.camera().Direction(x + 0.5, y + 0.5);
   const LampTile& near = frame.plan->tiles.empty() ? DarkTile() : frame.plan->At(x, y);
   for (SharedAir& shared : airs) {
     AddAir(frame, geometry, medium, shared);
@@ -311,23 +323,23 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const Frame& frame, int x, int y
   return shaded;
 }
 
-Image SceneRenderer::Render(const UtcInstant& instant, const RenderSettings& settings) const {
+Image SceneRenderer::Render(const Shot& shot, const RenderSettings& settings) const {
   ValidateSettings(settings);
-  return state_->Picture(state_->FrameAt(instant, settings, ApparentSun(instant)));
+  return state_->Picture(state_->FrameAt(shot, settings));
 }
 
-ChosenPicture SceneRenderer::RenderWithin(const UtcInstant& instant, const RenderSettings& settings,
+ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
-  const Frame frame = state_->FrameAt(instant, settings, ApparentSun(instant));
-  Pilot pilot{PilotPixels(frame.camera, settings.width, settings.height, frame.light.to_sun,
+  const PictureFrame frame = state_->FrameAt(shot, settings);
+  Pilot pilot{PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun,
                           frame.lamps->Directions()),
               {},
               static_cast<double>(settings.width) * settings.height};
   std::vector<PixelPlace> places;
   for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
   pilot.render = [&](EffectSet effects) {
-    const Frame reduced = state_->Reduced(frame, effects);
+    const PictureFrame reduced = state_->Reduced(frame, effects);
     const Stopwatch watch;
     Image image = state_->Pixels(reduced, places);
     return PilotPicture{std::move(image), watch.seconds()};

@@ -13,12 +13,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "atmosphere/sun.h"
 #include "atmosphere/time.h"
 #include "lut/image.h"
+#include "renderer/camera_path.h"
 #include "renderer/effect_choice.h"
 #include "renderer/effects.h"
 #include "renderer/lamp_light.h"
@@ -49,6 +51,24 @@ struct RenderSettings {
 /// The layer of what rods see [scotopic cd/m^2]; its channel is kScotopicChannel.
 inline constexpr const char* kScotopicLayer = "scotopic";
 
+/// When a picture is taken, and from where.
+struct Shot {
+  Shot(const UtcInstant& at) : instant(at) {}  // NOLINT: by the scene's camera
+
+  UtcInstant instant;
+  /// Another camera with the scene's lens: of one pose, or of several that it takes at even steps
+  /// of time while its shutter is open. Terrain stays where it is; light and air are as at the
+  /// middle pose. The air stays on the sphere that osculates the ellipsoid at the scene's place,
+  /// which the ellipsoid leaves by 3 m at 100 km and by 70 m at 500 km, the farthest that an eye
+  /// may be.
+  std::vector<CameraPose> poses;
+
+  [[nodiscard]] std::optional<CameraPose> middle() const {
+    if (poses.empty()) return std::nullopt;
+    return poses[poses.size() / 2];
+  }
+};
+
 /// A picture of what a scene needs.
 struct ChosenPicture {
   Image image;
@@ -64,20 +84,20 @@ class SceneRenderer {
   ~SceneRenderer();
 
   /// Linear sRGB in cd/m^2. The same bytes for any number of threads. Throws InputError for a layer
-  /// that is not known or a size out of [1, 16384]; stops early when Interrupted().
-  [[nodiscard]] Image Render(const UtcInstant& instant, const RenderSettings& settings) const;
+  /// that is not known, a size out of [1, 16384], and an eye that cannot be where it is; stops
+  /// early when Interrupted().
+  [[nodiscard]] Image Render(const Shot& shot, const RenderSettings& settings) const;
 
   /// Render() with those of settings.effects that the picture needs (effect_choice.h). The choice
   /// is the same for any number of threads; the times in it are this run's.
-  [[nodiscard]] ChosenPicture RenderWithin(const UtcInstant& instant,
-                                           const RenderSettings& settings,
+  [[nodiscard]] ChosenPicture RenderWithin(const Shot& shot, const RenderSettings& settings,
                                            const EffectBudget& budget) const;
 
   /// Of sun and sky on a horizontal plane at the eye, terrain aside [lux].
-  [[nodiscard]] double Illuminance(const UtcInstant& instant) const;
+  [[nodiscard]] double Illuminance(const Shot& shot) const;
 
-  /// The sun from the scene's place with refraction: where the picture shows it.
-  [[nodiscard]] SunPosition ApparentSun(const UtcInstant& instant) const;
+  /// The sun from the eye with refraction: where the picture shows it.
+  [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;
 
   /// The medium on the osculating sphere.
   [[nodiscard]] const Medium& medium() const;

@@ -29,6 +29,12 @@ std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
 /// Settings, instant and their fingerprint: what the pixels of a frame depend on.
 Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
   Metadata metadata = source.settings;
+  if (source.path) {
+    for (const auto& [name, value] : PoseMetadata(source.path->PoseAt(frame.path_s))) {
+      metadata[name] = value;
+    }
+    metadata["alpenglow.path_s"] = fmt::format("{}", frame.path_s);
+  }
   metadata["alpenglow.utc"] = FormatUtc(frame.instant, 3);
   metadata[kRenderFingerprint] = Fingerprint(metadata);
   return metadata;
@@ -80,7 +86,7 @@ bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
 Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
                        double ev100) {
   Metadata metadata = RenderMetadata(source, frame);
-  const SunPosition sun = SunAt(source.place, frame.instant);
+  const SunPosition sun = SunAt(source.PlaceOf(frame), frame.instant);
   metadata["alpenglow.frame"] = fmt::format("{}", frame.number);
   metadata["alpenglow.sun_azimuth_deg"] =
       fmt::format("{:.6f}", sun.azimuth_rad / kRadiansPerDegree);
@@ -106,7 +112,7 @@ class Series {
     std::optional<NotedPicture> picture;
     if (output_.resume) picture = KeptPicture(exr, wanted);
     const bool rendered = !picture;
-    if (rendered) picture = source_.render(frame.instant);
+    if (rendered) picture = source_.render(frame);
     const double ev100 = Ev100Of(frame, picture->image);
     Write(frame, *picture, ev100, rendered);
     if (output_.contact_sheet) AddThumbnail(frame, picture->image, ev100);
@@ -114,7 +120,9 @@ class Series {
   }
 
   void WriteManifest() const {
-    std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100\n";
+    std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100";
+    if (source_.path) text += ",t_s,latitude,longitude,height_m,heading,pitch,roll,fov";
+    text += "\n";
     for (const Frame& frame : frames_) text += ManifestLine(frame);
     WriteTextAtomically(output_.name.Manifest(), text);
   }
@@ -133,7 +141,7 @@ class Series {
       case ExposureRule::Kind::kFixed:
         return output_.exposure.ev100;
       case ExposureRule::Kind::kIncident:
-        return IncidentEv100(source_.illuminance(frame.instant));
+        return IncidentEv100(source_.illuminance(frame));
       case ExposureRule::Kind::kMetered:
         break;
     }
@@ -158,7 +166,7 @@ class Series {
     const std::string local = LocalTime(source_, frame.instant);
     const std::string time = (local.empty() ? FormatUtc(frame.instant) : local).substr(11, 5);
     const double elevation_deg =
-        SunAt(source_.place, frame.instant).elevation_rad / kRadiansPerDegree;
+        SunAt(source_.PlaceOf(frame), frame.instant).elevation_rad / kRadiansPerDegree;
     const Image small = Reduced(Seen(image, output_.look), kThumbnailWidth);
     thumbnails_.push_back(
         {Develop(small, ev100, output_.look), fmt::format("{} {:+.1f}", time, elevation_deg)});
@@ -173,12 +181,24 @@ class Series {
     return ExrValue(exr, kRenderFingerprint) == wanted ? ExrValue(exr, kEv100) : "";
   }
 
+  [[nodiscard]] std::string PoseText(const Frame& frame) const {
+    if (!source_.path) return "";
+    const CameraPose pose = source_.path->PoseAt(frame.path_s);
+    std::string text = fmt::format(
+        ",{:.6f},{:.8f},{:.8f},{:.3f}", frame.path_s, pose.place.latitude_rad / kRadiansPerDegree,
+        pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m);
+    for (const double angle : {pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad}) {
+      text += fmt::format(",{:.6f}", angle / kRadiansPerDegree);
+    }
+    return text;
+  }
+
   [[nodiscard]] std::string ManifestLine(const Frame& frame) const {
-    const SunPosition sun = SunAt(source_.place, frame.instant);
-    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}\n", frame.number,
+    const SunPosition sun = SunAt(source_.PlaceOf(frame), frame.instant);
+    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{}\n", frame.number,
                        output_.name.Exr(frame.number).filename().string(), FormatUtc(frame.instant),
                        LocalTime(source_, frame.instant), sun.azimuth_rad / kRadiansPerDegree,
-                       sun.elevation_rad / kRadiansPerDegree, Ev100Text(frame));
+                       sun.elevation_rad / kRadiansPerDegree, Ev100Text(frame), PoseText(frame));
   }
 
   const SeriesSource& source_;

@@ -13,6 +13,7 @@
 #include "lut/image.h"
 #include "lut/look.h"
 #include "lut/progress.h"
+#include "renderer/camera_path.h"
 #include "renderer/frame_name.h"
 #include "renderer/frame_times.h"
 
@@ -31,13 +32,20 @@ inline constexpr const char* kNotePrefix = "alpenglow.note.";
 
 /// What makes the pictures of a series.
 struct SeriesSource {
-  std::function<NotedPicture(const UtcInstant&)> render;
+  std::function<NotedPicture(const Frame&)> render;
   /// Of sun and sky on a horizontal plane at the eye [lux], for ExposureRule::Kind::kIncident.
-  std::function<double(const UtcInstant&)> illuminance;
-  /// Everything that the pixels depend on but the instant (SceneMetadata, size, samples, layers).
+  std::function<double(const Frame&)> illuminance;
+  /// Everything that the pixels depend on but the instant and the pose (SceneMetadata, size,
+  /// samples, layers).
   Metadata settings;
   GeodeticPosition place;
   std::optional<std::string> zone;
+  std::optional<CameraPath> path;  // that Frame::path_s is on
+
+  /// Of the eye of a frame.
+  [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
+    return path ? path->PoseAt(frame.path_s).place : place;
+  }
 };
 
 /// How the pictures are exposed and where they go.
@@ -60,7 +68,8 @@ struct SeriesSummary {
 
 /// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
 /// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
-/// sun_elevation_deg (without refraction), ev100 (empty until the frame exists).
+/// sun_elevation_deg (without refraction), ev100 (empty until the frame exists); on a path also
+/// t_s, latitude, longitude, height_m, heading, pitch, roll and fov.
 ///
 /// Files are written atomically, in folders that are created when they are missing. With `resume`
 /// a frame is rendered only if its file is missing, unreadable, or made with other settings: each

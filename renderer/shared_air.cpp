@@ -10,10 +10,10 @@ namespace {
 /// The air along a ray as the effects of a picture have it.
 class AirTo {
  public:
-  AirTo(const Frame& frame, const SceneGeometry& geometry, const Medium& medium,
+  AirTo(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
         const SharedAir& rays, const glm::dvec3& direction)
       : frame_(frame), kind_(rays.kind) {
-    const glm::dvec3& from = frame.camera.eye();
+    const glm::dvec3& from = frame.camera().eye();
     const glm::dvec3 up = geometry.UpAt(from);
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up), -1.0, 1.0),
             std::clamp(glm::dot(frame.light.to_sun, up), -1.0, 1.0),
@@ -48,7 +48,7 @@ class AirTo {
   }
 
  private:
-  const Frame& frame_;
+  const PictureFrame& frame_;
   HitKind kind_;
   ViewRay ray_;
   SunlitPath path_;
@@ -56,7 +56,19 @@ class AirTo {
 
 }  // namespace
 
-void AddAir(const Frame& frame, const SceneGeometry& geometry, const Medium& medium,
+std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, bool share,
+                   std::vector<SharedAir>& airs) {
+  auto known = std::find_if(airs.begin(), airs.end(),
+                            [&](const SharedAir& shared) { return share && shared.Takes(hit); });
+  if (known == airs.end())
+    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, glm::dvec3(0.0), 0.0, 0});
+  known->direction_sum += direction;
+  known->distance_sum_m += hit.distance_m;
+  ++known->rays;
+  return static_cast<std::size_t>(known - airs.begin());
+}
+
+void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
             SharedAir& rays) {
   constexpr double kAll = std::numeric_limits<double>::infinity();
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
@@ -65,7 +77,7 @@ void AddAir(const Frame& frame, const SceneGeometry& geometry, const Medium& med
   rays.media = BandLight(rays.air.inscatter.count);
   if (!frame.media) return;
   MarchedLight marched =
-      frame.media->Along(frame.camera.eye(), direction, rays.length_m(), air.sunlit());
+      frame.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
   rays.air = {DimmedByMedia(
                   marched.pieces, [&](double m) { return air(m).inscatter; }, rays.air.inscatter,
                   Behind::kAll),
@@ -74,14 +86,14 @@ void AddAir(const Frame& frame, const SceneGeometry& geometry, const Medium& med
   rays.pieces = std::move(marched.pieces);
 }
 
-void AddLamps(const Frame& frame, int x, int y, SharedAir& rays) {
+void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays) {
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
   rays.fog = frame.lamps->FogTransmittance(direction, frame.HasLitFog() ? 0.0 : rays.length_m());
   rays.lamp_light = BandLight(rays.media.count);
   if (frame.plan->tiles.empty() || !frame.Has(Effect::kBeams)) return;
   const auto upto = [&](double length_m) {
     return frame.lamps->InAir(*frame.plan, x, y, {direction, std::min(length_m, rays.length_m())},
-                              frame.camera.PixelAngle(), frame.settings.lamps.nodes);
+                              frame.camera().PixelAngle(), frame.settings.lamps.nodes);
   };
   rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(rays.length_m()), Behind::kVolumes);
 }

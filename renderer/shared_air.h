@@ -10,9 +10,9 @@
 
 #include "renderer/aerial_perspective.h"
 #include "renderer/air_model.h"
-#include "renderer/camera_rays.h"
 #include "renderer/lamp_light.h"
 #include "renderer/media_light.h"
+#include "renderer/moving_camera.h"
 #include "renderer/pixel_samples.h"
 #include "renderer/render.h"
 #include "renderer/scene_geometry.h"
@@ -21,10 +21,10 @@
 namespace alpenglow {
 
 /// What all pixels of a picture share. Copies share what took time to prepare.
-struct Frame {
+struct PictureFrame {
   RenderSettings settings;
   const AirModel* model;
-  CameraRays camera;
+  MovingCamera moving;
   PixelFilter filter;
   Lighting light;
   std::shared_ptr<const TerrainSunlight> sunlight;
@@ -34,6 +34,7 @@ struct Frame {
   double sunlight_s = 0.0, plan_s = 0.0;    // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
+  [[nodiscard]] const CameraRays& camera() const { return moving.middle(); }
   [[nodiscard]] bool HasLitFog() const { return media && media->media().fog() != nullptr; }
 };
 
@@ -63,12 +64,16 @@ struct SharedAir {
   }
 };
 
+/// Which of the airs of a pixel a ray looks through; makes a new one if none, or if not to `share`.
+[[nodiscard]] std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, bool share,
+                                 std::vector<SharedAir>& airs);
+
 /// Light of sun and sky in air and media along the mean of the rays, and what they leave.
-void AddAir(const Frame& frame, const SceneGeometry& geometry, const Medium& medium,
+void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
             SharedAir& rays);
 
 /// Light of lamps on the way, of pixel (x, y); and what fog leaves that only lamps light. After
 /// AddAir.
-void AddLamps(const Frame& frame, int x, int y, SharedAir& rays);
+void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays);
 
 }  // namespace alpenglow

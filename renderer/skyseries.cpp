@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "renderer/path_frames.h"
 #include "renderer/provenance.h"
 #include "renderer/report_command.h"
 #include "renderer/series.h"
@@ -19,9 +20,27 @@ Scene SceneOf(const SkyseriesOptions& options) {
   return scene;
 }
 
-std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene) {
+std::optional<CameraPath> PathOf(const SkyseriesOptions& options, const Scene& scene) {
+  if (!options.path) return std::nullopt;
+  const Camera& camera = scene.camera;
+  return ReadCameraPath(*options.path, {scene.place, camera.heading_rad, camera.pitch_rad,
+                                        camera.roll_rad, camera.fov_rad});
+}
+
+PathRate RateOf(const SkyseriesOptions& options) {
+  return {options.times.every, options.times.count, options.frames_per_second};
+}
+
+std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene,
+                            const std::optional<CameraPath>& path) {
   EventDay day{scene.place, scene.zone, scene.time};
   if (options.date) day.around = DayFromText(*options.date, scene.place, scene.zone);
+  if (path) {
+    const auto start =
+        options.times.at.empty() ? scene.time : InstantFromText(options.times.at.front(), day);
+    if (!start && !path->UtcAt(0.0)) throw InputError("a path without utc needs a time: --at");
+    return FramesAlong(*path, RateOf(options), start.value_or(UtcInstant{}));
+  }
   const bool typed = !options.times.at.empty() || options.times.from;
   if (!typed && scene.time && !options.date) return {{0, *scene.time}};
   return FramesFromTimes(options.times, day);
@@ -35,20 +54,25 @@ std::unique_ptr<SceneRenderer> Load(const Scene& scene) {
   return renderer;
 }
 
-Metadata MetadataOf(const Scene& scene, const RenderSettings& settings,
-                    const SkyseriesOptions& options) {
+Metadata MetadataOf(const Scene& scene, const std::optional<CameraPath>& path,
+                    const RenderSettings& settings, const SkyseriesOptions& options) {
   Metadata metadata = PictureMetadata(scene, settings);
+  if (path) {
+    metadata["alpenglow.path"] =
+        fmt::format("hash {}, shutter {} of {} s", Fingerprint({{"path", TextOf(*path)}}),
+                    options.shutter, FrameInterval(*path, RateOf(options)));
+  }
   if (ChoosesEffects(options)) {
     metadata["alpenglow.effects"] += fmt::format(" within {}", BudgetOf(options).max_error);
   }
   return metadata;
 }
 
-NotedPicture RenderFrame(const SceneRenderer& renderer, const UtcInstant& instant,
+NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
                          const RenderSettings& settings, const SkyseriesOptions& options) {
-  if (!ChoosesEffects(options) && !options.explain) return renderer.Render(instant, settings);
-  ChosenPicture picture = renderer.RenderWithin(instant, settings, BudgetOf(options));
-  if (options.explain) fmt::print("{}\n{}\n", FormatUtc(instant), ExplainText(picture.choice));
+  if (!ChoosesEffects(options) && !options.explain) return renderer.Render(shot, settings);
+  ChosenPicture picture = renderer.RenderWithin(shot, settings, BudgetOf(options));
+  if (options.explain) fmt::print("{}\n{}\n", FormatUtc(shot.instant), ExplainText(picture.choice));
   return {std::move(picture.image), NotesOn(picture.choice)};
 }
 
@@ -56,7 +80,8 @@ int Run(const SkyseriesOptions& options) {
   const ThreadLimit threads(options.common.threads);
   SeriesOutput output{FrameName(options.out)};
   const Scene scene = SceneOf(options);
-  const std::vector<Frame> frames = FramesOf(options, scene);
+  const std::optional<CameraPath> path = PathOf(options, scene);
+  const std::vector<Frame> frames = FramesOf(options, scene, path);
   const std::vector<Frame> selected =
       options.frames ? SelectFrames(frames, *options.frames) : frames;
   output.png = options.png;
@@ -81,12 +106,17 @@ int Run(const SkyseriesOptions& options) {
     if (!loaded) loaded = Load(scene);
     return *loaded;
   };
+  const auto shot = [&](const Frame& frame) {
+    return path ? ShotOf(frame, *path, options.shutter * FrameInterval(*path, RateOf(options)))
+                : Shot(frame.instant);
+  };
   const SeriesSource source{
-      [&](const UtcInstant& instant) {
-        return RenderFrame(renderer(), instant, settings, options);
-      },
-      [&](const UtcInstant& instant) { return renderer().Illuminance(instant); },
-      MetadataOf(scene, settings, options), scene.place, scene.zone};
+      [&](const Frame& frame) { return RenderFrame(renderer(), shot(frame), settings, options); },
+      [&](const Frame& frame) { return renderer().Illuminance(shot(frame)); },
+      MetadataOf(scene, path, settings, options),
+      scene.place,
+      scene.zone,
+      path};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     fmt::print(stderr, "skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,

@@ -38,6 +38,8 @@ struct SkyseriesOptions {
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx",
                    filter = "blackman-harris";
   int samples = 4;
+  std::optional<std::string> path;
+  double frames_per_second = 25.0, shutter = 0.0;
   std::vector<std::string> layers;
   std::optional<std::string> effects, max_error;
   bool png = false, night_vision = false, no_shafts = false, explain = false, resume = false;
@@ -80,10 +82,33 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
   CLI::Option* count = app.add_option("--count", times.count,
                                       "Number of frames, first and last "
                                       "included");
-  from->needs(to)->excludes(at);
+  CLI::Option* path = app.add_option(
+      "--path", options.path,
+      "Way of the camera: a CSV of t_s, latitude, longitude, height_m and more, see camera_path.h; "
+      "skyview --record writes one. Its frames begin at its first point");
+  CLI::Option* fps = app.add_option("--fps", options.frames_per_second,
+                                    "Frames per second of the path, without --every and --count")
+                         ->capture_default_str();
+  app.add_option(
+         "--shutter", options.shutter,
+         "Share of the time between frames of a path that the shutter is open, 0 to 1: what "
+         "moves is blurred")
+      ->check(CLI::Range(0.0, 1.0))
+      ->needs(path)
+      ->capture_default_str();
+  from->needs(to)->excludes(at)->excludes(path);
   to->needs(from);
-  every->needs(from)->excludes(count);
-  count->needs(from);
+  every->excludes(count)->excludes(fps);
+  count->excludes(fps);
+  fps->needs(path);
+  // CLI11 has no "needs one of".
+  app.parse_complete_callback([from, path, every, count] {
+    for (const CLI::Option* option : {every, count}) {
+      if (*option && !*from && !*path) {
+        throw CLI::RequiresError(option->get_name(), "--from or --path");
+      }
+    }
+  });
   app.add_option(
       "--date", options.date,
       "Day of the events, as 2026-06-21 (default: the scene's; without a file 2026-06-21)");

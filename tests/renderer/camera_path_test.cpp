@@ -9,6 +9,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "renderer/path_frames.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -109,6 +110,26 @@ TEST(CameraPath, InstantsRunEvenlyBetweenPoints) {
   EXPECT_THROW(CameraPath{points}, InputError) << "all points have an instant, or none";
   points[1].utc = ParseInstant("2026-06-22T00:09:00Z");
   EXPECT_EQ(FormatUtc(*CameraPath(points).UtcAt(5.0)), "2026-06-22T00:04:00Z");
+}
+
+TEST(PathFrames, AreSpacedAsAskedFor) {
+  const CameraPath path = Loop();
+  const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
+  EXPECT_EQ(FramesAlong(path, {}, start).size(), 276U) << "11 s at 25 a second, and the last";
+  const std::vector<Frame> counted = FramesAlong(path, {.every = {}, .count = 12}, start);
+  ASSERT_EQ(counted.size(), 12U);
+  EXPECT_NEAR(counted[11].path_s, 11.0, 1e-12);
+  EXPECT_EQ(FormatUtc(counted[11].instant), "2026-06-21T04:00:11Z");
+  EXPECT_EQ(FramesAlong(path, {.every = "2s", .count = {}}, start).size(), 6U);
+  EXPECT_THROW((void)FramesAlong(path, {.every = "0s", .count = {}}, start), InputError);
+  EXPECT_THROW((void)FramesAlong(path, {.every = {}, .count = 0}, start), InputError);
+  const Shot still = ShotOf(counted[5], path, 0.0);
+  const Shot blurred = ShotOf(counted[5], path, 0.5);
+  EXPECT_EQ(still.poses.size(), 1U);
+  EXPECT_EQ(blurred.middle()->place.height_m, still.middle()->place.height_m)
+      << "the shutter is open around the instant of the frame";
+  EXPECT_EQ(blurred.poses.front().place.height_m,
+            path.PoseAt(counted[5].path_s - 0.25).place.height_m);
 }
 
 class CameraPathFiles : public TemporaryFolder {

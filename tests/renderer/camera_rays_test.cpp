@@ -157,10 +157,10 @@ TEST(CameraRays, ThePointOfTheLensThatSeesABlurredPointLooksThroughTheSamePointI
     const auto blur = camera.BlurAt(point, way, 1e-9);
     ASSERT_TRUE(blur) << z;
     const glm::dvec3 in_focus = camera.eye() + kFocus_m / glm::dot(way, ahead) * way;
-    const glm::dvec3 a = glm::normalize(camera.eye() + point - blur->origin);
-    const glm::dvec3 b = glm::normalize(in_focus - blur->origin);
+    const glm::dvec3 a = glm::normalize(point - blur->on_lens);
+    const glm::dvec3 b = glm::normalize(in_focus - camera.eye() - blur->on_lens);
     EXPECT_NEAR(glm::length(glm::cross(a, b)), 0.0, 1e-6) << z;
-    EXPECT_NEAR(glm::dot(blur->origin - camera.eye(), ahead), 0.0, 1e-9) << z;
+    EXPECT_NEAR(glm::dot(blur->on_lens, ahead), 0.0, 1e-9) << z;
   }
 }
 

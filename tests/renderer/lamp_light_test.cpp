@@ -199,7 +199,7 @@ TEST(LampLight, ALensSpreadsALampOverItsIrisAndKeepsItsLight) {
     const glm::dvec3 towards = glm::normalize(stage.Place(scene.lights[0]) - kEye);
     const double area = Iris(blades).area() * blur * blur;
     EXPECT_NEAR(
-        stage.Luminance(light.Seen(light.All(), {kEye, towards, towards}, camera.PixelAngle())) *
+        stage.Luminance(light.Seen(light.All(), {kEye, kEye, towards, towards}, camera.PixelAngle())) *
             area / sharp,
         1.0, 0.25)
         << blades << " blades: the edge is as soft as a pixel, the blur 4 pixels";
@@ -264,10 +264,10 @@ TEST_F(LampShadows, ALampBehindTheWallIsNotSeen) {
   scene.lights = {LightAt(130.0, 0.0, 10.0, 1000.0), LightAt(130.0, 80.0, 10.0, 1000.0)};
   const Stage stage(scene);
   const auto seen = [&](const Light& lamp) {
-    const glm::dvec3 way = stage.Place(lamp) - glm::dvec3(0.0, 0.0, 20.0);
-    const glm::dvec3 to_lamp = glm::normalize(way);
+    const glm::dvec3 eye(0.0, 0.0, 20.0);
+    const glm::dvec3 to_lamp = glm::normalize(stage.Place(lamp) - eye);
     return stage.Luminance(
-        stage.light.Seen(stage.light.All(), {glm::dvec3(0.0, 0.0, 20.0), to_lamp, to_lamp}, 1e-3));
+        stage.light.Seen(stage.light.All(), {eye, eye, to_lamp, to_lamp}, 1e-3));
   };
   EXPECT_EQ(seen(scene.lights[0]), 0.0);
   EXPECT_GT(seen(scene.lights[1]), 0.0);

@@ -90,6 +90,99 @@ TEST(Render, TheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(images[0].rgb, images[2].rgb);
 }
 
+/// The camera of a bare scene somewhere else.
+CameraPose PoseAt(double latitude, double longitude, double height_m, double heading,
+                  double pitch) {
+  const Camera camera = CameraFromDegrees({}, heading, pitch, 0.0, 40.0);
+  return {PlaceFromDegrees(latitude, longitude, height_m), camera.heading_rad, camera.pitch_rad,
+          0.0, camera.fov_rad};
+}
+
+double MostRelativeDifference(const Image& a, const Image& b) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    most = std::max(most, std::abs(Luminance(a.rgb[i]) / Luminance(b.rgb[i]) - 1.0));
+  }
+  return most;
+}
+
+TEST(Render, AnEyeOnAPathSeesWhatOneThatStandsThereSees) {
+  // 80 km apart: the frame's vertical is tilted by 0.7 degrees against the eye's.
+  const UtcInstant evening = ParseInstant("2026-06-21T18:40:00Z");
+  const SceneRenderer from(BareScene(1000.0, 0.0, 0.0, 40.0));
+  Shot shot(evening);
+  shot.poses = {PoseAt(46.0, 8.8, 3000.0, 300.0, 4.0)};
+  Scene there = BareScene(3000.0, 300.0, 4.0, 40.0);
+  there.place = PlaceFromDegrees(46.0, 8.8, 0.0);
+  const SceneRenderer at(there);
+  EXPECT_LT(MostRelativeDifference(from.Render(shot, kSmall), at.Render(evening, kSmall)), 2e-3)
+      << "the sphere that osculates 80 km away, 2 m of altitude";
+  EXPECT_NEAR(from.Illuminance(shot) / at.Illuminance(evening), 1.0, 1e-3);
+}
+
+TEST(Render, AMovingCameraSeesTheMeanOfWhatItPasses) {
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const SceneRenderer renderer(BareScene(1000.0, 0.0, 0.0, 40.0));
+  RenderSettings settings = kSmall;
+  settings.samples_per_pixel = 64;
+  settings.filter = PixelFilter::Kind::kBox;
+  settings.share_air = false;
+  Shot blurred(noon);
+  // Up from the sea over the horizon, by 16 steps of half a degree.
+  for (int i = 0; i <= 16; ++i) {
+    blurred.poses.push_back(PoseAt(46.5, 8.0, 1000.0, 90.0, -4.0 + 0.5 * i));
+  }
+  const Image found = renderer.Render(blurred, settings);
+  std::vector<double> mean(found.rgb.size(), 0.0);
+  constexpr int kStills = 32;
+  settings.samples_per_pixel = 16;
+  for (int i = 0; i < kStills; ++i) {
+    Shot still(noon);
+    still.poses = {PoseAt(46.5, 8.0, 1000.0, 90.0, -4.0 + 8.0 * (i + 0.5) / kStills)};
+    const Image image = renderer.Render(still, settings);
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += Luminance(image.rgb[k]) / kStills;
+  }
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    EXPECT_NEAR(Luminance(found.rgb[k]) / mean[k], 1.0, 0.03)
+        << "64 rays over an edge, pixel " << k;
+  }
+}
+
+TEST(Render, LensFilterAndPathGiveTheSameBytesForAnyNumberOfThreads) {
+  Scene scene = BareScene(20.0, 120.0, 0.0, 60.0);
+  scene.camera.lens = ThinLens{1.4, 0.085, 6.0, 7, 0.1};
+  Light& lamp = scene.lights.emplace_back();
+  lamp.latitude_rad = scene.place.latitude_rad - 4e-6;
+  lamp.longitude_rad = scene.place.longitude_rad + 8e-6;
+  lamp.height = {18.0, false};
+  lamp.intensity_cd = 1000.0;
+  const SceneRenderer renderer(scene);
+  Shot shot(ParseInstant("2026-06-21T02:40:00Z"));
+  shot.poses = {PoseAt(46.5, 8.0, 20.0, 118.0, 0.0), PoseAt(46.5, 8.00001, 21.0, 124.0, 1.0)};
+  RenderSettings settings = kSmall;
+  settings.samples_per_pixel = 7;
+  settings.layers = {"depth", "lamps"};
+  std::vector<Image> images;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    images.push_back(renderer.Render(shot, settings));
+  }
+  EXPECT_EQ(images[0].rgb, images[1].rgb);
+  EXPECT_EQ(images[0].rgb, images[2].rgb);
+  double lamps = 0.0;
+  for (const float value : images[0].layers[1].values) lamps += static_cast<double>(value);
+  EXPECT_GT(lamps, 0.0) << "the lamp is in the picture";
+}
+
+TEST(Render, AnEyeBelowTheGroundOrTooFarAwayIsRefused) {
+  const SceneRenderer renderer(BareScene(1000.0, 0.0, 0.0, 40.0));
+  Shot shot(ParseInstant("2026-06-21T11:30:00Z"));
+  shot.poses = {PoseAt(46.5, 8.0, -5.0, 0.0, 0.0)};
+  EXPECT_THROW((void)renderer.Render(shot, kSmall), InputError);
+  shot.poses = {PoseAt(52.5, 8.0, 100.0, 0.0, 0.0)};
+  EXPECT_THROW((void)renderer.Render(shot, kSmall), InputError);
+}
+
 TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
   // Without refraction of the line of sight the sea horizon lies acos(R / (R + h)) below the
   // horizontal.

@@ -58,11 +58,11 @@ class SeriesRun : public TemporaryFolder {
  protected:
   SeriesSource Source() {
     SeriesSource source;
-    source.render = [this](const UtcInstant& instant) {
+    source.render = [this](const Frame& frame) {
       ++renderings_;
       if (on_render_) on_render_();
       Image image(16, 9);
-      for (auto& pixel : image.rgb) pixel.fill(static_cast<float>(instant.second_of_day));
+      for (auto& pixel : image.rgb) pixel.fill(static_cast<float>(frame.instant.second_of_day));
       return image;
     };
     source.settings = {{"alpenglow.fov_deg", "60"}};
@@ -119,7 +119,7 @@ TEST_F(SeriesRun, EveryFileSaysWhatMadeIt) {
 
 TEST_F(SeriesRun, AnIncidentExposureFollowsTheLightOnThePlaceNotThePicture) {
   SeriesSource source = Source();
-  source.illuminance = [](const UtcInstant& instant) { return instant.second_of_day; };
+  source.illuminance = [](const Frame& frame) { return frame.instant.second_of_day; };
   SeriesOutput output = Output();
   output.exposure.kind = ExposureRule::Kind::kIncident;
   Run(source, output);
@@ -130,7 +130,7 @@ TEST_F(SeriesRun, AnIncidentExposureFollowsTheLightOnThePlaceNotThePicture) {
 
 TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
   SeriesSource source = Source();
-  source.render = [](const UtcInstant&) {
+  source.render = [](const Frame&) {
     Image image(16, 9);
     image.rgb.assign(image.rgb.size(), {2e-3F, 1e-4F, 1e-4F});
     image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1e-3F)});

@@ -66,12 +66,16 @@ class Skyseries : public TemporaryFolder {
 TEST_F(Skyseries, HelpIsTheManual) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0);
-  for (const char* option :
-       {"--at",       "--from",   "--to",         "--every",    "--count",  "--date",
-        "--zone",     "--frames", "--out",        "--png",      "--size",   "--samples",
-        "--aov",      "--filter", "--exposure",   "--tone-map", "--resume", "--contact-sheet",
-        "--latitude", "--dem",    "--atmosphere", "--threads",  "--quiet",  "--progress",
-        "--version",  "Example"}) {
+  for (const char* option : {"--at",       "--from",   "--to",
+                             "--every",    "--count",  "--date",
+                             "--zone",     "--frames", "--out",
+                             "--png",      "--size",   "--samples",
+                             "--aov",      "--filter", "--path",
+                             "--shutter",  "--fps",    "--exposure",
+                             "--tone-map", "--resume", "--contact-sheet",
+                             "--latitude", "--dem",    "--atmosphere",
+                             "--threads",  "--quiet",  "--progress",
+                             "--version",  "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
@@ -173,6 +177,34 @@ TEST_F(Skyseries, ALensIsPartOfThePictureAndOfItsHeader) {
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(ReadExrMetadata(folder_ / "still.exr").at("alpenglow.lens"),
               HasSubstr("f/2.8, 0.05 m, focus 9 m, 6 blades"));
+}
+
+TEST_F(Skyseries, APathMakesFramesThatAreKeptUntilItChanges) {
+  const std::string header = "t_s,latitude,longitude,height_m,heading\n";
+  const std::string begin = "0,46.5,8.0,1000,350\n";
+  WriteText(folder_ / "p.csv", header + begin + "4,46.51,8.0,1200,10\n");
+  const std::string command = InFolder("s.toml") + " --path " + InFolder("p.csv") +
+                              " --size 16x9 --samples 2 --resume --every 2s --shutter 0.5 --out " +
+                              InFolder("f.%d.exr");
+  Outcome outcome = Run(command);
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("3 rendered"));
+  EXPECT_THAT(ContentOf(folder_ / "f.manifest.csv"),
+              AllOf(HasSubstr(",t_s,latitude,longitude,height_m,heading,pitch,roll,fov\n"),
+                    HasSubstr(",2.000000,46.50"), HasSubstr("2026-06-21T10:00:04Z")))
+      << "the scene's time runs along the path";
+  const Metadata metadata = ReadExrMetadata(folder_ / "f.2.exr");
+  EXPECT_EQ(metadata.at("alpenglow.path_s"), "4");
+  EXPECT_THAT(metadata.at("alpenglow.camera_height"), HasSubstr("1200 m"));
+  EXPECT_THAT(Run(command).error, HasSubstr("0 rendered, 0 developed again, 3 kept"));
+  WriteText(folder_ / "p.csv", header + begin + "4,46.51,8.0,1210,10\n");
+  EXPECT_THAT(Run(command).error, HasSubstr("3 rendered"));
+  EXPECT_EQ(Run(command + " --from sunrise --to sunset").status, 2);
+  EXPECT_EQ(Run(command + " --fps 5").status, 2) << "--every says the same";
+  WriteText(folder_ / "p.csv", header + "0,46.5,8.0,1000,350\n0,46.51,8.0,1200,10\n");
+  outcome = Run(command);
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("p.csv:3: t_s is 0; it must grow"));
 }
 
 TEST_F(Skyseries, AMeasuredLampThatIsNotThereExitsWith3) {
