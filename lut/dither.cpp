@@ -125,6 +125,16 @@ const std::vector<std::uint16_t>& DitherTile() {
   return tile;
 }
 
+// No shift at the origin; viewer/develop.frag.glsl does the same.
+DitherShift DitherShiftOf(int tile_x, int tile_y) {
+  std::uint32_t hash = static_cast<std::uint32_t>(tile_x) * 73856093U ^
+                       static_cast<std::uint32_t>(tile_y) * 19349663U;
+  hash = (hash ^ (hash >> 13)) * 0x85EBCA6BU;
+  hash ^= hash >> 16;
+  constexpr std::uint32_t kMask = kSize - 1;
+  return {static_cast<int>(hash & kMask), static_cast<int>((hash >> 8) & kMask)};
+}
+
 float DitherNoise(int x, int y, int channel) {
   static const std::vector<float> noise = [] {
     std::vector<float> values;
@@ -136,8 +146,9 @@ float DitherNoise(int x, int y, int channel) {
   constexpr std::array<int, 3> kShiftX = {0, 23, 47};
   constexpr std::array<int, 3> kShiftY = {0, 41, 19};
   const auto c = static_cast<std::size_t>(channel);
-  const int column = (x + kShiftX[c]) % kSize;
-  const int row = (y + kShiftY[c]) % kSize;
+  const DitherShift shift = DitherShiftOf(x / kSize, y / kSize);
+  const int column = (x + shift.x + kShiftX[c]) % kSize;
+  const int row = (y + shift.y + kShiftY[c]) % kSize;
   return noise[static_cast<std::size_t>(row * kSize + column)];
 }
 

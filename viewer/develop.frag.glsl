@@ -5,11 +5,21 @@ uniform sampler2D dither_noise;  // [codes]; a tile, row 0 at the top of the pic
 uniform float exposure;
 out vec4 display;
 
+// DitherNoise (lut/dither.h).
+vec3 NoiseAt(ivec2 pixel) {
+  ivec2 tile = textureSize(dither_noise, 0);
+  uvec2 repetition = uvec2(pixel / tile);
+  uint hash = repetition.x * 73856093u ^ repetition.y * 19349663u;
+  hash = (hash ^ (hash >> 13)) * 0x85EBCA6Bu;
+  hash ^= hash >> 16;
+  ivec2 shift = ivec2(uvec2(hash, hash >> 8));
+  return texelFetch(dither_noise, (pixel + (shift & (tile - 1))) & (tile - 1), 0).rgb;
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   int height = textureSize(linear_picture, 0).y;
-  ivec2 tile = textureSize(dither_noise, 0);
-  vec3 noise = texelFetch(dither_noise, ivec2(pixel.x, height - 1 - pixel.y) % tile, 0).rgb;
+  vec3 noise = NoiseAt(ivec2(pixel.x, height - 1 - pixel.y));
   vec3 rgb = texelFetch(linear_picture, pixel, 0).rgb;
   vec3 exposed = vec3(ExposedChannel(rgb.r, exposure), ExposedChannel(rgb.g, exposure),
                       ExposedChannel(rgb.b, exposure));

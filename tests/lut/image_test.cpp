@@ -233,6 +233,21 @@ TEST(Dither, NeighboursDifferAsInBlueNoise) {
   EXPECT_GT(sum / 4096.0 / 4096.0, 0.37);
 }
 
+// Faint vertical stripes in an even sky, 2026-11-21: columns of the one tile stood over each other.
+TEST(Dither, ColumnsOfAnEvenPictureAreAsEvenAsIfEveryPixelHadItsOwnNoise) {
+  constexpr int kWidth = 320;
+  constexpr int kHeight = 704;
+  double sum = 0.0;
+  for (int x = 0; x < kWidth; ++x) {
+    double column = 0.0;
+    for (int y = 0; y < kHeight; ++y)
+      column += static_cast<double>(DitheredCode(100.3F, DitherNoise(x, y, 1))) - 100.3;
+    sum += column * column / (kHeight * kHeight);
+  }
+  EXPECT_LT(std::sqrt(sum / kWidth), 0.5 / std::sqrt(kHeight))
+      << "half a code a pixel, that is, the deviation of triangular dither and rounding together";
+}
+
 TEST(Dither, NoiseIsTriangularAndChannelsAreUncorrelated) {
   std::array<double, 3> mean = {};
   std::array<std::array<double, 3>, 3> product = {};
