@@ -423,15 +423,15 @@ constexpr float kNorm[28] = {
     0.00931882475F, 0.00219646806F, 0.000694584187F, 1.01710724F,    0.221950995F, 0.0350935337F,
     0.00584892228F, 0.00106786222F, 0.000227668991F, 6.57223766e-05F};
 
-template <typename T>
-void StoreHarmonics(std::size_t degree, const T& mu, const T& sine, const T& cosine, Chunk& chunk) {
-  using Lanes = BatchOf<float>;
+template <typename T, typename Visit>
+void VisitHarmonics(std::size_t degree, const T& mu, const T& sine, const T& cosine,
+                    const Visit& visit) {
   T diagonal(1.0F), cos_before = cosine, cos_now(1.0F);  // cos((m - 1) phi), cos(m phi)
   for (std::size_t m = 0; m <= degree; ++m) {
     T lower(0.0F), value = diagonal;
     for (std::size_t l = m; l <= degree; ++l) {
       const std::size_t i = l * (l + 1) / 2 + m;
-      Lanes::Store(chunk.harmonic[i], T(kNorm[i]) * value * cos_now);
+      visit(i, T(T(kNorm[i]) * value * cos_now));
       const T next =
           (T(static_cast<float>(2 * l + 1)) * mu * value - T(static_cast<float>(l + m)) * lower) *
           T(1.0F / static_cast<float>(l + 1 - m));
@@ -453,7 +453,8 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
   const T one(1.0F);
   const T mu = Lanes::Load(&samples.mu[first]), mu_s = Lanes::Load(&samples.mu_s[first]);
   const T sine = sqrt(max((one - mu) * (one + mu), T(0.0F)));
-  StoreHarmonics<T>(grid.degree, mu, sine, CosineOfAzimuth<T>(mu, sine, mu_s, T(nu)), chunk);
+  VisitHarmonics<T>(grid.degree, mu, sine, CosineOfAzimuth<T>(mu, sine, mu_s, T(nu)),
+                    [&](std::size_t i, const T& y) { Lanes::Store(chunk.harmonic[i], y); });
   const T u = sqrt(max(Lanes::Load(&samples.altitude[first]), T(0.0F)) * T(1.0F / grid.top_km));
   StoreTaps<T>(u * T(static_cast<float>(grid.altitudes - 1)), grid.altitudes, one,
                chunk.altitude_cell, chunk.altitude_weight);
@@ -464,7 +465,7 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
 // Adds light that moments of rows [kFirst, kLast] scatter at a sample.
 template <std::size_t kDegree, std::size_t kFirst, std::size_t kLast, std::size_t kStep>
 void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
-             const BlockChi& chi, Eight& rayleigh, Eight& mie) {
+             const Eight* chi, Eight& rayleigh, Eight& mie) {
   constexpr std::size_t kBegin = kPackedRow[kFirst];
   constexpr std::size_t kCount = kPackedRow[kLast + 1] - kBegin;
   Eight moment[kCount];
@@ -487,16 +488,14 @@ void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const 
     }
     if (l == 0) Add(rayleigh, V(1.0F), light);
     if (l == 2) Add(rayleigh, V(0.1F), light);
-    alignas(64) float twice[8];
-    for (std::size_t band = 0; band < 8; ++band) twice[band] = chi[l][band % 4];
-    Add(mie, LoadEight(twice), light);
+    Add(mie, chi[l], light);
   }
 }
 
 template <std::size_t kDegree>
 void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
                const RaySamples<float>& samples, std::size_t sample, const DiffuseBlock& block,
-               const float* moments, float* light) {
+               const Eight* chi, const float* moments, float* light) {
   constexpr std::size_t kNode = kPackedRow[kDegree + 1] * 8;
   // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
   // only those to degree 3.
@@ -505,19 +504,18 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   const auto first_sun = static_cast<int>(chunk.sun_cell[s]) - 1;
   const auto last_altitude = static_cast<int>(grid.altitudes) - 1;
   const auto last_sun = static_cast<int>(grid.suns) - 1;
+  const auto within = [](int node, int last) {
+    return static_cast<std::size_t>(node < 0 ? 0 : node > last ? last : node);
+  };
+  const std::size_t column[4] = {
+      within(first_sun, last_sun) * kNode, within(first_sun + 1, last_sun) * kNode,
+      within(first_sun + 2, last_sun) * kNode, within(first_sun + 3, last_sun) * kNode};
   const float* node[16];
   float weight[16];
   for (int a = 0; a < 4; ++a) {
-    const int row = first_altitude + a < 0               ? 0
-                    : first_altitude + a > last_altitude ? last_altitude
-                                                         : first_altitude + a;
+    const float* row = moments + within(first_altitude + a, last_altitude) * grid.suns * kNode;
     for (int b = 0; b < 4; ++b) {
-      const int column = first_sun + b < 0          ? 0
-                         : first_sun + b > last_sun ? last_sun
-                                                    : first_sun + b;
-      node[a * 4 + b] =
-          moments +
-          (static_cast<std::size_t>(row) * grid.suns + static_cast<std::size_t>(column)) * kNode;
+      node[a * 4 + b] = row + column[b];
       weight[a * 4 + b] = chunk.altitude_weight[a][s] * chunk.sun_weight[b][s];
     }
   }
@@ -531,13 +529,12 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   }
   Eight rayleigh = Zero(), mie = Zero();
   if (aerosol) {
-    AddRows < kDegree, 0,
-        kDegree<3 ? kDegree : 3, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
+    AddRows < kDegree, 0, kDegree<3 ? kDegree : 3, 1>(chunk, s, node, weight, chi, rayleigh, mie);
     if constexpr (kDegree > 3) {
-      if (fine) AddRows<kDegree, 4, kDegree, 1>(chunk, s, node, weight, block.chi, rayleigh, mie);
+      if (fine) AddRows<kDegree, 4, kDegree, 1>(chunk, s, node, weight, chi, rayleigh, mie);
     }
   } else {
-    AddRows<kDegree, 0, 2, 2>(chunk, s, node, weight, block.chi, rayleigh, mie);
+    AddRows<kDegree, 0, 2, 2>(chunk, s, node, weight, chi, rayleigh, mie);
   }
   alignas(64) float of_rayleigh[8], of_mie[8];
   StoreEight(of_rayleigh, rayleigh);
@@ -563,6 +560,12 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
     Prepare(grid, samples, first, nu, chunk);
     const std::size_t size = samples.count - first < kChunk ? samples.count - first : kChunk;
     for (std::size_t b = 0; b < count; ++b) {
+      Eight chi[kDegree + 1];
+      for (std::size_t l = 0; l <= kDegree; ++l) {
+        alignas(64) float twice[8];
+        for (std::size_t band = 0; band < 8; ++band) twice[band] = blocks[b].chi[l][band % 4];
+        chi[l] = LoadEight(twice);
+      }
       alignas(64) float attenuation[kBlockBands][kChunk];
       for (std::size_t band = 0; band < kBlockBands; ++band) {
         const T depth = T(blocks[b].rayleigh[band]) * Lanes::Load(&samples.view_rayleigh[first]) +
@@ -571,8 +574,9 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
         Lanes::Store(attenuation[band], Lanes::Load(&samples.weight[first]) * exp(-depth));
       }
       for (std::size_t s = 0; s < size; ++s) {
+        if (samples.weight[first + s] == 0.0F) continue;  // a place, not a node
         float source[kBlockBands] = {0.0F, 0.0F, 0.0F, 0.0F};
-        AddSample<kDegree>(grid, chunk, s, samples, first + s, blocks[b],
+        AddSample<kDegree>(grid, chunk, s, samples, first + s, blocks[b], chi,
                            moments + b * block_stride, source);
         for (std::size_t band = 0; band < kBlockBands; ++band)
           light[b * kBlockBands + band] += attenuation[band][s] * source[band];
@@ -588,11 +592,92 @@ void Inscatter(const DiffuseGrid& grid, const RaySamples<float>& samples, float 
   });
 }
 
+// pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients.
+constexpr float kClampedCosine[kLargestDegree + 1] = {
+    3.14159265F, 2.09439510F, 0.785398163F, 0.0F, -0.130899694F, 0.0F, 0.0490873852F};
+
+// P_l(x), the first even l that moments to this degree lack.
+template <std::size_t kDegree>
+float FirstMissingLegendre(float x) {
+  constexpr std::size_t kEven = kDegree / 2 * 2 + 2;
+  float before = 1.0F, now = x;
+  for (std::size_t l = 1; l < kEven; ++l) {
+    const float next = (static_cast<float>(2 * l + 1) * x * now - static_cast<float>(l) * before) *
+                       (1.0F / static_cast<float>(l + 1));
+    before = now;
+    now = next;
+  }
+  return now;
+}
+
+// Moments of a point summed over its nodes, times the factors of a surface.
+template <std::size_t kDegree>
+Eight SumOverNodes(const SurfacePoint& point, const float* moments, const Eight* factor) {
+  constexpr std::size_t kNode = kPackedRow[kDegree + 1] * 8;
+  Eight light = Zero();
+  for (std::size_t l = 0; l <= kDegree; ++l) {
+    if (l > 1 && l % 2 == 1) continue;  // the clamped cosine has none of these
+    for (std::size_t p = 0; p <= l / 2; ++p) {
+      const std::size_t i = kPackedRow[l] + p;
+      Eight moment = Zero();
+      for (std::size_t tap = 0; tap < 16; ++tap)
+        Add(moment, V(point.weight[tap]), LoadEight(moments + point.node[tap] * kNode + i * 8));
+      Add(light, factor[i], moment);
+    }
+  }
+  return light;
+}
+
+// The clamped cosine has no odd terms beyond l = 1, so what the series misses on a surface that
+// looks up (where the truth is known: `sky`) it misses on one that looks down. Between them it is
+// taken to follow the first even Legendre polynomial that is missing.
+template <std::size_t kDegree>
+void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
+                        const float* moments, const float* sky, float* irradiance) {
+  const float mu = point.normal_mu;
+  const float missing = FirstMissingLegendre<kDegree>(mu);
+  const float sine2 = (1.0F - mu) * (1.0F + mu);
+  float of_moment[28];
+  VisitHarmonics<float>(kDegree, mu, std::sqrt(sine2 > 0.0F ? sine2 : 0.0F), point.normal_azimuth,
+                        [&](std::size_t i, float y) { of_moment[i] = y; });
+  Eight factor[kPackedRow[kDegree + 1]];
+  for (std::size_t l = 0; l <= kDegree; ++l) {
+    const std::size_t first = l * (l + 1) / 2;
+    of_moment[first] -= missing * kNorm[first];  // the harmonic of the vertical
+    for (std::size_t p = 0; p <= l / 2; ++p) {
+      const float even = kClampedCosine[l] * of_moment[first + 2 * p];
+      const float odd = 2 * p < l ? kClampedCosine[l] * of_moment[first + 2 * p + 1] : 0.0F;
+      factor[kPackedRow[l] + p] = Pair(even, odd);
+    }
+  }
+  const std::size_t nodes = grid.altitudes * grid.suns;
+  for (std::size_t block = 0; block < count; ++block) {
+    alignas(64) float light[8];
+    StoreEight(light, SumOverNodes<kDegree>(
+                          point, moments + block * nodes * kPackedRow[kDegree + 1] * 8, factor));
+    for (std::size_t band = 0; band < kBlockBands; ++band) {
+      float from_sky = 0.0F;
+      for (std::size_t tap = 0; tap < 16; ++tap) {
+        from_sky += point.weight[tap] * sky[(block * nodes + point.node[tap]) * kBlockBands + band];
+      }
+      const float sum = light[band] + light[band + 4] + missing * from_sky;
+      irradiance[block * kBlockBands + band] = sum > 0.0F ? sum : 0.0F;
+    }
+  }
+}
+
+void Irradiance(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
+                const float* moments, const float* sky, float* irradiance) {
+  OfDegree(grid.degree, [&](auto degree) {
+    IrradianceOfDegree<degree()>(grid, point, count, moments, sky, irradiance);
+  });
+}
+
 }  // namespace
 
 template <>
 const DiffuseKernel& KernelOf<DiffuseKernel, kThisSet>() {
-  static constexpr DiffuseKernel kernel{Arrive, Place, Scatter, Inscatter};
+  static constexpr DiffuseKernel kernel{Arrive, Place, Scatter, Inscatter, Irradiance};
   return kernel;
 }
 

@@ -97,6 +97,14 @@ struct LitPoints {
   float *weight, *altitude, *mu, *absolute_mu, *mu_s;
 };
 
+/// Where light on a surface is looked up: 16 nodes of the table and the weights of their moments,
+/// which are divided by Twilight.
+struct SurfacePoint {
+  std::array<std::uint32_t, 16> node;
+  std::array<float, 16> weight;
+  float normal_mu, normal_azimuth;  // cosines: to the vertical, of the azimuth from the sun's
+};
+
 struct ColumnPointers {
   const float *rayleigh, *mie, *ozone;
 };
@@ -121,6 +129,10 @@ struct DiffuseKernel {
   void (*inscatter)(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
                     const DiffuseBlock* blocks, std::size_t count, const float* moments,
                     float* light);
+  /// Light of the table on a surface: irradiance[block * 4 + band]. `moments` as above, `sky` what
+  /// falls on a horizontal plane: [(block * nodes + node) * 4 + band].
+  void (*irradiance)(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
+                     const float* moments, const float* sky, float* irradiance);
 };
 
 ALPENGLOW_DECLARE_KERNEL(DiffuseKernel);

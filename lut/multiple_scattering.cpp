@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "lut/cubic_taps.h"
 #include "lut/diffuse_grid.h"
@@ -68,6 +67,7 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   grid_ = GridOf(medium_, options_);
   blocks_ = BlocksOf();
   packed_ = Packed();
+  packed_sky_ = PackedSky();
 }
 
 std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
@@ -106,6 +106,19 @@ AlignedFloats DiffuseLight::Packed() const {
   return packed;
 }
 
+std::vector<float> DiffuseLight::PackedSky() const {
+  const std::size_t nodes = grid_.altitudes * grid_.suns;
+  const std::vector<float> twilight = TwilightAtNodes(grid_);
+  std::vector<float> packed(blocks_.size() * nodes * kBlockBands);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    for (std::size_t band = 0; band < bands_; ++band) {
+      packed[(band / kBlockBands * nodes + node) * kBlockBands + band % kBlockBands] =
+          values_[(node * channels() + moments_) * bands_ + band] / twilight[node % grid_.suns];
+    }
+  }
+  return packed;
+}
+
 double DiffuseLight::AltitudeCoordinate(double altitude_m) const {
   return std::sqrt(std::clamp(altitude_m / medium_.atmosphere_height_m, 0.0, 1.0));
 }
@@ -132,52 +145,26 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
   return sum;
 }
 
-namespace {
-
-// P_l(x), the first even l that moments to this degree lack.
-float FirstMissingLegendre(int degree, float x) {
-  const int even = degree / 2 * 2 + 2;
-  float before = 1.0F, now = x;
-  for (int l = 1; l < even; ++l) {
-    const float next = (static_cast<float>(2 * l + 1) * x * now - static_cast<float>(l) * before) /
-                       static_cast<float>(l + 1);
-    before = now;
-    now = next;
-  }
-  return now;
-}
-
-}  // namespace
-
-// The clamped cosine has no odd terms beyond l = 1, so what the series misses on a surface that
-// looks up (where the truth is known: SkyIrradiance) it misses on one that looks down. Between them
-// it is taken to follow the first even Legendre polynomial that is missing.
 Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double normal_mu,
                                       double normal_cos_azimuth) const {
-  // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients.
-  constexpr std::array<double, kMaxDegree + 1> kCosine{
-      kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
-  Moments factor = SphericalHarmonics(options_.degree, static_cast<float>(normal_mu),
-                                      static_cast<float>(normal_cos_azimuth));
-  const Moments upward = SphericalHarmonics(options_.degree, 1.0F, 1.0F);
-  const float missing = FirstMissingLegendre(options_.degree, static_cast<float>(normal_mu));
-  for (int l = 0; l <= options_.degree; ++l) {
-    for (int m = 0; m <= l; ++m) {
-      const std::size_t i = MomentIndex(l, m);
-      factor[i] = (factor[i] - missing * upward[i]) *
-                  static_cast<float>(kCosine[static_cast<std::size_t>(l)]);
+  const CubicTaps row = TapsAt(AltitudeCoordinate(altitude_m), options_.altitudes);
+  const double x = (mu_s - kSunCentre) / kSunWidth;
+  const double cell = (std::asinh(x) - static_cast<double>(grid_.first_asinh)) *
+                      static_cast<double>(grid_.cells_a_unit);
+  const CubicTaps column = TapsAt(cell / (options_.sun_angles - 1), options_.sun_angles);
+  const float twilight = TwilightOf(grid_, mu_s);
+  SurfacePoint point{{}, {}, static_cast<float>(normal_mu), static_cast<float>(normal_cos_azimuth)};
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t s = 0; s < 4; ++s) {
+      point.node[4 * a + s] = static_cast<std::uint32_t>(row.node[a] * grid_.suns + column.node[s]);
+      point.weight[4 * a + s] = twilight * row.weight[a] * column.weight[s];
     }
   }
+  alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
+  Kernel<DiffuseKernel>().irradiance(grid_, point, blocks_.size(), packed_.data(),
+                                     packed_sky_.data(), light.data());
   Bands<float> irradiance(bands_);
-  VisitNodes(AltitudeCoordinate(altitude_m), mu_s, [&](const float* node, float weight) {
-    for (std::size_t band = 0; band < bands_; ++band) {
-      float sum = missing * node[moments_ * bands_ + band];
-      for (std::size_t i = 0; i < moments_; ++i) sum += factor[i] * node[i * bands_ + band];
-      irradiance[band] += weight * sum;
-    }
-  });
-  for (std::size_t band = 0; band < bands_; ++band)
-    irradiance[band] = std::max(irradiance[band], 0.0F);
+  std::copy_n(light.begin(), bands_, irradiance.value.begin());
   return irradiance;
 }
 

@@ -120,6 +120,7 @@ class DiffuseLight {
  private:
   [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
   [[nodiscard]] AlignedFloats Packed() const;
+  [[nodiscard]] std::vector<float> PackedSky() const;
   /// Calls visit(node, weight) with the 16 nodes around a point.
   template <typename Visit>
   void VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const;
@@ -134,7 +135,8 @@ class DiffuseLight {
   std::vector<float> values_;
   DiffuseGrid grid_;
   std::vector<DiffuseBlock> blocks_;
-  AlignedFloats packed_;  // the moments again, as kernels read them
+  AlignedFloats packed_;           // the moments again, as kernels read them
+  std::vector<float> packed_sky_;  // and SkyIrradiance
 };
 
 }  // namespace alpenglow

@@ -85,7 +85,7 @@ TEST(DiffuseLight, ComesBackFromItsValues) {
   const DiffuseLight light(air, kSmall);
   const DiffuseLight back(air, kSmall, {light.values(), light.orders(), light.converged()});
   EXPECT_EQ(back.orders(), light.orders());
-  EXPECT_EQ(back.SkyIrradiance(500.0, 0.3).value, light.SkyIrradiance(500.0, 0.3).value);
+  EXPECT_EQ(back.SkyIrradiance(500.0, 0.3), light.SkyIrradiance(500.0, 0.3));
   EXPECT_THROW(DiffuseLight(air, {}, {light.values(), 1, true}), InputError) << "of other options";
   std::vector<float> broken = light.values();
   broken[7] = std::nanf("");
@@ -310,6 +310,45 @@ TEST(DiffuseLight, IsNeverNegative) {
   }
 }
 
+// Ramamoorthi and Hanrahan's sum, written out; what the series misses follows P_8.
+TEST(DiffuseLight, SlopesAreLitByTheClampedCosineOfTheMoments) {
+  const Medium medium = MediumPreset("earth");
+  DiffuseLightOptions options = kSmall;
+  options.degree = 6;
+  const DiffuseLight light(medium, options);
+  const std::array<double, 7> cosine{kPi, 2 * kPi / 3, kPi / 4, 0.0, -kPi / 24, 0.0, kPi / 64};
+  const double mu_s = 0.2;
+  const double altitude_m = 1700.0;
+  const auto values = light.ValuesAt(std::sqrt(altitude_m / medium.atmosphere_height_m),
+                                     DiffuseLight::SunCoordinate(mu_s));
+  const Moments upward = SphericalHarmonics(6, 1.0F, 1.0F);
+  for (const double tilt_deg : {0.0, 20.0, 55.0, 90.0, 130.0, 180.0}) {
+    for (const double azimuth : {-1.0, -0.2, 0.7}) {
+      const double up = std::cos(tilt_deg * kRadiansPerDegree);
+      const Moments harmonic =
+          SphericalHarmonics(6, static_cast<float>(up), static_cast<float>(azimuth));
+      const double missing = std::legendre(8U, up);
+      const auto found = light.Irradiance(altitude_m, mu_s, up, azimuth);
+      for (std::size_t band = 0; band < light.bands(); ++band) {
+        const auto moment = [&](std::size_t i) {
+          return static_cast<double>(values[i * light.bands() + band]);
+        };
+        double expected = missing * moment(light.moments());
+        for (int l = 0; l <= 6; ++l) {
+          for (int m = 0; m <= l; ++m) {
+            const std::size_t i = MomentIndex(l, m);
+            expected +=
+                cosine[static_cast<std::size_t>(l)] * moment(i) *
+                (static_cast<double>(harmonic[i]) - missing * static_cast<double>(upward[i]));
+          }
+        }
+        EXPECT_NEAR(static_cast<double>(found[band]), expected, 2e-5 * moment(0))
+            << tilt_deg << " degrees, azimuth " << azimuth << ": sums in single precision";
+      }
+    }
+  }
+}
+
 TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
   const Medium medium = MediumPreset("hazy");
   const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, 88.0);
@@ -317,19 +356,22 @@ TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
     const DiffuseLight light(medium, kSmall);
     const auto samples =
         AirIntegrator<float>(medium).Sample(ray, {.nodes = 12, .dark_samples = true});
-    return std::pair(light.values(), light.InscatterAlong(samples, ray.nu));
+    return std::tuple(light.values(), light.InscatterAlong(samples, ray.nu),
+                      light.Irradiance(900.0, 0.1, 0.8, -0.3));
   };
   const InstructionSetScope plain(InstructionSet::kBaseline);
-  const auto expected = both();
+  const auto [values, inscatter, irradiance] = both();
   for (const InstructionSet set : AvailableInstructionSets()) {
     const InstructionSetScope scope(set);
-    const auto found = both();
-    for (std::size_t i = 0; i < expected.first.size(); ++i) {
-      EXPECT_NEAR(found.first[i], expected.first[i], 1e-5F + 1e-4F * std::abs(expected.first[i]))
+    const auto [found, found_inscatter, found_irradiance] = both();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      EXPECT_NEAR(found[i], values[i], 1e-5F + 1e-4F * std::abs(values[i]))
           << NameOf(set) << ": float, summed in another order";
     }
-    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
-      EXPECT_NEAR(found.second[band], expected.second[band], 1e-4F * expected.second[band]);
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      EXPECT_NEAR(found_inscatter[band], inscatter[band], 1e-4F * inscatter[band]);
+      EXPECT_NEAR(found_irradiance[band], irradiance[band], 1e-4F * irradiance[band]);
+    }
   }
 }
 

@@ -154,7 +154,7 @@ TEST_F(TableFile, DiffuseLightComesBackBitForBit) {
   EXPECT_EQ(back.light.orders(), Light().orders());
   EXPECT_EQ(back.light.converged(), Light().converged());
   EXPECT_EQ(back.light.options().degree, 2);
-  EXPECT_EQ(back.light.SkyIrradiance(700.0, 0.2).value, Light().SkyIrradiance(700.0, 0.2).value);
+  EXPECT_EQ(back.light.SkyIrradiance(700.0, 0.2), Light().SkyIrradiance(700.0, 0.2));
   const std::string text = DescriptionText(file, DescribeTable(file));
   for (const char* fact : {"multiple scattering", "L22.0550nm", "E.0680nm", "6 5 = 2520 bytes",
                            "every texel is finite and in [-100, 100]"}) {
