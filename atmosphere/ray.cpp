@@ -6,6 +6,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/shell.h"
 
 namespace alpenglow {
 namespace {
@@ -55,8 +56,27 @@ ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative
   return ray;
 }
 
+namespace {
+
+// Whether a ray of finite length stays in the shell by a metre and more, ground and top aside.
+bool EndsWellInside(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
+  constexpr double kMargin_m = 1.0;
+  if (!(ray.length_m < 1e6)) return false;
+  const auto altitude = [&](double distance_m) {
+    return shared::AltitudeAlongRay<double>(ray.altitude_m, ray.mu, distance_m, planet_radius_m);
+  };
+  const double perigee_m = -(planet_radius_m + ray.altitude_m) * ray.mu;
+  const double lowest = altitude(std::clamp(perigee_m, 0.0, ray.length_m));
+  const double highest = std::max(ray.altitude_m, altitude(ray.length_m));
+  return lowest > kMargin_m && highest < atmosphere_height_m - kMargin_m;
+}
+
+}  // namespace
+
 RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
   RequireFinite(ray, planet_radius_m);
+  if (EndsWellInside(ray, planet_radius_m, atmosphere_height_m))
+    return {0.0, ray.length_m, RayEnd::kLength};
   const Extended h = std::max(ray.altitude_m, 0.0);
   const Crossings top = CrossAltitude(h, ray.mu, atmosphere_height_m, planet_radius_m);
   if (!top.exist || top.far <= 0) return {};
@@ -64,10 +84,11 @@ RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere
   extent.begin_m = static_cast<double>(std::max<Extended>(top.near, 0));
   if (h <= atmosphere_height_m) extent.begin_m = 0.0;
   extent.end_m = static_cast<double>(top.far);
-  const Crossings ground = CrossAltitude(h, ray.mu, 0, planet_radius_m);
-  if (ray.mu < 0.0 && ground.exist) {
-    extent.end_m = static_cast<double>(std::max<Extended>(ground.near, 0));
-    extent.end = RayEnd::kGround;
+  if (ray.mu < 0.0) {
+    if (const Crossings ground = CrossAltitude(h, ray.mu, 0, planet_radius_m); ground.exist) {
+      extent.end_m = static_cast<double>(std::max<Extended>(ground.near, 0));
+      extent.end = RayEnd::kGround;
+    }
   }
   if (ray.length_m < extent.end_m) {
     extent.end_m = std::max(ray.length_m, extent.begin_m);
@@ -77,6 +98,9 @@ RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere
 }
 
 ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
+  // The sun is above the plane through the planet's centre at both ends: no shadow between.
+  const double height_m = (planet_radius_m + std::max(ray.altitude_m, 0.0)) * ray.mu_s;
+  if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
   const Extended radius = planet_radius_m;
   const Extended h = std::max(ray.altitude_m, 0.0);
   const Extended r = radius + h;

@@ -96,46 +96,125 @@ void Place(const PanelRule<Real>& panel, RaySamples<Real>& samples) {
   samples.count += panel.count;
 }
 
+template <typename Real, typename T>
+T OzoneDensity(const ShellLengths<Real, T>& shell, const T& h) {
+  using namespace shared;
+  if (shell.smooth_ozone) return SmoothOzoneDensity<T>(h, shell.ozone_top);
+  return TentDensity<T>(h, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top);
+}
+
+/// A ray over lanes.
+template <typename Real, typename T>
+struct RayInLanes {
+  RayInLanes(const AirConstants<Real>& air, const RayEntry& entry)
+      : shell(air),
+        h0(static_cast<Real>(entry.altitude_km)),
+        mu0(static_cast<Real>(entry.mu)),
+        mu_s0(static_cast<Real>(entry.mu_s)),
+        nu(static_cast<Real>(entry.nu)) {}
+
+  ShellLengths<Real, T> shell;
+  T h0, mu0, mu_s0, nu;
+};
+
+// Everything at lanes from the i-th sample on but the columns from the observer. Returns altitudes.
+template <typename Real, typename T>
+T FillButView(const RayInLanes<Real, T>& ray, std::size_t i, RaySamples<Real>& samples) {
+  using namespace shared;
+  using Lanes = BatchOf<Real>;
+  const ShellLengths<Real, T>& shell = ray.shell;
+  const T d = Lanes::Load(&samples.distance[i]);
+  const T h = max(AltitudeAlongRay<T>(ray.h0, ray.mu0, d, shell.radius), T(Real(0)));
+  const T mu_s = SunCosineAlongRay<T>(ray.h0, ray.mu_s0, ray.nu, d, h, shell.radius);
+  const ColumnSet<T> sun = ColumnsTowards(shell, h, mu_s);
+  const auto put = [i](auto& row, const T& value) { Lanes::Store(&row[i], value); };
+  put(samples.altitude, h);
+  put(samples.mu, ZenithCosineAlongRay<T>(ray.h0, ray.mu0, d, h, shell.radius));
+  put(samples.mu_s, mu_s);
+  put(samples.rayleigh_density, T(exp(-h / shell.rayleigh)));
+  put(samples.mie_density, T(exp(-h / shell.mie)));
+  put(samples.sun_rayleigh, sun.rayleigh);
+  put(samples.sun_mie, sun.mie);
+  put(samples.sun_ozone, sun.ozone);
+  return h;
+}
+
 template <typename Real>
 void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples) {
   using namespace shared;
   using Lanes = BatchOf<Real>;
   using T = typename Lanes::Type;
-  const ShellLengths<Real, T> shell(air);
-  const T h0(static_cast<Real>(entry.altitude_km)), mu0(static_cast<Real>(entry.mu));
-  const T mu_s0(static_cast<Real>(entry.mu_s)), nu(static_cast<Real>(entry.nu)), zero(Real(0));
-  const T up0(abs(mu0));
+  const RayInLanes<Real, T> ray(air, entry);
+  const ShellLengths<Real, T>& shell = ray.shell;
+  const T zero(Real(0));
   const ColumnSet<T> perigee =
-      entry.mu < 0.0 ? ColumnsAtPerigee(shell, h0, mu0) : ColumnSet<T>{zero, zero, zero};
+      entry.mu < 0.0 ? ColumnsAtPerigee(shell, ray.h0, ray.mu0) : ColumnSet<T>{zero, zero, zero};
   // The last of a single load of samples is no sample, and stands at the entry.
   const bool entry_among_samples =
       samples.padded == Lanes::kLanes && samples.count < samples.padded;
   ColumnSet<T> origin = perigee;
-  if (!entry_among_samples) origin = ColumnsUp(shell, h0, up0);
+  if (!entry_among_samples) origin = ColumnsUp(shell, ray.h0, T(abs(ray.mu0)));
   for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
-    const T d = Lanes::Load(&samples.distance[i]);
-    const T h = max(AltitudeAlongRay<T>(h0, mu0, d, shell.radius), zero);
-    const T mu = ZenithCosineAlongRay<T>(h0, mu0, d, h, shell.radius);
-    const T mu_s = SunCosineAlongRay<T>(h0, mu_s0, nu, d, h, shell.radius);
+    const T h = FillButView<Real, T>(ray, i, samples);
+    const T mu = Lanes::Load(&samples.mu[i]);
     const ColumnSet<T> point = ColumnsUp(shell, h, T(abs(mu)));
     if (entry_among_samples) {
       origin = {T(Lanes::Last(point.rayleigh)), T(Lanes::Last(point.mie)),
                 T(Lanes::Last(point.ozone))};
     }
-    const ColumnSet<T> view = Between<T>(mu0, mu, origin, point, perigee);
-    const ColumnSet<T> sun = ColumnsTowards(shell, h, mu_s);
-    const auto put = [i](auto& row, const T& value) { Lanes::Store(&row[i], value); };
-    put(samples.altitude, h);
-    put(samples.mu, mu);
-    put(samples.mu_s, mu_s);
-    put(samples.rayleigh_density, T(exp(-h / shell.rayleigh)));
-    put(samples.mie_density, T(exp(-h / shell.mie)));
-    put(samples.view_rayleigh, view.rayleigh);
-    put(samples.view_mie, view.mie);
-    put(samples.view_ozone, view.ozone);
-    put(samples.sun_rayleigh, sun.rayleigh);
-    put(samples.sun_mie, sun.mie);
-    put(samples.sun_ozone, sun.ozone);
+    const ColumnSet<T> view = Between<T>(ray.mu0, mu, origin, point, perigee);
+    Lanes::Store(&samples.view_rayleigh[i], view.rayleigh);
+    Lanes::Store(&samples.view_mie[i], view.mie);
+    Lanes::Store(&samples.view_ozone[i], view.ozone);
+  }
+}
+
+// Columns along the way from the sample before each one, to the lanes from the i-th sample on.
+template <typename Real, typename T>
+void FillSteps(const RayInLanes<Real, T>& ray, const Real* before, std::size_t i,
+               RaySamples<Real>& samples) {
+  using namespace shared;
+  using Lanes = BatchOf<Real>;
+  // Gauss-Legendre on [0, 1].
+  constexpr std::size_t kNodes = 4;
+  constexpr Real kNode[kNodes] = {Real(0.069431844202973713), Real(0.33000947820757187),
+                                  Real(0.66999052179242813), Real(0.93056815579702629)};
+  constexpr Real kWeight[kNodes] = {Real(0.17392742256872693), Real(0.32607257743127307),
+                                    Real(0.32607257743127307), Real(0.17392742256872693)};
+  const ShellLengths<Real, T>& shell = ray.shell;
+  const T begin = Lanes::Load(before + i);
+  const T length = Lanes::Load(&samples.distance[i]) - begin;
+  ColumnSet<T> sum{T(Real(0)), T(Real(0)), T(Real(0))};
+  const T per_rayleigh = T(Real(-1)) / shell.rayleigh, per_mie = T(Real(-1)) / shell.mie;
+  for (std::size_t k = 0; k < kNodes; ++k) {
+    const T d = begin + T(kNode[k]) * length;
+    const T h = max(AltitudeNearby<T>(ray.h0, ray.mu0, d, shell.radius), T(Real(0)));
+    const T weight(kWeight[k]);
+    sum.rayleigh += weight * exp(h * per_rayleigh);
+    sum.mie += weight * exp(h * per_mie);
+    sum.ozone += weight * OzoneDensity<Real, T>(shell, h);
+  }
+  Lanes::Store(&samples.view_rayleigh[i], T(sum.rayleigh * length));
+  Lanes::Store(&samples.view_mie[i], T(sum.mie * length));
+  Lanes::Store(&samples.view_ozone[i], T(sum.ozone * length));
+}
+
+template <typename Real>
+void FillBetween(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples) {
+  using T = typename BatchOf<Real>::Type;
+  const RayInLanes<Real, T> ray(air, entry);
+  alignas(64) Real before[kMaxRaySamples];
+  before[0] = Real(0);
+  for (std::size_t i = 1; i < samples.padded; ++i)
+    before[i] = i < samples.count ? samples.distance[i - 1] : Real(0);
+  for (std::size_t i = 0; i < samples.padded; i += BatchOf<Real>::kLanes) {
+    FillButView<Real, T>(ray, i, samples);
+    FillSteps<Real, T>(ray, before, i, samples);
+  }
+  for (std::size_t i = 1; i < samples.count; ++i) {
+    samples.view_rayleigh[i] += samples.view_rayleigh[i - 1];
+    samples.view_mie[i] += samples.view_mie[i - 1];
+    samples.view_ozone[i] += samples.view_ozone[i - 1];
   }
 }
 
@@ -194,9 +273,9 @@ void FindColumnsUp(const AirConstants<Real>& air, std::size_t n, const Real* alt
 }
 
 template <typename Real>
-constexpr RayKernel<Real> kRayKernel{
-    BatchOf<Real>::kLanes,    Place<Real>,        Fill<Real>, Scatter<Real>,
-    FindColumnsToSpace<Real>, FindColumnsUp<Real>};
+constexpr RayKernel<Real> kRayKernel{BatchOf<Real>::kLanes, Place<Real>,   Fill<Real>,
+                                     FillBetween<Real>,     Scatter<Real>, FindColumnsToSpace<Real>,
+                                     FindColumnsUp<Real>};
 
 }  // namespace
 

@@ -53,6 +53,9 @@ struct RayKernel {
   void (*place)(const PanelRule<Real>& panel, RaySamples<Real>& samples);
   /// Everything at the samples that depends on their position, from distance, weight and lit.
   void (*fill)(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples);
+  /// The same by ViewColumns::kBetweenSamples.
+  void (*fill_between)(const AirConstants<Real>& air, const RayEntry& entry,
+                       RaySamples<Real>& samples);
   /// ScatteredOnce of all bands.
   void (*scatter)(const AirConstants<Real>& air, const RaySamples<Real>& samples,
                   ScatteredOnce<Real>& scattered);

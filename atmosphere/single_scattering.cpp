@@ -286,9 +286,23 @@ std::array<std::vector<Real>, 3> AirIntegrator<Real>::ColumnsToSpace(
 template <typename Real>
 Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double mu) const {
   const ViewRay ray{altitude_m, mu, 1.0, 1.0};
-  const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
-  if (extent.end == RayEnd::kGround) return Bands<Real>(bands());
-  return TransmittanceAlong(ray);
+  if (mu < 0.0 || !(altitude_m >= 0.0 && altitude_m <= medium_.atmosphere_height_m)) {
+    const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+    if (extent.end == RayEnd::kGround) return Bands<Real>(bands());
+    return TransmittanceAlong(ray);
+  }
+  const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
+  ColumnRows<Real> rows;
+  rows.Set(0, altitude_m / kMetresPerKilometre, mu);
+  kernel.columns_up(constants_, kernel.lanes, rows.altitude.data(), rows.mu.data(), rows.Targets());
+  const ColumnSet<Real> columns = rows.At(0);
+  Bands<Real> transmittance(bands());
+  for (std::size_t band = 0; band < bands(); ++band) {
+    transmittance[band] = std::exp(-(constants_.rayleigh[band] * columns.rayleigh +
+                                     constants_.mie_extinction[band] * columns.mie +
+                                     constants_.ozone[band] * columns.ozone));
+  }
+  return transmittance;
 }
 
 template <typename Real>
@@ -329,19 +343,30 @@ RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling&
 template <typename Real>
 RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray,
                                                std::span<const RayNode> nodes) const {
+  const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+  return SampleAt(ray, extent, PlanetShadow(ray, extent, medium_.planet_radius_m), nodes,
+                  ViewColumns::kFromSpace);
+}
+
+template <typename Real>
+RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray, const RayExtent& extent,
+                                               const ShadowSpan& shadow,
+                                               std::span<const RayNode> nodes,
+                                               ViewColumns columns) const {
   ALPENGLOW_ENSURE(nodes.size() + 16, <=, kMaxRaySamples);
   RaySamples<Real> samples;
-  samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
-  const ShadowSpan shadow = PlanetShadow(ray, samples.extent, medium_.planet_radius_m);
+  samples.extent = extent;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double d = nodes[i].distance_m;
     const bool dark = d > shadow.dark_begin_m && d < shadow.dark_end_m;
-    samples.distance[i] = static_cast<Real>((d - samples.extent.begin_m) / kMetresPerKilometre);
+    samples.distance[i] = static_cast<Real>((d - extent.begin_m) / kMetresPerKilometre);
     samples.weight[i] = static_cast<Real>(nodes[i].weight_m / kMetresPerKilometre);
     samples.lit[i] = dark ? Real(0) : Real(1);
   }
   CloseSamples(nodes.size(), samples);
-  Kernel<RayKernel<Real>>().fill(constants_, EntryOf(ray, samples.extent, medium_), samples);
+  const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
+  const auto fill = columns == ViewColumns::kFromSpace ? kernel.fill : kernel.fill_between;
+  fill(constants_, EntryOf(ray, extent, medium_), samples);
   return samples;
 }
 

@@ -61,6 +61,11 @@ class AirIntegrator {
   /// marches that Sample is held against.
   [[nodiscard]] RaySamples<Real> SampleAt(const ViewRay& ray, std::span<const RayNode> nodes) const;
 
+  /// The same of a ray whose extent and dark part are known.
+  [[nodiscard]] RaySamples<Real> SampleAt(const ViewRay& ray, const RayExtent& extent,
+                                          const ShadowSpan& shadow, std::span<const RayNode> nodes,
+                                          ViewColumns columns) const;
+
   /// Direct sunlight scattered once along the samples.
   [[nodiscard]] ScatteredOnce<Real> Scatter(const RaySamples<Real>& samples) const;
 

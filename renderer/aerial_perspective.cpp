@@ -167,11 +167,15 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
   std::array<RayNode, 4 * kMostNodes + 1> node;
   std::array<float, 4 * kMostNodes + 1> light;
   std::size_t count = 0;
+  double lowest = ray.altitude_m;
+  double highest = ray.altitude_m;
   for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
     if (cut[i + 1] - cut[i] <= 1e-12 * (extent.end_m - extent.begin_m)) continue;
     Panel panel{cut[i], cut[i + 1], true, 0.0, nodes.sky};
     const double first = AltitudeAlongRay<double>(ray.altitude_m, ray.mu, panel.begin_m, radius);
     const double last = AltitudeAlongRay<double>(ray.altitude_m, ray.mu, panel.end_m, radius);
+    lowest = std::min({lowest, first, last});
+    highest = std::max({highest, first, last});
     panel.up = last >= first;
     const double low = std::max(std::min(first, last), 0.0);
     const double at_low = panel.up ? panel.begin_m : panel.end_m;
@@ -189,21 +193,27 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
     const GaussRule& rule = GaussLegendre(panel.nodes);
     const auto sunlight =
         unbroken ? std::array<double, kMostNodes>{} : SunlightAtNodes(panel, *sunlit);
-    for (std::size_t j = 0; j < rule.node.size(); ++j, ++count) {
+    for (std::size_t k = 0; k < rule.node.size(); ++k, ++count) {
+      const std::size_t j = panel.up ? k : rule.node.size() - 1 - k;  // in order from the eye
       node[count] = {panel.DistanceAt(rule.node[j]),
                      rule.weight[j] * panel.Derivative(rule.node[j])};
       light[count] = unbroken ? 1.0F : static_cast<float>(sunlight[j]);
     }
   }
   node[count++] = {extent.end_m, 0.0};
-  RaySamples<float> samples = air_.SampleAt(ray, std::span(node.data(), count));
+  constexpr double kMostHeights = 6.0;  // for ViewColumns::kBetweenSamples
+  const bool short_way = extent.end == RayEnd::kLength && extent.begin_m == 0.0 &&
+                         highest - lowest < kMostHeights * medium.mie_scale_height_m;
+  RaySamples<float> samples =
+      air_.SampleAt(ray, extent, shadow, std::span(node.data(), count),
+                    short_way ? ViewColumns::kBetweenSamples : ViewColumns::kFromSpace);
   for (std::size_t i = 0; i + 1 < count; ++i) samples.lit[i] *= light[i];
   return samples;
 }
 
 AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu,
                                    bool higher_orders) const {
-  const Medium& medium = air_.medium();
+  const AirConstants<float>& air_per_km = air_.constants();
   const auto direct = air_.Inscatter(air_.Scatter(samples), nu);
   const auto diffuse =
       higher_orders ? diffuse_.InscatterAlong(samples, nu) : Bands<float>(air_.bands());
@@ -211,12 +221,10 @@ AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu,
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     air.inscatter[band] = std::max(direct[band], 0.0F) + diffuse[band];
-    const double tau =
-        1000.0 *
-        (medium.rayleigh_scattering_per_m[band] * static_cast<double>(samples.view_rayleigh[last]) +
-         medium.mie_extinction_per_m[band] * static_cast<double>(samples.view_mie[last]) +
-         medium.ozone_absorption_per_m[band] * static_cast<double>(samples.view_ozone[last]));
-    air.transmittance[band] = static_cast<float>(std::exp(-std::max(tau, 0.0)));
+    const float depth = air_per_km.rayleigh[band] * samples.view_rayleigh[last] +
+                        air_per_km.mie_extinction[band] * samples.view_mie[last] +
+                        air_per_km.ozone[band] * samples.view_ozone[last];
+    air.transmittance[band] = std::exp(-std::max(depth, 0.0F));
   }
   return air;
 }
