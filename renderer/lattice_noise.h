@@ -19,6 +19,12 @@ namespace alpenglow {
 /// Smooth noise of wavelength about 1.5, mean 0, in (-1, 1); 0 at the lattice points.
 [[nodiscard]] double GradientNoise(double x, double y, std::uint32_t seed);
 
+/// GradientNoise and its derivatives by x and y.
+struct NoiseSlope {
+  double value, by_x, by_y;
+};
+[[nodiscard]] NoiseSlope GradientNoiseSlope(double x, double y, std::uint32_t seed);
+
 /// Sum of `octaves` noises, each of twice the frequency and half the amplitude of the one before.
 [[nodiscard]] double FractalNoise(double x, double y, int octaves, std::uint32_t seed);
 

@@ -40,6 +40,7 @@ bool SceneGeometry::HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& d
   if (mu >= 0.0) return false;
   const double altitude = AltitudeOf(origin);
   const double deepest_m = -(radius_m() + altitude) * mu;
+  if (distance_m < deepest_m) return false;  // it would have to come out beyond
   const RayExtent extent =
       ExtentOf({altitude, mu, 1.0, mu}, radius_m(), medium_.atmosphere_height_m);
   if (extent.end != RayEnd::kGround || 2.0 * deepest_m - extent.end_m > distance_m) return false;

@@ -35,16 +35,24 @@ Bands<float> Mix(const Bands<float>& a, const Bands<float>& b, float share_of_b)
 }
 
 // Sum of octaves of noise from `longest_m` down, half as high with each; octaves shorter than two
-// footprints fade out, so that distant ground does not glitter.
-double DetailNoise(const GroundPoint& point, double longest_m, int octaves, std::uint32_t seed) {
-  double sum = 0.0, amplitude = 1.0, wavelength = longest_m;
+// footprints fade out, so that distant ground does not glitter. Calls visit(octave, amplitude,
+// wavelength).
+template <typename Visit>
+void VisitOctaves(const GroundPoint& point, double longest_m, int octaves, const Visit& visit) {
+  double amplitude = 1.0, wavelength = longest_m;
   for (int octave = 0; octave < octaves; ++octave, amplitude *= 0.5, wavelength *= 0.5) {
     const double kept = std::clamp(wavelength / (2.0 * point.footprint_m) - 1.0, 0.0, 1.0);
     if (kept == 0.0) break;
-    sum += kept * amplitude *
-           GradientNoise(point.east_m / wavelength, point.north_m / wavelength,
-                         seed + static_cast<std::uint32_t>(octave));
+    visit(octave, kept * amplitude, wavelength);
   }
+}
+
+double DetailNoise(const GroundPoint& point, double longest_m, int octaves, std::uint32_t seed) {
+  double sum = 0.0;
+  VisitOctaves(point, longest_m, octaves, [&](int octave, double amplitude, double wavelength) {
+    sum += amplitude * GradientNoise(point.east_m / wavelength, point.north_m / wavelength,
+                                     seed + static_cast<std::uint32_t>(octave));
+  });
   return sum;
 }
 
@@ -88,15 +96,13 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up)
 glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::dvec3& normal) {
   constexpr double kLongest_m = 220.0;
   constexpr double kHeight_m = 14.0;  // of the longest octave
-  const double step = std::max(1.0, 0.25 * point.footprint_m);
-  const auto height = [&](double east, double north) {
-    GroundPoint moved = point;
-    moved.east_m += east;
-    moved.north_m += north;
-    return kHeight_m * DetailNoise(moved, kLongest_m, 5, 47U);
-  };
-  const double here = height(0.0, 0.0);
-  const glm::dvec3 tilt((here - height(step, 0.0)) / step, (here - height(0.0, step)) / step, 0.0);
+  glm::dvec3 tilt(0.0);
+  VisitOctaves(point, kLongest_m, 5, [&](int octave, double amplitude, double wavelength) {
+    const NoiseSlope noise =
+        GradientNoiseSlope(point.east_m / wavelength, point.north_m / wavelength,
+                           47U + static_cast<std::uint32_t>(octave));
+    tilt -= kHeight_m * amplitude / wavelength * glm::dvec3(noise.by_x, noise.by_y, 0.0);
+  });
   return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
 }
 

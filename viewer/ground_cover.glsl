@@ -31,28 +31,39 @@ uint Mixed(uint bits) {
   return bits;
 }
 
-float GradientDot(ivec2 cell, vec2 offset, uint seed) {
+vec2 GradientAt(ivec2 cell, uint seed) {
   uint hash = Mixed(uint(cell.x) + Mixed(uint(cell.y) + Mixed(seed + 0x9e3779b9u)));
-  vec2 gradient = vec2(float(hash & 0xffffu), float(hash >> 16)) / 32768.0 - 1.0;
-  return dot(gradient, offset);
+  return vec2(float(hash & 0xffffu), float(hash >> 16)) / 32768.0 - 1.0;
 }
 
+// Noise and its derivatives to the east and north, per cell.
 // @param place  within and beyond `cell`, in cells.
-float GradientNoise(ivec2 cell, vec2 place, uint seed) {
+vec3 GradientNoiseSlope(ivec2 cell, vec2 place, uint seed) {
   vec2 whole = floor(place);
   vec2 d = place - whole;
   ivec2 at = cell + ivec2(whole);
   vec2 fade = d * d * d * (d * (d * 6.0 - 15.0) + 10.0);
-  float south = mix(GradientDot(at, d, seed),
-                    GradientDot(at + ivec2(1, 0), d - vec2(1.0, 0.0), seed), fade.x);
-  float north = mix(GradientDot(at + ivec2(0, 1), d - vec2(0.0, 1.0), seed),
-                    GradientDot(at + ivec2(1, 1), d - vec2(1.0, 1.0), seed), fade.x);
-  return mix(south, north, fade.y);
+  vec2 fade_slope = 30.0 * d * d * (d - 1.0) * (d - 1.0);
+  vec2 sw = GradientAt(at, seed);
+  vec2 se = GradientAt(at + ivec2(1, 0), seed);
+  vec2 nw = GradientAt(at + ivec2(0, 1), seed);
+  vec2 ne = GradientAt(at + ivec2(1, 1), seed);
+  float from_sw = dot(sw, d);
+  float from_se = dot(se, d - vec2(1.0, 0.0));
+  float from_nw = dot(nw, d - vec2(0.0, 1.0));
+  float from_ne = dot(ne, d - vec2(1.0, 1.0));
+  float south = mix(from_sw, from_se, fade.x);
+  float north = mix(from_nw, from_ne, fade.x);
+  vec2 slope = mix(mix(sw, se, fade.x), mix(nw, ne, fade.x), fade.y) +
+               fade_slope *
+                   vec2(mix(from_se - from_sw, from_ne - from_nw, fade.y), north - south);
+  return vec3(mix(south, north, fade.y), slope);
 }
 
 // Sum of octaves, each half as long and half as high; those shorter than two footprints fade out.
-float DetailNoise(vec2 offset, int family, int octaves, uint seed, float footprint) {
-  float sum = 0.0;
+// With its derivatives to the east and north [1/m].
+vec3 DetailNoiseSlope(vec2 offset, int family, int octaves, uint seed, float footprint) {
+  vec3 sum = vec3(0.0);
   float amplitude = 1.0;
   float wavelength = noise_cell[family].z;
   int cells = 1;
@@ -60,13 +71,18 @@ float DetailNoise(vec2 offset, int family, int octaves, uint seed, float footpri
     float kept = clamp(wavelength / (2.0 * footprint) - 1.0, 0.0, 1.0);
     if (kept == 0.0) break;
     vec2 place = noise_place[family].xy * float(cells) + offset / wavelength;
-    sum += kept * amplitude *
-           GradientNoise(ivec2(noise_cell[family].xy) * cells, place, seed + uint(octave));
+    vec3 noise =
+        GradientNoiseSlope(ivec2(noise_cell[family].xy) * cells, place, seed + uint(octave));
+    sum += kept * amplitude * vec3(noise.x, noise.yz / wavelength);
     amplitude *= 0.5;
     wavelength *= 0.5;
     cells *= 2;
   }
   return sum;
+}
+
+float DetailNoise(vec2 offset, int family, int octaves, uint seed, float footprint) {
+  return DetailNoiseSlope(offset, family, octaves, seed, footprint).x;
 }
 
 // @param altitude [m]; normal_up of the mesh's normal.
@@ -88,17 +104,10 @@ vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint)
   return min(albedo * (1.0 + (1.0 - cold * holds) * tone), vec4(1.0));
 }
 
-float ReliefHeight(vec2 offset, float footprint) {
-  return 14.0 * DetailNoise(offset, RELIEF, 5, 47u, footprint);
-}
-
 // The normal with the relief that the mesh does not have.
 vec3 DetailedNormal(vec2 offset, vec3 normal, float footprint) {
   if (cover_lines.z == 0.0) return normal;
-  float reach = max(1.0, 0.25 * footprint);
-  float here = ReliefHeight(offset, footprint);
-  float east = (here - ReliefHeight(offset + vec2(reach, 0.0), footprint)) / reach;
-  float north = (here - ReliefHeight(offset + vec2(0.0, reach), footprint)) / reach;
-  vec3 tilt = east * mesh_east.xyz + north * mesh_north.xyz;
+  vec2 slope = 14.0 * DetailNoiseSlope(offset, RELIEF, 5, 47u, footprint).yz;
+  vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz;
   return normalize(normal + tilt * max(dot(normal, mesh_up.xyz), 0.0));
 }
