@@ -5,7 +5,8 @@
 //   [planet]             radius_m (makes the planet a sphere), follows_wgs84, atmosphere_top_m,
 //                        ground_albedo
 //   [spectrum]           wavelengths_nm | bands, solar_irradiance
-//   [rayleigh]           scattering_per_m, scale_height_m
+//   [rayleigh]           scattering_per_m, scale_height_m (makes the density one exponential),
+//                        deficit, deficit_scale_height_m (MoleculeDeficit)
 //   [mie]                scattering_per_m, extinction_per_m, scale_height_m, phase with its
 //                        parameters, each one value or one per wavelength:
 //     rayleigh
@@ -58,7 +59,8 @@ using ranges::Range;
 const Names kSections{"preset", "planet", "spectrum", "rayleigh", "mie", "aerosol", "ozone"};
 const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
 const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
-const Names kRayleighKeys{"scattering_per_m", "scale_height_m"};
+const Names kRayleighKeys{"scattering_per_m", "scale_height_m", "deficit",
+                          "deficit_scale_height_m"};
 const Names kMieKeys{
     "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
     "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
@@ -232,6 +234,14 @@ class AtmosphereFile {
              medium.rayleigh_scattering_per_m, medium.wavelengths_nm.size());
     ReadNumber(*rayleigh_, "scale_height_m", ranges::kScaleHeight_m,
                medium.rayleigh_scale_height_m);
+    if (rayleigh_->Has("scale_height_m")) medium.rayleigh_deficit = {};
+    ReadNumber(*rayleigh_, "deficit", ranges::kDeficit, medium.rayleigh_deficit.share);
+    ReadNumber(*rayleigh_, "deficit_scale_height_m", ranges::kScaleHeight_m,
+               medium.rayleigh_deficit.scale_height_m);
+    if (rayleigh_->Has("deficit_scale_height_m") && medium.rayleigh_deficit.share == 0.0) {
+      rayleigh_->Fail("deficit_scale_height_m",
+                      "rayleigh.deficit_scale_height_m has no effect without rayleigh.deficit");
+    }
   }
 
   void ReadMie(Medium& medium) const {
@@ -400,8 +410,7 @@ class AtmosphereFile {
     RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
     const double molecules = MoleculesAt550(medium);
     if (const auto turbidity = table.Number("turbidity", 1.0, 1000.0)) {
-      return (*turbidity - 1.0) * molecules * medium.rayleigh_scale_height_m /
-             medium.mie_scale_height_m;
+      return (*turbidity - 1.0) * molecules * MoleculeColumn_m(medium) / medium.mie_scale_height_m;
     }
     constexpr double kLogOfContrast = 3.912;  // -log(0.02)
     const double visibility_m = *table.Number("visibility_m", 1.0, 1e7);

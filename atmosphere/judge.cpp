@@ -48,8 +48,10 @@ Columns Densities(const Medium& medium, Extended altitude) {
   } else if (h > layer.peak_m && h < layer.top_m) {
     ozone = (layer.top_m - h) / (layer.top_m - layer.peak_m);
   }
-  return {std::exp(-h / medium.rayleigh_scale_height_m), std::exp(-h / medium.mie_scale_height_m),
-          ozone};
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  const double molecules = (1.0 + deficit.share) * std::exp(-h / medium.rayleigh_scale_height_m) -
+                           deficit.share * std::exp(-h / deficit.scale_height_m);
+  return {molecules, std::exp(-h / medium.mie_scale_height_m), ozone};
 }
 
 // Where the integrands along the line have a kink or bend hard: tent edges, perigee, and a ladder

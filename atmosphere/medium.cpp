@@ -81,6 +81,22 @@ Fault FaultOfExtinction(const Medium& medium) {
   return std::nullopt;
 }
 
+// The density must fall from the ground on: there the deficit may not fall faster than the rest,
+// and above it is then always the smaller of the two.
+Fault FaultOfDeficit(const Medium& medium) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  const double least = medium.rayleigh_scale_height_m * deficit.share / (1.0 + deficit.share);
+  if (deficit.share == 0.0 || (deficit.scale_height_m >= least &&
+                               deficit.scale_height_m <= medium.rayleigh_scale_height_m)) {
+    return std::nullopt;
+  }
+  return MediumFault{
+      "rayleigh.deficit_scale_height_m",
+      fmt::format("rayleigh.deficit_scale_height_m is {}; with this deficit it must lie in [{}, "
+                  "{}], so that the air thins out upwards",
+                  deficit.scale_height_m, least, medium.rayleigh_scale_height_m)};
+}
+
 Fault FaultOfScalars(const Medium& medium) {
   const struct {
     const char* key;
@@ -90,6 +106,9 @@ Fault FaultOfScalars(const Medium& medium) {
       {"planet.radius_m", medium.planet_radius_m, ranges::kPlanetRadius_m},
       {"planet.atmosphere_top_m", medium.atmosphere_height_m, ranges::kAtmosphereTop_m},
       {"rayleigh.scale_height_m", medium.rayleigh_scale_height_m, ranges::kScaleHeight_m},
+      {"rayleigh.deficit", medium.rayleigh_deficit.share, ranges::kDeficit},
+      {"rayleigh.deficit_scale_height_m", medium.rayleigh_deficit.scale_height_m,
+       ranges::kScaleHeight_m},
       {"mie.scale_height_m", medium.mie_scale_height_m, ranges::kScaleHeight_m},
       {"ozone.bottom_m", medium.ozone.bottom_m, ranges::kOzoneAltitude_m},
       {"ozone.peak_m", medium.ozone.peak_m, ranges::kOzoneAltitude_m},
@@ -98,6 +117,7 @@ Fault FaultOfScalars(const Medium& medium) {
   for (const auto& scalar : scalars) {
     if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.range)) return fault;
   }
+  if (Fault fault = FaultOfDeficit(medium)) return fault;
   const OzoneLayer& ozone = medium.ozone;
   if (!(ozone.bottom_m < ozone.peak_m && ozone.peak_m < ozone.top_m)) {
     return MediumFault{
@@ -195,6 +215,10 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.ground_albedo);
   fnv.Add(medium.rayleigh_scattering_per_m);
   fnv.Add(medium.rayleigh_scale_height_m);
+  if (medium.rayleigh_deficit.share != 0.0) {
+    fnv.Add(medium.rayleigh_deficit.share);
+    fnv.Add(medium.rayleigh_deficit.scale_height_m);
+  }
   fnv.Add(medium.mie_scattering_per_m);
   fnv.Add(medium.mie_extinction_per_m);
   fnv.Add(medium.mie_scale_height_m);
@@ -208,6 +232,18 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.ozone.top_m);
   if (medium.ozone.shape != OzoneShape::kTent) fnv.Add(std::uint64_t{1});
   return fnv.hash();
+}
+
+double MoleculeDensity(const Medium& medium, double altitude_m) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  return (1.0 + deficit.share) * std::exp(-altitude_m / medium.rayleigh_scale_height_m) -
+         deficit.share * std::exp(-altitude_m / deficit.scale_height_m);
+}
+
+double MoleculeColumn_m(const Medium& medium) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  return (1.0 + deficit.share) * medium.rayleigh_scale_height_m -
+         deficit.share * deficit.scale_height_m;
 }
 
 Medium OnOsculatingSphere(Medium medium, double latitude_rad) {

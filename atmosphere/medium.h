@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the air is made of: three species over a spherical planet, on a wavelength set.
 //
-//   molecules   sigma(h) = rayleigh_scattering exp(-h / H_R)                scattering only
+//   molecules   sigma(h) = rayleigh_scattering [(1 + d) exp(-h / H_R) - d exp(-h / H_D)]
+//                                                                           scattering only
 //   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering, absorption
 //   ozone       sigma(h) = ozone_absorption    layer(h)                     absorption only
 //
@@ -19,6 +20,15 @@
 #include "atmosphere/phase.h"
 
 namespace alpenglow {
+
+/// What a single exponential has too much of near the ground, relative to the density there: air
+/// that cools upwards, as below 11 km on Earth, thins out more slowly than the air above it.
+struct MoleculeDeficit {
+  double share = 0.0;  // d, in [0, 1]
+  double scale_height_m = 4000.0;
+
+  bool operator==(const MoleculeDeficit&) const = default;
+};
 
 /// Tent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017).
 /// Smooth: (27/4 y (1 - y)^2)^4 with y = h / top and the peak at top / 3. A tent bends the light of
@@ -58,6 +68,7 @@ struct Medium {
 
   std::vector<double> rayleigh_scattering_per_m;  // at altitude 0
   double rayleigh_scale_height_m = 8000.0;
+  MoleculeDeficit rayleigh_deficit = {};
 
   std::vector<double> mie_scattering_per_m;  // at altitude 0
   std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
@@ -70,6 +81,11 @@ struct Medium {
 
   bool operator==(const Medium&) const = default;
 };
+
+/// Density of the molecules relative to altitude 0.
+[[nodiscard]] double MoleculeDensity(const Medium& medium, double altitude_m);
+/// Column of the molecules over altitude 0 at their density there [m].
+[[nodiscard]] double MoleculeColumn_m(const Medium& medium);
 
 /// The aerosol's phase function at the wavelength of this index.
 [[nodiscard]] inline const PhaseFunction& MiePhase(const Medium& medium, std::size_t band) {

@@ -18,6 +18,7 @@ inline constexpr Range kCoefficient_per_m{0.0, 1e5};
 inline constexpr Range kPlanetRadius_m{1e3, 1e9};
 inline constexpr Range kAtmosphereTop_m{1.0, 1e7};
 inline constexpr Range kScaleHeight_m{1.0, 2e5};
+inline constexpr Range kDeficit{0.0, 1.0};
 inline constexpr Range kOzoneAltitude_m{0.0, 1e7};
 
 /// Most bands of a medium: one each nanometre from 360 to 830 nm, and some.

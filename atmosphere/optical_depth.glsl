@@ -69,6 +69,18 @@ SHARED Length ExponentialColumnUp(Length h, Number mu, Length H, Length top, Len
   return max(ExponentialColumnToInfinity(h, mu, H, R) - beyond, Length(0.0));
 }
 
+// Density of the molecules relative to altitude 0, an exponential with a deficit near the ground:
+// (1 + d) exp(-h / H) - d exp(-h / H_D).
+SHARED Number MoleculeDensity(Length h, Length H, Number d, Length H_D) {
+  return (Number(1.0) + d) * exp(-h / H) - d * exp(-h / H_D);
+}
+
+// What the deficit takes from the column from altitude h along mu >= 0 to the top, above which nothing of
+// it is left.
+SHARED Length DeficitColumnUp(Length h, Number mu, Number d, Length H_D, Length R) {
+  return d * ExponentialColumnToInfinity(h, mu, H_D, R);
+}
+
 // Relative density of the ozone tent: 0 at the bottom, 1 at the peak, 0 at the top.
 SHARED Number TentDensity(Length h, Length bottom, Length peak, Length top) {
   Number rising = (h - bottom) / (peak - bottom);

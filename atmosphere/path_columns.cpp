@@ -52,8 +52,11 @@ ColumnTable::ColumnTable(const Medium& medium)
       top_radius_m_(medium.planet_radius_m + medium.atmosphere_height_m),
       ozone_(medium.ozone),
       has_ozone_(AnyAbove(medium.ozone_absorption_per_m, 0.0)),
+      deficit_share_(medium.rayleigh_deficit.share),
       rayleigh_(Tabulate(medium.rayleigh_scale_height_m)),
-      mie_(Tabulate(medium.mie_scale_height_m)) {}
+      mie_(Tabulate(medium.mie_scale_height_m)) {
+  if (deficit_share_ > 0.0) deficit_ = Tabulate(medium.rayleigh_deficit.scale_height_m);
+}
 
 // Radii are uniform in h / r, slants in t / (1 + t).
 ColumnTable::Layer ColumnTable::Tabulate(double scale_height_m) const {
@@ -70,6 +73,12 @@ ColumnTable::Layer ColumnTable::Tabulate(double scale_height_m) const {
     }
   }
   return layer;
+}
+
+double ColumnTable::MoleculesBeyond(double radius_m, double s_m) const {
+  const double column = Beyond(rayleigh_, radius_m, s_m);
+  if (deficit_share_ == 0.0) return column;
+  return (1.0 + deficit_share_) * column - deficit_share_ * Beyond(deficit_, radius_m, s_m);
 }
 
 double ColumnTable::Beyond(const Layer& layer, double radius_m, double s_m) const {
@@ -139,7 +148,7 @@ AirColumns ColumnTable::Primitive(const Line& line, double s_m) const {
   const double p = line.perigee_radius_m;
   const double s = std::abs(s_m);
   const double r = std::sqrt(p * p + s * s);
-  AirColumns columns{Beyond(rayleigh_, r, s), Beyond(mie_, r, s), 0.0};
+  AirColumns columns{MoleculesBeyond(r, s), Beyond(mie_, r, s), 0.0};
   if (!has_ozone_ || s <= line.ozone_edge_m[0]) return columns;
   if (ozone_.shape == OzoneShape::kSmooth) {
     columns.ozone = SmoothOzoneUpTo(line, s);

@@ -65,6 +65,7 @@ class ColumnTable {
   };
   [[nodiscard]] Layer Tabulate(double scale_height_m) const;
   [[nodiscard]] double Beyond(const Layer& layer, double radius_m, double s_m) const;
+  [[nodiscard]] double MoleculesBeyond(double radius_m, double s_m) const;
   [[nodiscard]] double SmoothOzoneUpTo(const Line& line, double s_m) const;
   [[nodiscard]] double OzoneSide(const Line& line, std::size_t side, double s_m) const;
 
@@ -72,8 +73,10 @@ class ColumnTable {
   double top_radius_m_;
   OzoneLayer ozone_;
   bool has_ozone_;
+  double deficit_share_;
   Layer rayleigh_;
   Layer mie_;
+  Layer deficit_;  // without a share: empty
 };
 
 }  // namespace alpenglow::judge

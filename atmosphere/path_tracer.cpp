@@ -83,7 +83,7 @@ class Scene {
   [[nodiscard]] bool has_aerosol() const { return mie_per_m_ > 0.0; }
 
   [[nodiscard]] double RayleighDensity(double radius_m) const {
-    return std::exp(-(radius_m - planet_m()) / medium_.rayleigh_scale_height_m);
+    return MoleculeDensity(medium_, radius_m - planet_m());
   }
   [[nodiscard]] double MieDensity(double radius_m) const {
     return std::exp(-(radius_m - planet_m()) / medium_.mie_scale_height_m);

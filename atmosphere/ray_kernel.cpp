@@ -14,14 +14,17 @@ struct ShellLengths {
         top(air.top),
         rayleigh(air.rayleigh_height),
         mie(air.mie_height),
+        deficit(air.deficit),
+        deficit_height(air.deficit_height),
         ozone_bottom(air.ozone_bottom),
         ozone_peak(air.ozone_peak),
         ozone_top(air.ozone_top),
+        has_deficit(air.deficit > Real(0)),
         smooth_ozone(air.smooth_ozone),
         mie_ends_below_top(air.mie_ends_below_top) {}
 
-  T radius, top, rayleigh, mie, ozone_bottom, ozone_peak, ozone_top;
-  bool smooth_ozone, mie_ends_below_top;
+  T radius, top, rayleigh, mie, deficit, deficit_height, ozone_bottom, ozone_peak, ozone_top;
+  bool has_deficit, smooth_ozone, mie_ends_below_top;
 };
 
 template <typename Real, typename T>
@@ -33,9 +36,25 @@ T OzoneColumnUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
 }
 
 template <typename Real, typename T>
+T MoleculeColumnUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
+  using namespace shared;
+  const T column = ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius);
+  if (!shell.has_deficit) return column;
+  return column + shell.deficit * column -
+         DeficitColumnUp<T>(h, mu, shell.deficit, shell.deficit_height, shell.radius);
+}
+
+template <typename Real, typename T>
+T MoleculeDensityAt(const ShellLengths<Real, T>& shell, const T& h) {
+  using namespace shared;
+  if (!shell.has_deficit) return exp(-h / shell.rayleigh);
+  return MoleculeDensity<T>(h, shell.rayleigh, shell.deficit, shell.deficit_height);
+}
+
+template <typename Real, typename T>
 ColumnSet<T> ColumnsUp(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
   using namespace shared;
-  return {ExponentialColumnUp<T>(h, mu, shell.rayleigh, shell.top, shell.radius),
+  return {MoleculeColumnUp(shell, h, mu),
           shell.mie_ends_below_top
               ? ExponentialColumnToInfinity<T>(h, mu, shell.mie, shell.radius)
               : ExponentialColumnUp<T>(h, mu, shell.mie, shell.top, shell.radius),
@@ -131,7 +150,7 @@ T FillButView(const RayInLanes<Real, T>& ray, std::size_t i, RaySamples<Real>& s
   put(samples.altitude, h);
   put(samples.mu, ZenithCosineAlongRay<T>(ray.h0, ray.mu0, d, h, shell.radius));
   put(samples.mu_s, mu_s);
-  put(samples.rayleigh_density, T(exp(-h / shell.rayleigh)));
+  put(samples.rayleigh_density, MoleculeDensityAt(shell, h));
   put(samples.mie_density, T(exp(-h / shell.mie)));
   put(samples.sun_rayleigh, sun.rayleigh);
   put(samples.sun_mie, sun.mie);
@@ -186,11 +205,14 @@ void FillSteps(const RayInLanes<Real, T>& ray, const Real* before, std::size_t i
   const T length = Lanes::Load(&samples.distance[i]) - begin;
   ColumnSet<T> sum{T(Real(0)), T(Real(0)), T(Real(0))};
   const T per_rayleigh = T(Real(-1)) / shell.rayleigh, per_mie = T(Real(-1)) / shell.mie;
+  const T per_deficit = T(Real(-1)) / shell.deficit_height;
   for (std::size_t k = 0; k < kNodes; ++k) {
     const T d = begin + T(kNode[k]) * length;
     const T h = max(AltitudeNearby<T>(ray.h0, ray.mu0, d, shell.radius), T(Real(0)));
     const T weight(kWeight[k]);
-    sum.rayleigh += weight * exp(h * per_rayleigh);
+    T molecules = exp(h * per_rayleigh);
+    if (shell.has_deficit) molecules += shell.deficit * (molecules - exp(h * per_deficit));
+    sum.rayleigh += weight * molecules;
     sum.mie += weight * exp(h * per_mie);
     sum.ozone += weight * OzoneDensity<Real, T>(shell, h);
   }

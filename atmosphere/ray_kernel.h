@@ -15,6 +15,7 @@ template <typename Real>
 struct AirConstants {
   Real radius, top;
   Real rayleigh_height, mie_height;
+  Real deficit, deficit_height;  // of molecules (MoleculeDeficit)
   Real ozone_bottom, ozone_peak, ozone_top;
   bool smooth_ozone;
   bool mie_ends_below_top;  // its column beyond the top is below 1e-12 m

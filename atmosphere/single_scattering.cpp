@@ -29,6 +29,8 @@ AirConstants<Real> ConstantsOf(const Medium& medium) {
   air.top = km(medium.atmosphere_height_m);
   air.rayleigh_height = km(medium.rayleigh_scale_height_m);
   air.mie_height = km(medium.mie_scale_height_m);
+  air.deficit = static_cast<Real>(medium.rayleigh_deficit.share);
+  air.deficit_height = km(medium.rayleigh_deficit.scale_height_m);
   air.ozone_bottom = km(medium.ozone.bottom_m);
   air.ozone_peak = km(medium.ozone.peak_m);
   air.ozone_top = km(medium.ozone.top_m);
@@ -212,15 +214,17 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
                     rows.Targets());
   ColumnSet<Real> columns =
       Between<Real>(real(entry.mu), real(mu_end), rows.At(0), rows.At(1), rows.At(2));
-  const auto exponential = [](double height) {
-    return [height](double h) { return std::exp(-h / height); };
+  const auto molecules = [&medium](double h) {
+    return MoleculeDensity(medium, h * kMetresPerKilometre);
+  };
+  const auto aerosol = [&medium](double h) {
+    return std::exp(-h * kMetresPerKilometre / medium.mie_scale_height_m);
   };
   const double rayleigh = medium.rayleigh_scale_height_m / kMetresPerKilometre;
   const double mie = medium.mie_scale_height_m / kMetresPerKilometre;
   if (span < 4.0 * rayleigh)
-    columns.rayleigh = real(ShortColumn(entry, 0.0, length, radius, exponential(rayleigh)));
-  if (span < 4.0 * mie)
-    columns.mie = real(ShortColumn(entry, 0.0, length, radius, exponential(mie)));
+    columns.rayleigh = real(ShortColumn(entry, 0.0, length, radius, molecules));
+  if (span < 4.0 * mie) columns.mie = real(ShortColumn(entry, 0.0, length, radius, aerosol));
   if (span < 2.0) columns.ozone = real(ShortOzoneColumn(entry, length, radius, medium.ozone));
   return columns;
 }

@@ -338,8 +338,8 @@ void Place(const LitPieces& pieces, const LitPoints& points) {
 
 void Scatter(const LitPieces& pieces, const LitPoints& points, const ColumnPointers& up,
              const ColumnPointers& sun, const std::array<float, 6>& origin_and_perigee,
-             const std::array<float, 3>& extinction, float rayleigh_height, float mie_height,
-             float* rayleigh, float* mie) {
+             const std::array<float, 3>& extinction, const LayerHeights& layers, float* rayleigh,
+             float* mie) {
   using namespace shared;
   using Lanes = BatchOf<float>;
   using T = typename Lanes::Type;
@@ -363,8 +363,9 @@ void Scatter(const LitPieces& pieces, const LitPoints& points, const ColumnPoint
               (ColumnBetween<T>(mu0, mu, origin_ozone, Lanes::Load(up.ozone + at), low_ozone) +
                Lanes::Load(sun.ozone + at));
       const T light = Lanes::Load(points.weight + at) * exp(-depth);
-      rayleigh_sum += light * exp(-h / T(rayleigh_height));
-      mie_sum += light * exp(-h / T(mie_height));
+      rayleigh_sum +=
+          light * MoleculeDensity<T>(h, layers.rayleigh, layers.deficit, layers.deficit_height);
+      mie_sum += light * exp(-h / T(layers.mie));
     }
     Lanes::Store(rayleigh + i, rayleigh_sum);
     Lanes::Store(mie + i, mie_sum);

@@ -109,6 +109,11 @@ struct ColumnPointers {
   const float *rayleigh, *mie, *ozone;
 };
 
+/// Scale heights of molecules and aerosol, and the deficit of molecules (MoleculeDeficit) [km].
+struct LayerHeights {
+  float rayleigh, mie, deficit, deficit_height;
+};
+
 struct DiffuseKernel {
   /// Light of the previous order that arrives along a march: adds to arriving[((sun * azimuths) +
   /// azimuth) * 8 + half * 4 + band]; the two halves are to be added. `rows` is room for
@@ -122,7 +127,7 @@ struct DiffuseKernel {
   /// mie[piece] per unit scattering coefficient at the ground.
   void (*scatter)(const LitPieces& pieces, const LitPoints& points, const ColumnPointers& up,
                   const ColumnPointers& sun, const std::array<float, 6>& origin_and_perigee,
-                  const std::array<float, 3>& extinction, float rayleigh_height, float mie_height,
+                  const std::array<float, 3>& extinction, const LayerHeights& layers,
                   float* rayleigh, float* mie);
   /// Inscattered light along a sampled ray: light[block * 4 + band]. Moments are packed and divided
   /// by Twilight: [((block * altitudes + altitude) * suns + sun) * node + i].

@@ -141,7 +141,8 @@ class PieceScatterer {
     for (std::size_t band = 0; band < air_.bands; ++band) {
       kernel.scatter(lit, at, up.Read(), sun.Read(), ends_,
                      {air_.rayleigh[band], air_.mie_extinction[band], air_.ozone[band]},
-                     air_.rayleigh_height, air_.mie_height, rayleigh.data(), mie.data());
+                     {air_.rayleigh_height, air_.mie_height, air_.deficit, air_.deficit_height},
+                     rayleigh.data(), mie.data());
       for (std::size_t i = 0; i < pieces.ray.size(); ++i) {
         const std::size_t ray = pieces.ray[i];
         const float mie_phase = mie_phase_[ray * phases + (phases > 1 ? band : 0)];

@@ -52,6 +52,12 @@ std::string LayerLines(const OzoneLayer& ozone) {
                      ozone.peak_m, ozone.top_m);
 }
 
+std::string DeficitLines(const MoleculeDeficit& deficit) {
+  if (deficit.share == 0.0) return "";
+  return fmt::format("deficit = {}\ndeficit_scale_height_m = {}\n", deficit.share,
+                     deficit.scale_height_m);
+}
+
 }  // namespace
 
 std::string TomlFromMedium(const Medium& medium) {
@@ -63,6 +69,7 @@ std::string TomlFromMedium(const Medium& medium) {
                   ListOf(medium.wavelengths_nm), ListOf(medium.solar_irradiance)) +
       fmt::format("[rayleigh]\nscattering_per_m = {}\nscale_height_m = {}\n",
                   ListOf(medium.rayleigh_scattering_per_m), medium.rayleigh_scale_height_m) +
+      DeficitLines(medium.rayleigh_deficit) +
       fmt::format("[mie]\nscattering_per_m = {}\nextinction_per_m = {}\nscale_height_m = {}\n",
                   ListOf(medium.mie_scattering_per_m), ListOf(medium.mie_extinction_per_m),
                   medium.mie_scale_height_m) +

@@ -106,7 +106,6 @@ Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray, Marc
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const float h0 = Kilometres(ray.altitude_m), mu = static_cast<float>(ray.mu);
   const float radius = Kilometres(medium.planet_radius_m);
-  const float rayleigh_height = Kilometres(medium.rayleigh_scale_height_m);
   const float mie_height = Kilometres(medium.mie_scale_height_m);
   const float length = Kilometres(extent.end_m - extent.begin_m);
   float rayleigh = 0.0F, mie = 0.0F, ozone = 0.0F;
@@ -114,7 +113,8 @@ Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray, Marc
     const float h = std::max(shared::AltitudeAlongRay<float>(
                                  h0, mu, Kilometres(extent.begin_m) + share * length, radius),
                              0.0F);
-    rayleigh += weight * std::exp(-h / rayleigh_height);
+    rayleigh += weight * static_cast<float>(
+                             MoleculeDensity(medium, kMetresPerKilometre * static_cast<double>(h)));
     mie += weight * std::exp(-h / mie_height);
     ozone += weight * OzoneDensity(medium.ozone, h);
   };
@@ -145,10 +145,15 @@ Bands<float> ChapmanTransmittance(const AirIntegrator<float>& air, ChapmanRule r
   const float h = Kilometres(ray.altitude_m), mu = static_cast<float>(ray.mu);
   const float radius = Kilometres(medium.planet_radius_m);
   const auto ozone = air.ColumnsToSpace(ray.altitude_m, ray.mu)[2];
-  return TransmittanceOf(
-      medium, ChapmanColumn(rule, h, mu, Kilometres(medium.rayleigh_scale_height_m), radius),
-      ChapmanColumn(rule, h, mu, Kilometres(medium.mie_scale_height_m), radius),
-      Kilometres(static_cast<double>(ozone)));
+  const auto share = static_cast<float>(medium.rayleigh_deficit.share);
+  const float molecules =
+      (1.0F + share) *
+          ChapmanColumn(rule, h, mu, Kilometres(medium.rayleigh_scale_height_m), radius) -
+      share *
+          ChapmanColumn(rule, h, mu, Kilometres(medium.rayleigh_deficit.scale_height_m), radius);
+  return TransmittanceOf(medium, molecules,
+                         ChapmanColumn(rule, h, mu, Kilometres(medium.mie_scale_height_m), radius),
+                         Kilometres(static_cast<double>(ozone)));
 }
 
 IsotropicTable::IsotropicTable(const Medium& medium, const Size& size)

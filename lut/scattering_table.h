@@ -76,7 +76,7 @@ class ScatteringTable {
   /// directions, as rms over the rms of the radiance and as the median of relative errors: sun
   /// above 5 degrees 1 % and 0.25 %, 5 to 0 degrees 1.5 % and 0.8 %, 0 to -6 degrees 40 % and 15 %.
   /// In twilight eight angles between view and sun are too few for the glow over the sun. On
-  /// azimuths, 8 x 32 x 64 x 48: 0.4 % and 0.15 %, 0.5 % and 0.2 %, 0.8 % and 0.4 %.
+  /// azimuths, 8 x 32 x 64 x 48: 0.4 % and 0.15 %, 0.5 % and 0.2 %, 0.8 % and 0.45 %.
   [[nodiscard]] ScatteredOnce<float> Lookup(const ViewRay& ray) const;
 
   [[nodiscard]] const Medium& medium() const { return air_.medium(); }

@@ -142,7 +142,7 @@ AerialPerspective::AerialPerspective(const AirIntegrator<float>& air, const Diff
 int AerialPerspective::NodesFor(double length_m, double low_m, double high_m, bool shafts) const {
   const Medium& medium = air_.medium();
   const double haze = mie_per_m_ * std::exp(-low_m / medium.mie_scale_height_m);
-  const double clear = rayleigh_per_m_ * std::exp(-low_m / medium.rayleigh_scale_height_m);
+  const double clear = rayleigh_per_m_ * MoleculeDensity(medium, low_m);
   const double share = haze / std::max(haze + clear, 1e-30);
   const double rise = high_m - low_m;
   // Logarithm of how much the integrand changes from end to end.

@@ -71,11 +71,18 @@ void AddScaled(const Bands<float>& intensity, const Bands<double>& factor, doubl
   }
 }
 
+/// Scale height of the exponential that has the molecules' density at the ground and 4 km up:
+/// within 2 % of it between, where lamps shine.
+double MoleculeHeight_m(const Medium& medium) {
+  constexpr double kHigh_m = 4000.0;
+  return -kHigh_m / std::log(MoleculeDensity(medium, kHigh_m));
+}
+
 /// Molecules, aerosol and fog, densities as of altitude 0.
 std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& fog,
                                 double fog_base_m) {
   LampLayer molecules;
-  molecules.scale_height_m = medium.rayleigh_scale_height_m;
+  molecules.scale_height_m = MoleculeHeight_m(medium);
   molecules.scattering_per_m = InDoubles(medium.rayleigh_scattering_per_m, 1.0);
   molecules.extinction_per_m = molecules.scattering_per_m;
   molecules.phase.kind = PhaseKind::kRayleigh;

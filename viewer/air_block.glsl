@@ -14,6 +14,7 @@ layout(std140) uniform Air {
   vec4 ozone_layer;  // bottom, peak, top; 1 where it is smooth, 0 where it is a tent
   vec4 mie_options;  // kind of the phase function; largest extinction at altitude 0, per km;
                      // number of different phase functions: 1, or one a band
+  vec4 deficit;      // of molecules near the ground: share, scale height
   vec4 mie_phase[4];  // of each band: g, g of the second lobe, its weight, alpha
 };
 
@@ -62,7 +63,9 @@ float OzoneColumnUp(float h, float mu) {
 
 // Columns of molecules, aerosol and ozone [km] from altitude h upwards along mu >= 0 to space.
 vec3 ColumnsUp(float h, float mu) {
-  return vec3(ExponentialColumnUp(h, mu, RAYLEIGH_HEIGHT, TOP, RADIUS),
+  float molecules = (1.0 + deficit.x) * ExponentialColumnUp(h, mu, RAYLEIGH_HEIGHT, TOP, RADIUS);
+  if (deficit.x > 0.0) molecules -= DeficitColumnUp(h, mu, deficit.x, deficit.y, RADIUS);
+  return vec3(molecules,
               ExponentialColumnUp(h, mu, MIE_HEIGHT, TOP, RADIUS),
               OzoneColumnUp(h, mu));
 }

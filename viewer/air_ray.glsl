@@ -87,7 +87,7 @@ AirPoint PointAt(AirRay ray, float d, float weight) {
   point.h = max(AltitudeAlongRay(ray.h, ray.mu, d, RADIUS), 0.0);
   point.mu = ZenithCosineAlongRay(ray.h, ray.mu, d, point.h, RADIUS);
   point.mu_s = SunCosineAlongRay(ray.h, ray.mu_s, ray.nu, d, point.h, RADIUS);
-  point.rayleigh = exp(-point.h / RAYLEIGH_HEIGHT);
+  point.rayleigh = MoleculeDensity(point.h, RAYLEIGH_HEIGHT, deficit.x, deficit.y);
   point.mie = exp(-point.h / MIE_HEIGHT);
   return point;
 }

@@ -73,6 +73,8 @@ AirBlock AirBlockOf(const Medium& medium) {
   block.mie_options = {static_cast<float>(medium.mie_phase.front().kind),
                        extinction * kMetresPerKilometre,
                        static_cast<float>(medium.mie_phase.size()), 0.0F};
+  block.deficit = {static_cast<float>(medium.rayleigh_deficit.share),
+                   Kilometres(medium.rayleigh_deficit.scale_height_m), 0.0F, 0.0F};
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     const PhaseFunction& phase = MiePhase(medium, band);
     block.mie_phase[band] = {phase.g, phase.g_back, phase.back_weight, phase.alpha};

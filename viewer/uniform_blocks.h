@@ -23,12 +23,12 @@ inline constexpr std::size_t kGpuBands = 4;
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
-  glm::vec4 shell, ozone_layer, mie_options;
+  glm::vec4 shell, ozone_layer, mie_options, deficit;
   std::array<glm::vec4, kGpuBands> mie_phase;
 };
-static_assert(sizeof(AirBlock) == 15 * sizeof(glm::vec4));
+static_assert(sizeof(AirBlock) == 16 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
-static_assert(offsetof(AirBlock, mie_phase) == 11 * sizeof(glm::vec4));
+static_assert(offsetof(AirBlock, mie_phase) == 12 * sizeof(glm::vec4));
 
 /// `block PhaseTable` of air_block.glsl: the aerosol's tabulated phase function in the bands.
 using PhaseBlock = std::array<glm::vec4, PhaseTable::kNodes>;

@@ -100,6 +100,19 @@ TEST(AtmosphereFile, AGivenRadiusIsASphere) {
   EXPECT_TRUE(Read("[planet]\nradius_m = 6371000\nfollows_wgs84 = true\n").follows_wgs84);
 }
 
+TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
+  EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").rayleigh_deficit, MoleculeDeficit{});
+  const Medium both =
+      Read("[rayleigh]\nscale_height_m = 7000\ndeficit = 0.3\ndeficit_scale_height_m = 2500\n");
+  EXPECT_EQ(both.rayleigh_deficit, (MoleculeDeficit{0.3, 2500.0}));
+  EXPECT_NEAR(MoleculeColumn_m(both), 1.3 * 7000.0 - 0.3 * 2500.0, 1e-9);
+  EXPECT_NEAR(MoleculeDensity(both, 5000.0), 1.3 * std::exp(-5.0 / 7.0) - 0.3 * std::exp(-2.0),
+              1e-15);
+  EXPECT_THAT(FaultOf("[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n"),
+              HasSubstr("no effect"));
+  EXPECT_THAT(FaultOf("[rayleigh]\ndeficit = 2\n"), HasSubstr("[0, 1]"));
+}
+
 TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
   const Medium medium =
       Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
@@ -121,7 +134,7 @@ TEST(AtmosphereFile, VisibilityDoesNotDependOnTheBands) {
 TEST(AtmosphereFile, TurbidityIsTheOpticalDepthOverThatOfCleanAir) {
   const Medium medium = Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nturbidity = 3\n");
   const double aerosol = medium.mie_extinction_per_m[0] * medium.mie_scale_height_m;
-  const double molecules = medium.rayleigh_scattering_per_m[0] * medium.rayleigh_scale_height_m;
+  const double molecules = medium.rayleigh_scattering_per_m[0] * MoleculeColumn_m(medium);
   EXPECT_NEAR((aerosol + molecules) / molecules, 3.0, 1e-12);
   EXPECT_THAT(FaultOf("[aerosol]\nturbidity = 0.5\n"), HasSubstr("[1, 1000]"));
 }
@@ -281,7 +294,7 @@ TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
       << "Koschmieder: a black wall at the visibility keeps 2 % of its contrast";
   const Medium turbid = Read(green + "turbidity = 3\n");
   EXPECT_NEAR(turbid.mie_extinction_per_m[1] * turbid.mie_scale_height_m,
-              2.0 * turbid.rayleigh_scattering_per_m[1] * turbid.rayleigh_scale_height_m, 1e-12);
+              2.0 * turbid.rayleigh_scattering_per_m[1] * MoleculeColumn_m(turbid), 1e-12);
   EXPECT_THAT(FaultOf("[aerosol]\n" + mixture + "angstrom_exponent = 1\n"),
               StartsWith("a.toml:3: aerosol.angstrom_exponent has no effect"));
   EXPECT_THAT(FaultOf("[aerosol]\nmixture = \"dessert\"\n"), HasSubstr("did you mean desert?"));

@@ -130,6 +130,7 @@ std::vector<Change> HashedChanges() {
       {"albedo", [](Medium& m) { m.ground_albedo[0] += 0.1; }},
       {"rayleigh", [](Medium& m) { m.rayleigh_scattering_per_m[0] *= 1.1; }},
       {"rayleigh height", [](Medium& m) { m.rayleigh_scale_height_m += 1.0; }},
+      {"rayleigh deficit", [](Medium& m) { m.rayleigh_deficit.share = 0.3; }},
       {"mie", [](Medium& m) { m.mie_scattering_per_m[0] *= 0.9; }},
       {"mie extinction", [](Medium& m) { m.mie_extinction_per_m[0] *= 1.1; }},
       {"mie height", [](Medium& m) { m.mie_scale_height_m += 1.0; }},
@@ -196,6 +197,15 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
       {"rayleigh.scattering_per_m has 3 values; it must have 4",
        [](Medium& m) { m.rayleigh_scattering_per_m.pop_back(); }},
       {"rayleigh.scale_height_m is 0.5", [](Medium& m) { m.rayleigh_scale_height_m = 0.5; }},
+      {"rayleigh.deficit is -0.1", [](Medium& m) { m.rayleigh_deficit.share = -0.1; }},
+      {"rayleigh.deficit_scale_height_m is 1000",
+       [](Medium& m) {
+         m.rayleigh_deficit = {0.4, 1e3};
+       }},
+      {"rayleigh.deficit_scale_height_m is 9000",
+       [](Medium& m) {
+         m.rayleigh_deficit = {0.4, 9e3};
+       }},
       {"mie.scale_height_m is 300000", [](Medium& m) { m.mie_scale_height_m = 3e5; }},
       {"mie.scattering_per_m is 1 at 445 nm; it must not exceed",
        [](Medium& m) { m.mie_scattering_per_m[0] = 1.0; }},

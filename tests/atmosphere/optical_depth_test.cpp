@@ -61,8 +61,7 @@ Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) 
   std::sort(points.begin(), points.end());
   const auto densities = [&](double t) {
     const double h = altitude(t);
-    return std::vector<double>{std::exp(-h / medium.rayleigh_scale_height_m),
-                               std::exp(-h / medium.mie_scale_height_m),
+    return std::vector<double>{MoleculeDensity(medium, h), std::exp(-h / medium.mie_scale_height_m),
                                OzoneDensity(medium.ozone, h)};
   };
   const AdaptiveResult result = IntegrateAdaptively(densities, 3, points, 1e-12);
@@ -100,8 +99,10 @@ TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
       const double floor_m = species == 2 ? 1e-7 * EquivalentDepth_m(medium.ozone) : kNothing_m;
       EXPECT_NEAR(wide[species], exact[species], bound * exact[species] + floor_m)
           << "series cut after 1/X: 4e-7 to 3e-6; ten nodes through the smooth ozone, twice";
+      // Near the top a column is a difference, of densities whose exponent has lost digits.
+      const double narrow_bound = altitude_m > 100000.0 ? 1.5e-5 : 1.2e-5;
       EXPECT_NEAR(static_cast<double>(narrow[species]), exact[species],
-                  1.2e-5 * exact[species] + floor_m)
+                  narrow_bound * exact[species] + floor_m)
           << "and rounding of the perigee, 1.5 cm of a scale height of 1200 m";
     }
   }
@@ -165,7 +166,7 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
   const AirIntegrator<float> in_float(medium);
   for (const double mu : {1.0, 0.0, -0.01, -1.0}) {
     const ViewRay ray{100.0, mu, 0.5, 0.3, 1e-3};
-    const double density_r = std::exp(-100.0 / medium.rayleigh_scale_height_m);
+    const double density_r = MoleculeDensity(medium, 100.0);
     const double density_m = std::exp(-100.0 / medium.mie_scale_height_m);
     const double depth = 1e-3 * (medium.rayleigh_scattering_per_m[0] * density_r +
                                  medium.mie_extinction_per_m[0] * density_m);

@@ -147,7 +147,7 @@ TEST(ScatteringTable, OnAzimuthsAndFourthRootsTwilightIsAsGoodAsDay) {
   EXPECT_LT(table.bytes(), StandardTable().bytes());
   for (const Regime& regime :
        {Regime{"day", 0.0, 85.0, 0.004, 0.0015}, Regime{"sunset", 85.0, 90.0, 0.005, 0.002},
-        Regime{"civil twilight", 90.0, 96.0, 0.008, 0.004}}) {
+        Regime{"civil twilight", 90.0, 96.0, 0.008, 0.0045}}) {
     ExpectErrorsBelow(table, regime);
   }
 }
