@@ -110,7 +110,7 @@ struct LowerEnd {
 double StretchOf(const LowerEnd& low, double length, double radius, double extinction_per_km) {
   // Behind the edge of the shadow sunlight comes back slowly: the start wants fewer nodes.
   const double rise_km = low.at_shadow ? 12.0 : 10.0;
-  const double strength = low.at_shadow ? 1.1 : 1.2;
+  const double strength = low.at_shadow ? 1.1 : 1.3;
   double half =
       shared::DistanceUpTo<double>(low.altitude_km, low.cosine, low.altitude_km + rise_km, radius);
   if (extinction_per_km > 0.0) half = std::min(half, 10.0 / extinction_per_km);

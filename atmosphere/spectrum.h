@@ -91,7 +91,7 @@ class BandColour {
 
   /// What the rods see [scotopic cd/m^2], by a row fitted to the family of daylight spectra. Error
   /// over the skies and suns of the tests above, mean and 95th percentile: 3 bands 4 % and 8 %, 4
-  /// bands 1 % and 3 %, more 0.2 % and 0.3 %.
+  /// bands 1 % and 3.1 %, more 0.2 % and 0.3 %.
   [[nodiscard]] double ScotopicLuminance(std::span<const double> radiance) const;
 
   /// Row-major 3 x N: linear sRGB [cd/m^2 per W m^-2 sr^-1 nm^-1] from bands.
