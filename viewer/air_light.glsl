@@ -11,7 +11,7 @@ float MapStretch(float z, float c, float panel, bool at_shadow) {
   float near = DistanceUpTo(z, c, z + (at_shadow ? 12.0 : 10.0), RADIUS);
   float extinction = mie_options.y * exp(-z / 8.0);
   near = min(near, 10.0 / max(extinction, 1e-20));
-  return (at_shadow ? 1.1 : 1.2) * log(max(2.0 * panel / near, 1.0));
+  return (at_shadow ? 1.1 : 1.3) * log(max(2.0 * panel / near, 1.0));
 }
 
 void Order(inout float a, inout float b) {

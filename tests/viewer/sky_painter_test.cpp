@@ -213,7 +213,9 @@ TEST_F(SkyPainterTest, AHillInLowSunIsTheRenderers) {
   const Pictures both = PaintBoth(scene, {"2026-06-21T05:30:00Z"}).front();
   std::filesystem::remove(file);
   const std::vector<double> differences = Differences(both.judge, both.painted);
-  EXPECT_LT(Quantile(differences, 0.5), 1e-3);
+  EXPECT_LT(Quantile(differences, 0.5), 2e-3)
+      << "light on the ground is that of one random point of the sun's disk in the renderer, up to "
+         "2 % from that of its middle";
   EXPECT_LT(Quantile(differences, 0.9), 1e-2);
   EXPECT_LT(Quantile(differences, 0.97), 0.1)
       << "a pixel on the edge of the hill or of its shadow may fall to the other side";
