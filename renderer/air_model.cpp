@@ -24,7 +24,7 @@ const AirModel& AirModels::With(EffectSet effects) const {
   std::unique_ptr<AirModel>& partial = partial_[parts];
   if (!partial) {
     partial = std::make_unique<AirModel>(OnlyWith(whole_.air.medium(), parts), ground_, geometry_,
-                                         lamps_);
+                                         lamps_, horizons_);
   }
   return *partial;
 }

@@ -14,14 +14,15 @@
 
 namespace alpenglow {
 
-/// Air and what its light reaches. Refers to ground, geometry and lamps.
+/// Air and what its light reaches. Refers to ground, geometry, lamps and
+/// horizons.
 struct AirModel {
   AirModel(const Medium& medium, const SceneGround& ground, const SceneGeometry& geometry,
-           const LampLight& lamps)
+           const LampLight& lamps, const HorizonsOnDemand& horizons)
       : air(medium),
         diffuse(medium),
         aerial(air, diffuse),
-        ground_light(ground, geometry, air, diffuse, lamps) {}
+        ground_light(ground, geometry, air, diffuse, lamps, horizons) {}
 
   AirIntegrator<float> air;
   DiffuseLight diffuse;
@@ -34,11 +35,12 @@ struct AirModel {
 class AirModels {
  public:
   AirModels(const Medium& medium, const SceneGround& ground, const SceneGeometry& geometry,
-            const LampLight& lamps)
+            const LampLight& lamps, const HorizonsOnDemand& horizons)
       : ground_(ground),
         geometry_(geometry),
         lamps_(lamps),
-        whole_(medium, ground, geometry, lamps) {}
+        horizons_(horizons),
+        whole_(medium, ground, geometry, lamps, horizons) {}
 
   [[nodiscard]] const AirModel& whole() const { return whole_; }
   /// With those of molecules, aerosol and ozone that are among the effects.
@@ -48,6 +50,7 @@ class AirModels {
   const SceneGround& ground_;
   const SceneGeometry& geometry_;
   const LampLight& lamps_;
+  const HorizonsOnDemand& horizons_;
   AirModel whole_;
   mutable std::mutex mutex_;
   mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;

@@ -22,6 +22,8 @@ enum class Effect : std::size_t {
   kAerial,
   kMultipleScattering,
   kSkylight,
+  kHorizons,
+  kBounce,
   kShafts,
   kShadows,
   kRelief,

@@ -39,8 +39,43 @@ Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double la
 
 GroundLight::GroundLight(const SceneGround& ground, const SceneGeometry& geometry,
                          const AirIntegrator<float>& air, const DiffuseLight& diffuse,
-                         const LampLight& lamps)
-    : ground_(ground), geometry_(geometry), air_(air), diffuse_(diffuse), lamps_(lamps) {}
+                         const LampLight& lamps, const HorizonsOnDemand& horizons)
+    : ground_(ground),
+      geometry_(geometry),
+      air_(air),
+      diffuse_(diffuse),
+      lamps_(lamps),
+      horizons_(horizons) {}
+
+std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const Lighting& light) const {
+  if (!light.effects.Has(Effect::kHorizons) || !light.effects.Has(Effect::kSkylight))
+    return nullptr;
+  const std::shared_ptr<const TerrainHorizons> horizons = horizons_.Get();
+  if (!horizons) return nullptr;
+  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, diffuse_, light.to_sun);
+  if (light.effects.Has(Effect::kBounce)) {
+    on_terrain->AddSlopes(
+        air_.medium(),
+        [&](const SlopePlace& place) { return SentToSlopes(place, light, *on_terrain); },
+        light.to_sun.z);
+  }
+  return on_terrain;
+}
+
+BandLight GroundLight::SentToSlopes(const SlopePlace& place, const Lighting& light,
+                                    const TerrainLight& sky) const {
+  const double cell_m = sky.horizons().views().heights().cell_m;
+  Hit hit;
+  hit.kind = HitKind::kTerrain;
+  hit.normal = hit.mesh_normal = hit.geometric_normal = place.normal;
+  hit.point = place.point + 0.01 * cell_m * place.normal;  // nodes lie in the surface, not on it
+  hit.footprint_m = cell_m;
+  const LocalSun sun = LocalSunAt(hit.point, light);
+  BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
+  if (const auto direct = SunIrradiance(hit, light, sun, {0.0, 0.0}))
+    irradiance = irradiance + *direct;
+  return static_cast<float>(1.0 / kPi) * (AlbedoOf(hit, light, sun.up) * irradiance);
+}
 
 LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
                     const glm::dvec3& to_sun, double sun_radius_rad) {
@@ -77,7 +112,10 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
-  const BandLight clear = diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+  const BandLight clear =
+      light.on_terrain && hit.kind == HitKind::kTerrain
+          ? light.on_terrain->Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s})
+          : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
   if (light.media == nullptr) return clear;
   const SkyThroughFog fog = light.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return fog.left * clear + fog.added;
@@ -95,18 +133,25 @@ BandLight GroundLight::AlbedoOf(const Hit& hit, const Lighting& light, const glm
   return albedo;
 }
 
+std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Lighting& light,
+                                                    const LocalSun& sun,
+                                                    std::array<double, 2> disk_sample) const {
+  const double cosine = LitCosine(hit, light, sun, disk_sample);
+  if (cosine <= 0.0) return std::nullopt;
+  const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
+                          air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+  if (light.media == nullptr) return clear;
+  return clear * light.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
+}
+
 GroundRadiance GroundLight::Towards(const Hit& hit, const Lighting& light, const LampNodes& near,
                                     std::array<double, 2> disk_sample) const {
   const LocalSun sun = LocalSunAt(hit.point, light);
-  BandLight irradiance(air_.bands());
   GroundRadiance sent;
-  if (const double cosine = LitCosine(hit, light, sun, disk_sample); cosine > 0.0) {
+  BandLight irradiance(air_.bands());
+  if (const auto direct = SunIrradiance(hit, light, sun, disk_sample)) {
+    irradiance = *direct;
     sent.sun_visibility = static_cast<float>(sun.visible_fraction);
-    irradiance = static_cast<float>(sun.visible_fraction * cosine) *
-                 air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
-    if (light.media != nullptr) {
-      irradiance = irradiance * light.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
-    }
   }
   if (light.effects.Has(Effect::kSkylight))
     irradiance = irradiance + SkyIrradiance(hit, light, sun);

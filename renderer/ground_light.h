@@ -5,6 +5,8 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
 
 #include "atmosphere/sun.h"
 #include "atmosphere/time.h"
@@ -14,6 +16,7 @@
 #include "renderer/lamp_light.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/surface.h"
+#include "renderer/terrain_light.h"
 
 namespace alpenglow {
 
@@ -27,6 +30,8 @@ struct Lighting {
   MountainSurface surface;  // as the season covers it
   EffectSet effects = EffectSet::All();
   const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: none
+  /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
+  std::shared_ptr<const TerrainLight> on_terrain = nullptr;
 };
 
 /// The sun as it stands, the ground as the season covers it at that latitude.
@@ -58,7 +63,12 @@ struct GroundRadiance {
 class GroundLight {
  public:
   GroundLight(const SceneGround& ground, const SceneGeometry& geometry,
-              const AirIntegrator<float>& air, const DiffuseLight& diffuse, const LampLight& lamps);
+              const AirIntegrator<float>& air, const DiffuseLight& diffuse, const LampLight& lamps,
+              const HorizonsOnDemand& horizons);
+
+  /// What terrain makes of the light of sky and sun, as far as the effects of `light` say; null
+  /// where it makes nothing of it.
+  [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const Lighting& light) const;
 
   /// @param hit  of terrain or planet.
   /// @param near  lamps that may light it.
@@ -74,8 +84,15 @@ class GroundLight {
   /// stands before it.
   [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
                                  std::array<double, 2> disk_sample) const;
+  /// Of the sun through the air, per unit solar irradiance [1]; nothing in the shade.
+  [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const Lighting& light,
+                                                       const LocalSun& sun,
+                                                       std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const Lighting& light,
                                         const LocalSun& sun) const;
+  /// What a slope sends to others, per unit solar irradiance [1/sr].
+  [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const Lighting& light,
+                                       const TerrainLight& sky) const;
   [[nodiscard]] BandLight AlbedoOf(const Hit& hit, const Lighting& light,
                                    const glm::dvec3& up) const;
 
@@ -84,6 +101,7 @@ class GroundLight {
   const AirIntegrator<float>& air_;
   const DiffuseLight& diffuse_;
   const LampLight& lamps_;
+  const HorizonsOnDemand& horizons_;
 };
 
 }  // namespace alpenglow

@@ -52,10 +52,12 @@ struct SceneRenderer::State {
         // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
         geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
         smooth_geometry(ground, medium, false),
-        models(medium, ground, geometry, lamps) {}
+        horizons(ground, medium),
+        models(medium, ground, geometry, lamps, horizons) {}
 
   [[nodiscard]] PictureFrame FrameAt(const Shot& shot, const RenderSettings& settings) const;
   void LightMedia(PictureFrame& frame) const;
+  void LightTerrain(PictureFrame& frame) const;
   [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
   [[nodiscard]] Image Pixels(const PictureFrame& frame,
                              const std::vector<PixelPlace>& places) const;
@@ -84,6 +86,7 @@ struct SceneRenderer::State {
   LampLight lamps;
   LocalMedia media;
   SceneGeometry geometry, smooth_geometry;
+  HorizonsOnDemand horizons;
   AirModels models;
 };
 
@@ -243,7 +246,15 @@ PictureFrame SceneRenderer::State::FrameAt(const Shot& shot, const RenderSetting
     frame.plan_s = watch.seconds();
   }
   LightMedia(frame);
+  LightTerrain(frame);
   return frame;
+}
+
+void SceneRenderer::State::LightTerrain(PictureFrame& frame) const {
+  if (frame.Has(Effect::kHorizons)) (void)horizons.Get();  // made once, for all frames
+  const Stopwatch watch;
+  frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.light);
+  frame.slopes_s = watch.seconds();
 }
 
 void SceneRenderer::State::LightMedia(PictureFrame& frame) const {
@@ -260,11 +271,17 @@ void SceneRenderer::State::LightMedia(PictureFrame& frame) const {
 
 // The same picture with fewer effects.
 PictureFrame SceneRenderer::State::Reduced(PictureFrame frame, EffectSet effects) const {
+  constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,  Effect::kSkylight,
+                                        Effect::kShadows,   Effect::kFogGlow, Effect::kVolumes,
+                                        Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
+  const bool is_lit_alike =
+      frame.settings.effects.And(kThatLightTerrain) == effects.And(kThatLightTerrain);
   frame.settings.effects = frame.light.effects = effects;
   frame.model = &models.With(effects);
   if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
   if (!effects.Has(Effect::kLights)) frame.plan = std::make_shared<LampPlan>();
   LightMedia(frame);
+  if (!is_lit_alike) LightTerrain(frame);
   return frame;
 }
 
@@ -347,6 +364,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   pilot.preparation_s = [&](Effect effect) {
     return effect == Effect::kShafts   ? frame.sunlight_s
            : effect == Effect::kLights ? frame.plan_s
+           : effect == Effect::kBounce ? frame.slopes_s
                                        : 0.0;
   };
   if (!frame.sunlight->IsBroken()) pilot.present = pilot.present.Without(Effect::kShafts);
@@ -355,6 +373,9 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   }
   if (!state_->ground.terrain) {
     pilot.present = pilot.present.Without(Effect::kShadows).Without(Effect::kRelief);
+  }
+  if (!frame.light.on_terrain) {
+    pilot.present = pilot.present.Without(Effect::kHorizons).Without(Effect::kBounce);
   }
   if (!state_->media.HasVolumes()) pilot.present = pilot.present.Without(Effect::kVolumes);
   if (state_->media.fog() == nullptr) pilot.present = pilot.present.Without(Effect::kFogGlow);

@@ -31,7 +31,7 @@ struct PictureFrame {
   std::shared_ptr<const LampLight> lamps;
   std::shared_ptr<const LampPlan> plan;
   std::shared_ptr<const MediaLight> media;  // null: no volumes, and fog is lit by lamps alone
-  double sunlight_s = 0.0, plan_s = 0.0;    // time that they took
+  double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
   [[nodiscard]] const CameraRays& camera() const { return moving.middle(); }

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Light of the sky, and of other slopes, on terrain that hides a part of the sky.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "renderer/horizon_map.h"
+#include "renderer/open_sky.h"
+#include "renderer/scene_ground.h"
+#include "renderer/slope_light.h"
+
+namespace alpenglow {
+
+/// What terrain hides from its places, whatever shines. Immutable.
+class TerrainHorizons {
+ public:
+  TerrainHorizons(const TriangleMesh& mesh, const Medium& medium);
+
+  [[nodiscard]] const HorizonMap& map() const { return map_; }
+  [[nodiscard]] const SlopeViews& views() const { return views_; }
+  /// Heights of the ground over the frame's plane.
+  [[nodiscard]] double lowest_m() const { return lowest_m_; }
+  [[nodiscard]] double highest_m() const { return highest_m_; }
+
+ private:
+  TerrainHorizons(const HeightRaster& heights, const TriangleMesh& mesh, const Medium& medium);
+
+  HorizonMap map_;
+  SlopeViews views_;
+  double lowest_m_, highest_m_;
+};
+
+/// The horizons of a scene, made when first asked for: not every picture needs them.
+class HorizonsOnDemand {
+ public:
+  /// Refers to both.
+  HorizonsOnDemand(const SceneGround& ground, const Medium& medium)
+      : ground_(ground), medium_(medium) {}
+
+  /// Null for no terrain and for ground that is not one surface.
+  [[nodiscard]] std::shared_ptr<const TerrainHorizons> Get() const;
+
+ private:
+  const SceneGround& ground_;
+  const Medium& medium_;
+  mutable std::once_flag once_;
+  mutable std::shared_ptr<const TerrainHorizons> made_;
+};
+
+/// A place on terrain and how a surface lies there.
+struct SlopePoint {
+  glm::dvec3 point;
+  glm::dvec3 normal;  // unit, in the frame
+  glm::dvec3 up;      // unit: the vertical there
+  double altitude_m;
+  double mu_s;  // zenith cosine of the sun there
+};
+
+/// For one position of the sun. Immutable; safe to ask from many threads.
+///
+/// Error of Irradiance against rays that meet sky, air and slopes, the slopes lit by sun and sky,
+/// over rough mountains with the sun at 30 degrees: root mean square below 4 % with an albedo of
+/// 0.15 (without horizons, from the moments of the light: more than three times that), below 9 %
+/// with 0.8; the mean is off by less than half of that.
+class TerrainLight {
+ public:
+  /// Light of the sky alone.
+  TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const AirIntegrator<float>& air,
+               const DiffuseLight& diffuse, const glm::dvec3& to_sun);
+
+  [[nodiscard]] const OpenSky& sky() const { return sky_; }
+  [[nodiscard]] const TerrainHorizons& horizons() const { return *horizons_; }
+
+  /// Adds what slopes send to each other.
+  void AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing, double mu_s);
+
+  /// Of sky and slopes, per unit solar irradiance [1].
+  [[nodiscard]] BandLight Irradiance(const SlopePoint& at) const;
+
+  /// Radiance [1/sr] in a direction: of the sky, or below the horizon of the ground there.
+  [[nodiscard]] BandLight Radiance(const SlopePoint& at, const glm::dvec3& direction) const;
+
+ private:
+  std::shared_ptr<const TerrainHorizons> horizons_;
+  OpenSky sky_;
+  std::optional<SlopeLight> slopes_;
+};
+
+}  // namespace alpenglow
