@@ -60,15 +60,6 @@ struct NodeTap {
   float share;
 };
 
-template <std::size_t kNodes>
-NodeTap TapOf(float sine) {
-  constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
-  const float at =
-      std::clamp((sine - HorizonMap::kLowest) * kScale, 0.0F, static_cast<float>(kNodes - 1));
-  const std::size_t node = std::min(static_cast<std::size_t>(at), kNodes - 2);
-  return {node, at - static_cast<float>(node)};
-}
-
 }  // namespace
 
 SurfaceSectors SectorsOf(const glm::dvec3& normal) {
@@ -76,14 +67,18 @@ SurfaceSectors SectorsOf(const glm::dvec3& normal) {
   SurfaceSectors sectors;
   sectors.up = static_cast<float>(normal.z);
   const auto x = static_cast<float>(normal.x), y = static_cast<float>(normal.y);
-  const float up = std::abs(sectors.up);
+  const float up2 = sectors.up * sectors.up + 1e-12F;
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
-    sectors.along[i] = direction.x[i] * x + direction.y[i] * y;
+    const float along = direction.x[i] * x + direction.y[i] * y;
+    sectors.along[i] = along;
     // Where the surface's plane cuts the azimuth.
-    const float plane =
-        sectors.along[i] / std::sqrt(up * up + sectors.along[i] * sectors.along[i] + 1e-12F);
-    sectors.lowest[i] = sectors.up >= 0.0F ? -plane : -1.0F;
-    sectors.highest[i] = sectors.up >= 0.0F ? 1.0F : plane;
+    sectors.lowest[i] = -along / std::sqrt(up2 + along * along);
+    sectors.highest[i] = 1.0F;
+  }
+  if (sectors.up >= 0.0F) return sectors;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    sectors.highest[i] = -sectors.lowest[i];
+    sectors.lowest[i] = -1.0F;
   }
   return sectors;
 }
@@ -93,18 +88,28 @@ float SectorIntegral(float up, float along, float low, float high) {
 }
 
 OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
-                 const glm::dvec3& to_sun, double lowest_m, double highest_m)
-    : diffuse_(diffuse),
-      bands_(air.bands()),
+                 const glm::dvec3& to_sun, const Extent& extent)
+    : bands_(air.bands()),
       stride_((air.bands() + 3) / 4 * 4),
-      lowest_m_(std::max(lowest_m, 0.0)),
-      highest_m_(std::max(highest_m, lowest_m_ + 1.0)),
+      lowest_m_(std::max(extent.lowest_m, 0.0)),
+      highest_m_(std::max(extent.highest_m, lowest_m_ + 1.0)),
+      level_irradiance_(kLevels * kSuns * stride_, 0.0F),
       integral_(kLevels * level_floats()) {
+  const double half = 1e-4 + extent.radius_m / air.medium().planet_radius_m;
+  first_mu_s_ = to_sun.z - half;
+  mu_s_step_ = 2.0 * half / static_cast<double>(kSuns - 1);
+  for (std::size_t i = 0; i < kLevels * kSuns; ++i) {
+    const double level = static_cast<double>(i / kSuns) / static_cast<double>(kLevels - 1);
+    const auto irradiance = diffuse.SkyIrradiance(
+        lowest_m_ + level * (highest_m_ - lowest_m_),
+        std::clamp(first_mu_s_ + static_cast<double>(i % kSuns) * mu_s_step_, -1.0, 1.0));
+    std::copy_n(irradiance.value.begin(), bands_, &level_irradiance_[i * stride_]);
+  }
   // Three skies; between them the levels are linear.
   const double middle_m = 0.5 * (lowest_m_ + highest_m_);
-  const std::array<std::vector<float>, 3> table{TableAt(air, lowest_m_, to_sun),
-                                                TableAt(air, middle_m, to_sun),
-                                                TableAt(air, highest_m_, to_sun)};
+  const std::array<std::vector<float>, 3> table{TableAt(air, diffuse, lowest_m_, to_sun),
+                                                TableAt(air, diffuse, middle_m, to_sun),
+                                                TableAt(air, diffuse, highest_m_, to_sun)};
   for (std::size_t level = 0; level < kLevels; ++level) {
     const float at = 2.0F * static_cast<float>(level) / static_cast<float>(kLevels - 1);
     const std::size_t first = at < 1.0F ? 0 : 1;
@@ -116,12 +121,12 @@ OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
   KeepRadiances();
 }
 
-std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, double altitude_m,
-                                    const glm::dvec3& to_sun) const {
+std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                                    double altitude_m, const glm::dvec3& to_sun) const {
   constexpr std::size_t kParts = 6;  // of a sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
-  const SkyView view(air, diffuse_, altitude_m, mu_s);
+  const SkyView view(air, diffuse, altitude_m, mu_s);
   const double sun_azimuth = std::atan2(to_sun.y, to_sun.x);
   std::vector<double> azimuths;
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
@@ -134,7 +139,7 @@ std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, double alti
   std::vector<float> row(azimuths.size() * view.stride());
   std::vector<float> table(level_floats(), 0.0F);
   const double step = (1.0 - static_cast<double>(HorizonMap::kLowest)) / (kNodes - 1);
-  const Bands<float> level_plane = diffuse_.SkyIrradiance(altitude_m, mu_s);
+  const Bands<float> level_plane = diffuse.SkyIrradiance(altitude_m, mu_s);
   for (std::size_t node = kNodes - 1; node-- > 0;) {
     for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
       const float* above = &table[(azimuth * kNodes + node + 1) * 2 * stride_];
@@ -170,36 +175,67 @@ std::size_t OpenSky::Level(double altitude_m) const {
       std::lround(std::clamp(at, 0.0, static_cast<double>(kLevels - 1))));
 }
 
+Bands<float> OpenSky::LevelIrradiance(double altitude_m, double mu_s) const {
+  const auto tap = [](double at, std::size_t nodes) {
+    const double clamped = std::clamp(at, 0.0, static_cast<double>(nodes - 1));
+    const std::size_t node = std::min(static_cast<std::size_t>(clamped), nodes - 2);
+    return NodeTap{node, static_cast<float>(clamped - static_cast<double>(node))};
+  };
+  const NodeTap level =
+      tap((altitude_m - lowest_m_) / (highest_m_ - lowest_m_) * static_cast<double>(kLevels - 1),
+          kLevels);
+  const NodeTap sun = tap((mu_s - first_mu_s_) / mu_s_step_, kSuns);
+  const float* low = &level_irradiance_[(level.node * kSuns + sun.node) * stride_];
+  const float* high = low + kSuns * stride_;
+  Bands<float> irradiance(bands_);
+  for (std::size_t band = 0; band < bands_; ++band) {
+    const float a = low[band] + sun.share * (low[stride_ + band] - low[band]);
+    const float b = high[band] + sun.share * (high[stride_ + band] - high[band]);
+    irradiance[band] = a + level.share * (b - a);
+  }
+  return irradiance;
+}
+
+// The part between two sines is the difference of what lies over them. All sectors' weights first,
+// then four bands at a time: both loops are made for vector instructions.
 Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
                                  const Horizons& horizons) const {
+  constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
+  constexpr float kLast = static_cast<float>(kNodes - 1);
+  std::array<float, kHorizonAzimuths> at, open;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    const float from = std::max(horizons[i], surface.lowest[i]);
+    at[i] = std::clamp((from - HorizonMap::kLowest) * kScale, 0.0F, kLast);
+    open[i] = from < surface.highest[i] ? kSector : 0.0F;
+  }
   const float* table = &integral_[Level(altitude_m) * level_floats()];
-  std::array<float, kMaxBands> sum{};
-  // The part between two sines is the difference of what lies over them.
-  const auto add = [&](std::size_t azimuth, float sine, float scale) {
-    const NodeTap tap = TapOf<kNodes>(sine);
-    const float* low = &table[(azimuth * kNodes + tap.node) * 2 * stride_];
-    const float* high = low + 2 * stride_;
-    const float up_low = scale * surface.up * (1.0F - tap.share);
-    const float up_high = scale * surface.up * tap.share;
-    const float along_low = scale * surface.along[azimuth] * (1.0F - tap.share);
-    const float along_high = scale * surface.along[azimuth] * tap.share;
+  std::array<float, kMaxBands + 4> sum{};
+  const auto add = [&](std::size_t azimuth, float place, float scale) {
+    const auto node = static_cast<std::size_t>(place);  // the last has nothing over it
+    const float share = place - static_cast<float>(node);
+    const float* low = &table[(azimuth * kNodes + node) * 2 * stride_];
+    const float* high = low + (node + 1 < kNodes ? 2 * stride_ : 0);
+    const float up_low = scale * surface.up * (1.0F - share), up_high = scale * surface.up * share;
+    const float along_low = scale * surface.along[azimuth] * (1.0F - share);
+    const float along_high = scale * surface.along[azimuth] * share;
     for (std::size_t block = 0; block < stride_; block += 4) {
-      for (std::size_t k = block; k < block + 4; ++k) {
-        sum[k] += up_low * low[k] + up_high * high[k] + along_low * low[stride_ + k] +
-                  along_high * high[stride_ + k];
+      for (std::size_t k = 0; k < 4; ++k) {
+        sum[block + k] += up_low * low[block + k] + up_high * high[block + k] +
+                          along_low * low[stride_ + block + k] +
+                          along_high * high[stride_ + block + k];
       }
     }
   };
-  for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
-    const float from = std::max(horizons[azimuth], surface.lowest[azimuth]);
-    const float to = surface.highest[azimuth];
-    if (from >= to) continue;
-    add(azimuth, from, 1.0F);
-    if (to < 1.0F) add(azimuth, to, -1.0F);
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    if (open[i] <= 0.0F) continue;
+    add(i, at[i], open[i]);
+    if (surface.highest[i] < 1.0F) {
+      const float to = (surface.highest[i] - HorizonMap::kLowest) * kScale;
+      add(i, std::clamp(to, 0.0F, kLast), -open[i]);
+    }
   }
-  Bands<float> irradiance = diffuse_.SkyIrradiance(altitude_m, mu_s);
-  for (std::size_t band = 0; band < bands_; ++band)
-    irradiance[band] *= kSector * std::max(sum[band], 0.0F);
+  Bands<float> irradiance = LevelIrradiance(altitude_m, mu_s);
+  for (std::size_t band = 0; band < bands_; ++band) irradiance[band] *= std::max(sum[band], 0.0F);
   return irradiance;
 }
 
@@ -238,7 +274,7 @@ Bands<float> OpenSky::Radiance(double altitude_m, double mu_s, const glm::dvec3&
   const std::size_t level = Level(altitude_m) * kHorizonAzimuths;
   const float* here = &radiance_[((level + sector) * kNodes + node) * stride_];
   const float* there = &radiance_[((level + next) * kNodes + node) * stride_];
-  Bands<float> radiance = diffuse_.SkyIrradiance(altitude_m, mu_s);
+  Bands<float> radiance = LevelIrradiance(altitude_m, mu_s);
   for (std::size_t band = 0; band < bands_; ++band) {
     const float a = here[band] + up * (here[stride_ + band] - here[band]);
     const float b = there[band] + up * (there[stride_ + band] - there[band]);

@@ -43,9 +43,13 @@ struct SurfaceSectors {
 class OpenSky {
  public:
   /// @param to_sun  unit, in the frame of the horizons.
-  /// @param lowest_m, highest_m  altitudes of the ground.
+  /// Where the ground lies.
+  struct Extent {
+    double lowest_m, highest_m;  // altitudes
+    double radius_m;             // distance from the frame's origin, at most
+  };
   OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
-          double lowest_m, double highest_m);
+          const Extent& extent);
 
   /// Irradiance per unit solar irradiance [1] from directions over the horizon, where that is not
   /// below HorizonMap::kLowest.
@@ -65,16 +69,22 @@ class OpenSky {
   static constexpr std::size_t kNodes = 97;  // over the sine, from kLowest to 1
   static constexpr std::size_t kLevels = 16;
 
-  [[nodiscard]] std::vector<float> TableAt(const AirIntegrator<float>& air, double altitude_m,
+  static constexpr std::size_t kSuns = 9;
+
+  [[nodiscard]] std::vector<float> TableAt(const AirIntegrator<float>& air,
+                                           const DiffuseLight& diffuse, double altitude_m,
                                            const glm::dvec3& to_sun) const;
+  /// On a level plane.
+  [[nodiscard]] Bands<float> LevelIrradiance(double altitude_m, double mu_s) const;
   void KeepRadiances();
   [[nodiscard]] std::size_t Level(double altitude_m) const;
   [[nodiscard]] std::size_t level_floats() const { return kHorizonAzimuths * kNodes * 2 * stride_; }
 
-  const DiffuseLight& diffuse_;
   std::size_t bands_, stride_;  // stride: bands rounded up to a multiple of 4
   double lowest_m_, highest_m_;
-  /// Relative to SkyIrradiance: [level][azimuth][node][A, B][band].
+  double first_mu_s_, mu_s_step_;
+  std::vector<float> level_irradiance_;  // [level][sun][band]
+  /// Relative to LevelIrradiance: [level][azimuth][node][A, B][band].
   std::vector<float> integral_;
   std::vector<float> radiance_;  // the same, means between nodes: [level][azimuth][node][band]
 };

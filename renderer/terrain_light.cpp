@@ -36,20 +36,25 @@ TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh
                                  const Medium& medium)
     : map_(heights, medium.planet_radius_m),
       views_(RasterOf(mesh, SlopeViews::kMostNodes), medium),
-      lowest_m_(std::numeric_limits<double>::infinity()),
-      highest_m_(-lowest_m_) {
+      extent_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+              0.0} {
   for (const float z : heights.z_m) {
     if (z <= HeightRaster::kNothing) continue;
-    lowest_m_ = std::min(lowest_m_, static_cast<double>(z));
-    highest_m_ = std::max(highest_m_, static_cast<double>(z));
+    extent_.lowest_m = std::min(extent_.lowest_m, static_cast<double>(z));
+    extent_.highest_m = std::max(extent_.highest_m, static_cast<double>(z));
+  }
+  for (const int row : {0, heights.rows - 1}) {
+    for (const int column : {0, heights.columns - 1}) {
+      const auto [x, y] = heights.Place(column, row);
+      extent_.radius_m = std::max(extent_.radius_m, std::hypot(x, y));
+    }
   }
 }
 
 TerrainLight::TerrainLight(std::shared_ptr<const TerrainHorizons> horizons,
                            const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                            const glm::dvec3& to_sun)
-    : horizons_(std::move(horizons)),
-      sky_(air, diffuse, to_sun, horizons_->lowest_m(), horizons_->highest_m()) {}
+    : horizons_(std::move(horizons)), sky_(air, diffuse, to_sun, horizons_->extent()) {}
 
 void TerrainLight::AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing,
                              double mu_s) {

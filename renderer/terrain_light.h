@@ -20,16 +20,15 @@ class TerrainHorizons {
 
   [[nodiscard]] const HorizonMap& map() const { return map_; }
   [[nodiscard]] const SlopeViews& views() const { return views_; }
-  /// Heights of the ground over the frame's plane.
-  [[nodiscard]] double lowest_m() const { return lowest_m_; }
-  [[nodiscard]] double highest_m() const { return highest_m_; }
+  /// Of the ground; altitudes are those over the frame's plane.
+  [[nodiscard]] const OpenSky::Extent& extent() const { return extent_; }
 
  private:
   TerrainHorizons(const HeightRaster& heights, const TriangleMesh& mesh, const Medium& medium);
 
   HorizonMap map_;
   SlopeViews views_;
-  double lowest_m_, highest_m_;
+  OpenSky::Extent extent_;
 };
 
 /// The horizons of a scene, made when first asked for: not every picture needs them.

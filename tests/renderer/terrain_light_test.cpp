@@ -75,7 +75,7 @@ double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const
 TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
   for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, 0.0, 3000.0);
+    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
     const auto known = TheAir().diffuse.SkyIrradiance(0.0, to_sun.z);
     for (std::size_t band = 0; band < open.count; ++band) {
@@ -88,7 +88,7 @@ TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
 TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
   for (const double elevation : {40.0, 5.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, 0.0, 3000.0);
+    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
     for (const double lean : {0.0, 30.0, 70.0}) {
       for (const double azimuth : {10.0, 130.0, 260.0}) {
         for (const double horizon : {0.0, 0.3}) {
@@ -107,7 +107,7 @@ TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
 
 TEST(OpenSky, BehindAClosedHorizonIsDark) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, 0.0, 3000.0);
+  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
   for (const double lean : {0.0, 60.0}) {
     const auto none = sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F));
     EXPECT_EQ(none[0], 0.0F);
@@ -116,7 +116,7 @@ TEST(OpenSky, BehindAClosedHorizonIsDark) {
 
 TEST(OpenSky, RadianceIsThatOfTheSky) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, 0.0, 3000.0);
+  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
   const SkyView view(TheAir().air, TheAir().diffuse, 0.0, to_sun.z);
   for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
     for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
