@@ -4,8 +4,9 @@
 // In volumes light is scattered once: that of the sun, through the air, terrain's shadow, and every
 // volume and the fog on its way; that of the sky by its moments (DiffuseLight) with the phase
 // function, dimmed by the mean over 26 directions of what volumes leave of it. Light that a volume
-// scatters again is left out: of smoke of albedo 0.8 and optical depth 2 about a third. Columns
-// towards the sun through a gridded volume are taken from a grid of at most 64 samples a side.
+// scatters again is left out, and light of lamps. Columns towards the sun through a gridded volume
+// are taken from a grid of at most 64 samples a side: 2 % of the sun's light, of turbulent smoke with
+// as many samples itself.
 //
 // Fog is lit by sun and sky to all orders as a level layer (EddingtonSlab) over the lowest ground:
 // the first order of the sun exact along the ray, its glow in fog only where terrain lets the sun

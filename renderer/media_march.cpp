@@ -91,6 +91,7 @@ class March {
         cuts_.push_back(piece.end_m);
       }
     }
+    largest_.assign(pieces_.size(), 0.0);
     std::sort(cuts_.begin(), cuts_.end());
     cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
     if (!cuts_.empty()) whole_m_ = cuts_.back() - cuts_.front();
@@ -98,16 +99,12 @@ class March {
 
   [[nodiscard]] MarchedLight Run() {
     for (std::size_t i = 0; i + 1 < cuts_.size() && !IsOpaque(); ++i) {
-      double per_m = 0.0;
       bool anything = false;
-      active_.assign(pieces_.size(), false);
       for (std::size_t m = 0; m < pieces_.size(); ++m) {
-        const double density = LargestOn(pieces_[m], 0.5 * (cuts_[i] + cuts_[i + 1]));
-        active_[m] = density > 0.0;
-        anything = anything || active_[m];
-        per_m += density * thickest_per_m_[m];
+        largest_[m] = LargestOn(pieces_[m], 0.5 * (cuts_[i] + cuts_[i + 1]));
+        anything = anything || largest_[m] > 0.0;
       }
-      if (anything) Take(cuts_[i], cuts_[i + 1], per_m, 0);
+      if (anything) Take(cuts_[i], cuts_[i + 1], 0);
     }
     return Result();
   }
@@ -115,7 +112,8 @@ class March {
  private:
   static constexpr double kMostDepth = 2.0;
   static constexpr double kOpaque = 13.9;  // -ln 1e-6
-  static constexpr int kMostHalvings = 20;
+  static constexpr int kMostHalvings = 30;
+  static constexpr std::size_t kMostNodes = 20000;
 
   static double LargestOn(const std::vector<DensePiece>& pieces, double at_m) {
     const auto after =
@@ -129,22 +127,37 @@ class March {
                        [](double depth) { return depth > kOpaque; });
   }
 
-  void Take(double begin_m, double end_m, double per_m, int halvings) {
+  void Take(double begin_m, double end_m, int halvings) {
     if (IsOpaque()) return;
     const double middle = 0.5 * (begin_m + end_m);
-    const bool may_halve = halvings < kMostHalvings && begin_m < middle && middle < end_m;
-    if (may_halve && per_m * (end_m - begin_m) > kMostDepth) {
-      Take(begin_m, middle, per_m, halvings + 1);
-      Take(middle, end_m, per_m, halvings + 1);
-      return;
+    const bool may_halve =
+        halvings < kMostHalvings && nodes_ < kMostNodes && begin_m < middle && middle < end_m;
+    if (!may_halve || MostPerMetre(begin_m, end_m) * (end_m - begin_m) <= kMostDepth) {
+      const Panel panel = Evaluate(begin_m, end_m);
+      if (!may_halve || IsGood(panel)) {
+        Add(panel);
+        return;
+      }
     }
-    const Panel panel = Evaluate(begin_m, end_m);
-    if (may_halve && !IsGood(panel)) {
-      Take(begin_m, middle, per_m, halvings + 1);
-      Take(middle, end_m, per_m, halvings + 1);
-      return;
+    Take(begin_m, middle, halvings + 1);
+    Take(middle, end_m, halvings + 1);
+  }
+
+  // Extinction, or more, of the thickest band. But for grids densities rise or fall throughout a
+  // piece: what is largest is at an end.
+  [[nodiscard]] double MostPerMetre(double begin_m, double end_m) const {
+    const double inside = 1e-6 * (end_m - begin_m);
+    double sum = 0.0;
+    for (std::size_t m = 0; m < largest_.size(); ++m) {
+      const LocalMedium& medium = media_.all()[m];
+      double most = largest_[m];
+      if (most > 0.0 && (medium.volume() == nullptr || medium.volume()->grid() == nullptr)) {
+        most = std::max(medium.DensityAt(origin_ + (begin_m + inside) * direction_),
+                        medium.DensityAt(origin_ + (end_m - inside) * direction_));
+      }
+      sum += most * thickest_per_m_[m];
     }
-    Add(panel);
+    return sum;
   }
 
   // Each panel may be wrong by the tolerance's part of what it adds, or by its share in length of
@@ -165,7 +178,7 @@ class March {
     for (std::size_t i = 0; i < kNodes; ++i) {
       point[i] = origin_ + (begin_m + length * rule.node[i]) * direction_;
       for (std::size_t m = 0; m < count; ++m) {
-        if (active_[m]) densities_[i * count + m] = media_.all()[m].DensityAt(point[i]);
+        if (largest_[m] > 0.0) densities_[i * count + m] = media_.all()[m].DensityAt(point[i]);
       }
     }
     Panel panel;
@@ -207,7 +220,7 @@ class March {
       const std::array<double, kNodes>& weights, double length, std::size_t count) const {
     std::pair<Bands<double>, Bands<double>> depth{Bands<double>(bands_), Bands<double>(bands_)};
     for (std::size_t m = 0; m < count; ++m) {
-      if (!active_[m]) continue;
+      if (largest_[m] == 0.0) continue;
       double column = 0.0;
       for (std::size_t j = 0; j < kNodes; ++j) column += weights[j] * densities_[j * count + m];
       const LocalMedium& medium = media_.all()[m];
@@ -258,7 +271,7 @@ class March {
   std::vector<std::vector<DensePiece>> pieces_;  // of each body
   std::vector<double> thickest_per_m_;
   std::vector<double> cuts_;
-  std::vector<bool> active_;       // bodies of the piece at hand
+  std::vector<double> largest_;    // densities of the piece at hand; 0: not there
   std::vector<double> densities_;  // [node][body]
   Bands<double> passed_, passed_volumes_, light_;
   double whole_m_ = 0.0, most_light_ = 0.0, error_ = 0.0;
