@@ -601,6 +601,21 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
   return sum;
 }
 
+LampLight::SceneLamp LampLight::At(std::uint32_t number) const {
+  const PlacedLamp& placed = state_->nodes[number].light;
+  return {placed.lamp, placed.intensity, placed.candela};
+}
+
+Bands<double> LampLight::DepthTo(std::uint32_t number, const glm::dvec3& point) const {
+  const PlacedLamp& placed = state_->nodes[number].light;
+  Bands<double> depth = TransmittanceBetween(placed.air, placed.lamp.position_m, point);
+  const bool is_lit = state_->IsLit(placed, point);
+  for (std::size_t band = 0; band < depth.count; ++band) {
+    depth[band] = is_lit ? -std::log(depth[band]) : std::numeric_limits<double>::infinity();
+  }
+  return depth;
+}
+
 Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray, double pixel_angle_rad,
                              const std::function<Bands<float>(double)>& left) const {
   Bands<float> sum(state_->bands);

@@ -24,6 +24,7 @@
 #include <memory>
 #include <vector>
 
+#include "atmosphere/lamp.h"
 #include "atmosphere/single_scattering.h"
 #include "atmosphere/spectrum.h"
 #include "renderer/moving_camera.h"
@@ -120,6 +121,16 @@ class LampLight {
   [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
                                   double pixel_angle_rad,
                                   const std::function<Bands<float>(double)>& left = nullptr) const;
+
+  /// One of the scene's lamps, by its number in All().
+  struct SceneLamp {
+    const Lamp& lamp;
+    const Bands<float>& intensity;  // W sr^-1 nm^-1 in its brightest direction
+    double candela;
+  };
+  [[nodiscard]] SceneLamp At(std::uint32_t number) const;
+  /// Optical depth of air and fog between it and a point; infinite where terrain stands between.
+  [[nodiscard]] Bands<double> DepthTo(std::uint32_t number, const glm::dvec3& point) const;
 
   /// Unit directions from the eye to the scene's lamps.
   [[nodiscard]] std::vector<glm::dvec3> Directions() const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -55,12 +56,19 @@ VolumeGrid Tabulated(const std::array<int, 3>& size, const Value& value) {
   return {size, std::move(values)};
 }
 
+/// A lamp as a volume sees it.
+struct VolumeLamp {
+  std::uint32_t number;
+  std::vector<VolumeGrid> depth;  // [band] of all between but the volume itself if it has no grid
+};
+
 /// A volume under this sun.
 struct LitVolume {
   std::vector<double> chi;
   SkyMoments sky;
   std::optional<VolumeGrid> sun_column;  // [m], of gridded volumes
   std::vector<VolumeGrid> sky_left;      // [band]
+  std::vector<VolumeLamp> lamps;
 };
 
 void AddDepth(const MediumOptics& optics, double column, Bands<double>& depth) {
@@ -77,6 +85,7 @@ struct MediaLight::State {
   const SceneGeometry& geometry;
   const AirIntegrator<float>& air;
   const DiffuseLight& diffuse;
+  const LampLight* lamps;
   glm::dvec3 to_sun;
   double sun_radius_rad;
   BandLight irradiance;
@@ -84,7 +93,7 @@ struct MediaLight::State {
   std::optional<FogLight> fog;
 
   State(LocalMedia of, const SceneGeometry& over, const AirIntegrator<float>& in,
-        const DiffuseLight& sky, const Lighting& light);
+        const DiffuseLight& sky, const Lighting& light, const LampLight* with);
 
   [[nodiscard]] std::size_t bands() const { return media.bands(); }
   [[nodiscard]] const FogLayer& fog_layer() const { return *media.fog()->fog(); }
@@ -98,17 +107,20 @@ struct MediaLight::State {
   }
 
   [[nodiscard]] LitVolume Light(const LocalMedium& medium) const;
+  [[nodiscard]] std::vector<VolumeLamp> LampsOf(const LocalVolume& volume) const;
+  [[nodiscard]] VolumeLamp LampOf(const LocalVolume& volume, std::uint32_t number) const;
   [[nodiscard]] VolumeGrid SunColumns(const LocalVolume& volume) const;
   [[nodiscard]] std::vector<VolumeGrid> SkyLeft(const LocalVolume& volume,
                                                 const SkyMoments& sky) const;
 };
 
 MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const AirIntegrator<float>& in,
-                         const DiffuseLight& sky, const Lighting& light)
+                         const DiffuseLight& sky, const Lighting& light, const LampLight* with)
     : media(std::move(of)),
       geometry(over),
       air(in),
       diffuse(sky),
+      lamps(with),
       to_sun(light.to_sun),
       sun_radius_rad(light.sun_radius_rad),
       irradiance(light.irradiance) {
@@ -136,7 +148,7 @@ LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
   const SkyMoments sky(diffuse, geometry.UpAt(volume.Middle()), to_sun,
                        {low, 0.5 * (low + high), high});
   LitVolume lit{LegendreCoefficients(medium.optics.phase, diffuse.options().degree), sky,
-                std::nullopt, SkyLeft(volume, sky)};
+                std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
   if (volume.grid() != nullptr) lit.sun_column.emplace(SunColumns(volume));
   return lit;
 }
@@ -148,6 +160,52 @@ VolumeGrid MediaLight::State::SunColumns(const LocalVolume& volume) const {
   return Tabulated(size, [&](const glm::dvec3& unit) {
     return volume.Column(volume.FrameFromUnit(unit), to_sun, kEndless);
   });
+}
+
+std::vector<VolumeLamp> MediaLight::State::LampsOf(const LocalVolume& volume) const {
+  constexpr std::size_t kMost = 8;
+  constexpr double kDimmest = 1e-4;  // of the brightest
+  if (lamps == nullptr) return {};
+  std::vector<std::pair<double, std::uint32_t>> bright;
+  for (const std::uint32_t number : lamps->All()) {
+    const LampLight::SceneLamp lamp = lamps->At(number);
+    const glm::dvec3 nearest = volume.FrameFromUnit(
+        glm::clamp(volume.UnitFromFrame(lamp.lamp.position_m), glm::dvec3(0.0), glm::dvec3(1.0)));
+    const double distance = std::max(glm::length(nearest - lamp.lamp.position_m), 1.0);
+    bright.emplace_back(-lamp.candela / (distance * distance), number);
+  }
+  std::sort(bright.begin(), bright.end());
+  std::vector<VolumeLamp> chosen;
+  for (const auto& [minus_lux, number] : bright) {
+    if (chosen.size() == kMost || minus_lux > kDimmest * bright.front().first) break;
+    chosen.push_back(LampOf(volume, number));
+  }
+  return chosen;
+}
+
+VolumeLamp MediaLight::State::LampOf(const LocalVolume& volume, std::uint32_t number) const {
+  constexpr int kMost = 24, kPlain = 8;
+  constexpr double kDark = 60.0;
+  std::array<int, 3> size{kPlain, kPlain, kPlain};
+  if (volume.grid() != nullptr) size = volume.grid()->size();
+  for (int& side : size) side = std::min(side, kMost);
+  const glm::dvec3 lamp = lamps->At(number).lamp.position_m;
+  VolumeLamp seen{number, {}};
+  for (std::size_t band = 0; band < bands(); ++band) {
+    seen.depth.push_back(Tabulated(size, [&](const glm::dvec3& unit) {
+      const glm::dvec3 point = volume.FrameFromUnit(unit);
+      const double distance = std::max(glm::length(lamp - point), 1e-9);
+      double depth = lamps->DepthTo(number, point)[band];
+      for (const LocalMedium& medium : media.all()) {
+        const bool is_exact = medium.volume() == &volume && volume.grid() == nullptr;
+        if (medium.volume() == nullptr || is_exact) continue;
+        depth += medium.optics.extinction_per_m[band] *
+                 medium.volume()->Column(point, (lamp - point) / distance, distance);
+      }
+      return std::min(depth, kDark);
+    }));
+  }
+  return seen;
 }
 
 // Mean over directions of what volumes leave, weighted by the sky's radiance from there.
@@ -261,7 +319,7 @@ class Sources {
  public:
   Sources(const MediaLight::State& light, const glm::dvec3& origin, const glm::dvec3& direction,
           const SunlitPath* sunlit)
-      : light_(light), air_(light, origin, direction), sunlit_(sunlit) {
+      : light_(light), direction_(direction), air_(light, origin, direction), sunlit_(sunlit) {
     const double cosine = glm::dot(direction, light.to_sun);
     for (std::size_t m = 0; m < light.volumes.size(); ++m) {
       phase_.push_back(Phase(light.media.all()[m].optics.phase, cosine));
@@ -311,6 +369,26 @@ class Sources {
                                              light_.irradiance[band] * arriving +
                                          static_cast<float>(medium.optics.emission_per_m[band]));
     }
+    for (const VolumeLamp& lamp : volume.lamps) AddLamp(medium, lamp, point, unit, density, sum);
+  }
+
+  void AddLamp(const LocalMedium& medium, const VolumeLamp& seen, const glm::dvec3& point,
+               const glm::dvec3& unit, double density, BandLight& sum) const {
+    const LampLight::SceneLamp lamp = light_.lamps->At(seen.number);
+    const glm::dvec3 way = lamp.lamp.position_m - point;
+    const double distance = std::max({glm::length(way), lamp.lamp.radius_m, 1e-3});
+    const glm::dvec3 towards = way / distance;
+    const double per_area = RelativeIntensity(lamp.lamp, -towards) / (distance * distance) *
+                            density * Phase(medium.optics.phase, glm::dot(direction_, towards));
+    if (per_area == 0.0) return;
+    const LocalVolume& volume = *medium.volume();
+    const double own = volume.grid() != nullptr ? 0.0 : volume.Column(point, towards, distance);
+    for (std::size_t band = 0; band < sum.count; ++band) {
+      const double depth = own * medium.optics.extinction_per_m[band] + seen.depth[band].At(unit);
+      sum[band] +=
+          lamp.intensity[band] *
+          static_cast<float>(per_area * medium.optics.scattering_per_m[band] * std::exp(-depth));
+    }
   }
 
   // @param lit  the part of the sun's light that terrain and volumes let through.
@@ -325,6 +403,7 @@ class Sources {
   }
 
   const MediaLight::State& light_;
+  glm::dvec3 direction_;
   AirOnRay air_;
   const SunlitPath* sunlit_;
   std::vector<double> phase_;
@@ -336,8 +415,8 @@ class Sources {
 
 MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry,
                        const AirIntegrator<float>& air, const DiffuseLight& diffuse,
-                       const Lighting& light)
-    : state_(std::make_unique<State>(std::move(media), geometry, air, diffuse, light)) {}
+                       const Lighting& light, const LampLight* lamps)
+    : state_(std::make_unique<State>(std::move(media), geometry, air, diffuse, light, lamps)) {}
 MediaLight::~MediaLight() = default;
 
 const LocalMedia& MediaLight::media() const { return state_->media; }
@@ -345,7 +424,18 @@ const LocalMedia& MediaLight::media() const { return state_->media; }
 MarchedLight MediaLight::Along(const glm::dvec3& origin, const glm::dvec3& direction,
                                double length_m, const SunlitPath* sunlit, double tolerance) const {
   Sources sources(*state_, origin, direction, sunlit);
-  return MarchMedia(state_->media, origin, direction, length_m, std::ref(sources), tolerance);
+  // Light of a lamp rises and falls over its distance from the ray.
+  std::vector<double> cuts;
+  for (const LitVolume& volume : state_->volumes) {
+    for (const VolumeLamp& seen : volume.lamps) {
+      const Lamp& lamp = state_->lamps->At(seen.number).lamp;
+      const double nearest = glm::dot(lamp.position_m - origin, direction);
+      const double across =
+          std::max(glm::length(lamp.position_m - origin - nearest * direction), lamp.radius_m);
+      for (const double step : {-4.0, -1.0, 0.0, 1.0, 4.0}) cuts.push_back(nearest + step * across);
+    }
+  }
+  return MarchMedia(state_->media, origin, direction, length_m, std::ref(sources), tolerance, cuts);
 }
 
 BandLight MediaLight::SunLeft(const glm::dvec3& point, const glm::dvec3& to_sun) const {

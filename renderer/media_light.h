@@ -4,9 +4,12 @@
 // In volumes light is scattered once: that of the sun, through the air, terrain's shadow, and every
 // volume and the fog on its way; that of the sky by its moments (DiffuseLight) with the phase
 // function, dimmed by the mean over 26 directions of what volumes leave of it. Light that a volume
-// scatters again is left out, and light of lamps. Columns towards the sun through a gridded volume
-// are taken from a grid of at most 64 samples a side: 2 % of the sun's light, of turbulent smoke with
-// as many samples itself.
+// scatters again is left out. Columns towards the sun through a gridded volume
+// are taken from a grid of at most 64 samples a side: 2 % of the sun's light, of turbulent smoke
+// with as many samples itself.
+//
+// Of the scene's lamps the eight that are brightest at a volume light it, through air, fog and
+// volumes (optical depths from a grid of at most 24 samples a side), shadowed by terrain.
 //
 // Fog is lit by sun and sky to all orders as a level layer (EddingtonSlab) over the lowest ground:
 // the first order of the sun exact along the ray, its glow in fog only where terrain lets the sun
@@ -33,11 +36,12 @@ struct SkyThroughFog {
 };
 
 /// For one position of the sun. Immutable, safe to ask from many threads. Refers to geometry, air
-/// and diffuse light.
+/// diffuse light and lamps.
 class MediaLight {
  public:
+  /// @param lamps  that light volumes; null: none.
   MediaLight(LocalMedia media, const SceneGeometry& geometry, const AirIntegrator<float>& air,
-             const DiffuseLight& diffuse, const Lighting& light);
+             const DiffuseLight& diffuse, const Lighting& light, const LampLight* lamps = nullptr);
   ~MediaLight();
 
   [[nodiscard]] const LocalMedia& media() const;

@@ -69,7 +69,8 @@ struct Panel {
 class March {
  public:
   March(const LocalMedia& media, const glm::dvec3& origin, const glm::dvec3& direction,
-        double length_m, const MediaSource& source, double tolerance)
+        double length_m, const MediaSource& source, double tolerance,
+        std::span<const double> cuts_m)
       : media_(media),
         origin_(origin),
         direction_(direction),
@@ -92,9 +93,15 @@ class March {
       }
     }
     largest_.assign(pieces_.size(), 0.0);
+    if (cuts_.empty()) return;
+    const auto [first, last] = std::minmax_element(cuts_.begin(), cuts_.end());
+    const double begin_m = *first, end_m = *last;
+    whole_m_ = end_m - begin_m;
+    for (const double cut : cuts_m) {
+      if (begin_m < cut && cut < end_m) cuts_.push_back(cut);
+    }
     std::sort(cuts_.begin(), cuts_.end());
     cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
-    if (!cuts_.empty()) whole_m_ = cuts_.back() - cuts_.front();
   }
 
   [[nodiscard]] MarchedLight Run() {
@@ -283,8 +290,8 @@ class March {
 
 MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
                         const glm::dvec3& direction, double length_m, const MediaSource& source,
-                        double tolerance) {
-  return March(media, origin, direction, length_m, source, tolerance).Run();
+                        double tolerance, std::span<const double> cuts_m) {
+  return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
 }
 
 }  // namespace alpenglow

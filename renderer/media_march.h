@@ -49,9 +49,10 @@ inline constexpr double kMarchTolerance = 2e-3;
 /// @param tolerance  of the result's relative error, in [1e-6, 0.1]. Held against a thousand times
 ///     finer midpoint sums over homogeneous, exponential and turbulent gridded bodies, with sources
 ///     that are smooth or follow a shadow: tests/renderer/media_march_test.cpp.
+/// @param cuts_m  distances where panels shall end: where the ray is nearest to a lamp.
 [[nodiscard]] MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
                                       const glm::dvec3& direction, double length_m,
-                                      const MediaSource& source,
-                                      double tolerance = kMarchTolerance);
+                                      const MediaSource& source, double tolerance = kMarchTolerance,
+                                      std::span<const double> cuts_m = {});
 
 }  // namespace alpenglow

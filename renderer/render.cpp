@@ -264,8 +264,9 @@ void SceneRenderer::State::LightMedia(PictureFrame& frame) const {
   LocalMedia here = media.Only(frame.Has(Effect::kVolumes), is_lit);
   frame.media = here.IsNothing()
                     ? nullptr
-                    : std::make_shared<MediaLight>(std::move(here), geometry, frame.model->air,
-                                                   frame.model->diffuse, frame.light);
+                    : std::make_shared<MediaLight>(
+                          std::move(here), geometry, frame.model->air, frame.model->diffuse,
+                          frame.light, frame.Has(Effect::kLights) ? frame.lamps.get() : nullptr);
   frame.light.media = frame.media.get();
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/airlight.h"
 #include "atmosphere/constants.h"
 #include "atmosphere/spectrum.h"
 #include "lut/spherical_harmonics.h"
@@ -239,6 +240,34 @@ TEST(MediaLight, WhiteFogOverBlackGroundKeepsTheEnergyOfSunAndSky) {
         static_cast<double>(below.added[band] + below.left[band] * sky[band] + above.added[band]) +
         mu_s * static_cast<double>(beam[band] * sun[band]);
     EXPECT_NEAR(out / in, 1.0, 5e-3);
+  }
+}
+
+TEST(MediaLight, LampsLightAVolumeAsTheyLightHomogeneousAir) {
+  Stage stage;
+  Light lamp;
+  lamp.latitude_rad = stage.scene.place.latitude_rad + 60.0 / 6.36e6;
+  lamp.longitude_rad = stage.scene.place.longitude_rad;
+  lamp.height = {52.0, false};
+  lamp.intensity_cd = 100.0;
+  stage.scene.lights.push_back(lamp);
+  const LampLight lamps(stage.scene, stage.ground, stage.medium, stage.colour);
+  stage.light.to_sun = {0.0, 0.6, -0.8};
+  const MediumOptics optics = Optics(0.01, 0.8);
+  const MediaLight lit(LocalMedia({Box({0.0, 0.0, -200.0}, {500.0, 500.0, 500.0}, optics)}, 3),
+                       stage.geometry, stage.air.air, stage.air.diffuse, stage.light, &lamps);
+  for (const double rise : {-0.05, 0.0, 0.03, 0.4}) {
+    const glm::dvec3 look = glm::normalize(glm::dvec3(0.02, 1.0, rise));
+    const MarchedLight light = lit.Along(kEye, look, 150.0, nullptr);
+    for (std::size_t band = 0; band < 3; ++band) {
+      const LampAir air = HomogeneousAir(optics.scattering_per_m[band],
+                                         optics.extinction_per_m[band], optics.phase);
+      const LampLight::SceneLamp in_scene = lamps.At(0);
+      const double expected = static_cast<double>(in_scene.intensity[band]) *
+                              Airlight(air, in_scene.lamp, {kEye, look, 0.0, 150.0}, 64)[0];
+      EXPECT_NEAR(static_cast<double>(light.radiance[band]) / expected, 1.0, 1e-2)
+          << rise << ": clear air takes up to 0.4 % over 100 m, twice";
+    }
   }
 }
 
