@@ -7,6 +7,7 @@
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "lut/program.h"
 #include "renderer/provenance.h"
 
 namespace alpenglow {
@@ -17,7 +18,7 @@ constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,
 constexpr double kClearance_m = 1.5;  // of the eye over the ground
 constexpr double kZoomStep = 1.1;
 
-Eye EyeOf(const Scene& scene, double height_m) {
+Eye EyeOfScene(const Scene& scene, double height_m) {
   Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
           scene.camera.fov_rad};
   eye.place.height_m = height_m;
@@ -72,7 +73,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start)
     : scene_(scene),
       ground_(LoadGround(scene_)),
       painter_(PainterOf(scene_, ground_)),
-      eye_(EyeOf(scene_, ground_.eye_height_m)),
+      eye_(EyeOfScene(scene_, ground_.eye_height_m)),
       now_(start) {}
 
 double Flythrough::GroundUnder(const GeodeticPosition& place) const {
@@ -92,6 +93,12 @@ void Flythrough::Place(const EyePlacement& placement) {
   eye_ = Placed(eye_, placement);
   if (!placement.height_m) eye_.place.height_m = GroundUnder(eye_.place) + above_m;
   eye_ = KeptAbove(eye_, GroundUnder(eye_.place), 0.0);
+}
+
+void Flythrough::Show(const ReplayFrame& frame) {
+  eye_ = Zoomed(frame.eye, 1.0);
+  eye_ = KeptAbove(eye_, GroundUnder(eye_.place), 0.0);
+  if (frame.now) now_ = *frame.now;
 }
 
 void Flythrough::Advance(const Steering& steering, double seconds) {
@@ -163,6 +170,19 @@ void Flythrough::WritePicture(const std::filesystem::path& file, int width, int 
     WriteExr(file, image, metadata);
   } else {
     WritePng(file, Develop(image, ev100, ToneCurve::kAgx), metadata);
+  }
+}
+
+void Flythrough::WriteReplay(const CameraPath& path,
+                             const std::vector<std::filesystem::path>& files, const ImageSize& size,
+                             FlightRecorder& recorder) {
+  const double steps = std::max(static_cast<double>(files.size()) - 1.0, 1.0);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    ThrowIfInterrupted();
+    const double along_s = (path.end_s() - path.begin_s()) * static_cast<double>(i) / steps;
+    Show(ReplayAt(path, path.begin_s() + along_s));
+    recorder.Note(along_s, eye_, now_);
+    WritePicture(files[i], size.width, size.height);
   }
 }
 

@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "lut/picture_text.h"
 #include "renderer/scene.h"
 #include "renderer/scene_ground.h"
 #include "viewer/flight.h"
+#include "viewer/flight_recorder.h"
 #include "viewer/sky_painter.h"
 
 namespace alpenglow {
@@ -57,7 +60,15 @@ class Flythrough {
   /// with what made them in their headers. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, int width, int height);
 
+  /// Puts the eye and the time where a replay has them; the eye never comes to stand in the ground.
+  void Show(const ReplayFrame& frame);
+
+  /// Writes pictures at even steps of the path, its ends included, and notes them down.
+  void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
+                   const ImageSize& size, FlightRecorder& recorder);
+
   [[nodiscard]] const Eye& eye() const { return eye_; }
+  [[nodiscard]] const UtcInstant& now() const { return now_; }
   [[nodiscard]] bool quit() const { return quit_; }
   /// Place, height, heading, time, sun and exposure in one line; empty when hidden.
   [[nodiscard]] std::string HudText() const;

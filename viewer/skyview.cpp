@@ -6,6 +6,7 @@
 
 #include "atmosphere/constants.h"
 #include "renderer/frame_times.h"
+#include "viewer/flight_recorder.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl_context.h"
 #include "viewer/skyview_options.h"
@@ -47,14 +48,22 @@ UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
 }
 
 // A frame lasts a sixtieth of a second where nobody watches.
-void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const ImageSize& size) {
-  for (int frame = 1; frame < options.frames; ++frame) flight.Advance({}, 1.0 / 60.0);
+void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const ImageSize& size,
+                   FlightRecorder& recorder) {
+  constexpr double kFrame_s = 1.0 / 60.0;
+  recorder.Note(0.0, flight.eye(), flight.now());
+  for (int frame = 1; frame < options.frames; ++frame) {
+    flight.Advance({}, kFrame_s);
+    recorder.Note(frame * kFrame_s, flight.eye(), flight.now());
+  }
   flight.WritePicture(*options.screenshot, size.width, size.height);
 }
 
-void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window) {
+void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, Flythrough& flight,
+         Window& window, FlightRecorder& recorder) {
   using Clock = std::chrono::steady_clock;
   int frames = 0;
+  double elapsed_s = 0.0;
   for (Clock::time_point before = Clock::now(); !flight.quit();) {
     ThrowIfInterrupted();
     const Window::Events events = window.Poll();
@@ -65,6 +74,12 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window) {
     if (window.width() == 0 || window.height() == 0) continue;
     flight.Turn(-events.drag_right * flight.eye().fov_rad, -events.drag_up * flight.eye().fov_rad);
     flight.Advance(events.steering, seconds);
+    // The pilot has the controls again when the path ends.
+    if (path && path->begin_s() + elapsed_s <= path->end_s()) {
+      flight.Show(ReplayAt(*path, path->begin_s() + elapsed_s));
+    }
+    recorder.Note(elapsed_s, flight.eye(), flight.now());
+    elapsed_s += seconds;
     flight.Paint(window.width(), window.height(), 0, seconds);
     window.SetTitle(flight.HudText());
     window.Swap();
@@ -82,6 +97,8 @@ int Run(const SkyviewOptions& options) {
   if (options.screenshot) RequirePictureName(*options.screenshot);
   const Scene scene = SceneOf(options);
   const UtcInstant start = StartOf(options, scene);
+  std::optional<CameraPath> path;
+  if (options.replay) path = ReadCameraPath(*options.replay);
   // The context outlives what was made in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
   const auto window = options.headless
@@ -92,7 +109,15 @@ int Run(const SkyviewOptions& options) {
   flight.Place(PlacementOf(options));
   if (!flight.terrain_message().empty())
     fmt::print(stderr, "skyview: {}\n", flight.terrain_message());
-  window ? Fly(options, flight, *window) : PaintHeadless(options, flight, size);
+  FlightRecorder recorder;
+  if (window) {
+    Fly(options, path, flight, *window, recorder);
+  } else if (path) {
+    flight.WriteReplay(*path, ReplayPictures(*options.screenshot, options.frames), size, recorder);
+  } else {
+    PaintHeadless(options, flight, size, recorder);
+  }
+  if (options.record) recorder.Write(*options.record);
   return 0;
 }
 

@@ -24,7 +24,7 @@ struct SkyviewOptions {
   CommonOptions common;
   std::string scene_file, size = "1280x720";
   std::optional<double> latitude, longitude, altitude, heading, pitch;
-  std::optional<std::string> dem, time, screenshot;
+  std::optional<std::string> dem, time, screenshot, record, replay;
   int frames = 1;
   bool fullscreen = false, headless = false;
 };
@@ -47,12 +47,19 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   app.add_flag("--fullscreen", options.fullscreen, "Use the whole screen");
   CLI::Option* picture = app.add_option("--screenshot", options.screenshot,
                                         "Write this PNG or EXR after --frames frames and end");
-  app.add_option("--frames", options.frames, "Frames before the screenshot, 1 to 1000000")
+  app.add_option("--frames", options.frames,
+                 "Frames before the screenshot, 1 to 1000000; without a display, pictures of a "
+                 "replay, its ends included")
       ->check(CLI::Range(1, 1000000))
       ->needs(picture)
       ->capture_default_str();
   app.add_flag("--headless", options.headless, "Needs no display; only with --screenshot")
       ->needs(picture);
+  app.add_option("--record", options.record,
+                 "Write the flight to this file, for --replay and skyseries --path");
+  app.add_option("--replay", options.replay,
+                 "Fly along this path; without a display, --screenshot out.%04d.png --frames N "
+                 "writes pictures along it");
   AddCommonOptions(app, "skyview", options.common);
   app.footer(kSkyviewFooter);
 }

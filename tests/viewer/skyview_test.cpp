@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "lut/image.h"
+#include "renderer/camera_path.h"
 #include "tests/bare_scene.h"
 #include "tests/temporary_folder.h"
 #include "tests/viewer/headless.h"
@@ -64,6 +65,38 @@ TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
               HasSubstr("10000"));
 }
 
+TEST_F(Skyview, AFlightIsRecordedAndAReplayIsTheSameFlight) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const std::string small = InFolder("s.toml") + " --headless --size 32x18 ";
+  Outcome outcome = Run(small + "--heading 350 --altitude 2000 --frames 31 --record " +
+                        InFolder("flight.csv") + " --screenshot " + InFolder("end.png"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const CameraPath path = ReadCameraPath(InFolder("flight.csv"));
+  EXPECT_NEAR(path.end_s(), 0.5, 0.05) << "31 frames of a sixtieth of a second";
+  EXPECT_NEAR(path.points()[0].pose.place.height_m, 2000.0, 1e-3);
+  EXPECT_TRUE(path.UtcAt(0.0).has_value());
+  outcome = Run(small + "--replay " + InFolder("flight.csv") + " --frames 3 --record " +
+                InFolder("again.csv") + " --screenshot " + InFolder("r.%02d.png"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(ReadPng(InFolder("r.02.png")).rgb, ReadPng(InFolder("end.png")).rgb);
+  EXPECT_TRUE(fs::exists(InFolder("r.00.png")));
+  EXPECT_NEAR(ReadCameraPath(InFolder("again.csv")).end_s(), path.end_s(), 1e-9);
+}
+
+TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  WriteText(folder_ / "p.csv",
+            "t_s,latitude,longitude,height_m,heading,utc\n0,46.5,8,3000,350,2026-06-21T10:00:00Z\n"
+            "10,46.6,8,5000,10,2026-06-21T16:00:00Z\n");
+  const std::string replay = InFolder("s.toml") + " --headless --size 16x9 --replay " +
+                             InFolder("p.csv") + " --frames 3 --screenshot ";
+  ASSERT_EQ(Run(replay + InFolder("f.%d.exr")).status, 0);
+  const Metadata middle = ReadExrMetadata(InFolder("f.1.exr"));
+  EXPECT_EQ(middle.at("alpenglow.time"), "2026-06-21T13:00:00.000Z");
+  EXPECT_THAT(middle.at("alpenglow.camera_height"), HasSubstr("4000"));
+  EXPECT_EQ(Run(replay + InFolder("f.exr")).status, 3) << "three pictures under one name";
+}
+
 TEST_F(Skyview, WithoutADisplayAWindowIsRefusedWithStatusFive) {
   const Outcome outcome = Run(InFolder("s.toml"));
   EXPECT_EQ(outcome.status, 5);
@@ -116,9 +149,10 @@ TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFour) {
 TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
-  for (const char* option : {"--latitude", "--longitude", "--altitude", "--heading", "--pitch",
-                             "--time", "--dem", "--size", "--fullscreen", "--screenshot",
-                             "--frames", "--headless", "--threads", "--version", "Example"}) {
+  for (const char* option :
+       {"--latitude", "--longitude", "--altitude", "--heading", "--pitch", "--time", "--dem",
+        "--record", "--replay", "--size", "--fullscreen", "--screenshot", "--frames", "--headless",
+        "--threads", "--version", "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
