@@ -44,8 +44,8 @@ bool HeaderNames(const std::filesystem::path& file, std::string_view column) {
 }
 
 CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
-                     std::size_t needed)
-    : file_(file), columns_(columns.begin(), columns.end()) {
+                     const Rules& rules)
+    : file_(file), columns_(columns.begin(), columns.end()), rules_(rules) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError(
@@ -54,7 +54,7 @@ CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::str
   bytes_ = std::filesystem::file_size(file);
   stream_.open(file, std::ios::binary);
   if (!stream_) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  ReadHeader(needed);
+  ReadHeader();
 }
 
 void CsvReader::Fail(std::size_t line, const std::string& fault) const {
@@ -81,32 +81,32 @@ bool CsvReader::ReadLine() {
   return true;
 }
 
-void CsvReader::ReadHeader(std::size_t needed) {
-  if (!ReadLine()) throw InputError(fmt::format("{}: is empty", file_.string()));
+void CsvReader::ReadHeader() {
+  if (!ReadLineOfData()) throw InputError(fmt::format("{}: is empty", file_.string()));
   const std::size_t missing = columns_.size();
   position_.assign(columns_.size(), missing);
   const std::vector<std::string_view> fields = FieldsOfHeader(line_);
   for (std::size_t field = 0; field < fields.size(); ++field) {
     const auto found = std::find(columns_.begin(), columns_.end(), fields[field]);
     if (found == columns_.end()) {
-      Fail(1, fmt::format("column \"{}\" is unknown; the columns are {}", fields[field],
-                          fmt::join(columns_, ", ")));
+      Fail(line_number_, fmt::format("column \"{}\" is unknown; the columns are {}", fields[field],
+                                     fmt::join(columns_, ", ")));
     }
     std::size_t& position = position_[static_cast<std::size_t>(found - columns_.begin())];
-    if (position != missing) Fail(1, fmt::format("column {} twice", fields[field]));
+    if (position != missing) Fail(line_number_, fmt::format("column {} twice", fields[field]));
     position = field;
   }
   fields_in_header_ = fields.size();
-  for (std::size_t column = 0; column < needed; ++column) {
+  for (std::size_t column = 0; column < rules_.needed; ++column) {
     if (position_[column] == missing) {
-      Fail(1, fmt::format("column {} is missing", columns_[column]));
+      Fail(line_number_, fmt::format("column {} is missing", columns_[column]));
     }
   }
 }
 
 bool CsvReader::ReadLineOfData() {
   while (ReadLine()) {
-    if (!comments_) return true;
+    if (!rules_.comments) return true;
     line_.resize(std::min(line_.size(), line_.find('#')));
     if (line_.find_first_not_of(" \t") != std::string::npos) return true;
   }

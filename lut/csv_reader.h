@@ -24,14 +24,15 @@ class CsvReader {
   /// file, line and what is wrong: a missing, unknown or repeated column, a field too few or too
   /// many, text that is no number, a value out of range, a file without lines.
   /// @param columns  their names; a column's index in the list is its number below.
-  /// @param needed  the first so many of them must be there, the others may.
-  CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
-            std::size_t needed);
   CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns)
-      : CsvReader(file, columns, columns.size()) {}
+      : CsvReader(file, columns, {columns.size(), false}) {}
 
-  /// From now on, lines that are blank and what follows a `#` are passed over.
-  void PassOverComments() { comments_ = true; }
+  struct Rules {
+    std::size_t needed;  // the first so many columns must be there, the others may
+    bool comments;       // lines that are blank and what follows a `#` are passed over
+  };
+  CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
+            const Rules& rules);
 
   /// Whether the file has the column. Field and Number are of columns that it has.
   [[nodiscard]] bool Has(std::size_t column) const { return position_[column] != columns_.size(); }
@@ -55,7 +56,7 @@ class CsvReader {
  private:
   [[nodiscard]] bool ReadLine();
   [[nodiscard]] bool ReadLineOfData();
-  void ReadHeader(std::size_t needed);
+  void ReadHeader();
 
   std::filesystem::path file_;
   std::vector<std::string_view> columns_;
@@ -64,7 +65,7 @@ class CsvReader {
   std::uint64_t bytes_read_ = 0;
   std::size_t line_number_ = 0;
   bool any_ = false;
-  bool comments_ = false;
+  Rules rules_;
   std::size_t fields_in_header_ = 0;
   std::string line_;
   std::vector<std::string_view> fields_;  // of line_

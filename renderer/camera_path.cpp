@@ -176,8 +176,7 @@ std::vector<CameraPose> CameraPath::PosesBetween(double from_s, double to_s, int
 }
 
 CameraPath ReadCameraPath(const std::filesystem::path& file, const CameraPose& otherwise) {
-  CsvReader lines(file, kColumns, kNeeded);
-  lines.PassOverComments();
+  CsvReader lines(file, kColumns, {.needed = kNeeded, .comments = true});
   const auto degrees = [&](Column column, double low, double high, double radians) {
     return lines.Has(column) ? lines.Number(column, low, high) : Degrees(radians);
   };

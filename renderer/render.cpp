@@ -324,10 +324,12 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const PictureFrame& frame, int x
     const glm::dvec2 at = glm::dvec2(x, y) + PlaceInPixel(samples, i, frame);
     const CameraRay ray = RayOf(samples, i, at, frame);
     const Hit hit = Trace(ray, frame);
-    rays.push_back({ray, hit, AirFor(hit, ray.direction, frame.settings.share_air, airs)});
+    rays.push_back({ray, hit, AirFor(hit, ray.through, frame, airs)});
   }
   // The filter is symmetric: the mean of all its rays is known better than the mean of some.
-  if (airs.size() == 1) airs.front().direction_sum = frame.camera().Direction(x + 0.5, y + 0.5);
+  if (airs.size() == 1 && !frame.moving.IsMoving()) {
+    airs.front().direction_sum = frame.camera().Direction(x + 0.5, y + 0.5);
+  }
   const LampTile& near = frame.plan->tiles.empty() ? DarkTile() : frame.plan->At(x, y);
   for (SharedAir& shared : airs) {
     AddAir(frame, geometry, medium, shared);

@@ -2,6 +2,7 @@
 #include "renderer/shared_air.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace alpenglow {
@@ -56,12 +57,25 @@ class AirTo {
 
 }  // namespace
 
-std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, bool share,
+bool SharedAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const {
+  constexpr double kSameDistance = 0.01;
+  if (hit.kind != kind || glm::length(direction - first_direction) > widest_rad) return false;
+  return kind == HitKind::kSky ||
+         std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
+}
+
+std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFrame& frame,
                    std::vector<SharedAir>& airs) {
-  auto known = std::find_if(airs.begin(), airs.end(),
-                            [&](const SharedAir& shared) { return share && shared.Takes(hit); });
-  if (known == airs.end())
-    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, glm::dvec3(0.0), 0.0, 0});
+  // All of a filter's width, and as far as the sky hardly bends where a camera turns.
+  constexpr double kSameSky_rad = 0.01;
+  const double widest_rad =
+      3.0 * frame.filter.radius() * frame.camera().PixelAngle() + kSameSky_rad;
+  auto known = std::find_if(airs.begin(), airs.end(), [&](const SharedAir& shared) {
+    return frame.settings.share_air && shared.Takes(hit, direction, widest_rad);
+  });
+  if (known == airs.end()) {
+    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, direction, glm::dvec3(0.0), 0.0, 0});
+  }
   known->direction_sum += direction;
   known->distance_sum_m += hit.distance_m;
   ++known->rays;

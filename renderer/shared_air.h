@@ -41,8 +41,9 @@ struct PictureFrame {
 /// Rays of a pixel that look through the same air, to the same place but for an edge's width.
 struct SharedAir {
   HitKind kind;
-  double first_distance_m;   // of the ray that began it
-  glm::dvec3 direction_sum;  // of unit vectors
+  double first_distance_m;     // of the ray that began it
+  glm::dvec3 first_direction;  // of that ray, unit
+  glm::dvec3 direction_sum;    // of unit vectors
   double distance_sum_m;
   int rays;
   // Along the mean of their directions, to their mean distance:
@@ -56,17 +57,16 @@ struct SharedAir {
     return kind == HitKind::kSky ? std::numeric_limits<double>::infinity() : distance_sum_m / rays;
   }
 
-  [[nodiscard]] bool Takes(const Hit& hit) const {
-    constexpr double kSameDistance = 0.01;
-    if (hit.kind != kind) return false;
-    return hit.kind == HitKind::kSky ||
-           std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
-  }
+  /// @param widest_rad  between two rays that share air.
+  [[nodiscard]] bool Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const;
 };
 
-/// Which of the airs of a pixel a ray looks through; makes a new one if none, or if not to `share`.
-[[nodiscard]] std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, bool share,
-                                 std::vector<SharedAir>& airs);
+/// Which of the airs of a pixel a ray looks through; makes a new one if none, or if airs
+/// are not shared.
+/// @param direction  CameraRay::through: air is as the middle of the lens sees it, beams in it too;
+///     LampLight::SeenBy spreads the glow about lamps.
+[[nodiscard]] std::size_t AirFor(const Hit& hit, const glm::dvec3& direction,
+                                 const PictureFrame& frame, std::vector<SharedAir>& airs);
 
 /// Light of sun and sky in air and media along the mean of the rays, and what they leave.
 void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,

@@ -171,7 +171,8 @@ TEST_F(CameraPathFiles, ColumnsComeInAnyOrderAndSomeMayBeLeftOut) {
   CameraPose otherwise;
   otherwise.pitch_rad = -0.25;
   const CameraPath path = Read(
-      "longitude,t_s,height_m,latitude,heading\n# over the lake\n\n8,0,500,46,90\n8.1,2,510,46,95 "
+      "# a flight\nlongitude,t_s,height_m,latitude,heading\n# over the "
+      "lake\n\n8,0,500,46,90\n8.1,2,510,46,95 "
       "# "
       "turn\n",
       otherwise);

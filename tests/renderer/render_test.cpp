@@ -126,19 +126,21 @@ TEST(Render, AMovingCameraSeesTheMeanOfWhatItPasses) {
   RenderSettings settings = kSmall;
   settings.samples_per_pixel = 64;
   settings.filter = PixelFilter::Kind::kBox;
-  settings.share_air = false;
+  const auto pose = [](double pitch) {
+    CameraPose at = PoseAt(46.5, 8.0, 1000.0, 90.0, pitch);
+    at.fov_rad = 8.0 * kRadiansPerDegree;  // half a degree a pixel
+    return at;
+  };
   Shot blurred(noon);
   // Up from the sea over the horizon, by 16 steps of half a degree.
-  for (int i = 0; i <= 16; ++i) {
-    blurred.poses.push_back(PoseAt(46.5, 8.0, 1000.0, 90.0, -4.0 + 0.5 * i));
-  }
+  for (int i = 0; i <= 16; ++i) blurred.poses.push_back(pose(-4.0 + 0.5 * i));
   const Image found = renderer.Render(blurred, settings);
   std::vector<double> mean(found.rgb.size(), 0.0);
   constexpr int kStills = 32;
   settings.samples_per_pixel = 16;
   for (int i = 0; i < kStills; ++i) {
     Shot still(noon);
-    still.poses = {PoseAt(46.5, 8.0, 1000.0, 90.0, -4.0 + 8.0 * (i + 0.5) / kStills)};
+    still.poses = {pose(-4.0 + 8.0 * (i + 0.5) / kStills)};
     const Image image = renderer.Render(still, settings);
     for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += Luminance(image.rgb[k]) / kStills;
   }
