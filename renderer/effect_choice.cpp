@@ -50,12 +50,13 @@ class Judge {
 
   struct Verdict {
     ChangeEstimate change;  // the worst of the groups
+    ChangeEstimate whole;   // of the first of them
     double picture_s;
   };
 
   [[nodiscard]] Verdict On(EffectSet effects) const {
     const PilotPicture picture = Render(effects);
-    Verdict verdict{{}, PictureSeconds(picture)};
+    Verdict verdict{{}, {}, PictureSeconds(picture)};
     std::size_t at = 0;
     for (const auto& group : pilot_.groups) {
       std::vector<double> changes;
@@ -63,6 +64,7 @@ class Judge {
         changes.push_back(PixelChange(everything_.image.rgb[at], picture.image.rgb[at], floor_));
       }
       const ChangeEstimate change = ChangeEstimate::Of(std::move(changes));
+      if (&group == &pilot_.groups.front()) verdict.whole = change;
       verdict.change.seen = Worse(verdict.change.seen, change.seen);
       verdict.change.at_most = Worse(verdict.change.at_most, change.at_most);
     }
@@ -98,7 +100,7 @@ class Chooser {
       : judge_(judge),
         max_error_(max_error),
         effects_(wanted),
-        verdict_{{}, judge.everything_s()} {}
+        verdict_{{}, {}, judge.everything_s()} {}
 
   /// @param candidates  smallest change first.
   void LeaveOut(const std::vector<EffectEstimate>& candidates) {
@@ -219,7 +221,7 @@ EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted, const EffectBud
   choice.all_s = judge.everything_s();
   std::vector<EffectEstimate> candidates;
   for (const Effect effect : wanted.List()) {
-    EffectEstimate estimate{effect, {}, 0.0};
+    EffectEstimate estimate{effect, {}, {}};
     estimate.present = pilot.present.Has(effect);
     if (TextOf(effect).is_free && !budget.explain) continue;
     if (estimate.present) {
@@ -227,6 +229,7 @@ EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted, const EffectBud
       const double preparation_s = pilot.preparation_s(effect);
       choice.all_s += preparation_s;
       estimate.change = without.change;
+      estimate.whole = without.whole;
       estimate.cost_s = judge.everything_s() - without.picture_s + preparation_s;
       if (!TextOf(effect).is_free && IsWithin(estimate.change, budget.max_error))
         candidates.push_back(estimate);

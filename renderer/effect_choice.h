@@ -85,6 +85,7 @@ struct Pilot {
 struct EffectEstimate {
   Effect effect;
   ChangeEstimate change;  // the worst of the groups
+  ChangeEstimate whole;   // of the picture as a whole
   double cost_s = 0.0;    // of the picture's time, preparation included, all threads together
   bool kept = true;
   bool present = true;  // false: nothing to do in this scene

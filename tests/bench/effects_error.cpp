@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// What leaving out effects changes and saves, as the pilot says and as it is, over whole pictures.
+// Run by hand; results are in README.md.
+//   effects_error [WIDTH HEIGHT [SCENE]]
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/effect_scenes.h"
+
+namespace alpenglow {
+namespace {
+
+struct Timed {
+  Image image;
+  double seconds;
+};
+
+Timed Render(const SceneRenderer& renderer, const EffectScene& scene,
+             const RenderSettings& settings) {
+  const Stopwatch watch;
+  Image image = renderer.Render(scene.instant, settings);
+  return {std::move(image), watch.seconds()};
+}
+
+void Measure(const EffectScene& scene, RenderSettings settings) {
+  const SceneRenderer renderer(scene.scene);
+  const Timed all = Render(renderer, scene, settings);
+  fmt::print("\n{} ({:.2f} s with everything)\n", scene.name, all.seconds);
+  fmt::print("{:<22}{:>19}{:>19}{:>19}\n", "without", "rms said, is %", "99 % said, is %",
+             "saves said, does s");
+  const auto hold = [&](const std::string& name, EffectSet effects, const ChangeEstimate& said,
+                        double saves_s) {
+    settings.effects = effects;
+    const Timed without = Render(renderer, scene, settings);
+    const PictureChange is = ChangeOf(all.image, without.image);
+    fmt::print("{:<22}{:>10.3f}{:>9.3f}{:>10.3f}{:>9.3f}{:>10.3f}{:>9.3f}\n", name,
+               100.0 * said.seen.rms, 100.0 * is.rms, 100.0 * said.seen.at_99_percent,
+               100.0 * is.at_99_percent, saves_s, all.seconds - without.seconds);
+  };
+  for (const double budget : {0.01, 0.002}) {
+    settings.effects = EffectSet::All();
+    const EffectChoice choice =
+        renderer.RenderWithin(scene.instant, settings, {.max_error = budget, .explain = true})
+            .choice;
+    for (const EffectEstimate& estimate : choice.estimates) {
+      if (budget < 0.01 || !estimate.present) continue;
+      hold(TextOf(estimate.effect).name, EffectSet::All().Without(estimate.effect), estimate.change,
+           estimate.cost_s);
+    }
+    hold(fmt::format("within {} %", 100.0 * budget), choice.effects, choice.together,
+         choice.all_s - choice.chosen_s);
+    fmt::print("  left out: {}; pilot {:.3f} s (explained)\n",
+               NotesOn(choice).at("alpenglow.note.effects_left_out"), choice.pilot_s);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main(int argc, char** argv) {
+  using namespace alpenglow;
+  RenderSettings settings;
+  settings.width = argc > 2 ? std::atoi(argv[1]) : 320;
+  settings.height = argc > 2 ? std::atoi(argv[2]) : 180;
+  for (const EffectScene& scene : EffectScenes(std::filesystem::temp_directory_path().string())) {
+    if (argc <= 3 || scene.name == argv[3]) Measure(scene, settings);
+  }
+}
