@@ -54,8 +54,8 @@ class Judge {
     double picture_s;
   };
 
-  [[nodiscard]] Verdict On(EffectSet effects) const {
-    const PilotPicture picture = Render(effects);
+  [[nodiscard]] Verdict On(EffectSet effects) const { return On(Render(effects)); }
+  [[nodiscard]] Verdict On(const PilotPicture& picture) const {
     Verdict verdict{{}, {}, PictureSeconds(picture)};
     std::size_t at = 0;
     for (const auto& group : pilot_.groups) {
@@ -134,6 +134,15 @@ class Chooser {
   EffectSet effects_;
   Judge::Verdict verdict_;
 };
+
+std::vector<RefinementEstimate> Refine(const Pilot& pilot, const Judge& judge) {
+  std::vector<RefinementEstimate> estimates;
+  for (const Refinement& refinement : pilot.refinements) {
+    const Judge::Verdict with = judge.On(refinement.render());
+    estimates.push_back({refinement.name, with.change, with.picture_s - judge.everything_s()});
+  }
+  return estimates;
+}
 
 std::string Percent(double value) {
   const double percent = 100.0 * value;
@@ -241,6 +250,7 @@ EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted, const EffectBud
   });
   Chooser chooser(judge, wanted, budget.max_error);
   if (budget.leave_out) chooser.LeaveOut(candidates);
+  if (budget.explain) choice.refinements = Refine(pilot, judge);
   choice.effects = chooser.effects();
   choice.together = chooser.verdict().change;
   choice.chosen_s = chooser.verdict().picture_s;
@@ -280,6 +290,11 @@ std::string ExplainText(const EffectChoice& choice) {
   text += Line("all left out", choice.together, choice.all_s - choice.chosen_s, choice.all_s,
                fmt::format("budget {} rms, {} at 99 %", Percent(choice.max_error),
                            Percent(kPercentileFactor * choice.max_error)));
+  if (!choice.refinements.empty()) {
+    text += fmt::format("{:<20}{:>11}{:>11}{:>11}{:>12}\n", "with", "", "", "", "costs");
+  }
+  for (const RefinementEstimate& more : choice.refinements)
+    text += Line(more.name, more.change, more.cost_s, choice.all_s, "not asked for");
   text += fmt::format(
       "pilot: {} pixels, {:.3f} s; the frame: {:.3f} s with everything, {:.3f} s as "
       "chosen\n",

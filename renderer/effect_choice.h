@@ -72,11 +72,18 @@ struct PilotPicture {
   double seconds = 0.0;
 };
 
+/// What a picture does not have, and could.
+struct Refinement {
+  std::string name;
+  std::function<PilotPicture()> render;
+};
+
 struct Pilot {
   PilotGroups groups;
   std::function<PilotPicture(EffectSet)> render;
   double pixels_of_picture = 0.0;
   EffectSet present = EffectSet::All();  // others have nothing to do in this scene
+  std::vector<Refinement> refinements;   // estimated where the choice is explained
   /// Of the picture, before any pixel: shadows of terrain, the plan of lamps [s].
   std::function<double(Effect)> preparation_s = [](Effect) { return 0.0; };
 };
@@ -89,6 +96,13 @@ struct EffectEstimate {
   double cost_s = 0.0;    // of the picture's time, preparation included, all threads together
   bool kept = true;
   bool present = true;  // false: nothing to do in this scene
+};
+
+/// What more would change.
+struct RefinementEstimate {
+  std::string name;
+  ChangeEstimate change;
+  double cost_s;
 };
 
 struct EffectBudget {
@@ -104,6 +118,7 @@ struct EffectChoice {
   double max_error = 0.0;
   std::vector<EffectEstimate> estimates;  // of what was asked for, in the order of Effect
   ChangeEstimate together;                // of all that is left out
+  std::vector<RefinementEstimate> refinements;
   // Time of all threads together: of the picture with everything, of the picture as chosen, and of
   // choosing.
   double all_s = 0.0, chosen_s = 0.0, pilot_s = 0.0;

@@ -31,6 +31,7 @@ constexpr std::array<EffectText, kEffects> kTexts{{
     {Effect::kAerosol, "aerosol", "air without aerosol", true, true},
     {Effect::kOzone, "ozone", "air without ozone", true, true},
     {Effect::kFineAir, "fine-air", "half as many nodes along rays through the air", true, false},
+    {Effect::kFineSpectrum, "fine-spectrum", "four bands", true, false},
 }};
 
 EffectSet PartsOfAir() {

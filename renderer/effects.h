@@ -35,8 +35,9 @@ enum class Effect : std::size_t {
   kAerosol,
   kOzone,
   kFineAir,
+  kFineSpectrum,
 };
-inline constexpr std::size_t kEffects = static_cast<std::size_t>(Effect::kFineAir) + 1;
+inline constexpr std::size_t kEffects = static_cast<std::size_t>(Effect::kFineSpectrum) + 1;
 
 /// What an effect is called, and what the picture is without it.
 struct EffectText {

@@ -27,6 +27,7 @@
 #include "renderer/pixel_writer.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/scene_ground.h"
+#include "renderer/scene_state.h"
 #include "renderer/shared_air.h"
 #include "renderer/terrain_sunlight.h"
 
@@ -40,55 +41,6 @@ const LampTile& DarkTile() {
 }
 
 }  // namespace
-
-struct SceneRenderer::State {
-  explicit State(const Scene& of)
-      : scene(of),
-        ground(LoadGround(scene)),
-        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
-        colour(medium.wavelengths_nm),
-        lamps(scene, ground, medium, colour),
-        media(scene, ground, medium),
-        // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
-        geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
-        smooth_geometry(ground, medium, false),
-        horizons(ground, medium),
-        models(medium, ground, geometry, lamps, horizons) {}
-
-  [[nodiscard]] PictureFrame FrameAt(const Shot& shot, const RenderSettings& settings) const;
-  void LightMedia(PictureFrame& frame) const;
-  void LightTerrain(PictureFrame& frame) const;
-  [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
-  [[nodiscard]] Image Pixels(const PictureFrame& frame,
-                             const std::vector<PixelPlace>& places) const;
-  [[nodiscard]] Image Picture(const PictureFrame& frame) const;
-  [[nodiscard]] std::vector<Shaded> Pixel(const PictureFrame& frame, int x, int y) const;
-  [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
-    return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
-        .Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
-  }
-  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
-                             const PictureFrame& frame, const LampTile& near,
-                             std::array<double, 2> disk_sample) const;
-  [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                                  const Lighting& light) const;
-  [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
-  [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
-  [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;
-  /// See SceneRenderer.
-  [[nodiscard]] double Illuminance(const glm::dvec3& eye, const Lighting& light) const;
-  [[nodiscard]] LampPlan PlanLamps(const PictureFrame& frame) const;
-
-  Scene scene;
-  SceneGround ground;
-  Medium medium;
-  BandColour colour;
-  LampLight lamps;
-  LocalMedia media;
-  SceneGeometry geometry, smooth_geometry;
-  HorizonsOnDemand horizons;
-  AirModels models;
-};
 
 BandLight SceneRenderer::State::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                         const Lighting& light) const {
@@ -178,14 +130,14 @@ CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
   return frame.moving.Ray(at.x, at.y, lens, time);
 }
 
+}  // namespace
+
 void ValidateSettings(const RenderSettings& settings) {
   RequireInRange(settings.width, 1, 16384, "picture width");
   RequireInRange(settings.height, 1, 16384, "picture height");
   RequireInRange(settings.samples_per_pixel, 1, PixelSamples::kMostSamples, "samples per pixel");
   RequireInRange(settings.air_nodes, 2, 32, "air nodes");
 }
-
-}  // namespace
 
 SceneRenderer::SceneRenderer(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
 SceneRenderer::~SceneRenderer() = default;
@@ -221,7 +173,9 @@ double SceneRenderer::Illuminance(const Shot& shot) const {
   return state_->Illuminance(stand.eye, state_->LightingAt(shot, stand));
 }
 
-PictureFrame SceneRenderer::State::FrameAt(const Shot& shot, const RenderSettings& settings) const {
+PictureFrame SceneRenderer::State::FrameAt(
+    const Shot& shot, const RenderSettings& settings,
+    const std::shared_ptr<const TerrainSunlight>& known) const {
   const MovingCamera camera =
       CameraOn(ground, scene.camera, shot.poses, settings.width, settings.height);
   PictureFrame frame{settings,
@@ -236,8 +190,9 @@ PictureFrame SceneRenderer::State::FrameAt(const Shot& shot, const RenderSetting
   frame.light.effects = settings.effects;
   if (frame.Has(Effect::kShafts)) {
     const Stopwatch watch;
-    frame.sunlight =
-        std::make_shared<TerrainSunlight>(ground, frame.light.to_sun, frame.light.sun_radius_rad);
+    frame.sunlight = known ? known
+                           : std::make_shared<TerrainSunlight>(ground, frame.light.to_sun,
+                                                               frame.light.sun_radius_rad);
     frame.sunlight_s = watch.seconds();
   }
   if (frame.Has(Effect::kLights)) {
@@ -251,7 +206,7 @@ PictureFrame SceneRenderer::State::FrameAt(const Shot& shot, const RenderSetting
 }
 
 void SceneRenderer::State::LightTerrain(PictureFrame& frame) const {
-  if (frame.Has(Effect::kHorizons)) (void)horizons.Get();  // made once, for all frames
+  if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // made once, for all frames
   const Stopwatch watch;
   frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.light);
   frame.slopes_s = watch.seconds();
@@ -345,46 +300,8 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const PictureFrame& frame, int x
 
 Image SceneRenderer::Render(const Shot& shot, const RenderSettings& settings) const {
   ValidateSettings(settings);
-  return state_->Picture(state_->FrameAt(shot, settings));
-}
-
-ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings& settings,
-                                          const EffectBudget& budget) const {
-  ValidateSettings(settings);
-  const PictureFrame frame = state_->FrameAt(shot, settings);
-  Pilot pilot{PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun,
-                          frame.lamps->Directions()),
-              {},
-              static_cast<double>(settings.width) * settings.height};
-  std::vector<PixelPlace> places;
-  for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
-  pilot.render = [&](EffectSet effects) {
-    const PictureFrame reduced = state_->Reduced(frame, effects);
-    const Stopwatch watch;
-    Image image = state_->Pixels(reduced, places);
-    return PilotPicture{std::move(image), watch.seconds()};
-  };
-  pilot.preparation_s = [&](Effect effect) {
-    return effect == Effect::kShafts   ? frame.sunlight_s
-           : effect == Effect::kLights ? frame.plan_s
-           : effect == Effect::kBounce ? frame.slopes_s
-                                       : 0.0;
-  };
-  if (!frame.sunlight->IsBroken()) pilot.present = pilot.present.Without(Effect::kShafts);
-  if (state_->lamps.All().empty()) {
-    pilot.present = pilot.present.Without(Effect::kLights).Without(Effect::kBeams);
-  }
-  if (!state_->ground.terrain) {
-    pilot.present = pilot.present.Without(Effect::kShadows).Without(Effect::kRelief);
-  }
-  if (!frame.light.on_terrain) {
-    pilot.present = pilot.present.Without(Effect::kHorizons).Without(Effect::kBounce);
-  }
-  if (!state_->media.HasVolumes()) pilot.present = pilot.present.Without(Effect::kVolumes);
-  if (state_->media.fog() == nullptr) pilot.present = pilot.present.Without(Effect::kFogGlow);
-  EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
-  Image image = state_->Picture(state_->Reduced(frame, choice.effects));
-  return {std::move(image), std::move(choice)};
+  const State& state = state_->For(settings.effects);
+  return state.Picture(state.FrameAt(shot, settings));
 }
 
 }  // namespace alpenglow

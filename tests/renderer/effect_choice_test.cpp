@@ -129,6 +129,23 @@ TEST(EffectChoice, ExplainingKeepsAllThatItIsToldToAndHasALineForEach) {
   EXPECT_THAT(text, HasSubstr("kept, free"));
 }
 
+TEST(EffectChoice, WhatMoreWouldChangeIsToldAndNotDone) {
+  GreyPilot grey({{Effect::kSky, 0.5}});
+  grey.pilot.refinements.push_back({"finer", [&] {
+                                      PilotPicture picture = grey.pilot.render(kThree);
+                                      for (auto& rgb : picture.image.rgb) rgb.fill(101.0F);
+                                      picture.seconds *= 3.0;
+                                      return picture;
+                                    }});
+  const EffectChoice choice =
+      ChooseEffects(grey.pilot, kThree, {.max_error = 0.01, .explain = true});
+  ASSERT_EQ(choice.refinements.size(), 1U);
+  EXPECT_NEAR(choice.refinements[0].change.seen.rms, 0.01, 1e-4);
+  EXPECT_GT(choice.refinements[0].cost_s, 0.0);
+  EXPECT_THAT(ExplainText(choice), HasSubstr("\nfiner "));
+  EXPECT_TRUE(ChooseEffects(grey.pilot, kThree, {.max_error = 0.01}).refinements.empty());
+}
+
 TEST(PilotGrid, HasAPixelInEveryCellAndNoneTwice) {
   for (const auto [width, height] : {std::array{1280, 720}, {96, 54}, {1, 1}, {1, 300}, {7, 5}}) {
     std::set<std::pair<int, int>> seen;

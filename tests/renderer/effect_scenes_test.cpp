@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "atmosphere/spectrum.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -136,6 +137,21 @@ TEST_F(SceneNeeds, OzoneInTwilightTenTimesAsMuchAsAtNoon) {
   EXPECT_GT(ChangeBy(Effect::kOzone, ChoiceFor("twilight", true)),
             10.0 * ChangeBy(Effect::kOzone, ChoiceFor("noon clear", true)))
       << "a long way through the layer, and Chappuis' bands in a blue sky";
+}
+
+TEST_F(SceneNeeds, FourBandsByDayWhereSixteenAreNotWorthTheirChange) {
+  Scene scene = BareScene(2.0, 180.0, 10.0, 60.0);
+  scene.medium = MediumPreset("earth", WavelengthSet(16));
+  const SceneRenderer renderer(scene);
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const ChosenPicture chosen = renderer.RenderWithin(noon, kSmall, {.max_error = 0.05});
+  EXPECT_TRUE(chosen.choice.LeftOut().Has(Effect::kFineSpectrum));
+  EXPECT_LE(ChangeOf(renderer.Render(noon, kSmall), chosen.image).rms, 0.05);
+  scene.medium = MediumPreset("earth", WavelengthSet(4));
+  RenderSettings settings = kSmall;
+  settings.effects = chosen.choice.effects.With(Effect::kFineSpectrum);
+  EXPECT_EQ(SceneRenderer(scene).Render(noon, settings).rgb, chosen.image.rgb)
+      << "the picture of four bands is that of a scene of four bands";
 }
 
 TEST_F(SceneNeeds, NoSkyBetweenTheWallsOfAValley) {

@@ -23,7 +23,7 @@ std::string FaultOf(const std::string& text) {
 TEST(Effects, AListSwitchesOnExactlyTheseInWholeAir) {
   EXPECT_EQ(EffectsFromText("sky,aerial"),
             EffectSet({Effect::kSky, Effect::kAerial, Effect::kMolecules, Effect::kAerosol,
-                       Effect::kOzone, Effect::kFineAir}));
+                       Effect::kOzone, Effect::kFineAir, Effect::kFineSpectrum}));
   EXPECT_EQ(EffectsFromText("sky,molecules"), EffectSet({Effect::kSky, Effect::kMolecules}));
 }
 
