@@ -2,6 +2,7 @@
 #include "lut/diffuse_kernel.h"
 
 #include <type_traits>
+#include <utility>
 
 #include "atmosphere/batch.h"
 
@@ -424,13 +425,12 @@ constexpr float kNorm[28] = {
     0.00931882475F, 0.00219646806F, 0.000694584187F, 1.01710724F,    0.221950995F, 0.0350935337F,
     0.00584892228F, 0.00106786222F, 0.000227668991F, 6.57223766e-05F};
 
-template <typename T, typename Visit>
-void VisitHarmonics(std::size_t degree, const T& mu, const T& sine, const T& cosine,
-                    const Visit& visit) {
+template <std::size_t kDegree, typename T, typename Visit>
+void VisitHarmonics(const T& mu, const T& sine, const T& cosine, const Visit& visit) {
   T diagonal(1.0F), cos_before = cosine, cos_now(1.0F);  // cos((m - 1) phi), cos(m phi)
-  for (std::size_t m = 0; m <= degree; ++m) {
+  for (std::size_t m = 0; m <= kDegree; ++m) {
     T lower(0.0F), value = diagonal;
-    for (std::size_t l = m; l <= degree; ++l) {
+    for (std::size_t l = m; l <= kDegree; ++l) {
       const std::size_t i = l * (l + 1) / 2 + m;
       visit(i, T(T(kNorm[i]) * value * cos_now));
       const T next =
@@ -446,6 +446,7 @@ void VisitHarmonics(std::size_t degree, const T& mu, const T& sine, const T& cos
   }
 }
 
+template <std::size_t kDegree>
 void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::size_t first, float nu,
              Chunk& chunk) {
   using namespace shared;
@@ -454,8 +455,9 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
   const T one(1.0F);
   const T mu = Lanes::Load(&samples.mu[first]), mu_s = Lanes::Load(&samples.mu_s[first]);
   const T sine = sqrt(max((one - mu) * (one + mu), T(0.0F)));
-  VisitHarmonics<T>(grid.degree, mu, sine, CosineOfAzimuth<T>(mu, sine, mu_s, T(nu)),
-                    [&](std::size_t i, const T& y) { Lanes::Store(chunk.harmonic[i], y); });
+  VisitHarmonics<kDegree, T>(
+      mu, sine, CosineOfAzimuth<T>(mu, sine, mu_s, T(nu)),
+      [&](std::size_t i, const T& y) { Lanes::Store(chunk.harmonic[i], y); });
   const T u = sqrt(max(Lanes::Load(&samples.altitude[first]), T(0.0F)) * T(1.0F / grid.top_km));
   StoreTaps<T>(u * T(static_cast<float>(grid.altitudes - 1)), grid.altitudes, one,
                chunk.altitude_cell, chunk.altitude_weight);
@@ -463,29 +465,33 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
                chunk.sun_weight);
 }
 
-// Adds light that moments of rows [kFirst, kLast] scatter at a sample.
-template <std::size_t kDegree, std::size_t kFirst, std::size_t kLast, std::size_t kStep>
-void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
-             const Eight* chi, Eight& rayleigh, Eight& mie) {
-  constexpr std::size_t kBegin = kPackedRow[kFirst];
-  constexpr std::size_t kCount = kPackedRow[kLast + 1] - kBegin;
-  Eight moment[kCount];
-  for (std::size_t i = 0; i < kCount; ++i) moment[i] = Zero();
+// Moments from vector kBegin on, summed over 16 nodes: spelled out, so that the sums stay in
+// registers.
+template <std::size_t... kIndex>
+void SumTaps(const float* const* node, const float* weight, float* moments,
+             std::index_sequence<kIndex...>) {
+  Eight sum[sizeof...(kIndex)] = {(static_cast<void>(kIndex), Zero())...};
   for (std::size_t tap = 0; tap < 16; ++tap) {
     const V w(weight[tap]);
-    for (std::size_t l = kFirst; l <= kLast; l += kStep) {
-      for (std::size_t p = 0; p <= l / 2; ++p) {
-        const std::size_t i = kPackedRow[l] + p;
-        Add(moment[i - kBegin], w, LoadEight(node[tap] + i * 8));
-      }
-    }
+    const float* at = node[tap];
+    (Add(sum[kIndex], w, LoadEight(at + kIndex * 8)), ...);
   }
-  for (std::size_t l = kFirst; l <= kLast; l += kStep) {
+  (StoreEight(moments + kIndex * 8, sum[kIndex]), ...);
+}
+
+// Adds light that moments of rows 0 to kLast scatter at a sample.
+template <std::size_t kLast, std::size_t kStep>
+void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
+             const Eight* chi, Eight& rayleigh, Eight& mie) {
+  constexpr std::size_t kCount = kPackedRow[kLast + 1];
+  alignas(64) float moments[kCount * 8];
+  SumTaps(node, weight, moments, std::make_index_sequence<kCount>{});
+  for (std::size_t l = 0; l <= kLast; l += kStep) {
     Eight light = Zero();
     for (std::size_t p = 0; p <= l / 2; ++p) {
       const std::size_t m = l * (l + 1) / 2 + 2 * p;
       Add(light, Pair(chunk.harmonic[m][s], 2 * p < l ? chunk.harmonic[m + 1][s] : 0.0F),
-          moment[kPackedRow[l] + p - kBegin]);
+          LoadEight(moments + (kPackedRow[l] + p) * 8));
     }
     if (l == 0) Add(rayleigh, V(1.0F), light);
     if (l == 2) Add(rayleigh, V(0.1F), light);
@@ -501,6 +507,7 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
   // only those to degree 3.
   constexpr float kNoAerosol = 3e-4F, kCoarseAerosol = 1e-3F;
+  constexpr std::size_t kCoarseDegree = kDegree < 3 ? kDegree : 3;
   const auto first_altitude = static_cast<int>(chunk.altitude_cell[s]) - 1;
   const auto first_sun = static_cast<int>(chunk.sun_cell[s]) - 1;
   const auto last_altitude = static_cast<int>(grid.altitudes) - 1;
@@ -529,13 +536,12 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
     fine = fine || mie_share[band] > kCoarseAerosol * rayleigh_share[band];
   }
   Eight rayleigh = Zero(), mie = Zero();
-  if (aerosol) {
-    AddRows < kDegree, 0, kDegree<3 ? kDegree : 3, 1>(chunk, s, node, weight, chi, rayleigh, mie);
-    if constexpr (kDegree > 3) {
-      if (fine) AddRows<kDegree, 4, kDegree, 1>(chunk, s, node, weight, chi, rayleigh, mie);
-    }
+  if (fine) {
+    AddRows<kDegree, 1>(chunk, s, node, weight, chi, rayleigh, mie);
+  } else if (aerosol) {
+    AddRows<kCoarseDegree, 1>(chunk, s, node, weight, chi, rayleigh, mie);
   } else {
-    AddRows<kDegree, 0, 2, 2>(chunk, s, node, weight, chi, rayleigh, mie);
+    AddRows<2, 2>(chunk, s, node, weight, chi, rayleigh, mie);
   }
   alignas(64) float of_rayleigh[8], of_mie[8];
   StoreEight(of_rayleigh, rayleigh);
@@ -558,7 +564,7 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
   const std::size_t block_stride = grid.altitudes * grid.suns * kPackedRow[kDegree + 1] * 8;
   Chunk chunk;
   for (std::size_t first = 0; first < samples.padded; first += kChunk) {
-    Prepare(grid, samples, first, nu, chunk);
+    Prepare<kDegree>(grid, samples, first, nu, chunk);
     const std::size_t size = samples.count - first < kChunk ? samples.count - first : kChunk;
     for (std::size_t b = 0; b < count; ++b) {
       Eight chi[kDegree + 1];
@@ -639,8 +645,8 @@ void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std:
   const float missing = FirstMissingLegendre<kDegree>(mu);
   const float sine2 = (1.0F - mu) * (1.0F + mu);
   float of_moment[28];
-  VisitHarmonics<float>(kDegree, mu, std::sqrt(sine2 > 0.0F ? sine2 : 0.0F), point.normal_azimuth,
-                        [&](std::size_t i, float y) { of_moment[i] = y; });
+  VisitHarmonics<kDegree, float>(mu, std::sqrt(sine2 > 0.0F ? sine2 : 0.0F), point.normal_azimuth,
+                                 [&](std::size_t i, float y) { of_moment[i] = y; });
   Eight factor[kPackedRow[kDegree + 1]];
   for (std::size_t l = 0; l <= kDegree; ++l) {
     const std::size_t first = l * (l + 1) / 2;
