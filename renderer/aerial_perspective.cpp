@@ -152,6 +152,23 @@ int AerialPerspective::NodesFor(double length_m, double low_m, double high_m, bo
   return std::min(nodes + (shafts ? 3 : 0), 12);
 }
 
+// k of a panel's map: half of the nodes within 20 km of altitude over the lower end, or 8 optical
+// depths. None of them is reached in two short ways.
+double AerialPerspective::StrengthOf(const ViewRay& ray, double length_m, double at_low_m,
+                                     double low_m) const {
+  constexpr double kRise_m = 20e3;
+  constexpr double kDepth = 8.0;
+  const double most_per_m = rayleigh_per_m_ + mie_per_m_;
+  if (length_m <= 2.0 * kRise_m && length_m * most_per_m <= 2.0 * kDepth) return 0.0;
+  const double radius = air_.medium().planet_radius_m;
+  const double cosine = std::abs(
+      shared::ZenithCosineAlongRay<double>(ray.altitude_m, ray.mu, at_low_m, low_m, radius));
+  const double extinction = most_per_m * std::exp(-low_m / 8000.0);
+  double half = shared::DistanceUpTo<double>(low_m, cosine, low_m + kRise_m, radius);
+  if (extinction > 0.0) half = std::min(half, kDepth / extinction);
+  return std::max(length_m / half - 2.0, 0.0);
+}
+
 RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath* sunlit,
                                             const Nodes& nodes) const {
   using namespace shared;
@@ -178,13 +195,7 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
     highest = std::max({highest, first, last});
     panel.up = last >= first;
     const double low = std::max(std::min(first, last), 0.0);
-    const double at_low = panel.up ? panel.begin_m : panel.end_m;
-    const double cosine =
-        std::abs(ZenithCosineAlongRay<double>(ray.altitude_m, ray.mu, at_low, low, radius));
-    const double extinction = (rayleigh_per_m_ + mie_per_m_) * std::exp(-low / 8000.0);
-    double half = DistanceUpTo<double>(low, cosine, low + 20e3, radius);
-    if (extinction > 0.0) half = std::min(half, 8.0 / extinction);
-    panel.strength = std::max(panel.length_m() / half - 2.0, 0.0);
+    panel.strength = StrengthOf(ray, panel.length_m(), panel.up ? panel.begin_m : panel.end_m, low);
     const bool unbroken = sunlit == nullptr || LightUnbroken(panel, *sunlit);
     if (extent.end == RayEnd::kLength) {
       panel.nodes =

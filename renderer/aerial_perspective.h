@@ -31,6 +31,9 @@ struct AirAlongRay {
 };
 
 /// Immutable, safe to share between threads. Refers to what it was made from.
+///
+/// Error between mountains up to 100 km apart, in air of optical depth up to 0.3: below 1e-3 (root
+/// mean square) and 5e-3 (at worst) of the light scattered once, 3e-7 of transmittance.
 class AerialPerspective {
  public:
   AerialPerspective(const AirIntegrator<float>& air, const DiffuseLight& diffuse);
@@ -58,6 +61,9 @@ class AerialPerspective {
   [[nodiscard]] int NodesFor(double length_m, double low_m, double high_m, bool shafts) const;
 
  private:
+  /// k of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.
+  [[nodiscard]] double StrengthOf(const ViewRay& ray, double length_m, double at_low_m,
+                                  double low_m) const;
   [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, double nu,
                                 bool higher_orders) const;
 

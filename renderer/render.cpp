@@ -274,6 +274,7 @@ Image SceneRenderer::State::Picture(const PictureFrame& frame) const {
 std::vector<Shaded> SceneRenderer::State::Pixel(const PictureFrame& frame, int x, int y) const {
   const PixelSamples samples(x, y, frame.settings.samples_per_pixel);
   std::vector<PixelRay> rays;
+  rays.reserve(static_cast<std::size_t>(frame.settings.samples_per_pixel));
   std::vector<SharedAir> airs;
   for (int i = 0; i < frame.settings.samples_per_pixel; ++i) {
     const glm::dvec2 at = glm::dvec2(x, y) + PlaceInPixel(samples, i, frame);
@@ -291,6 +292,7 @@ std::vector<Shaded> SceneRenderer::State::Pixel(const PictureFrame& frame, int x
     AddLamps(frame, x, y, shared);
   }
   std::vector<Shaded> shaded;
+  shaded.reserve(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     shaded.push_back(Shade(rays[i].hit, airs[rays[i].air], rays[i].ray, frame, near,
                            samples.Point(static_cast<int>(i), SampleOf::kSunDisk)));

@@ -64,6 +64,24 @@ TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 0.0}, kRadius_m, kTop_m).end_m, 0.0);
 }
 
+TEST(Ray, AShortRayThatComesNearGroundOrTopEndsThereOnlyIfItReachesThem) {
+  constexpr double kFrom_m = 200.0;
+  for (const double perigee_m : {-2.0, -0.5, 0.5, 2.0, 50.0}) {
+    // Down to the perigee and up again.
+    const double sine = (kRadius_m + perigee_m) / (kRadius_m + kFrom_m);
+    const double mu = -std::sqrt((1.0 - sine) * (1.0 + sine));
+    const double deepest_m = -(kRadius_m + kFrom_m) * mu;
+    const ViewRay through{kFrom_m, mu, 1.0, 0.0, 1.5 * deepest_m};
+    const RayExtent extent = ExtentOf(through, kRadius_m, kTop_m);
+    EXPECT_EQ(extent.end == RayEnd::kGround, perigee_m < 0.0) << perigee_m;
+    EXPECT_EQ(extent.end_m == through.length_m, perigee_m > 0.0);
+  }
+  for (const double over_m : {-2.0, -0.5, 0.5, 2.0}) {
+    const ViewRay up{kTop_m - 500.0, 1.0, 1.0, 1.0, 500.0 + over_m};
+    EXPECT_EQ(ExtentOf(up, kRadius_m, kTop_m).end == RayEnd::kSpace, over_m > 0.0) << over_m;
+  }
+}
+
 TEST(Ray, NotANumberAndTheCentreOfThePlanetAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW((void)ExtentOf({nan, 0.0, 1.0, 0.0}, kRadius_m, kTop_m), InputError);

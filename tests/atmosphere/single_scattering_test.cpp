@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "atmosphere/error.h"
 #include "atmosphere/judge.h"
+#include "atmosphere/shell.h"
 #include "tests/ray_regimes.h"
 #include "tests/stored_cases.h"
 
@@ -192,6 +194,48 @@ TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
     const auto fast = air.TransmittanceAlong(ray);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       EXPECT_NEAR(-std::log(fast[band]) / truth.tau[band], 1.0, 1e-5) << length << " m";
+    }
+  }
+}
+
+TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<double> air(medium);
+  const auto columns_between = [&](const ViewRay& ray, std::size_t steps) {
+    std::vector<RayNode> nodes;
+    for (std::size_t i = 1; i <= steps; ++i) {
+      nodes.push_back({ray.length_m * static_cast<double>(i) / static_cast<double>(steps), 0.0});
+    }
+    const RayExtent extent{0.0, ray.length_m, RayEnd::kLength};
+    const auto samples = air.SampleAt(ray, extent, {}, nodes, ViewColumns::kBetweenSamples);
+    return std::array<double, 2>{samples.view_rayleigh[steps - 1], samples.view_mie[steps - 1]};
+  };
+  for (const double mu : {-0.12, -0.02, 0.0, 0.03, 0.11}) {
+    const ViewRay ray{5000.0, mu, 0.4, 0.3, 40e3};
+    const double rise_m = std::abs(
+        shared::AltitudeAlongRay<double>(5000.0, mu, ray.length_m, medium.planet_radius_m) -
+        5000.0);
+    const auto truth = columns_between(ray, 200);
+    for (const std::size_t steps : {1U, 2U, 3U, 6U}) {
+      const auto found = columns_between(ray, steps);
+      const auto bound = [&](double scale_height_m) {
+        return 6e-10 * std::pow(rise_m / scale_height_m / static_cast<double>(steps), 8.0) + 1e-8;
+      };
+      EXPECT_NEAR(found[0] / truth[0], 1.0, bound(medium.rayleigh_scale_height_m))
+          << mu << ": 4 Gauss nodes; 1e-8: the altitude without a square root";
+      EXPECT_NEAR(found[1] / truth[1], 1.0, bound(medium.mie_scale_height_m)) << mu;
+    }
+    const auto whole = air.OpticalDepthAlong(ray);
+    const auto& per_km = air.constants();
+    const auto samples = air.SampleAt(ray, {0.0, ray.length_m, RayEnd::kLength}, {},
+                                      std::array{RayNode{20e3, 0.0}, RayNode{40e3, 0.0}},
+                                      ViewColumns::kBetweenSamples);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      const double depth = per_km.rayleigh[band] * samples.view_rayleigh[1] +
+                           per_km.mie_extinction[band] * samples.view_mie[1] +
+                           per_km.ozone[band] * samples.view_ozone[1];
+      EXPECT_NEAR(depth / whole[band], 1.0, 2e-5)
+          << mu << ": the closed form is right to 3e-6 of the column to space";
     }
   }
 }
