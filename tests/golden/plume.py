@@ -17,7 +17,7 @@ import struct
 parser = argparse.ArgumentParser()
 parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("."))
 parser.add_argument("--samples", type=int, default=64, help="of the grid, along the wind")
-parser.add_argument("--time", default="2026-09-23T17:25:00+02:00")
+parser.add_argument("--time", default="2026-09-23T18:20:00+02:00")
 options = parser.parse_args()
 options.out.mkdir(parents=True, exist_ok=True)
 
@@ -58,7 +58,8 @@ def density(across, along, up):
                                 along / radius * 0.9 * 2 ** i, up / radius * 1.7 * 2 ** i)
                for i in range(3))
     body = math.exp(-1.6 * q) * (0.55 + 0.9 * torn) - 0.06
-    return max(0.0, body) * (14.0 / radius) ** 1.2
+    end = min(1.0, (SIZE[1] - 20.0 - along) / 130.0)
+    return max(0.0, body) * (14.0 / radius) ** 1.2 * end
 
 
 values = []
@@ -82,10 +83,10 @@ zone = "Europe/Zurich"
 [time]
 utc = "{options.time}"
 [camera]
-height_m = 60
-heading = 10
-pitch = 1
-fov = 48
+height_m = 190
+heading = 16
+pitch = -4
+fov = 46
 [terrain]
 none = true
 [[volume]]
@@ -95,7 +96,7 @@ height_m = 0
 size_m = [{SIZE[0]}, {SIZE[1]}, {SIZE[2]}]
 heading = 90
 grid = "plume.nrrd"
-extinction_per_m = [0.072, 0.066, 0.060, 0.055]
+extinction_per_m = [0.26, 0.24, 0.22, 0.20]
 albedo = [0.74, 0.78, 0.81, 0.83]
 g = 0.55
 [[volume]]
