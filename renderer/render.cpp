@@ -232,11 +232,15 @@ PictureFrame SceneRenderer::State::Reduced(PictureFrame frame, EffectSet effects
                                         Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
   const bool is_lit_alike =
       frame.settings.effects.And(kThatLightTerrain) == effects.And(kThatLightTerrain);
+  constexpr EffectSet kThatLightMedia{Effect::kFogGlow,   Effect::kVolumes, Effect::kLights,
+                                      Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
+  const bool media_are_lit_alike =
+      frame.settings.effects.And(kThatLightMedia) == effects.And(kThatLightMedia);
   frame.settings.effects = frame.light.effects = effects;
   frame.model = &models.With(effects);
   if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
   if (!effects.Has(Effect::kLights)) frame.plan = std::make_shared<LampPlan>();
-  LightMedia(frame);
+  if (!media_are_lit_alike) LightMedia(frame);
   if (!is_lit_alike) LightTerrain(frame);
   return frame;
 }

@@ -11,7 +11,6 @@
 #include "atmosphere/constants.h"
 #include "atmosphere/spectrum.h"
 #include "lut/spherical_harmonics.h"
-#include "renderer/air_model.h"
 #include "renderer/lattice_noise.h"
 #include "renderer/render.h"
 #include "renderer/sky_moments.h"
@@ -23,6 +22,13 @@ namespace {
 constexpr double kSunElevation = 0.5;  // about 29 degrees
 const glm::dvec3 kToSun(0.6 * std::cos(kSunElevation), 0.8 * std::cos(kSunElevation),
                         std::sin(kSunElevation));
+
+/// Air, solved.
+struct SolvedAir {
+  explicit SolvedAir(const Medium& medium) : air(medium), diffuse(medium) {}
+  AirIntegrator<float> air;
+  DiffuseLight diffuse;
+};
 
 /// Air and ground around an eye over the bare ellipsoid, in three bands.
 struct Stage {
@@ -36,7 +42,7 @@ struct Stage {
   BandColour colour{medium.wavelengths_nm};
   LampLight lamps{scene, ground, medium, colour};
   SceneGeometry geometry{ground, medium, false};
-  AirModel air{medium, ground, geometry, lamps};
+  SolvedAir air{medium};
   Lighting light = [&] {
     SunPosition sun;
     sun.distance_au = 1.0;
@@ -225,7 +231,7 @@ TEST(MediaLight, WhiteFogOverBlackGroundKeepsTheEnergyOfSunAndSky) {
   // What comes down through fog and what goes up from it is what fell in, over black ground.
   Stage stage;
   stage.medium.ground_albedo.assign(3, 0.0);
-  const AirModel air(stage.medium, stage.ground, stage.geometry, stage.lamps);
+  const SolvedAir air(stage.medium);
   const MediaLight lit(LocalMedia({FogOf(0.02, 60.0)}, 3), stage.geometry, air.air, air.diffuse,
                        stage.light);
   const double mu_s = kToSun.z;

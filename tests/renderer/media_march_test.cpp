@@ -211,6 +211,16 @@ TEST(MarchMedia, EmptyGridIsNotEvenAsked) {
   EXPECT_EQ(light.transmittance[0], 1.0F);
 }
 
+TEST(MarchMedia, FogFarBelowItsBaseIsAWallThatIsQuicklyFound) {
+  // 2026-11-21: the density at the far end, e^15 of that at the base, once set the step of the
+  // whole.
+  const LocalMedia fog({FogBody(900.0, 60.0, 0.02)}, 1);
+  const glm::dvec3 way = glm::normalize(glm::dvec3(1.0, 0.0, -0.1));
+  const MarchedLight light = MarchMedia(fog, {0.0, 0.0, 1900.0}, way, 18500.0, Glowing(fog, 1.0));
+  EXPECT_LT(light.nodes, 500U);
+  EXPECT_NEAR(static_cast<double>(light.radiance[0]), 1.0, 1e-3);
+}
+
 TEST(MarchMedia, PiecesSayWhatIsLeftOfLight) {
   const LocalMedia media(
       {Body(Shape::kBox, {0.0, 60.0, -20.0}, glm::dvec3(40.0), 0.05), FogBody(0.0, 50.0, 0.002)},
