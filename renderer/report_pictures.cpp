@@ -49,11 +49,10 @@ double ProcessorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PE
 class PicturesTopic {
  public:
   explicit PicturesTopic(const ReportEffort& effort)
-      : effort_(effort), width_(effort.quick ? 24 : 96), height_(effort.quick ? 14 : 54) {
+      : effort_(effort), width_(effort.quick ? 24 : 64), height_(effort.quick ? 14 : 36) {
     const std::uint64_t before = ResidentBytes();
     const auto [range, range_s] = Once([&] { return Range(effort.quick); });
-    const auto [runway, runway_s] =
-        Once([&] { return RunwayScene(effort.quick ? 10 : 100, true); });
+    const auto [runway, runway_s] = Once([&] { return RunwayScene(effort.quick ? 10 : 40, true); });
     range_bytes_ = std::max(ResidentBytes(), before) - before;
     load_s_ = std::max(range_s, runway_s);
     for (std::size_t r = 0; r < kScenes; ++r)
@@ -77,7 +76,7 @@ class PicturesTopic {
     Add({.series = "4 samples, fewer nodes in the air",
          .parameter = fmt::format("{} nodes", nodes),
          .style = kNodes,
-         .in_summary = nodes == 6},
+         .in_summary = nodes == 4},
         settings);
   }
 
@@ -97,7 +96,7 @@ class PicturesTopic {
     topic_.title = "Whole pictures: what samples of a pixel and nodes of the air buy";
     topic_.what =
         "The built-in range at noon, a quarter of an hour before sunset and ten minutes before the "
-        "end of civil twilight from the same place, and a runway with a hundred lamps and an "
+        "end of civil twilight from the same place, and a runway with forty lamps and an "
         "aeroplane's landing lights in height fog; sky, air, shafts, shadows and lamps are "
         "rendered as skyseries renders them.";
     topic_.error_unit =
@@ -149,7 +148,7 @@ class PicturesTopic {
     return {std::move(renderer), ProcessorSeconds() - start};
   }
 
-  [[nodiscard]] int ReferenceSamples() const { return effort_.quick ? 32 : 128; }
+  [[nodiscard]] int ReferenceSamples() const { return effort_.quick ? 32 : 64; }
 
   [[nodiscard]] static UtcInstant InstantOf(std::size_t r) {
     const Scene range = SceneFromOptions({});
@@ -292,10 +291,13 @@ Scene RunwayScene(int lamps, bool with_beam) {
 ReportTopic MeasurePictures(const ReportEffort& effort) {
   PicturesTopic topic(effort);
   for (const int samples : {1, 4, 16}) topic.AddSamples(samples);
+  if (!effort.quick) {
+    topic.AddSamples(32);
+    topic.AddNodes(2);
+  }
   topic.AddNodes(4);
   if (!effort.quick) {
-    topic.AddSamples(64);
-    for (const int nodes : {2, 6, 8}) topic.AddNodes(nodes);
+    topic.AddNodes(8);
     topic.AddWithout(Effect::kShafts, "shafts");
   }
   topic.AddWithout(Effect::kMultipleScattering, "higher orders");
