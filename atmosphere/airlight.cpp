@@ -327,8 +327,8 @@ class Scout {
   }
 
   [[nodiscard]] double Depth(std::size_t mode, std::size_t i) const {
-    return points_[i].value > 0.0 ? std::log(points_[mode].value / points_[i].value)
-                                  : std::numeric_limits<double>::infinity();
+    constexpr double kNothing = 745.0;  // the smallest double is e^-745
+    return points_[i].value > 0.0 ? std::log(points_[mode].value / points_[i].value) : kNothing;
   }
 
   // How far from a maximum, towards `end`, the integrand has fallen by e^fall; or, when it does not

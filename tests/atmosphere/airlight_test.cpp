@@ -304,6 +304,23 @@ TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
   }
 }
 
+// Fixed on 2026-11-21: where the light fell to nothing from one point of the ray to the next, its
+// scale was taken for 0 and the radiance was not a number.
+TEST(Airlight, LightThatEndsAtOnceIsANumber) {
+  LampAir air = HomogeneousAir(4e-3, 4e-3, HenyeyGreenstein(0.8));
+  air.layers[0].scale_height_m = 25.0;  // 2 per metre at the eye, 152 m down
+  LampSegment ray;
+  ray.origin_m = {0.0, 0.0, -152.35477520255077};
+  ray.end_m = 37235.5;
+  const Lamp lamp =
+      LampAt(ray.origin_m + 4308.8693800637693 * glm::dvec3(std::sqrt(1.0 - 0.0016), 0.0, 0.04));
+  for (int i = -20; i <= 20; ++i) {
+    ray.direction = glm::normalize(glm::dvec3(0.998056103, 0.013887809, 0.060755441 + 1e-5 * i));
+    const double found = Airlight(air, lamp, ray, 8)[0];
+    EXPECT_TRUE(std::isfinite(found) && found >= 0.0) << i;
+  }
+}
+
 TEST(Airlight, ItsEffortIsTheNodesAndWhatFindsThePanels) {
   const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.8));
   for (const int nodes : {8, 16, 32}) {
