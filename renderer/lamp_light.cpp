@@ -24,6 +24,7 @@
 #include "lut/program.h"
 #include "renderer/band_light.h"
 #include "renderer/ies_file.h"
+#include "renderer/lamp_glow.h"
 
 namespace alpenglow {
 namespace {
@@ -32,10 +33,11 @@ namespace {
 struct PlacedLamp {
   Lamp lamp;
   LampAir air;
-  LampAir middle_air;         // of the middle band alone, for estimates
-  Bands<float> intensity;     // W sr^-1 nm^-1 in its brightest direction
-  double candela = 0.0;       // in its brightest direction
-  double mean_share = 1.0;    // mean intensity over all directions, relative to the brightest
+  LampAir middle_air;       // of the middle band alone, for estimates
+  Bands<float> intensity;   // W sr^-1 nm^-1 in its brightest direction
+  double candela = 0.0;     // in its brightest direction
+  double mean_share = 1.0;  // mean intensity over all directions, relative to the brightest
+  double above_ground_m = 0.0;
   double distance_m = 0.0;    // from the eye
   glm::dvec3 direction{0.0};  // from the eye, unit
   double blur = 0.0;          // radius in the picture, as CameraRays::BlurRadius
@@ -146,54 +148,6 @@ Lamp AsWideAsAPixel(const PlacedLamp& placed, double pixel_angle_rad) {
   return lamp;
 }
 
-/// AirlightOnSurface over distance and angle, for a lamp of intensity 1.
-class SurfaceGlow {
- public:
-  explicit SurfaceGlow(const LampAir& homogeneous) {
-    values_.resize(static_cast<std::size_t>(kDistances * kAngles));
-    for (int i = 0; i < kDistances; ++i) {
-      for (int j = 0; j < kAngles; ++j) {
-        const double d = kNearest_m * std::pow(kFarthest_m / kNearest_m, i / (kDistances - 1.0));
-        Bands<double>& value = At(i, j);
-        value = AirlightOnSurface(homogeneous, d, 2.0 * j / (kAngles - 1.0) - 1.0);
-        for (std::size_t band = 0; band < value.count; ++band) value[band] *= d;
-      }
-    }
-  }
-
-  // Linear in the logarithm of the distance and in the cosine; the value falls as 1/d near the
-  // lamp, and d times it is stored.
-  [[nodiscard]] Bands<double> operator()(double distance_m, double cos_normal) const {
-    const double d = std::clamp(distance_m, kNearest_m, kFarthest_m);
-    const double u =
-        std::log(d / kNearest_m) / std::log(kFarthest_m / kNearest_m) * (kDistances - 1.0);
-    const double v = 0.5 * (std::clamp(cos_normal, -1.0, 1.0) + 1.0) * (kAngles - 1.0);
-    const int i = std::min(static_cast<int>(u), kDistances - 2);
-    const int j = std::min(static_cast<int>(v), kAngles - 2);
-    const double p = u - i, q = v - j;
-    Bands<double> mixed(values_.front().count);
-    for (std::size_t band = 0; band < mixed.count; ++band) {
-      mixed[band] = ((1.0 - p) * ((1.0 - q) * At(i, j)[band] + q * At(i, j + 1)[band]) +
-                     p * ((1.0 - q) * At(i + 1, j)[band] + q * At(i + 1, j + 1)[band])) /
-                    d;
-    }
-    return mixed;
-  }
-
- private:
-  static constexpr int kDistances = 24;
-  static constexpr int kAngles = 9;
-  static constexpr double kNearest_m = 0.1;
-  static constexpr double kFarthest_m = 2e4;
-
-  Bands<double>& At(int i, int j) { return values_[static_cast<std::size_t>(i * kAngles + j)]; }
-  [[nodiscard]] const Bands<double>& At(int i, int j) const {
-    return values_[static_cast<std::size_t>(i * kAngles + j)];
-  }
-
-  std::vector<Bands<double>> values_;
-};
-
 }  // namespace
 
 struct LampLight::State {
@@ -207,8 +161,7 @@ struct LampLight::State {
   std::vector<Node> nodes;  // the scene's lamps, then those that stand for others
   std::size_t lamps = 0;
   LampNodes roots;
-  std::vector<double> glow_altitudes_m;  // of lamps, one table each
-  std::vector<SurfaceGlow> glows;
+  std::vector<std::shared_ptr<const LampGlow>> glows;
   std::vector<std::size_t> glow_of_lamp;
 
   State(const Scene& scene, const SceneGround& on, const Medium& medium)
@@ -244,7 +197,7 @@ struct LampLight::State {
   [[nodiscard]] LampAir AirAround(const glm::dvec3& middle) const {
     LampAir air;
     air.layers = layers;
-    air.up = glm::normalize(middle + glm::dvec3(0.0, 0.0, planet_radius_m));
+    air.up = UpAt(middle);
     air.altitude_at_origin_m = AltitudeOf(middle) - glm::dot(air.up, middle);
     return air;
   }
@@ -282,11 +235,22 @@ struct LampLight::State {
       placed.lamp.profile.table = found->second.table;
       if (!light.intensity_cd) placed.candela = found->second.intensity_cd;
     }
+    placed.above_ground_m = HeightOverGround(placed.lamp.position_m);
     placed.mean_share = MeanOverDirections(placed.lamp.profile);
     placed.intensity = IntensityOf(light.temperature_k, placed.candela, medium, colour);
     StandBeforeEye(placed);
     ShineOnEye(placed);
     AddNode(std::move(placed));
+  }
+
+  /// Of the terrain below a lamp; lamps of a group that lies over a hill have none.
+  [[nodiscard]] double HeightOverGround(const glm::dvec3& position) const {
+    const double none = position.z - AltitudeOf(position);
+    return std::max(position.z - GroundBelow(ground, position, none), 0.0);
+  }
+
+  [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const {
+    return glm::normalize(point + glm::dvec3(0.0, 0.0, planet_radius_m));
   }
 
   void ShineOnEye(PlacedLamp& placed) const {
@@ -351,6 +315,7 @@ struct LampLight::State {
       for (std::size_t band = 0; band < bands; ++band) sum.intensity[band] += light.intensity[band];
     }
     sum.lamp.position_m = centre / sum.candela;
+    sum.above_ground_m = HeightOverGround(sum.lamp.position_m);
     StandBeforeEye(sum);
     glm::dmat3 moments(0.0);
     double radius = 0.0;
@@ -438,27 +403,27 @@ struct LampLight::State {
     return !ground.terrain->Occluded(placed.lamp.position_m, way / length, way / length, length);
   }
 
+  // Lamps share a table when they stand alike: within a tenth of the thinnest layer's scale height,
+  // and within a fifth of their height over the ground.
   void MakeGlows() {
-    constexpr double kSameAltitude_m = 5.0;
+    double thinnest_m = std::numeric_limits<double>::infinity();
+    for (const LampLayer& layer : layers) thinnest_m = std::min(thinnest_m, layer.scale_height_m);
+    const double alike_m = std::clamp(0.1 * thinnest_m, 0.5, 100.0);
+    struct Stand {
+      double altitude_m, above_m;
+    };
+    std::vector<Stand> stands;
     for (const Node& node : nodes) {
-      const double altitude = AltitudeOf(node.light.lamp.position_m);
-      std::size_t at = 0;
-      while (at < glows.size() && std::abs(glow_altitudes_m[at] - altitude) > kSameAltitude_m) ++at;
-      if (at == glows.size()) {
-        glow_altitudes_m.push_back(altitude);
-        LampAir level;
-        for (LampLayer layer : layers) {
-          const double rho = std::exp(-altitude / layer.scale_height_m);
-          for (std::size_t band = 0; band < bands; ++band) {
-            layer.scattering_per_m[band] *= rho;
-            layer.extinction_per_m[band] *= rho;
-          }
-          layer.scale_height_m = std::numeric_limits<double>::infinity();
-          level.layers.push_back(layer);
-        }
-        glows.emplace_back(level);
-      }
-      glow_of_lamp.push_back(at);
+      const Stand here{AltitudeOf(node.light.lamp.position_m), node.light.above_ground_m};
+      const auto same = std::find_if(stands.begin(), stands.end(), [&](const Stand& other) {
+        return std::abs(other.altitude_m - here.altitude_m) <= alike_m &&
+               std::abs(other.above_m - here.above_m) <= 0.2 * std::max(here.above_m, 0.5);
+      });
+      glow_of_lamp.push_back(static_cast<std::size_t>(same - stands.begin()));
+      if (same != stands.end()) continue;
+      stands.push_back(here);
+      glows.push_back(std::make_shared<const LampGlow>(layers, here.altitude_m,
+                                                       here.altitude_m - here.above_m));
     }
   }
 
@@ -586,7 +551,8 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
     const double distance = std::max(glm::length(to_lamp), placed.lamp.radius_m);
     const glm::dvec3 towards = to_lamp / distance;
     const double cosine = glm::dot(at.normal, towards);
-    AddScaled(placed.intensity, state_->glows[state_->glow_of_lamp[index]](distance, cosine),
+    const LampGlow& glow = *state_->glows[state_->glow_of_lamp[index]];
+    AddScaled(placed.intensity, glow.On(distance * towards, at.normal, state_->UpAt(at.point)),
               placed.mean_share, sum);
     if (cosine <= 0.0 || glm::dot(at.geometric_normal, towards) <= 0.0) continue;
     const double relative = RelativeIntensity(placed.lamp, -towards);

@@ -4,8 +4,8 @@
 //   lamp -> eye              the lamp itself, never smaller than a pixel
 //   lamp -> air -> eye       Airlight, on the lit pieces of the ray where terrain casts shadows
 //   lamp -> surface -> eye   inverse square, through the air, shadowed by terrain
-//   lamp -> air -> surface   AirlightOnSurface, as of air as dense as at the lamp and everywhere,
-//                            the flux of a beam spread evenly (terrain does not shade it)
+//   lamp -> air -> surface   LampGlow, over level ground at the lamp's foot, the flux of a beam
+//                            spread evenly (terrain does not shade it)
 //
 // The air of a lamp is the scene's molecules and aerosol and its fog, of exponential density over
 // the plane that touches the sphere halfway between eye and lamp.
