@@ -8,6 +8,7 @@
 
 #include "atmosphere/error.h"
 #include "atmosphere/shell.h"
+#include "renderer/scene_geometry.h"
 
 namespace alpenglow {
 namespace {
@@ -27,12 +28,8 @@ FogLayer::FogLayer(double base_m, double scale_height_m, double planet_radius_m,
   ALPENGLOW_ENSURE(scale_height_m, >, 0.0);
 }
 
-// |p - c| - R with the centre c at (0, 0, -R), without cancelling.
-double FogLayer::AltitudeOf(const glm::dvec3& p) const {
-  const double r = planet_radius_m_;
-  const double across = p.x * p.x + p.y * p.y;
-  const double q = across + p.z * (2.0 * r + p.z);
-  return q / (std::sqrt(across + (r + p.z) * (r + p.z)) + r);
+double FogLayer::AltitudeOf(const glm::dvec3& point) const {
+  return AltitudeOverSphere(point, planet_radius_m_);
 }
 
 double FogLayer::DensityAtAltitude(double altitude_m) const {

@@ -18,6 +18,7 @@
 #include <string>
 
 #include "atmosphere/airlight.h"
+#include "atmosphere/black_body.h"
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "atmosphere/quadrature.h"
@@ -25,6 +26,7 @@
 #include "renderer/band_light.h"
 #include "renderer/ies_file.h"
 #include "renderer/lamp_glow.h"
+#include "renderer/scene_geometry.h"
 
 namespace alpenglow {
 namespace {
@@ -128,15 +130,6 @@ double MeanOverDirections(const LampProfile& profile) {
   return sum;
 }
 
-/// Planck's radiance relative to that at 560 nm. c2 of CODATA 2018.
-double BlackBody(double wavelength_nm, double temperature_k) {
-  constexpr double kC2_nm_k = 1.438776877e7;
-  const auto radiance = [&](double nm) {
-    return std::pow(nm / 560.0, -5.0) / std::expm1(kC2_nm_k / (nm * temperature_k));
-  };
-  return radiance(wavelength_nm) / radiance(560.0);
-}
-
 /// The lamp as the air around it sees it in a picture: the mean of 1/D over a square of width w
 /// around it is that of D = w / (4 ln(1 + sqrt 2)), and over a disk of radius R that of R / 2.
 Lamp AsWideAsAPixel(const PlacedLamp& placed, double pixel_angle_rad) {
@@ -185,12 +178,8 @@ struct LampLight::State {
     return hit ? kAbove_m - hit->distance_m : otherwise;
   }
 
-  // |p - c| - R with the centre c at (0, 0, -R), without cancelling.
-  [[nodiscard]] double AltitudeOf(const glm::dvec3& p) const {
-    const double r = planet_radius_m;
-    const double across = p.x * p.x + p.y * p.y;
-    const double q = across + p.z * (2.0 * r + p.z);
-    return q / (std::sqrt(across + (r + p.z) * (r + p.z)) + r);
+  [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const {
+    return AltitudeOverSphere(point, planet_radius_m);
   }
 
   // The layers over the plane that touches the sphere below a point.
@@ -353,7 +342,8 @@ struct LampLight::State {
   static Bands<float> IntensityOf(double temperature_k, double candela, const Medium& medium,
                                   const BandColour& colour) {
     std::vector<double> spectrum;
-    for (const double nm : medium.wavelengths_nm) spectrum.push_back(BlackBody(nm, temperature_k));
+    for (const double nm : medium.wavelengths_nm)
+      spectrum.push_back(BlackBodyRadiance(nm, temperature_k));
     const double luminous = colour.Xyz(spectrum)[1];
     Bands<float> intensity(spectrum.size());
     for (std::size_t band = 0; band < spectrum.size(); ++band) {

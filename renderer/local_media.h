@@ -75,7 +75,4 @@ class LocalMedia {
   double fog_bottom_m_ = 0.0;
 };
 
-/// Planck's spectral radiance [W m^-2 sr^-1 nm^-1]. Constants of CODATA 2018, which are exact.
-[[nodiscard]] double BlackBodyRadiance(double wavelength_nm, double temperature_k);
-
 }  // namespace alpenglow

@@ -9,15 +9,18 @@
 
 namespace alpenglow {
 
+// |p - c| - R without cancelling.
+double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
+  const double across = point.x * point.x + point.y * point.y;
+  const double q = across + point.z * (2.0 * radius_m + point.z);
+  return q / (std::sqrt(across + (radius_m + point.z) * (radius_m + point.z)) + radius_m);
+}
+
 SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief)
     : ground_(ground), medium_(medium), with_relief_(with_relief) {}
 
-// |p - c| - R with the centre c at (0, 0, -R), without cancelling.
 double SceneGeometry::AltitudeOf(const glm::dvec3& point) const {
-  const double r = radius_m();
-  const double across = point.x * point.x + point.y * point.y;
-  const double q = across + point.z * (2.0 * r + point.z);
-  return q / (std::sqrt(across + (r + point.z) * (r + point.z)) + r);
+  return AltitudeOverSphere(point, radius_m());
 }
 
 glm::dvec3 SceneGeometry::UpAt(const glm::dvec3& point) const {

@@ -14,6 +14,10 @@
 
 namespace alpenglow {
 
+/// Distance of a point from the sphere with its centre at (0, 0, -R) [m], to the rounding of its
+/// coordinates.
+[[nodiscard]] double AltitudeOverSphere(const glm::dvec3& point, double radius_m);
+
 /// What a ray of the camera meets first.
 enum class HitKind { kSky, kTerrain, kPlanet };
 struct Hit {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/black_body.h"
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
 #include "renderer/fog_layer.h"

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/airlight.h"
+#include "atmosphere/black_body.h"
 #include "atmosphere/constants.h"
 #include "atmosphere/spectrum.h"
 #include "lut/spherical_harmonics.h"
