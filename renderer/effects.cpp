@@ -18,7 +18,7 @@ constexpr std::array<EffectText, kEffects> kTexts{{
      "light comes to the eye scattered once, or not at all", false, false},
     {Effect::kSkylight, "skylight", "the sky does not light the ground", false, false},
     {Effect::kHorizons, "horizons", "terrain hides no part of the sky from the ground", false,
-     true},
+     false},
     {Effect::kBounce, "bounce", "slopes send no light to each other", false, false},
     {Effect::kShafts, "shafts", "terrain does not shade the air", false, false},
     {Effect::kShadows, "shadows", "terrain casts no shadows on the ground", false, false},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What leaving out effects changes and saves, as the pilot says and as it is, over whole pictures.
 // Run by hand; results are in README.md.
-//   effects_error [WIDTH HEIGHT [SCENE]]
+//   effects_error [WIDTH HEIGHT [SCENE [pilot]]]         pilot: only what choosing costs
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -24,8 +24,18 @@ Timed Render(const SceneRenderer& renderer, const EffectScene& scene,
   return {std::move(image), watch.seconds()};
 }
 
+void MeasurePilot(const EffectScene& scene, const RenderSettings& settings) {
+  const SceneRenderer renderer(scene.scene);
+  (void)renderer.RenderWithin(scene.instant, settings, {});
+  const EffectChoice choice = renderer.RenderWithin(scene.instant, settings, {}).choice;
+  fmt::print("{}: choosing takes {:.3f} s, {:.1f} % of {:.2f} s with everything\n", scene.name,
+             choice.pilot_s, 100.0 * choice.pilot_s / choice.all_s, choice.all_s);
+}
+
 void Measure(const EffectScene& scene, RenderSettings settings) {
   const SceneRenderer renderer(scene.scene);
+  const RenderSettings everything = settings;
+  (void)renderer.Render(scene.instant, everything);  // what is made once for all pictures
   const Timed all = Render(renderer, scene, settings);
   fmt::print("\n{} ({:.2f} s with everything)\n", scene.name, all.seconds);
   fmt::print("{:<22}{:>19}{:>19}{:>19}\n", "without", "rms said, is %", "99 % said, is %",
@@ -40,9 +50,8 @@ void Measure(const EffectScene& scene, RenderSettings settings) {
                100.0 * is.at_99_percent, saves_s, all.seconds - without.seconds);
   };
   for (const double budget : {0.01, 0.002}) {
-    settings.effects = EffectSet::All();
     const EffectChoice choice =
-        renderer.RenderWithin(scene.instant, settings, {.max_error = budget, .explain = true})
+        renderer.RenderWithin(scene.instant, everything, {.max_error = budget, .explain = true})
             .choice;
     for (const EffectEstimate& estimate : choice.estimates) {
       if (budget < 0.01 || !estimate.present) continue;
@@ -51,8 +60,10 @@ void Measure(const EffectScene& scene, RenderSettings settings) {
     }
     hold(fmt::format("within {} %", 100.0 * budget), choice.effects, choice.together,
          choice.all_s - choice.chosen_s);
-    fmt::print("  left out: {}; pilot {:.3f} s (explained)\n",
-               NotesOn(choice).at("alpenglow.note.effects_left_out"), choice.pilot_s);
+    const EffectChoice plain = renderer.RenderWithin(scene.instant, everything, {budget}).choice;
+    fmt::print("  left out: {}; the pilot takes {:.3f} s, {:.1f} % of the picture\n",
+               NotesOn(choice).at("alpenglow.note.effects_left_out"), plain.pilot_s,
+               100.0 * plain.pilot_s / all.seconds);
   }
 }
 
@@ -65,6 +76,11 @@ int main(int argc, char** argv) {
   settings.width = argc > 2 ? std::atoi(argv[1]) : 320;
   settings.height = argc > 2 ? std::atoi(argv[2]) : 180;
   for (const EffectScene& scene : EffectScenes(std::filesystem::temp_directory_path().string())) {
-    if (argc <= 3 || scene.name == argv[3]) Measure(scene, settings);
+    if (argc > 3 && scene.name != argv[3]) continue;
+    if (argc > 4) {
+      MeasurePilot(scene, settings);
+    } else {
+      Measure(scene, settings);
+    }
   }
 }
