@@ -13,6 +13,7 @@ namespace alpenglow {
 namespace {
 
 constexpr int kMostNodes = 16;
+constexpr int kTwilightNodes = 6;
 
 /// (2 n + 1) P_n at the nodes of a Gauss rule on [0, 1].
 struct LegendreAtNodes {
@@ -198,8 +199,10 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
     panel.strength = StrengthOf(ray, panel.length_m(), panel.up ? panel.begin_m : panel.end_m, low);
     const bool unbroken = sunlit == nullptr || LightUnbroken(panel, *sunlit);
     if (extent.end == RayEnd::kLength) {
-      panel.nodes =
-          std::min(NodesFor(panel.length_m(), low, std::max(first, last), !unbroken), nodes.sky);
+      // Beams that graze the planet light the end at its shadow by far less than the other.
+      const int least = ray.mu_s < 0.0 ? kTwilightNodes : 0;
+      const int asked = NodesFor(panel.length_m(), low, std::max(first, last), !unbroken);
+      panel.nodes = std::min(std::max(asked, least), nodes.sky);
     }
     const GaussRule& rule = GaussLegendre(panel.nodes);
     const auto sunlight =

@@ -118,6 +118,13 @@ TEST(PictureReport, MoreEffortIsLessError) {
                             "4 samples, without higher orders");
 }
 
+TEST(PictureReport, AirBeforeMountainsKeepsItsErrorAtEverySun) {
+  for (const RegimeResult& at : RowOf("aerial_perspective", "Gauss panels, automatic").at) {
+    EXPECT_LT(at.error.rms, 1e-3) << "to 100 km in clear air";
+    EXPECT_LT(at.error.percentile_99, 5e-3);
+  }
+}
+
 TEST(PictureReport, OneGreyTransmittanceIsWrongByPercents) {
   for (const RegimeResult& at : RowOf("terrain_transmittance", "closed form, one grey value").at)
     EXPECT_GT(at.error.rms, 0.01) << "the air of 100 km is not grey";
