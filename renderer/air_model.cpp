@@ -23,8 +23,7 @@ const AirModel& AirModels::With(EffectSet effects) const {
   const std::lock_guard lock(mutex_);
   std::unique_ptr<AirModel>& partial = partial_[parts];
   if (!partial) {
-    partial = std::make_unique<AirModel>(OnlyWith(whole_.air.medium(), parts), ground_, geometry_,
-                                         lamps_, horizons_);
+    partial = std::make_unique<AirModel>(OnlyWith(whole_.air.medium(), parts), parts_);
   }
   return *partial;
 }

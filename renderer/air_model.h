@@ -14,15 +14,10 @@
 
 namespace alpenglow {
 
-/// Air and what its light reaches. Refers to ground, geometry, lamps and
-/// horizons.
+/// Air and what its light reaches. Refers to the parts of the ground.
 struct AirModel {
-  AirModel(const Medium& medium, const SceneGround& ground, const SceneGeometry& geometry,
-           const LampLight& lamps, const HorizonsOnDemand& horizons)
-      : air(medium),
-        diffuse(medium),
-        aerial(air, diffuse),
-        ground_light(ground, geometry, air, diffuse, lamps, horizons) {}
+  AirModel(const Medium& medium, const GroundParts& parts)
+      : air(medium), diffuse(medium), aerial(air, diffuse), ground_light(parts, air, diffuse) {}
 
   AirIntegrator<float> air;
   DiffuseLight diffuse;
@@ -34,23 +29,15 @@ struct AirModel {
 /// air in front of lamps has all parts always.
 class AirModels {
  public:
-  AirModels(const Medium& medium, const SceneGround& ground, const SceneGeometry& geometry,
-            const LampLight& lamps, const HorizonsOnDemand& horizons)
-      : ground_(ground),
-        geometry_(geometry),
-        lamps_(lamps),
-        horizons_(horizons),
-        whole_(medium, ground, geometry, lamps, horizons) {}
+  AirModels(const Medium& medium, const GroundParts& parts)
+      : parts_(parts), whole_(medium, parts) {}
 
   [[nodiscard]] const AirModel& whole() const { return whole_; }
   /// With those of molecules, aerosol and ozone that are among the effects.
   [[nodiscard]] const AirModel& With(EffectSet effects) const;
 
  private:
-  const SceneGround& ground_;
-  const SceneGeometry& geometry_;
-  const LampLight& lamps_;
-  const HorizonsOnDemand& horizons_;
+  GroundParts parts_;
   AirModel whole_;
   mutable std::mutex mutex_;
   mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;

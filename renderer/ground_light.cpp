@@ -22,6 +22,11 @@ glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
                                               std::sin(angle) * glm::cross(light.to_sun, side)));
 }
 
+// Whether terrain may stand between the ground there and the sky.
+bool SeesTerrain(const Hit& hit, const Lighting& light) {
+  return hit.kind == HitKind::kTerrain && light.on_terrain && light.on_terrain->horizons();
+}
+
 }  // namespace
 
 Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double latitude_rad,
@@ -37,23 +42,17 @@ Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double la
   return light;
 }
 
-GroundLight::GroundLight(const SceneGround& ground, const SceneGeometry& geometry,
-                         const AirIntegrator<float>& air, const DiffuseLight& diffuse,
-                         const LampLight& lamps, const HorizonsOnDemand& horizons)
-    : ground_(ground),
-      geometry_(geometry),
-      air_(air),
-      diffuse_(diffuse),
-      lamps_(lamps),
-      horizons_(horizons) {}
+GroundLight::GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
+                         const DiffuseLight& diffuse)
+    : parts_(parts), air_(air), diffuse_(diffuse) {}
 
 std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const Lighting& light) const {
-  if (!light.effects.Has(Effect::kHorizons) || !light.effects.Has(Effect::kSkylight))
-    return nullptr;
-  const std::shared_ptr<const TerrainHorizons> horizons = horizons_.Get();
-  if (!horizons) return nullptr;
+  if (!light.effects.Has(Effect::kSkylight)) return nullptr;
+  const std::shared_ptr<const TerrainHorizons> horizons =
+      light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
+  if (!horizons && !parts_.material.HasGloss()) return nullptr;
   auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, diffuse_, light.to_sun);
-  if (light.effects.Has(Effect::kBounce)) {
+  if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
         [&](const SlopePlace& place) { return SentToSlopes(place, light, *on_terrain); },
@@ -64,7 +63,7 @@ std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const Lighting& light
 
 BandLight GroundLight::SentToSlopes(const SlopePlace& place, const Lighting& light,
                                     const TerrainLight& sky) const {
-  const double cell_m = sky.horizons().views().heights().cell_m;
+  const double cell_m = sky.horizons()->views().heights().cell_m;
   Hit hit;
   hit.kind = HitKind::kTerrain;
   hit.normal = hit.mesh_normal = hit.geometric_normal = place.normal;
@@ -74,7 +73,8 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const Lighting& lig
   BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
   if (const auto direct = SunIrradiance(hit, light, sun, {0.0, 0.0}))
     irradiance = irradiance + *direct;
-  return static_cast<float>(1.0 / kPi) * (AlbedoOf(hit, light, sun.up) * irradiance);
+  // Seen at 60 degrees, which stands for the mean over directions.
+  return static_cast<float>(1.0 / kPi) * (PatchAt(hit, light, sun.up).BodyAlbedo(0.5) * irradiance);
 }
 
 LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
@@ -89,7 +89,7 @@ LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
 }
 
 LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
-  return alpenglow::LocalSunAt(geometry_, point, light.to_sun, light.sun_radius_rad);
+  return alpenglow::LocalSunAt(parts_.geometry, point, light.to_sun, light.sun_radius_rad);
 }
 
 double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
@@ -98,9 +98,9 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
   const double cosine = glm::dot(hit.normal, to_disk);
   const bool faces =
       cosine > 0.0 && glm::dot(hit.geometric_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
-  const bool occluded = faces && ground_.terrain && light.effects.Has(Effect::kShadows) &&
-                        ground_.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
-                                                  std::numeric_limits<double>::infinity());
+  const bool occluded = faces && parts_.ground.terrain && light.effects.Has(Effect::kShadows) &&
+                        parts_.ground.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
+                                                        std::numeric_limits<double>::infinity());
   return faces && !occluded ? cosine : 0.0;
 }
 
@@ -113,7 +113,7 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
   const BandLight clear =
-      light.on_terrain && hit.kind == HitKind::kTerrain
+      SeesTerrain(hit, light)
           ? light.on_terrain->Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s})
           : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
   if (light.media == nullptr) return clear;
@@ -121,16 +121,29 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
   return fog.left * clear + fog.added;
 }
 
-BandLight GroundLight::AlbedoOf(const Hit& hit, const Lighting& light, const glm::dvec3& up) const {
+GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light,
+                                 const glm::dvec3& up) const {
   if (hit.kind == HitKind::kTerrain) {
-    return light.surface.Albedo(geometry_.GroundAt(hit.point, hit.footprint_m),
-                                glm::dot(hit.mesh_normal, up));
+    return parts_.material.OfTerrain(parts_.geometry.GroundAt(hit.point, hit.footprint_m),
+                                     hit.point, glm::dot(hit.mesh_normal, up), light.surface);
   }
   BandLight albedo(air_.bands());
-  for (std::size_t band = 0; band < albedo.count; ++band) {
+  for (std::size_t band = 0; band < albedo.count; ++band)
     albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);
+  return parts_.material.OfPlanet(albedo);
+}
+
+BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
+                                const Lighting& light, const LocalSun& sun) const {
+  BandLight sum(air_.bands());
+  const SlopePoint at{hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
+  for (const MirroredRay& ray : patch.Mirrored(hit.normal, to_eye).All()) {
+    const BandLight seen = SeesTerrain(hit, light)
+                               ? light.on_terrain->Radiance(at, ray.direction)
+                               : light.on_terrain->SkyRadiance(at, ray.direction);
+    sum = sum + static_cast<float>(ray.weight) * seen;
   }
-  return albedo;
+  return sum;
 }
 
 std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Lighting& light,
@@ -144,21 +157,31 @@ std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Lighti
   return clear * light.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
 }
 
-GroundRadiance GroundLight::Towards(const Hit& hit, const Lighting& light, const LampNodes& near,
+GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
+                                    const Lighting& light, const LampNodes& near,
                                     std::array<double, 2> disk_sample) const {
-  const LocalSun sun = LocalSunAt(hit.point, light);
+  const LocalSun sun = LocalSunAt(seen.point, light);
+  const GroundPatch patch = PatchAt(seen, light, sun.up);
+  Hit hit = seen;
+  if (patch.IsWater()) hit.normal = hit.mesh_normal = sun.up;  // waves are its own
+  const double mu_eye = AnglesBetween(hit.normal, hit.normal, to_eye).mu_eye;
+  const BandLight body = patch.BodyAlbedo(mu_eye);
+  BandLight radiance(air_.bands());
   GroundRadiance sent;
-  BandLight irradiance(air_.bands());
   if (const auto direct = SunIrradiance(hit, light, sun, disk_sample)) {
-    irradiance = *direct;
     sent.sun_visibility = static_cast<float>(sun.visible_fraction);
+    const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+    radiance = patch.Brdf(AnglesBetween(hit.normal, to_disk, to_eye)) * *direct;
   }
-  if (light.effects.Has(Effect::kSkylight))
-    irradiance = irradiance + SkyIrradiance(hit, light, sun);
-  sent.albedo = AlbedoOf(hit, light, sun.up);
-  const BandLight lambert = static_cast<float>(1.0 / kPi) * sent.albedo;
-  sent.natural = lambert * (light.irradiance * irradiance);
-  sent.lamps = lambert * lamps_.OnSurface(near, {hit.point, hit.normal, hit.geometric_normal});
+  if (light.effects.Has(Effect::kSkylight)) {
+    radiance = radiance + static_cast<float>(1.0 / kPi) * (body * SkyIrradiance(hit, light, sun));
+    if (patch.IsGlossy() && light.on_terrain)
+      radiance = radiance + Mirrored(patch, hit, to_eye, light, sun);
+  }
+  sent.albedo = body;
+  sent.natural = light.irradiance * radiance;
+  sent.lamps = static_cast<float>(1.0 / kPi) *
+               (body * parts_.lamps.OnSurface(near, {hit.point, hit.normal, hit.geometric_normal}));
   return sent;
 }
 

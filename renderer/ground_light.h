@@ -13,6 +13,7 @@
 #include "lut/multiple_scattering.h"
 #include "renderer/band_light.h"
 #include "renderer/effects.h"
+#include "renderer/ground_material.h"
 #include "renderer/lamp_light.h"
 #include "renderer/scene_geometry.h"
 #include "renderer/surface.h"
@@ -59,22 +60,31 @@ struct GroundRadiance {
   float sun_visibility = 0.0F;  // the part of the disk that is seen, 0 to 1
 };
 
+/// The ground of a scene, whatever air is over it.
+struct GroundParts {
+  const SceneGround& ground;
+  const SceneGeometry& geometry;
+  const LampLight& lamps;
+  const HorizonsOnDemand& horizons;
+  const GroundMaterial& material;
+};
+
 /// Immutable, safe to share between threads. Refers to what it was made from.
 class GroundLight {
  public:
-  GroundLight(const SceneGround& ground, const SceneGeometry& geometry,
-              const AirIntegrator<float>& air, const DiffuseLight& diffuse, const LampLight& lamps,
-              const HorizonsOnDemand& horizons);
+  GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
+              const DiffuseLight& diffuse);
 
   /// What terrain makes of the light of sky and sun, as far as the effects of `light` say; null
   /// where it makes nothing of it.
   [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const Lighting& light) const;
 
-  /// @param hit  of terrain or planet.
+  /// @param hit  of terrain or planet; to_eye: unit.
   /// @param near  lamps that may light it.
   /// @param disk_sample  a point of the sun's disk, uniform in the unit square: penumbrae average
   ///     over samples.
-  [[nodiscard]] GroundRadiance Towards(const Hit& hit, const Lighting& light, const LampNodes& near,
+  [[nodiscard]] GroundRadiance Towards(const Hit& hit, const glm::dvec3& to_eye,
+                                       const Lighting& light, const LampNodes& near,
                                        std::array<double, 2> disk_sample) const;
 
   [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
@@ -93,15 +103,16 @@ class GroundLight {
   /// What a slope sends to others, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const Lighting& light,
                                        const TerrainLight& sky) const;
-  [[nodiscard]] BandLight AlbedoOf(const Hit& hit, const Lighting& light,
-                                   const glm::dvec3& up) const;
+  [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light,
+                                    const glm::dvec3& up) const;
+  /// Of the sky, and of slopes before it, in a glossy surface, per unit solar irradiance [1/sr].
+  [[nodiscard]] BandLight Mirrored(const GroundPatch& patch, const Hit& hit,
+                                   const glm::dvec3& to_eye, const Lighting& light,
+                                   const LocalSun& sun) const;
 
-  const SceneGround& ground_;
-  const SceneGeometry& geometry_;
+  GroundParts parts_;
   const AirIntegrator<float>& air_;
   const DiffuseLight& diffuse_;
-  const LampLight& lamps_;
-  const HorizonsOnDemand& horizons_;
 };
 
 }  // namespace alpenglow

@@ -87,6 +87,19 @@ float SectorIntegral(float up, float along, float low, float high) {
   return 0.5F * up * (high * high - low * low) + along * (Area().At(high) - Area().At(low));
 }
 
+Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
+  const HalfDiskArea& area = Area();
+  Horizons shares;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    const float low = surface.lowest[i];
+    const float high = std::max(std::min(horizons[i], surface.highest[i]), low);
+    const float along = high > low ? area.At(high) - area.At(low) : 0.0F;
+    shares[i] =
+        std::max(0.5F * surface.up * (high * high - low * low) + surface.along[i] * along, 0.0F);
+  }
+  return shares;
+}
+
 OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                  const glm::dvec3& to_sun, const Extent& extent)
     : bands_(air.bands()),
@@ -256,6 +269,11 @@ void OpenSky::KeepRadiances() {
       for (std::size_t band = 0; band < bands_; ++band)
         into[band] = (from[band] - from[2 * stride_ + band]) / area;
     }
+    // What lies lower than the first part of the sky over the horizontal is seen as that.
+    const auto first = static_cast<std::size_t>(std::ceil(-HorizonMap::kLowest / kStep));
+    float* of_row = &radiance_[row * kNodes * stride_];
+    for (std::size_t node = 0; node < first; ++node)
+      std::copy_n(of_row + first * stride_, stride_, of_row + node * stride_);
   }
 }
 

@@ -39,6 +39,10 @@ struct SurfaceSectors {
 /// per radian of azimuth, to 1e-4.
 [[nodiscard]] float SectorIntegral(float up, float along, float low, float high);
 
+/// What each sector brings from the ground below its horizon, when that has radiance 1, per radian
+/// of azimuth.
+[[nodiscard]] Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons);
+
 /// The sky for one position of the sun. Immutable; safe to ask from many threads.
 class OpenSky {
  public:
@@ -58,8 +62,9 @@ class OpenSky {
                                         const SurfaceSectors& surface,
                                         const Horizons& horizons) const;
 
-  /// Radiance per unit solar irradiance [1/sr] in a direction (east, north, up at the place), from
-  /// kLowest up: linear between means over sectors and over steps of 0.011 of the elevation's sine.
+  /// Radiance of the sky per unit solar irradiance [1/sr] in a direction (east, north, up at the
+  /// place): linear between means over sectors and over steps of 0.011 of the elevation's sine; in
+  /// lower directions that of the horizon.
   [[nodiscard]] Bands<float> Radiance(double altitude_m, double mu_s,
                                       const glm::dvec3& direction) const;
 

@@ -71,8 +71,8 @@ Shaded SceneRenderer::State::Shade(const Hit& hit, const SharedAir& through, con
         shaded.radiance + through.fog * SunDisk(ray.direction, through.air, frame.light);
     return shaded;
   }
-  const GroundRadiance sent =
-      frame.model->ground_light.Towards(hit, frame.light, near.surface, disk_sample);
+  const GroundRadiance sent = frame.model->ground_light.Towards(hit, -ray.direction, frame.light,
+                                                                near.surface, disk_sample);
   shaded.albedo = sent.albedo;
   shaded.sun_visibility = sent.sun_visibility;
   const BandLight lamp_light = shaded.transmittance * sent.lamps;

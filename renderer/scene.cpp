@@ -170,7 +170,7 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder) {
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   const std::optional<TomlTable> table = document.Table("terrain");
   if (!table) return {};
-  table->AllowOnly({"dem", "mesh", "none", "voids"});
+  table->AllowOnly({"dem", "mesh", "none", "voids", "colour"});
   const std::optional<std::string> dem = table->Text("dem");
   const std::optional<std::string> mesh = table->Text("mesh");
   const bool none = table->Truth("none").value_or(false);
@@ -183,7 +183,11 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
                 fmt::format("terrain.voids is \"{}\"; it must be \"fill\" or \"open\"", voids));
   }
   if (table->Has("voids") && !dem) table->Fail("voids", "terrain.voids needs terrain.dem");
+  const std::optional<std::string> colour = table->Text("colour");
+  if (colour && none)
+    table->Fail("colour", "terrain.colour lies over terrain; terrain.none is set");
   TerrainSource source;
+  if (colour) source.colour = folder / *colour;
   source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
   if (none) source.kind = TerrainSource::Kind::kNone;
   if (dem) {
@@ -195,6 +199,61 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
     source.file = folder / *mesh;
   }
   return source;
+}
+
+GroundCover::Kind CoverOf(const TomlTable& table) {
+  static const std::pair<const char*, GroundCover::Kind> kKinds[] = {
+      {"mountain", GroundCover::Kind::kMountain},
+      {"lambert", GroundCover::Kind::kLambert},
+      {"oren-nayar", GroundCover::Kind::kOrenNayar},
+      {"blinn-phong", GroundCover::Kind::kBlinnPhong},
+      {"water", GroundCover::Kind::kWater},
+      {"snow", GroundCover::Kind::kSnow}};
+  const std::string cover = table.Text("cover").value_or("mountain");
+  std::vector<std::string> names;
+  for (const auto& [name, kind] : kKinds) {
+    if (cover == name) return kind;
+    names.push_back(fmt::format("\"{}\"", name));
+  }
+  table.Fail("cover", fmt::format("ground.cover is \"{}\"; it must be one of {}", cover,
+                                  fmt::join(names, ", ")));
+}
+
+/// Keys of [ground] that would have no effect under a cover are refused.
+void RequireCover(const TomlTable& table, const char* key, bool has_effect, const char* covers) {
+  if (table.Has(key) && !has_effect)
+    table.Fail(key, fmt::format("ground.{} is for {}; this is another cover", key, covers));
+}
+
+GroundCover GroundOf(const TomlTable& document) {
+  using Kind = GroundCover::Kind;
+  const std::optional<TomlTable> table = document.Table("ground");
+  if (!table) return {};
+  table->AllowOnly({"cover", "albedo", "roughness", "reflectance", "wind_m_per_s",
+                    "grain_diameter_mm", "sea_level_m"});
+  GroundCover ground;
+  ground.kind = CoverOf(*table);
+  ground.sea_level_m = table->Number("sea_level_m", kDeepestPlace_m, 9000.0);
+  const bool has_water = ground.kind == Kind::kWater || ground.sea_level_m;
+  const bool is_rough = ground.kind == Kind::kOrenNayar || ground.kind == Kind::kBlinnPhong;
+  RequireCover(*table, "albedo", is_rough || ground.kind == Kind::kLambert,
+               "lambert, oren-nayar and blinn-phong");
+  RequireCover(*table, "roughness", is_rough, "oren-nayar and blinn-phong");
+  RequireCover(*table, "reflectance", ground.kind == Kind::kBlinnPhong, "blinn-phong");
+  RequireCover(*table, "wind_m_per_s", has_water, "water, or ground with a sea_level_m");
+  RequireCover(*table, "grain_diameter_mm", ground.kind == Kind::kSnow, "snow");
+  if (const auto albedo = table->Numbers("albedo", 0.0, 1.0)) {
+    if (albedo->size() != 1 && albedo->size() != 3)
+      table->Fail("albedo", "ground.albedo must be one value, or red, green and blue (linear)");
+    for (std::size_t c = 0; c < 3; ++c) ground.albedo[c] = (*albedo)[albedo->size() == 1 ? 0 : c];
+  }
+  const double smoothest = ground.kind == Kind::kBlinnPhong ? 0.1 : 0.0;
+  ground.roughness = table->Number("roughness", smoothest, 1.0).value_or(ground.roughness);
+  ground.reflectance = table->Number("reflectance", 0.0, 1.0).value_or(ground.reflectance);
+  ground.wind_m_per_s = table->Number("wind_m_per_s", 0.0, 20.0).value_or(ground.wind_m_per_s);
+  if (const auto grain = table->Number("grain_diameter_mm", 0.05, 5.0))
+    ground.grain_diameter_m = 1e-3 * *grain;
+  return ground;
 }
 
 Light::Type LightTypeOf(const TomlTable& table) {
@@ -400,7 +459,7 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
 Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder) {
   const TomlTable document(text, origin);
   document.AllowOnly(
-      {"place", "time", "camera", "atmosphere", "terrain", "light", "fog", "volume"});
+      {"place", "time", "camera", "atmosphere", "terrain", "ground", "light", "fog", "volume"});
   const Place place = PlaceOf(document);
   Scene scene;
   scene.place = place.position;
@@ -409,6 +468,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   scene.camera = CameraOf(document);
   scene.medium = MediumOf(document, folder);
   scene.terrain = TerrainOf(document, folder);
+  scene.ground = GroundOf(document);
   for (const TomlTable& light : document.Tables("light")) {
     scene.lights.push_back(LightOf(light, folder));
   }

@@ -59,6 +59,26 @@ struct TerrainSource {
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
   std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
+  std::filesystem::path colour = {};                      // over it, see ColourDrape; empty: none
+};
+
+/// What the ground is made of, and how it sends light on (reflectance.h).
+struct GroundCover {
+  enum class Kind {
+    kMountain,    // forest, meadow, rock, snow by altitude and slope (MountainSurface); Lambertian
+    kLambert,     // one colour, even
+    kOrenNayar,   // one colour, rough
+    kBlinnPhong,  // one colour under a glossy coat
+    kWater,
+    kSnow,
+  };
+  Kind kind = Kind::kMountain;
+  std::array<double, 3> albedo{0.2, 0.2, 0.2};  // linear sRGB, of kLambert to kBlinnPhong
+  double roughness = 0.5;                       // of kOrenNayar and kBlinnPhong, see there
+  double reflectance = 0.04;                    // of the coat at normal incidence
+  double wind_m_per_s = 5.0;                    // over water
+  double grain_diameter_m = 5e-4;               // of snow
+  std::optional<double> sea_level_m;            // ground that is not higher is water
 };
 
 /// A lamp.
@@ -114,6 +134,7 @@ struct Scene {
   Camera camera;
   Medium medium;  // "earth" when nothing is said
   TerrainSource terrain;
+  GroundCover ground;
   std::vector<Light> lights;
   std::optional<Fog> fog;
   std::vector<Volume> volumes;

@@ -40,7 +40,8 @@ struct SceneRenderer::State {
         geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
         smooth_geometry(ground, medium, false),
         horizons(known ? std::move(known) : std::make_shared<HorizonsOnDemand>(ground, medium)),
-        models(medium, ground, geometry, lamps, *horizons) {}
+        material(scene.ground, ColourDrape::Of(scene, ground), medium.wavelengths_nm),
+        models(medium, {ground, geometry, lamps, *horizons, material}) {}
 
   /// @param known  sunlight over the terrain at that time, or null.
   [[nodiscard]] PictureFrame FrameAt(
@@ -87,6 +88,7 @@ struct SceneRenderer::State {
   LocalMedia media;
   SceneGeometry geometry, smooth_geometry;
   std::shared_ptr<const HorizonsOnDemand> horizons;
+  GroundMaterial material;
   AirModels models;
   mutable std::once_flag few_bands_asked;
   mutable std::unique_ptr<State> few_bands;

@@ -215,21 +215,24 @@ void SlopeLight::Gather(const std::vector<float>& sent, const std::vector<float>
 BandLight SlopeLight::Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
                                  const Horizons& horizons) const {
   const Neighbours around(*this, point);
-  std::array<float, kMaxBands> sum{};
+  Horizons scale = GroundShares(surface, horizons);
+  Horizons weight{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t i = 0; i < kHorizonAzimuths; ++i)
+      weight[i] += around.share[k] * views_.Weight(around.node[k], i);
+  }
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i)
+    scale[i] *= static_cast<float>(kSector) / (weight[i] + 1e-9F);
+  std::array<float, kMaxBands + 4> sum{};
   for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
-    const float low = surface.lowest[azimuth];
-    const float high = std::min(horizons[azimuth], surface.highest[azimuth]);
-    if (low >= high) continue;
-    const float brings = SectorIntegral(surface.up, surface.along[azimuth], low, high);
-    float weight = 1e-9F;
-    for (std::size_t k = 0; k < 4; ++k)
-      weight += around.share[k] * views_.Weight(around.node[k], azimuth);
-    const float scale = static_cast<float>(kSector) * std::max(brings, 0.0F) / weight;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const float* light = around.light[k] + azimuth * stride_;
-      const float share = scale * around.share[k];
-      for (std::size_t block = 0; block < stride_; block += 4) {
-        for (std::size_t band = block; band < block + 4; ++band) sum[band] += share * light[band];
+    if (scale[azimuth] <= 0.0F) continue;
+    for (std::size_t block = 0; block < stride_; block += 4) {
+      const std::size_t at = azimuth * stride_ + block;
+      for (std::size_t band = 0; band < 4; ++band) {
+        sum[block + band] += scale[azimuth] * (around.share[0] * around.light[0][at + band] +
+                                               around.share[1] * around.light[1][at + band] +
+                                               around.share[2] * around.light[2][at + band] +
+                                               around.share[3] * around.light[3][at + band]);
       }
     }
   }

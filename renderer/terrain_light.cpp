@@ -54,7 +54,9 @@ TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh
 TerrainLight::TerrainLight(std::shared_ptr<const TerrainHorizons> horizons,
                            const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                            const glm::dvec3& to_sun)
-    : horizons_(std::move(horizons)), sky_(air, diffuse, to_sun, horizons_->extent()) {}
+    : horizons_(std::move(horizons)),
+      sky_(air, diffuse, to_sun, horizons_ ? horizons_->extent() : OpenSky::Extent{0.0, 1.0, 5e5}) {
+}
 
 void TerrainLight::AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing,
                              double mu_s) {
@@ -66,6 +68,10 @@ BandLight TerrainLight::Irradiance(const SlopePoint& at) const {
   const Horizons horizons = horizons_->map().At(at.point);
   const BandLight sky = sky_.Irradiance(at.altitude_m, at.mu_s, surface, horizons);
   return slopes_ ? sky + slopes_->Irradiance(at.point, surface, horizons) : sky;
+}
+
+BandLight TerrainLight::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {
+  return sky_.Radiance(at.altitude_m, at.mu_s, AtPlace(direction, at.up));
 }
 
 BandLight TerrainLight::Radiance(const SlopePoint& at, const glm::dvec3& direction) const {

@@ -66,19 +66,23 @@ struct SlopePoint {
 class TerrainLight {
  public:
   /// Light of the sky alone.
+  /// @param horizons  null: a plain.
   TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const AirIntegrator<float>& air,
                const DiffuseLight& diffuse, const glm::dvec3& to_sun);
 
   [[nodiscard]] const OpenSky& sky() const { return sky_; }
-  [[nodiscard]] const TerrainHorizons& horizons() const { return *horizons_; }
+  [[nodiscard]] const TerrainHorizons* horizons() const { return horizons_.get(); }
 
-  /// Adds what slopes send to each other.
+  /// Adds what slopes send to each other. Needs horizons.
   void AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing, double mu_s);
 
-  /// Of sky and slopes, per unit solar irradiance [1].
+  /// Of sky and slopes, per unit solar irradiance [1]. Needs horizons.
   [[nodiscard]] BandLight Irradiance(const SlopePoint& at) const;
 
-  /// Radiance [1/sr] in a direction: of the sky, or below the horizon of the ground there.
+  /// Radiance [1/sr] of the sky in a direction, whatever stands before it.
+  [[nodiscard]] BandLight SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const;
+  /// Radiance [1/sr] in a direction: of the sky, or below the horizon of the ground there. Needs
+  /// horizons.
   [[nodiscard]] BandLight Radiance(const SlopePoint& at, const glm::dvec3& direction) const;
 
  private:

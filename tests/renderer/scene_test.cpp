@@ -225,6 +225,45 @@ TEST(Scene, VolumesThatMakeNoSenseAreRefusedByKey) {
   }
 }
 
+TEST(Scene, GroundIsWhatTheFileSays) {
+  const Scene water = Read(kPlace + "[ground]\ncover = \"water\"\nwind_m_per_s = 8\n");
+  EXPECT_EQ(water.ground.kind, GroundCover::Kind::kWater);
+  EXPECT_EQ(water.ground.wind_m_per_s, 8.0);
+  const Scene lake = Read(kPlace + "[ground]\nsea_level_m = 1.5\nwind_m_per_s = 2\n");
+  EXPECT_EQ(lake.ground.kind, GroundCover::Kind::kMountain);
+  EXPECT_EQ(lake.ground.sea_level_m, 1.5);
+  const Scene gloss = Read(kPlace +
+                           "[ground]\ncover = \"blinn-phong\"\nalbedo = [0.1, 0.2, 0.3]\n"
+                           "roughness = 0.3\nreflectance = 0.05\n");
+  EXPECT_EQ(gloss.ground.albedo, (std::array<double, 3>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(gloss.ground.roughness, 0.3);
+  EXPECT_EQ(gloss.ground.reflectance, 0.05);
+  EXPECT_EQ(Read(kPlace + "[ground]\ncover = \"lambert\"\nalbedo = 0.4\n").ground.albedo[2], 0.4);
+  const Scene snow = Read(kPlace + "[ground]\ncover = \"snow\"\ngrain_diameter_mm = 0.2\n");
+  EXPECT_NEAR(snow.ground.grain_diameter_m, 2e-4, 1e-18);
+  const Scene draped = Read(kPlace + "[terrain]\ncolour = \"photo.tif\"\n");
+  EXPECT_EQ(draped.terrain.colour, std::filesystem::path("folder") / "photo.tif");
+  EXPECT_TRUE(Read(kPlace).terrain.colour.empty());
+}
+
+TEST(Scene, GroundThatCannotBeIsRefused) {
+  const auto fault = [](const std::string& ground) {
+    return FaultOf(kPlace + "[ground]\n" + ground);
+  };
+  EXPECT_THAT(fault("cover = \"lava\"\n"), HasSubstr("ground.cover is \"lava\""));
+  EXPECT_THAT(fault("colour = 1\n"), HasSubstr("ground.colour"));
+  EXPECT_THAT(fault("albedo = 0.5\n"), HasSubstr("ground.albedo is for lambert"));
+  EXPECT_THAT(fault("wind_m_per_s = 5\n"), HasSubstr("ground.wind_m_per_s is for water"));
+  EXPECT_THAT(fault("cover = \"lambert\"\nalbedo = 1.5\n"), HasSubstr("ground.albedo"));
+  EXPECT_THAT(fault("cover = \"lambert\"\nalbedo = [0.1, 0.2]\n"), HasSubstr("ground.albedo"));
+  EXPECT_THAT(fault("cover = \"lambert\"\nroughness = 0.5\n"),
+              HasSubstr("ground.roughness is for"));
+  EXPECT_THAT(fault("cover = \"blinn-phong\"\nroughness = 0.05\n"), HasSubstr("[0.1, 1]"));
+  EXPECT_THAT(fault("cover = \"snow\"\ngrain_diameter_mm = 50\n"), HasSubstr("[0.05, 5]"));
+  EXPECT_THAT(FaultOf(kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n"),
+              HasSubstr("terrain.colour"));
+}
+
 TEST(Scene, APlaceIsEnough) {
   const Scene scene = Read(kPlace);
   EXPECT_EQ(scene.medium.name, "earth");
