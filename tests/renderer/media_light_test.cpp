@@ -10,6 +10,7 @@
 #include "atmosphere/airlight.h"
 #include "atmosphere/black_body.h"
 #include "atmosphere/constants.h"
+#include "atmosphere/error.h"
 #include "atmosphere/spectrum.h"
 #include "lut/spherical_harmonics.h"
 #include "renderer/lattice_noise.h"
@@ -401,6 +402,37 @@ TEST(RenderMedia, FogAtNightIsWhatLampsMakeOfIt) {
   RenderSettings without = kSmall;
   without.effects = EffectSet::All().Without(Effect::kFogGlow);
   EXPECT_EQ(renderer.Render(night, kSmall).rgb, renderer.Render(night, without).rgb);
+}
+
+TEST(RenderMedia, FromNoonToNightFogAndSmokeAreFiniteAndNotNegative) {
+  Scene scene = WithVolume(0.05, 0.9);
+  scene.fog = Fog{0.02, 40.0, 0.0, 0.95, FogPhase(12.0)};
+  const SceneRenderer renderer(scene);
+  double last = 1e9;
+  for (const char* time : {"2026-03-20T12:00:00Z", "2026-03-20T16:30:00Z", "2026-03-20T17:32:00Z",
+                           "2026-03-20T17:40:00Z", "2026-03-20T18:10:00Z", "2026-03-20T19:30:00Z",
+                           "2026-03-20T23:00:00Z"}) {
+    const Image image = renderer.Render(ParseInstant(time), kSmall);
+    double sum = 0.0;
+    for (const auto& rgb : image.rgb) {
+      for (const float value : rgb) EXPECT_TRUE(std::isfinite(value)) << time;
+      sum += static_cast<double>(rgb[0] + rgb[1] + rgb[2]);
+      EXPECT_GE(0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2], 0.0F) << time;
+    }
+    EXPECT_LE(sum, last) << time << ": it only gets darker";
+    last = sum;
+  }
+}
+
+TEST(RenderMedia, GridThatIsNotThereIsNamed) {
+  Scene scene = WithVolume(0.05, 0.9);
+  scene.volumes[0].grid = "nowhere/smoke.nrrd";
+  try {
+    const SceneRenderer renderer(scene);
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "volume 1: nowhere/smoke.nrrd: cannot be read");
+  }
 }
 
 TEST(RenderMedia, FogGrowsOutOfClearAirWithoutAStep) {
