@@ -26,7 +26,9 @@ inline constexpr char kSkyseriesFooter[] =
     "--to sunset+1h --every 10m\n"
     "Example: dawn on Mount Fuji\n"
     "  skyseries --dem N35E138.hgt --latitude 35.50 --longitude 138.76 --heading 190 "
-    "--zone Asia/Tokyo --date 2026-01-01 --at sunrise-10m --out fuji.exr --png";
+    "--zone Asia/Tokyo --date 2026-01-01 --at sunrise-10m --out fuji.exr --png\n"
+    "Example: along a recorded flight, what moves blurred\n"
+    "  skyseries --path flight.csv --fps 24 --shutter 0.5 --out 'out/f.%04d.exr' --png";
 
 /// What is typed; texts are read later, against the scene.
 struct SkyseriesOptions {
@@ -84,8 +86,9 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
                                       "included");
   CLI::Option* path = app.add_option(
       "--path", options.path,
-      "Way of the camera: a CSV of t_s, latitude, longitude, height_m and more, see camera_path.h; "
-      "skyview --record writes one. Its frames begin at its first point");
+      "Way of the camera: a CSV with a header of t_s, latitude, longitude, height_m (over the "
+      "ellipsoid) and, if wanted, heading, pitch, roll, fov and utc; skyview --record writes one. "
+      "Its frames begin at its first point");
   CLI::Option* fps = app.add_option("--fps", options.frames_per_second,
                                     "Frames per second of the path, without --every and --count")
                          ->capture_default_str();
