@@ -190,7 +190,7 @@ class Topic : public TopicWork {
     const ScatteringTableOptions options{.size = size, .lowest_mu_s = {}, .axes = axes};
     const auto [table, seconds] = Built([&] { return ScatteringTable(medium_, options); });
     AddLookUp(
-        {.series = "difference of two look-ups (Bruneton)",
+        {.series = "two look-ups (Bruneton)",
          .parameter = fmt::format("{} x {} x {} x {}", size.altitudes, size.mu, size.mu_s, size.nu),
          .origin = MethodOrigin::kLiterature,
          .style = kTable,
@@ -268,7 +268,7 @@ class Topic : public TopicWork {
 
   void AddTransmittanceTable(const TransmittanceTableSize& size) {
     const auto [table, seconds] = Built([&] { return TransmittanceTable(medium_, size); });
-    AddLookUp({.series = "quotient of two look-ups (Bruneton)",
+    AddLookUp({.series = "two look-ups (Bruneton)",
                .parameter = fmt::format("{} x {}", size.mu, size.altitudes),
                .origin = MethodOrigin::kLiterature,
                .style = kTable,

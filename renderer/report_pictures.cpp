@@ -63,8 +63,8 @@ class PicturesTopic {
 
   void AddSamples(int samples) {
     RenderSettings settings = Settings(samples);
-    Add({.series = "as skyseries does it",
-         .parameter = fmt::format("{} sample{}", samples, samples == 1 ? "" : "s"),
+    Add({.series = "samples of a pixel",
+         .parameter = fmt::format("{}", samples),
          .style = kSamples,
          .in_summary = true},
         settings);
@@ -73,7 +73,7 @@ class PicturesTopic {
   void AddNodes(int nodes) {
     RenderSettings settings = Settings(4);
     settings.air_nodes = nodes;
-    Add({.series = "4 samples, fewer nodes in the air",
+    Add({.series = "fewer air nodes",
          .parameter = fmt::format("{} nodes", nodes),
          .style = kNodes,
          .in_summary = nodes == 4},
@@ -83,7 +83,7 @@ class PicturesTopic {
   void AddWithout(Effect effect, const std::string& what) {
     RenderSettings settings = Settings(4);
     settings.effects = settings.effects.Without(effect);
-    Add({.series = "4 samples, without " + what,
+    Add({.series = "without " + what,
          .parameter = "",
          .origin = MethodOrigin::kLiterature,
          .style = kWithout,
@@ -105,7 +105,8 @@ class PicturesTopic {
         "one "
         "picture and not in the other)";
     topic_.notes =
-        "Most of the error of few samples is at edges of terrain, which are thinner than a pixel: "
+        "Fewer air nodes and what is left out are rendered with 4 samples. Most of the error of "
+        "few samples is at edges of terrain, which are thinner than a pixel: "
         "a sample sees one side of them. Time is the processor time of all threads for a pixel; "
         "build is loading the scene and what a picture prepares once (shadow heights, tree of "
         "lamps); memory is what the program grew by when both scenes were loaded.";

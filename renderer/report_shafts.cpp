@@ -115,8 +115,8 @@ class ShaftTopic {
   }
 
   void AddMarch(int rays) {
-    ReportRow row = Row("march with occlusion rays", fmt::format("{} rays", rays),
-                        MethodOrigin::kLiterature, kMarch);
+    ReportRow row =
+        Row("occlusion rays", fmt::format("{} rays", rays), MethodOrigin::kLiterature, kMarch);
     row.in_summary = rays == 64 || rays == 512;
     for (std::size_t r = 0; r < views_.size(); ++r) {
       Measure(r, row, [&](std::size_t i) {

@@ -108,14 +108,12 @@ TEST(PictureReport, MoreEffortIsLessError) {
                             "quadratic march, 8 steps");
   ExpectLessErrorEverywhere("terrain_transmittance", "uniform march, 128 steps",
                             "uniform march, 8 steps");
-  ExpectLessErrorEverywhere("shafts", "march with occlusion rays, 256 rays",
-                            "march with occlusion rays, 16 rays");
+  ExpectLessErrorEverywhere("shafts", "occlusion rays, 256 rays", "occlusion rays, 16 rays");
   ExpectLessErrorEverywhere("shafts", "shadow heights, automatic nodes", "no shafts");
   ExpectLessErrorEverywhere("airlight", "panels around the light, 32 nodes",
                             "panels around the light, 8 nodes");
   ExpectLessErrorEverywhere("airlight", "uniform march, 256 points", "uniform march, 16 points");
-  ExpectLessErrorEverywhere("pictures", "as skyseries does it, 4 samples",
-                            "4 samples, without higher orders");
+  ExpectLessErrorEverywhere("pictures", "samples of a pixel, 4", "without higher orders");
 }
 
 TEST(PictureReport, AirBeforeMountainsKeepsItsErrorAtEverySun) {
