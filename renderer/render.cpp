@@ -213,10 +213,12 @@ void SceneRenderer::State::LightTerrain(PictureFrame& frame) const {
 }
 
 void SceneRenderer::State::LightMedia(PictureFrame& frame) const {
-  // By the light of less than a millionth of a lux fog is what lamps make of it.
-  const bool is_lit =
-      frame.Has(Effect::kFogGlow) && Illuminance(frame.camera().eye(), frame.light) > 1e-6;
-  LocalMedia here = media.Only(frame.Has(Effect::kVolumes), is_lit);
+  // By the light of less than a millionth of a lux fog is what lamps make of it, unless it stands
+  // before a volume.
+  const bool has_volumes = frame.Has(Effect::kVolumes) && media.HasVolumes();
+  const bool is_lit = frame.Has(Effect::kFogGlow) &&
+                      (has_volumes || Illuminance(frame.camera().eye(), frame.light) > 1e-6);
+  LocalMedia here = media.Only(has_volumes, is_lit);
   frame.media = here.IsNothing()
                     ? nullptr
                     : std::make_shared<MediaLight>(

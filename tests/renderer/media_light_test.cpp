@@ -387,6 +387,18 @@ TEST(RenderMedia, GlowingVolumeAtNightShinesAsABlackBodyOfItsDepth) {
       << "the ray through the pixel's middle crosses the 60 m at less than 2 degrees";
 }
 
+TEST(RenderMedia, GlowingVolumeIsDimmedByTheFogBeforeIt) {
+  Scene scene = WithVolume(0.01, 0.0);
+  scene.volumes[0].temperature_k = 2000.0;
+  const UtcInstant night = ParseInstant("2026-01-01T00:00:00Z");
+  const Image clear = SceneRenderer(scene).Render(night, kSmall);
+  scene.fog = Fog{0.005, 1e5, 0.0, 1.0, FogPhase(12.0)};
+  const Image foggy = SceneRenderer(scene).Render(night, kSmall);
+  const double left = static_cast<double>(foggy.at(12, 7)[0] / clear.at(12, 7)[0]);
+  EXPECT_GT(left, std::exp(-0.005 * 431.0)) << "all of it at its far side";
+  EXPECT_LT(left, std::exp(-0.005 * 369.0)) << "all of it at its near side";
+}
+
 TEST(RenderMedia, FogAtNightIsWhatLampsMakeOfIt) {
   Scene scene = WithVolume(0.0, 1.0);
   scene.volumes.clear();
