@@ -14,7 +14,10 @@
 // looks random and is not. So nothing larger than a cell is missed; of smaller things that are
 // neither lamps nor near the sun, only as many as the pilot's pixels happen to meet.
 //
-// The decision depends on pixels alone. What the effects cost is measured beside, and told.
+// The decision depends on pixels alone. What the effects cost is measured beside, and told. Parts
+// of the air cost nothing to keep, and are kept (EffectText::is_free). Frames of a series decide
+// each for itself: between neighbours that decide differently the picture moves by the budget at
+// most.
 #pragma once
 
 #include <array>

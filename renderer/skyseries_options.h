@@ -156,12 +156,13 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
 
 inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
   CLI::Option* effects =
-      app.add_option("--effects", options.effects,
-                     "all; auto: what each picture needs within --max-error; or exactly these: " +
-                         NamesOfEffects() +
-                         ". molecules, aerosol, ozone, fine-air are on unless one of them is "
-                         "named; -NAME takes one away from all (default: all; auto with "
-                         "--max-error)")
+      app.add_option(
+             "--effects", options.effects,
+             "all; auto: what each picture needs within --max-error; or exactly these: " +
+                 NamesOfEffects() +
+                 ". molecules, aerosol, ozone, fine-air, fine-spectrum are on unless one is "
+                 "named; -NAME takes one away from all (default: all; auto with "
+                 "--max-error)")
           ->check(ReadableBy([](const std::string& text) {
             if (text != "auto") (void)EffectsFromText(text);
           }));
