@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "atmosphere/constants.h"
 #include "atmosphere/error.h"
+#include "atmosphere/toml_table.h"
 #include "lut/picture_text.h"
 #include "renderer/scene_options.h"
 #include "tests/temporary_folder.h"
@@ -47,6 +49,30 @@ TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
                             .camera;
   EXPECT_EQ(bladed.lens->blades, 7);
   EXPECT_NEAR(bladed.lens->blade_rotation_rad, 10.0 * kRadiansPerDegree, 1e-12);
+}
+
+/// The block of TOML in the manual of scene.toml.
+std::string Manual() {
+  const std::string all =
+      ReadTextFile(std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "renderer" / "README.md");
+  const std::size_t begin = all.find("```toml\n") + 8;
+  return all.substr(begin, all.find("```", begin) - begin);
+}
+
+TEST(Scene, OfTheManualIsReadAndItsDefaultsAreThose) {
+  const Scene manual = Read(Manual());
+  const Scene bare = Read("[place]\nlatitude = 46.5\nlongitude = 8.0\n");
+  EXPECT_EQ(manual.camera.height, bare.camera.height);
+  EXPECT_EQ(manual.camera.fov_rad, bare.camera.fov_rad);
+  EXPECT_EQ(manual.camera.lens.has_value(), bare.camera.lens.has_value());
+  EXPECT_EQ(manual.medium, bare.medium);
+  EXPECT_EQ(manual.terrain.voids, bare.terrain.voids);
+  EXPECT_EQ(manual.ground.kind, bare.ground.kind);
+  EXPECT_EQ(manual.ground.wind_m_per_s, bare.ground.wind_m_per_s);
+  EXPECT_EQ(manual.lights.size() + manual.volumes.size(), 2U);
+  EXPECT_EQ(manual.lights.at(0).temperature_k, Light{}.temperature_k);
+  EXPECT_EQ(manual.lights.at(0).radius_m, Light{}.radius_m);
+  EXPECT_EQ(manual.volumes.at(0).albedo, Volume{}.albedo);
 }
 
 TEST(Scene, EverythingThatTheFileSaysArrives) {
