@@ -35,7 +35,7 @@ struct SlopePlace {
 /// What the nodes of a coarse grid see of each other. Immutable.
 class SlopeViews {
  public:
-  static constexpr std::size_t kMostNodes = std::size_t{1} << 16;
+  static constexpr std::size_t kMostNodes = std::size_t{1} << 15;
   static constexpr std::size_t kStrips = 3;  // kept a direction
 
   /// @param heights  at most 2^24 nodes.

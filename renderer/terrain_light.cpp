@@ -11,7 +11,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::size_t kMostHorizonNodes = std::size_t{1} << 19;
+constexpr std::size_t kMostHorizonNodes = std::size_t{1} << 18;
 
 // East, north, up at a place; the frame's axes leaning with the vertical.
 glm::dvec3 AtPlace(const glm::dvec3& direction, const glm::dvec3& up) {
