@@ -253,6 +253,7 @@ class Scout {
     double x, value;
   };
   static constexpr double kThin = 0.35;
+  static constexpr double kLeastStep = 1e-6;
 
   // Profiles may have any number of maxima: the rest of the ray is one panel when many are found.
   static bool HasRoom(const Panels& panels) { return panels.size() + 16 < kMostPanels; }
@@ -261,7 +262,10 @@ class Scout {
     if (points_.full()) return;
     std::size_t at = 0;
     while (at < points_.size() && points_[at].x < x) ++at;
-    points_.insert(at, {x, ray_.Reference(x)});
+    // Panels need a width.
+    const bool is_there = (at < points_.size() && points_[at].x - x < kLeastStep) ||
+                          (at > 0 && x - points_[at - 1].x < kLeastStep);
+    if (!is_there) points_.insert(at, {x, ray_.Reference(x)});
   }
 
   // A maximum at an end may be the slope of a higher one just inside.
@@ -283,10 +287,12 @@ class Scout {
       const double here = points_[i].value;
       const bool from_left = i > 0 && here >= points_[i - 1].value;
       const bool from_right = i + 1 < points_.size() && here >= points_[i + 1].value;
-      const bool left = from_left && here > kFall * points_[i - 1].value &&
+      const bool left = from_left && points_[i].x - points_[i - 1].x > 3.0 * kLeastStep &&
+                        here > kFall * points_[i - 1].value &&
                         here * (points_[i].x - points_[i - 1].x) > kWorth * whole &&
                         (i + 1 == points_.size() || from_right);
-      const bool right = from_right && here > kFall * points_[i + 1].value &&
+      const bool right = from_right && points_[i + 1].x - points_[i].x > 3.0 * kLeastStep &&
+                         here > kFall * points_[i + 1].value &&
                          here * (points_[i + 1].x - points_[i].x) > kWorth * whole &&
                          (i == 0 || from_left);
       if (left) {
@@ -501,7 +507,8 @@ FoundPanels FindPanels(const LampRay& ray, const Lamp& lamp, int nodes) {
   const Cuts cuts = CutsOf(ray, lamp.profile);
   FoundPanels found;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    if (cuts[i] < cuts[i + 1] && ray.IsLit(0.5 * (cuts[i] + cuts[i + 1]))) {
+    constexpr double kNothing = 1e-12;  // of a piece, whose light is as little
+    if (cuts[i + 1] - cuts[i] > kNothing && ray.IsLit(0.5 * (cuts[i] + cuts[i + 1]))) {
       const Scout scout(ray, cuts[i], cuts[i + 1]);
       scout.AppendPanels(found.panels);
       found.scouted += scout.evaluations();

@@ -11,6 +11,7 @@
 #include "atmosphere/airlight_judge.h"
 #include "atmosphere/constants.h"
 #include "atmosphere/halton.h"
+#include "atmosphere/quadrature.h"
 #include "tests/lamp_cases.h"
 
 namespace alpenglow {
@@ -318,6 +319,34 @@ TEST(Airlight, LightThatEndsAtOnceIsANumber) {
     ray.direction = glm::normalize(glm::dvec3(0.998056103, 0.013887809, 0.060755441 + 1e-5 * i));
     const double found = Airlight(air, lamp, ray, 8)[0];
     EXPECT_TRUE(std::isfinite(found) && found >= 0.0) << i;
+  }
+}
+
+// Fixed on 2026-11-21: where two points of the ray at which the light was looked at fell together,
+// the panel between them had no width, and the radiance was not a number.
+TEST(Airlight, IsANumberInEveryDirectionAroundAPointUnderALamp) {
+  LampAir air = HomogeneousAir(4e-3, 4e-3, FogPhase(12.0));
+  air.layers[0].scale_height_m = 25.0;
+  air.layers.push_back(air.layers[0]);
+  air.layers[1].scale_height_m = 8000.0;
+  air.layers[1].scattering_per_m[0] = air.layers[1].extinction_per_m[0] = 1.2e-5;
+  air.layers[1].phase = {.kind = PhaseKind::kRayleigh};
+  const GaussRule& rule = GaussLegendre(3);
+  for (double below_m = 0.2; below_m < 2e4; below_m *= 1.6) {
+    LampSegment ray;
+    ray.origin_m = {0.0, 0.0, 0.35 - below_m};
+    const Lamp lamp = LampAt(ray.origin_m + below_m * glm::dvec3(0.0, 0.0, 1.0));
+    for (std::size_t i = 0; i < 12; ++i) {
+      for (int k = 0; k < 8; ++k) {
+        const double angle = 0.2 + 0.7 * static_cast<double>(i / 3) + 0.7 * rule.node[i % 3];
+        const double turn = kPi * (k + 0.5) / 8.0;
+        ray.direction = {-std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
+                         std::cos(angle)};
+        ray.end_m = 4.0 * below_m + 20e3;
+        const double found = Airlight(air, lamp, ray, 8)[0];
+        EXPECT_TRUE(std::isfinite(found) && found >= 0.0) << below_m << " " << i << " " << k;
+      }
+    }
   }
 }
 
