@@ -20,6 +20,7 @@
 #include "atmosphere/judge.h"
 #include "atmosphere/path_tracer.h"
 #include "lut/program.h"
+#include "tests/sanitized.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -28,11 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using Rgba = std::array<double, 4>;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using tests::kSanitized;
 constexpr const char* kTooSlow = "a million rays take minutes with sanitizers";
 
 constexpr double kPlanet_km = 6360.0, kTop_km = 6420.0;

@@ -11,6 +11,7 @@
 #include "atmosphere/judge.h"
 #include "lut/program.h"
 #include "tests/lut/table_errors.h"
+#include "tests/sanitized.h"
 
 namespace alpenglow {
 namespace {
@@ -20,11 +21,7 @@ constexpr ScatteringTableSize kTiny{.nu = 2, .mu_s = 4, .mu = 8, .altitudes = 4}
 
 constexpr ScatteringTableSize kSmall{.nu = 6, .mu_s = 12, .mu = 16, .altitudes = 8};
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using tests::kSanitized;
 constexpr const char* kTooSlow = "the default table takes minutes to build under the sanitizers";
 
 // Built once a process: several tests look things up in them.

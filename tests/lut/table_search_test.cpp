@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/error.h"
+#include "tests/sanitized.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -14,11 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using tests::kSanitized;
 constexpr const char* kTooSlow = "the finest solution takes minutes with sanitizers";
 
 const DiffuseLight& Small() {
