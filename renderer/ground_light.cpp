@@ -137,7 +137,8 @@ BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const 
                                 const Lighting& light, const LocalSun& sun) const {
   BandLight sum(air_.bands());
   const SlopePoint at{hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
-  for (const MirroredRay& ray : patch.Mirrored(hit.normal, to_eye).All()) {
+  const auto rays = patch.Mirrored(hit.normal, to_eye);
+  for (const MirroredRay& ray : rays.All()) {
     const BandLight seen = SeesTerrain(hit, light)
                                ? light.on_terrain->Radiance(at, ray.direction)
                                : light.on_terrain->SkyRadiance(at, ray.direction);
