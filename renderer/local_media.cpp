@@ -112,14 +112,26 @@ double LocalMedium::ColumnTowards(const glm::dvec3& point, const glm::dvec3& dir
   return volume()->Column(point, direction, std::numeric_limits<double>::infinity());
 }
 
+namespace {
+
+/// Neither takes light nor gives any: to cut rays there would only round them.
+bool IsVoid(const Volume& volume) {
+  const auto is_zero = [](double value) { return value == 0.0; };
+  return std::all_of(volume.extinction_per_m.begin(), volume.extinction_per_m.end(), is_zero) &&
+         std::all_of(volume.emission_per_m.begin(), volume.emission_per_m.end(), is_zero);
+}
+
+}  // namespace
+
 LocalMedia::LocalMedia(const Scene& scene, const SceneGround& ground, const Medium& medium)
     : bands_(medium.wavelengths_nm.size()) {
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     const Volume& volume = scene.volumes[i];
     try {
-      all_.push_back(
-          {LocalVolume(PlacementOf(volume, ground), volume.scale_height_m, GridOf(volume)),
-           OpticsOf(volume, medium.wavelengths_nm)});
+      LocalMedium made{
+          LocalVolume(PlacementOf(volume, ground), volume.scale_height_m, GridOf(volume)),
+          OpticsOf(volume, medium.wavelengths_nm)};
+      if (!IsVoid(volume)) all_.push_back(std::move(made));
     } catch (const InputError& error) {
       throw InputError(fmt::format("volume {}: {}", i + 1, error.what()));
     }
