@@ -198,10 +198,10 @@ TEST(LampLight, ALensSpreadsALampOverItsIrisAndKeepsItsLight) {
     const double blur = camera.BlurRadius(stage.Place(scene.lights[0]) - kEye);
     const glm::dvec3 towards = glm::normalize(stage.Place(scene.lights[0]) - kEye);
     const double area = Iris(blades).area() * blur * blur;
-    EXPECT_NEAR(
-        stage.Luminance(light.Seen(light.All(), {kEye, kEye, towards, towards}, camera.PixelAngle())) *
-            area / sharp,
-        1.0, 0.25)
+    EXPECT_NEAR(stage.Luminance(
+                    light.Seen(light.All(), {kEye, kEye, towards, towards}, camera.PixelAngle())) *
+                    area / sharp,
+                1.0, 0.25)
         << blades << " blades: the edge is as soft as a pixel, the blur 4 pixels";
   }
 }
@@ -266,8 +266,7 @@ TEST_F(LampShadows, ALampBehindTheWallIsNotSeen) {
   const auto seen = [&](const Light& lamp) {
     const glm::dvec3 eye(0.0, 0.0, 20.0);
     const glm::dvec3 to_lamp = glm::normalize(stage.Place(lamp) - eye);
-    return stage.Luminance(
-        stage.light.Seen(stage.light.All(), {eye, eye, to_lamp, to_lamp}, 1e-3));
+    return stage.Luminance(stage.light.Seen(stage.light.All(), {eye, eye, to_lamp, to_lamp}, 1e-3));
   };
   EXPECT_EQ(seen(scene.lights[0]), 0.0);
   EXPECT_GT(seen(scene.lights[1]), 0.0);
