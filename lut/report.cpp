@@ -110,6 +110,13 @@ Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
   return report;
 }
 
+std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file, bool quick) {
+  if (atmosphere_file) return {ReadMedium(*atmosphere_file)};
+  std::vector<Medium> mediums{MediumPreset("earth")};
+  if (!quick) mediums.push_back(MediumPreset("hazy"));
+  return mediums;
+}
+
 Report MeasureReport(const ReportOptions& options) {
   const ReportEffort effort = options.quick ? ReportEffort::Quick() : ReportEffort{};
   std::vector<MeasureTopic> topics;

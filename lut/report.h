@@ -114,6 +114,11 @@ struct ReportOptions {
   ProgressStyle progress = ProgressStyle::kQuiet;
 };
 
+/// What a report is of when it is asked for by name: the air of a file, or of the presets earth and
+/// (unless it is quick) hazy. Throws what ReadMedium does.
+[[nodiscard]] std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file,
+                                                  bool quick);
+
 /// The machine and the program, in words.
 struct ReportMaker {
   std::string machine, system, program, compiler, date;

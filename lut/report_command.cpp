@@ -20,15 +20,10 @@ struct ReportCommandOptions {
 };
 
 void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOptions& common) {
-  std::vector<Medium> mediums;
-  if (options.atmosphere) {
-    mediums.push_back(ReadMedium(*options.atmosphere));
-  } else {
-    mediums = {MediumPreset("earth"), MediumPreset("hazy")};
-    if (options.quick) mediums.pop_back();
-  }
-  const Report report = MeasureReport(
-      {.mediums = mediums, .quick = options.quick, .progress = common.progress_style()});
+  const Report report =
+      MeasureReport({.mediums = MediumsOfReport(options.atmosphere, options.quick),
+                     .quick = options.quick,
+                     .progress = common.progress_style()});
   WriteReport(report, options.out);
   if (!common.quiet) fmt::print("{}", SummaryOf(report));
 }

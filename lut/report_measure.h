@@ -2,6 +2,8 @@
 // One row of the report: a method's errors on judged rays, and the time of its answers.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -11,6 +13,7 @@
 #include "atmosphere/single_scattering.h"
 #include "lut/program.h"
 #include "lut/report.h"
+#include "lut/report_baselines.h"
 #include "lut/report_rays.h"
 
 namespace alpenglow {
@@ -107,6 +110,24 @@ class TopicWork {
   template <typename Answer, typename Samples>
   void AddRow(ReportRow row, const Answer& answer, const Samples& samples) {
     rows_.push_back(Measured(std::move(row), judged_, effort_, answer, samples));
+  }
+
+  /// Light scattered once by a march in steps; `style` is that of its line.
+  void AddMarch(const AirIntegrator<float>& air, MarchRule rule, int steps, int style,
+                bool in_summary) {
+    AddRow(
+        {.series = rule == MarchRule::kMidpoint ? "uniform march" : "quadratic march",
+         .parameter = fmt::format("{} steps", steps),
+         .origin = MethodOrigin::kLiterature,
+         .style = style,
+         .in_summary = in_summary},
+        [&](const ViewRay& ray) {
+          const RayExtent extent =
+              ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+          const auto samples = air.SampleAt(ray, MarchNodes(rule, steps, extent));
+          return air.Inscatter(air.Scatter(samples), ray.nu);
+        },
+        [&](const ViewRay&) { return steps; });
   }
 
   /// Adds what was measured elsewhere.

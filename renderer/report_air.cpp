@@ -170,20 +170,8 @@ class Topic : public TopicWork {
   }
 
   void AddMarch(MarchRule rule, int steps, bool in_summary) {
-    const bool midpoint = rule == MarchRule::kMidpoint;
-    AddRow(
-        {.series = midpoint ? "uniform march" : "quadratic march",
-         .parameter = fmt::format("{} steps", steps),
-         .origin = MethodOrigin::kLiterature,
-         .style = midpoint ? kUniform : kQuadratic,
-         .in_summary = in_summary},
-        [&](const ViewRay& ray) {
-          const RayExtent extent =
-              ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
-          return air_.Inscatter(air_.Scatter(air_.SampleAt(ray, MarchNodes(rule, steps, extent))),
-                                ray.nu);
-        },
-        [&](const ViewRay&) { return steps; });
+    TopicWork::AddMarch(air_, rule, steps, rule == MarchRule::kMidpoint ? kUniform : kQuadratic,
+                        in_summary);
   }
 
   void AddTable(ScatteringAxes axes, const ScatteringTableSize& size, bool in_summary) {

@@ -22,15 +22,10 @@ struct PictureReportOptions {
 
 void WriteMeasuredReport(const PictureReportOptions& options) {
   const ThreadLimit threads(options.common.threads);
-  std::vector<Medium> mediums;
-  if (options.atmosphere) {
-    mediums.push_back(ReadMedium(*options.atmosphere));
-  } else {
-    mediums = {MediumPreset("earth"), MediumPreset("hazy")};
-    if (options.quick) mediums.pop_back();
-  }
-  const Report report = MeasurePictureReport(
-      {.mediums = mediums, .quick = options.quick, .progress = options.common.progress_style()});
+  const Report report =
+      MeasurePictureReport({.mediums = MediumsOfReport(options.atmosphere, options.quick),
+                            .quick = options.quick,
+                            .progress = options.common.progress_style()});
   WriteReport(report, options.out);
   if (!options.common.quiet) fmt::print("{}", SummaryOf(report));
 }

@@ -285,15 +285,20 @@ TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
   }
 }
 
-// Fixed on 2026-11-21: panels were made for the fog alone, and up to half of the light of rays that
-// leave it was missed, whatever the number of nodes.
-TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
-  LampAir air = HomogeneousAir(4e-3, 4e-3, HenyeyGreenstein(0.8));
+LampAir HeightFogUnderClearAir(const PhaseFunction& phase) {
+  LampAir air = HomogeneousAir(4e-3, 4e-3, phase);
   air.layers[0].scale_height_m = 25.0;
   air.layers.push_back(air.layers[0]);
   air.layers[1].scale_height_m = 8000.0;
   air.layers[1].scattering_per_m[0] = air.layers[1].extinction_per_m[0] = 1.2e-5;
   air.layers[1].phase = {.kind = PhaseKind::kRayleigh};
+  return air;
+}
+
+// Fixed on 2026-11-21: panels were made for the fog alone, and up to half of the light of rays that
+// leave it was missed, whatever the number of nodes.
+TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
+  LampAir air = HeightFogUnderClearAir(HenyeyGreenstein(0.8));
   air.altitude_at_origin_m = 38.0;
   for (const double distance : {430.0, 1200.0, 2200.0}) {
     for (const double climb : {0.05, 0.2}) {
@@ -325,12 +330,7 @@ TEST(Airlight, LightThatEndsAtOnceIsANumber) {
 // Fixed on 2026-11-21: where two points of the ray at which the light was looked at fell together,
 // the panel between them had no width, and the radiance was not a number.
 TEST(Airlight, IsANumberInEveryDirectionAroundAPointUnderALamp) {
-  LampAir air = HomogeneousAir(4e-3, 4e-3, FogPhase(12.0));
-  air.layers[0].scale_height_m = 25.0;
-  air.layers.push_back(air.layers[0]);
-  air.layers[1].scale_height_m = 8000.0;
-  air.layers[1].scattering_per_m[0] = air.layers[1].extinction_per_m[0] = 1.2e-5;
-  air.layers[1].phase = {.kind = PhaseKind::kRayleigh};
+  const LampAir air = HeightFogUnderClearAir(FogPhase(12.0));
   const GaussRule& rule = GaussLegendre(3);
   for (double below_m = 0.2; below_m < 2e4; below_m *= 1.6) {
     LampSegment ray;

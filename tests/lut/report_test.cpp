@@ -11,11 +11,11 @@
 #include <set>
 
 #include "atmosphere/constants.h"
-#include "atmosphere/error.h"
 #include "lut/multiple_scattering.h"
 #include "lut/report_baselines.h"
 #include "lut/report_rays.h"
 #include "tests/report_files.h"
+#include "tests/report_rows.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -30,18 +30,10 @@ const Report& QuickReport() {
   return report;
 }
 
-const ReportTopic& TopicOf(const std::string& key) {
-  for (const ReportTopic& topic : QuickReport().topics) {
-    if (topic.key == key) return topic;
-  }
-  throw InternalError("no topic " + key);
-}
+const ReportTopic& TopicOf(const std::string& key) { return tests::TopicOf(QuickReport(), key); }
 
 const ReportRow& RowOf(const std::string& topic, const std::string& name) {
-  for (const ReportRow& row : TopicOf(topic).rows) {
-    if (row.Name() == name) return row;
-  }
-  throw InternalError("no row " + name);
+  return tests::RowOf(QuickReport(), topic, name);
 }
 
 std::string UsualMoments() {

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <set>
 
-#include "atmosphere/error.h"
 #include "renderer/lamp_works.h"
 #include "tests/report_files.h"
+#include "tests/report_rows.h"
 #include "tests/temporary_folder.h"
 
 namespace alpenglow {
@@ -26,18 +26,10 @@ const Report& QuickReport() {
   return report;
 }
 
-const ReportTopic& TopicOf(const std::string& key) {
-  for (const ReportTopic& topic : QuickReport().topics) {
-    if (topic.key == key) return topic;
-  }
-  throw InternalError("no topic " + key);
-}
+const ReportTopic& TopicOf(const std::string& key) { return tests::TopicOf(QuickReport(), key); }
 
 const ReportRow& RowOf(const std::string& topic, const std::string& name) {
-  for (const ReportRow& row : TopicOf(topic).rows) {
-    if (row.Name() == name) return row;
-  }
-  throw InternalError("no row " + name);
+  return tests::RowOf(QuickReport(), topic, name);
 }
 
 void ExpectLessErrorEverywhere(const char* topic, const char* better, const char* worse) {
