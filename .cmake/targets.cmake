@@ -1,4 +1,4 @@
-# alpenglow_library, alpenglow_kernels, alpenglow_program, alpenglow_test, alpenglow_embed: a target is a few lines.
+# alpenglow_library, alpenglow_kernels, alpenglow_program, alpenglow_tests, alpenglow_embed: a target is a few lines.
 
 add_library(alpenglow_warnings INTERFACE)
 target_compile_options(alpenglow_warnings INTERFACE
@@ -24,13 +24,31 @@ function(alpenglow_library folder)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/alpenglow>)
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
+  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/.cmake/precompiled.h)
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder})
+  alpenglow_install_headers(${folder} ${arg_HEADERS})
 endfunction()
 
-# The instruction sets that kernels are compiled for (atmosphere/instruction_set.h), and their options.
+# alpenglow_install_headers(<folder> a/b.h ...): strangers include <alpenglow/folder/a/b.h>, so the
+# includes inside installed headers, "folder/a/b.h" in this tree, get that prefix.
+function(alpenglow_install_headers folder)
+  foreach(header ${ARGN})
+    get_filename_component(room ${header} DIRECTORY)
+    set(installed ${CMAKE_CURRENT_BINARY_DIR}/installed/${header})
+    add_custom_command(OUTPUT ${installed}
+      COMMAND ${CMAKE_COMMAND} -DINPUT=${CMAKE_CURRENT_SOURCE_DIR}/${header} -DOUTPUT=${installed}
+              -P ${PROJECT_SOURCE_DIR}/.cmake/installed_header.cmake
+      DEPENDS ${header} ${PROJECT_SOURCE_DIR}/.cmake/installed_header.cmake
+      VERBATIM)
+    list(APPEND all ${installed})
+    install(FILES ${installed} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder}/${room})
+  endforeach()
+  add_custom_target(alpenglow_${folder}_headers ALL DEPENDS ${all})
+endfunction()
+
+# The instruction sets that kernels are compiled for (atmosphere/dialect/instruction_set.h), and their options.
 # Multiplication and addition may fuse where the processor has one instruction for both.
 set(ALPENGLOW_INSTRUCTION_SETS Baseline)
 if(ALPENGLOW_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
@@ -78,11 +96,14 @@ function(alpenglow_program name source)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES;LIBRARIES")
   add_executable(${name} ${source} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} alpenglow_warnings)
+  # What a program parses is short; its templates (CLI11) are long to optimise.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release,Sanitize>:-O1>)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
 # alpenglow_embed(<target> <files>...): the text of each file becomes a string in the library.
-# "data/cie.csv" of folder atmosphere is EmbeddedText("atmosphere/data/cie.csv").
+# "data/cie.csv" of folder atmosphere is EmbeddedText("atmosphere/data/cie.csv") of
+# "atmosphere/embedded_text.h", which the build writes.
 function(alpenglow_embed target)
   set(pieces)
   foreach(file ${ARGN})
@@ -101,12 +122,23 @@ function(alpenglow_embed target)
     set(rows "${rows}    {\"${name}\", &${symbol}},\n")
   endforeach()
   string(REPLACE alpenglow_ "" folder ${target})
+  set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  file(CONFIGURE OUTPUT ${generated}/${folder}/embedded_text.h @ONLY CONTENT
+"// Written by alpenglow_embed: files of folder @folder@ that travel inside its library.
+#pragma once
+#include <string_view>
+namespace alpenglow::@folder@ {
+/// The text of a file, named from the top of the tree. Throws InternalError for a name that was not
+/// embedded (CMakeLists.txt of the folder).
+std::string_view EmbeddedText(std::string_view name);
+}  // namespace alpenglow::@folder@
+")
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp @ONLY CONTENT
 "// Written by alpenglow_embed.
 #include \"@folder@/embedded_text.h\"
 #include <string>
 #include <utility>
-#include \"atmosphere/error.h\"
+#include \"atmosphere/text/error.h\"
 namespace alpenglow::embedded {
 @declarations@}
 namespace alpenglow::@folder@ {
@@ -122,26 +154,57 @@ std::string_view EmbeddedText(std::string_view name) {
 }  // namespace alpenglow::@folder@
 ")
   target_sources(${target} PRIVATE ${pieces} ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp)
+  set_source_files_properties(${pieces} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
-# alpenglow_test(<folder>/<subject>_test.cpp [WHOLE] LIBRARIES ...): one program a subject, one CTest line a
-# test; WHOLE: one line for the program, whose tests share something costly.
-function(alpenglow_test source)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "WHOLE" "" "LIBRARIES;SOURCES")
-  string(REGEX REPLACE "[/]" "_" name ${source})
-  string(REGEX REPLACE "\\.cpp$" "" name ${name})
-  add_executable(${name} ${source} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} alpenglow_warnings GTest::gmock GTest::gtest_main)
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_compile_definitions(${name} PRIVATE
+# What all tests are compiled with: headers read once for all, and little optimisation, for the time is
+# spent in the libraries.
+function(alpenglow_test_headers)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
+  add_library(alpenglow_test_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
+  target_link_libraries(alpenglow_test_headers PUBLIC
+    alpenglow::renderer alpenglow_warnings GTest::gmock GTest::gtest)
+  target_compile_options(alpenglow_test_headers PUBLIC $<$<CONFIG:Release,Sanitize>:-O1>)
+  target_precompile_headers(alpenglow_test_headers PRIVATE
+    ${PROJECT_SOURCE_DIR}/.cmake/precompiled.h <gmock/gmock.h> <gtest/gtest.h>)
+endfunction()
+
+# alpenglow_tests(<program> FOLDER f [WHOLE a_test.cpp ...] SOURCES b_test.cpp ... LIBRARIES ...
+# [PROGRAMS skylut ...]): one program of tests, one CTest line a test, named "f.Suite.Test". A source in
+# WHOLE has one line for all its tests, "f.<name of the source>", because they share something costly.
+# PROGRAMS are built before; their paths are ALPENGLOW_SKYLUT and so on.
+function(alpenglow_tests program)
+  if(NOT TARGET alpenglow_test_headers)
+    alpenglow_test_headers()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "WHOLE;SOURCES;LIBRARIES;PROGRAMS")
+  add_executable(${program} ${arg_WHOLE} ${arg_SOURCES})
+  target_link_libraries(${program} PRIVATE
+    alpenglow_test_headers ${arg_LIBRARIES} GTest::gtest_main)
+  target_compile_definitions(${program} PRIVATE
     ALPENGLOW_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     ALPENGLOW_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
-  if(arg_WHOLE)
-    add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 900)
-    return()
-  endif()
-  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+  foreach(other ${arg_PROGRAMS})
+    string(TOUPPER ${other} name)
+    target_compile_definitions(${program} PRIVATE ALPENGLOW_${name}="$<TARGET_FILE:${other}>")
+    add_dependencies(${program} ${other})
+  endforeach()
+  target_precompile_headers(${program} REUSE_FROM alpenglow_test_headers)
+  set(whole "")
+  foreach(source ${arg_WHOLE})
+    get_filename_component(name ${source} NAME_WE)
+    file(STRINGS ${source} suites REGEX "^(TEST|TEST_F|TEST_P|RC_GTEST_PROP)\\(")
+    list(TRANSFORM suites REPLACE "^[A-Z_]+\\(([A-Za-z0-9]+),.*" "\\1.*:*/\\1.*")
+    list(REMOVE_DUPLICATES suites)
+    list(JOIN suites ":" filter)
+    string(APPEND whole ":${filter}")
+    add_test(NAME ${arg_FOLDER}.${name} COMMAND ${program} --gtest_filter=${filter})
+    set_tests_properties(${arg_FOLDER}.${name} PROPERTIES TIMEOUT 900)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+  endforeach()
+  gtest_discover_tests(${program} TEST_PREFIX "${arg_FOLDER}." TEST_FILTER "-${whole}"
+    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
 endfunction()
 
 # The package that find_package(alpenglow) reads.

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/medium.h"
-#include "lut/eval.h"
-#include "lut/exchange_tables.h"
-#include "lut/table_folder.h"
-#include "lut/table_search.h"
+#include "atmosphere/air/medium.h"
+#include "lut/eval/eval.h"
+#include "lut/store/exchange_tables.h"
+#include "lut/store/table_folder.h"
+#include "lut/train/table_search.h"
 
 namespace alpenglow {
 namespace {

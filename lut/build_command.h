@@ -2,7 +2,7 @@
 // `skylut build`: tables of an atmosphere, into a folder.
 #pragma once
 
-#include "lut/command_line.h"
+#include "lut/program/command_line.h"
 
 namespace alpenglow {
 

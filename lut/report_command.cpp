@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/medium.h"
-#include "lut/report.h"
+#include "atmosphere/air/medium.h"
+#include "lut/report/report.h"
 
 namespace alpenglow {
 namespace {

@@ -2,7 +2,7 @@
 // `skylut report`: speed against error, into a folder.
 #pragma once
 
-#include "lut/command_line.h"
+#include "lut/program/command_line.h"
 
 namespace alpenglow {
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/medium.h"
-#include "atmosphere/refraction.h"
-#include "atmosphere/sun.h"
-#include "lut/look.h"
-#include "lut/panorama.h"
-#include "lut/picture_text.h"
+#include "atmosphere/air/medium.h"
+#include "atmosphere/sun/refraction.h"
+#include "atmosphere/sun/sun.h"
+#include "lut/picture/look.h"
+#include "lut/picture/picture_text.h"
+#include "lut/sky/panorama.h"
 
 namespace alpenglow {
 namespace {

@@ -2,7 +2,7 @@
 // `skylut sky`: panoramas for lighting.
 #pragma once
 
-#include "lut/command_line.h"
+#include "lut/program/command_line.h"
 
 namespace alpenglow {
 

@@ -5,16 +5,16 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/error.h"
-#include "atmosphere/medium.h"
+#include "atmosphere/air/medium.h"
+#include "atmosphere/text/error.h"
 #include "lut/build_command.h"
-#include "lut/command_line.h"
-#include "lut/eval.h"
-#include "lut/lamp_cases.h"
-#include "lut/program.h"
+#include "lut/eval/eval.h"
+#include "lut/eval/lamp_cases.h"
+#include "lut/program/command_line.h"
+#include "lut/program/program.h"
 #include "lut/report_command.h"
 #include "lut/sky_command.h"
-#include "lut/table_folder.h"
+#include "lut/store/table_folder.h"
 
 namespace alpenglow {
 namespace {

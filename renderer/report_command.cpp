@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/medium.h"
-#include "renderer/report.h"
+#include "atmosphere/air/medium.h"
+#include "renderer/report/report.h"
 
 namespace alpenglow {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "lut/command_line.h"
+#include "lut/program/command_line.h"
 
 namespace alpenglow {
 

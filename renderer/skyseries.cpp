@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "renderer/path_frames.h"
-#include "renderer/provenance.h"
 #include "renderer/report_command.h"
-#include "renderer/series.h"
+#include "renderer/series/path_frames.h"
+#include "renderer/series/provenance.h"
+#include "renderer/series/series.h"
 #include "renderer/skyseries_options.h"
 
 namespace alpenglow {

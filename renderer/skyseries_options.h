@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "lut/command_line.h"
-#include "lut/eval.h"
-#include "lut/look.h"
-#include "lut/picture_text.h"
-#include "renderer/frame_times.h"
-#include "renderer/pixel_samples.h"
-#include "renderer/render.h"
-#include "renderer/scene_options.h"
+#include "lut/eval/eval.h"
+#include "lut/picture/look.h"
+#include "lut/picture/picture_text.h"
+#include "lut/program/command_line.h"
+#include "renderer/camera/pixel_samples.h"
+#include "renderer/picture/render.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/series/frame_times.h"
 
 namespace alpenglow {
 

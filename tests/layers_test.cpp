@@ -52,7 +52,7 @@ TEST(Layers, NoFileIncludesAFolderAboveItsOwn) {
 }
 
 TEST(Layers, AnIncludeThatRunsUpIsFound) {
-  std::istringstream text("#include <vector>\n#include \"renderer/mesh.h\"\n");
+  std::istringstream text("#include <vector>\n#include \"renderer/terrain/mesh.h\"\n");
   EXPECT_EQ(IncludesThatRunUp("lut", text, "x.h").size(), 1U);
 }
 

@@ -2,7 +2,7 @@
 // The readings of the shared texts in C++: float, the twin of the graphics card, against double.
 #include <gtest/gtest.h>
 
-#include "tests/shared_text_cases.h"
+#include "tests/fixtures/shared_text_cases.h"
 
 namespace alpenglow {
 namespace {

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/constants.h"
-#include "atmosphere/error.h"
-#include "lut/program.h"
-#include "renderer/provenance.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/program/program.h"
+#include "renderer/series/provenance.h"
 
 namespace alpenglow {
 namespace {

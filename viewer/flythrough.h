@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "lut/picture_text.h"
-#include "renderer/scene.h"
-#include "renderer/scene_ground.h"
-#include "viewer/flight.h"
-#include "viewer/flight_recorder.h"
-#include "viewer/sky_painter.h"
+#include "lut/picture/picture_text.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/scene/scene.h"
+#include "viewer/flight/flight.h"
+#include "viewer/flight/flight_recorder.h"
+#include "viewer/paint/sky_painter.h"
 
 namespace alpenglow {
 

@@ -4,13 +4,13 @@
 
 #include <chrono>
 
-#include "atmosphere/constants.h"
-#include "renderer/frame_times.h"
-#include "viewer/flight_recorder.h"
+#include "atmosphere/number/constants.h"
+#include "renderer/series/frame_times.h"
+#include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
-#include "viewer/gl_context.h"
 #include "viewer/skyview_options.h"
-#include "viewer/window.h"
+#include "viewer/window/gl_context.h"
+#include "viewer/window/window.h"
 
 namespace alpenglow {
 namespace {

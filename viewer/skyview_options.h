@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "lut/command_line.h"
-#include "lut/picture_text.h"
-#include "renderer/scene_options.h"
+#include "lut/picture/picture_text.h"
+#include "lut/program/command_line.h"
+#include "renderer/scene/scene_options.h"
 
 namespace alpenglow {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/instruction_set.h"
-#include "atmosphere/judge.h"
-#include "atmosphere/single_scattering.h"
-#include "lut/multiple_scattering.h"
+#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/judge/judge.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/multiple_scattering.h"
 
 namespace alpenglow {
 namespace {

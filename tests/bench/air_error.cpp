@@ -4,7 +4,7 @@
 // README.md.
 #include <fmt/format.h>
 
-#include "tests/ray_regimes.h"
+#include "tests/fixtures/ray_regimes.h"
 
 int main() {
   using namespace alpenglow;

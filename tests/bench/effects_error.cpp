@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "tests/effect_scenes.h"
+#include "tests/fixtures/effect_scenes.h"
 
 namespace alpenglow {
 namespace {

@@ -10,8 +10,8 @@
 #include <functional>
 #include <vector>
 
-#include "atmosphere/airlight.h"
-#include "renderer/lamp_works.h"
+#include "atmosphere/lamp/airlight.h"
+#include "renderer/lamp/lamp_works.h"
 
 namespace alpenglow {
 namespace {

@@ -19,9 +19,9 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/constants.h"
-#include "atmosphere/lorenz_mie.h"
-#include "atmosphere/phase.h"
+#include "atmosphere/air/lorenz_mie.h"
+#include "atmosphere/air/phase.h"
+#include "atmosphere/number/constants.h"
 
 namespace {
 

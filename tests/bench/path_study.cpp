@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/constants.h"
-#include "atmosphere/halton.h"
-#include "atmosphere/path_tracer.h"
-#include "lut/eval.h"
+#include "atmosphere/judge/path_tracer.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/halton.h"
+#include "lut/eval/eval.h"
 
 namespace alpenglow {
 namespace {

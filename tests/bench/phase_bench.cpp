@@ -2,8 +2,8 @@
 // Time of a phase function, per angle, and of the aerosol's in four bands, per ray. Run by hand.
 #include <benchmark/benchmark.h>
 
-#include "atmosphere/phase_table.h"
-#include "atmosphere/single_scattering.h"
+#include "atmosphere/air/phase_table.h"
+#include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow {
 namespace {

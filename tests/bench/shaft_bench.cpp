@@ -3,9 +3,9 @@
 // shadow heights, shafts by 512 occlusion rays. Run by hand; results are in README.md.
 #include <benchmark/benchmark.h>
 
-#include "atmosphere/constants.h"
-#include "renderer/sun_probes.h"
-#include "tests/occlusion_march.h"
+#include "atmosphere/number/constants.h"
+#include "renderer/shadow/sun_probes.h"
+#include "tests/fixtures/occlusion_march.h"
 
 namespace alpenglow {
 namespace {

@@ -4,8 +4,8 @@
 //   shaft_error [elevation model around 35.5 N 138.75 E]
 #include <fmt/core.h>
 
-#include "atmosphere/constants.h"
-#include "tests/occlusion_march.h"
+#include "atmosphere/number/constants.h"
+#include "tests/fixtures/occlusion_march.h"
 
 int main(int argc, char** argv) {
   using namespace alpenglow;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/constants.h"
-#include "lut/panorama.h"
-#include "lut/sky_view.h"
+#include "atmosphere/number/constants.h"
+#include "lut/sky/panorama.h"
+#include "lut/sky/sky_view.h"
 
 namespace alpenglow {
 namespace {

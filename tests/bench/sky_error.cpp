@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "tests/sky_view_errors.h"
+#include "tests/fixtures/sky_view_errors.h"
 
 namespace alpenglow {
 namespace {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/constants.h"
-#include "atmosphere/time.h"
-#include "renderer/lattice_noise.h"
-#include "renderer/render.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/time.h"
+#include "renderer/picture/render.h"
+#include "renderer/terrain/lattice_noise.h"
 
 namespace alpenglow {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/error.h"
-#include "atmosphere/spectrum.h"
-#include "lut/band_training.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/text/error.h"
+#include "lut/train/band_training.h"
 
 namespace alpenglow {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Uses one thing of each installed library; exits 0 when they answer sensibly.
-#include "atmosphere/single_scattering.h"
-#include "lut/image.h"
-#include "lut/multiple_scattering.h"
+#include <alpenglow/atmosphere/ray/single_scattering.h>
+#include <alpenglow/lut/diffuse/multiple_scattering.h>
+#include <alpenglow/lut/picture/image.h>
 
 int main() {
   const alpenglow::AirIntegrator<float> air(alpenglow::MediumPreset("earth"));

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <string>
 
-#include "lut/image.h"
-#include "tests/temporary_folder.h"
+#include "lut/picture/image.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

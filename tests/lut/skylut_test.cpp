@@ -10,8 +10,8 @@
 #include <sstream>
 #include <vector>
 
-#include "lut/table_file.h"
-#include "tests/temporary_folder.h"
+#include "lut/store/table_file.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -10,9 +10,9 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "lut/image.h"
-#include "tests/bare_scene.h"
-#include "tests/temporary_folder.h"
+#include "lut/picture/image.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
 namespace {

@@ -6,11 +6,11 @@
 
 #include <cstdlib>
 
-#include "lut/image.h"
-#include "renderer/camera_path.h"
-#include "tests/bare_scene.h"
-#include "tests/temporary_folder.h"
-#include "tests/viewer/headless.h"
+#include "lut/picture/image.h"
+#include "renderer/camera/camera_path.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow {
 namespace {

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/air/medium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/air/medium_ranges.h"
+#include "atmosphere/air/phase_table.h"
+#include "atmosphere/number/fnv1a.h"
+#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+using Fault = std::optional<MediumFault>;
+using ranges::Range;
+
+Fault OutOfRange(const std::string& key, double value, const Range& range) {
+  if (value >= range.low && value <= range.high)
+    return std::nullopt;  // written so that NaN is a fault
+  return MediumFault{
+      key, fmt::format("{} is {}; it must lie in [{}, {}]", key, value, range.low, range.high)};
+}
+
+Fault FaultOfWavelengths(const std::vector<double>& wavelengths_nm) {
+  const std::string key = "spectrum.wavelengths_nm";
+  if (wavelengths_nm.empty() || wavelengths_nm.size() > ranges::kMostWavelengths) {
+    return MediumFault{key, fmt::format("{} has {} values; it must have 1 to {}", key,
+                                        wavelengths_nm.size(), ranges::kMostWavelengths)};
+  }
+  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
+    if (Fault fault = OutOfRange(key, wavelengths_nm[i], ranges::kWavelength_nm)) return fault;
+    if (i > 0 && !(wavelengths_nm[i] > wavelengths_nm[i - 1])) {
+      return MediumFault{key, fmt::format("{} has {} after {}; it must be strictly ordered", key,
+                                          wavelengths_nm[i], wavelengths_nm[i - 1])};
+    }
+  }
+  return std::nullopt;
+}
+
+struct NamedList {
+  const char* key;
+  const std::vector<double>& values;
+  const Range& range;
+};
+
+Fault FaultOfLists(const Medium& medium) {
+  const NamedList lists[] = {
+      {"spectrum.solar_irradiance", medium.solar_irradiance, ranges::kSolarIrradiance},
+      {"planet.ground_albedo", medium.ground_albedo, ranges::kAlbedo},
+      {"rayleigh.scattering_per_m", medium.rayleigh_scattering_per_m, ranges::kCoefficient_per_m},
+      {"mie.scattering_per_m", medium.mie_scattering_per_m, ranges::kCoefficient_per_m},
+      {"mie.extinction_per_m", medium.mie_extinction_per_m, ranges::kCoefficient_per_m},
+      {"ozone.absorption_per_m", medium.ozone_absorption_per_m, ranges::kCoefficient_per_m},
+  };
+  for (const NamedList& list : lists) {
+    if (list.values.size() != medium.wavelengths_nm.size()) {
+      return MediumFault{
+          list.key, fmt::format("{} has {} values; it must have {}, one per wavelength", list.key,
+                                list.values.size(), medium.wavelengths_nm.size())};
+    }
+    for (const double value : list.values) {
+      if (Fault fault = OutOfRange(list.key, value, list.range)) return fault;
+    }
+  }
+  return std::nullopt;
+}
+
+Fault FaultOfExtinction(const Medium& medium) {
+  for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+    const double scattering = medium.mie_scattering_per_m[i];
+    const double extinction = medium.mie_extinction_per_m[i];
+    if (!(extinction >= scattering)) {
+      return MediumFault{"mie.scattering_per_m",
+                         fmt::format("mie.scattering_per_m is {} at {} nm; it must not exceed "
+                                     "mie.extinction_per_m, {}",
+                                     scattering, medium.wavelengths_nm[i], extinction)};
+    }
+  }
+  return std::nullopt;
+}
+
+// The density must fall from the ground on: there the deficit may not fall faster than the rest,
+// and above it is then always the smaller of the two.
+Fault FaultOfDeficit(const Medium& medium) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  const double least = medium.rayleigh_scale_height_m * deficit.share / (1.0 + deficit.share);
+  if (deficit.share == 0.0 || (deficit.scale_height_m >= least &&
+                               deficit.scale_height_m <= medium.rayleigh_scale_height_m)) {
+    return std::nullopt;
+  }
+  return MediumFault{
+      "rayleigh.deficit_scale_height_m",
+      fmt::format("rayleigh.deficit_scale_height_m is {}; with this deficit it must lie in [{}, "
+                  "{}], so that the air thins out upwards",
+                  deficit.scale_height_m, least, medium.rayleigh_scale_height_m)};
+}
+
+Fault FaultOfScalars(const Medium& medium) {
+  const struct {
+    const char* key;
+    double value;
+    const Range& range;
+  } scalars[] = {
+      {"planet.radius_m", medium.planet_radius_m, ranges::kPlanetRadius_m},
+      {"planet.atmosphere_top_m", medium.atmosphere_height_m, ranges::kAtmosphereTop_m},
+      {"rayleigh.scale_height_m", medium.rayleigh_scale_height_m, ranges::kScaleHeight_m},
+      {"rayleigh.deficit", medium.rayleigh_deficit.share, ranges::kDeficit},
+      {"rayleigh.deficit_scale_height_m", medium.rayleigh_deficit.scale_height_m,
+       ranges::kScaleHeight_m},
+      {"mie.scale_height_m", medium.mie_scale_height_m, ranges::kScaleHeight_m},
+      {"ozone.bottom_m", medium.ozone.bottom_m, ranges::kOzoneAltitude_m},
+      {"ozone.peak_m", medium.ozone.peak_m, ranges::kOzoneAltitude_m},
+      {"ozone.top_m", medium.ozone.top_m, ranges::kOzoneAltitude_m},
+  };
+  for (const auto& scalar : scalars) {
+    if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.range)) return fault;
+  }
+  if (Fault fault = FaultOfDeficit(medium)) return fault;
+  const OzoneLayer& ozone = medium.ozone;
+  if (!(ozone.bottom_m < ozone.peak_m && ozone.peak_m < ozone.top_m)) {
+    return MediumFault{
+        "ozone.peak_m",
+        fmt::format("ozone.peak_m is {}; it must lie between ozone.bottom_m, {}, and "
+                    "ozone.top_m, {}",
+                    ozone.peak_m, ozone.bottom_m, ozone.top_m)};
+  }
+  if (ozone.shape == OzoneShape::kSmooth && ozone != SmoothOzone(ozone.peak_m)) {
+    return MediumFault{"ozone.profile",
+                       fmt::format("ozone.profile is smooth; its bottom is 0 and its top three "
+                                   "times ozone.peak_m, not {} and {}",
+                                   ozone.bottom_m, ozone.top_m)};
+  }
+  return std::nullopt;
+}
+
+Fault FaultOfPhase(const Medium& medium) {
+  const std::vector<PhaseFunction>& phases = medium.mie_phase;
+  if (phases.size() != 1 && phases.size() != medium.wavelengths_nm.size()) {
+    return MediumFault{"mie.phase", fmt::format("mie.phase has {} values; it must have 1 or {}, "
+                                                "one per wavelength",
+                                                phases.size(), medium.wavelengths_nm.size())};
+  }
+  for (const PhaseFunction& phase : phases) {
+    if (phase.kind != phases.front().kind) {
+      return MediumFault{"mie.phase", fmt::format("mie.phase is {} beside {}; it must be of one "
+                                                  "kind at all wavelengths",
+                                                  NameOf(phase.kind), NameOf(phases.front().kind))};
+    }
+    try {
+      Validate(phase, "mie");
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      return MediumFault{text.substr(0, text.find(' ')), text};
+    }
+  }
+  return std::nullopt;
+}
+
+void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
+  fnv.Add(NameOf(phase.kind));
+  fnv.Add(phase.g);
+  fnv.Add(phase.g_back);
+  fnv.Add(phase.back_weight);
+  fnv.Add(phase.alpha);
+  if (phase.table) fnv.Add(phase.table->hash());
+}
+
+bool AllShareOnePhase(const Medium& medium) {
+  return std::equal(medium.mie_phase.begin() + 1, medium.mie_phase.end(), medium.mie_phase.begin());
+}
+
+}  // namespace
+
+std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) {
+  std::vector<double> values;
+  for (const PhaseFunction& phase : medium.mie_phase) {
+    values.push_back(Phase(phase, cos_scattering));
+  }
+  if (values.size() == 1) values.resize(medium.wavelengths_nm.size(), values.front());
+  return values;
+}
+
+OzoneLayer SmoothOzone(double peak_m) {
+  return {.bottom_m = 0.0, .peak_m = peak_m, .top_m = 3.0 * peak_m, .shape = OzoneShape::kSmooth};
+}
+
+double EquivalentDepth_m(const OzoneLayer& layer) {
+  if (layer.shape == OzoneShape::kTent) return 0.5 * (layer.top_m - layer.bottom_m);
+  constexpr double kPeak = 27.0 * 27.0 * 27.0 * 27.0 / 256.0;
+  constexpr double kBeta = 1.0 / 6435.0;  // integral of (y (1 - y)^2)^4: 4! 8! / 13!
+  return layer.top_m * kPeak * kBeta;
+}
+
+std::optional<MediumFault> FindFault(const Medium& medium) {
+  if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm)) return fault;
+  if (Fault fault = FaultOfScalars(medium)) return fault;
+  if (Fault fault = FaultOfLists(medium)) return fault;
+  if (Fault fault = FaultOfExtinction(medium)) return fault;
+  return FaultOfPhase(medium);
+}
+
+void Validate(const Medium& medium) {
+  if (const Fault fault = FindFault(medium)) throw InputError(fault->text);
+}
+
+std::uint64_t MediumHash(const Medium& medium) {
+  Fnv1a fnv;
+  fnv.Add(std::uint64_t{medium.follows_wgs84});
+  fnv.Add(medium.planet_radius_m);
+  fnv.Add(medium.atmosphere_height_m);
+  fnv.Add(medium.wavelengths_nm);
+  fnv.Add(medium.solar_irradiance);
+  fnv.Add(medium.ground_albedo);
+  fnv.Add(medium.rayleigh_scattering_per_m);
+  fnv.Add(medium.rayleigh_scale_height_m);
+  if (medium.rayleigh_deficit.share != 0.0) {
+    fnv.Add(medium.rayleigh_deficit.share);
+    fnv.Add(medium.rayleigh_deficit.scale_height_m);
+  }
+  fnv.Add(medium.mie_scattering_per_m);
+  fnv.Add(medium.mie_extinction_per_m);
+  fnv.Add(medium.mie_scale_height_m);
+  for (const PhaseFunction& phase : medium.mie_phase) {
+    AddPhase(phase, fnv);
+    if (AllShareOnePhase(medium)) break;  // given once or once per wavelength: the same air
+  }
+  fnv.Add(medium.ozone_absorption_per_m);
+  fnv.Add(medium.ozone.bottom_m);
+  fnv.Add(medium.ozone.peak_m);
+  fnv.Add(medium.ozone.top_m);
+  if (medium.ozone.shape != OzoneShape::kTent) fnv.Add(std::uint64_t{1});
+  return fnv.hash();
+}
+
+double MoleculeDensity(const Medium& medium, double altitude_m) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  return (1.0 + deficit.share) * std::exp(-altitude_m / medium.rayleigh_scale_height_m) -
+         deficit.share * std::exp(-altitude_m / deficit.scale_height_m);
+}
+
+double MoleculeColumn_m(const Medium& medium) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  return (1.0 + deficit.share) * medium.rayleigh_scale_height_m -
+         deficit.share * deficit.scale_height_m;
+}
+
+Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
+  if (medium.follows_wgs84) medium.planet_radius_m = OsculatingRadius(kWgs84, latitude_rad);
+  return medium;
+}
+
+}  // namespace alpenglow

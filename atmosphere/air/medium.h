@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// What the air is made of: three species over a spherical planet, on a wavelength set.
+//
+//   molecules   sigma(h) = rayleigh_scattering [(1 + d) exp(-h / H_R) - d exp(-h / H_D)]
+//                                                                           scattering only
+//   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering, absorption
+//   ozone       sigma(h) = ozone_absorption    layer(h)                     absorption only
+//
+// and nothing above the top. SI units except wavelengths [nm].
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "atmosphere/air/phase.h"
+
+namespace alpenglow {
+
+/// What a single exponential has too much of near the ground, relative to the density there: air
+/// that cools upwards, as below 11 km on Earth, thins out more slowly than the air above it.
+struct MoleculeDeficit {
+  double share = 0.0;  // d, in [0, 1]
+  double scale_height_m = 4000.0;
+
+  bool operator==(const MoleculeDeficit&) const = default;
+};
+
+/// Tent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017).
+/// Smooth: (27/4 y (1 - y)^2)^4 with y = h / top and the peak at top / 3. A tent bends the light of
+/// twilight at its edges, which no quadrature with few nodes can follow; this does not.
+enum class OzoneShape { kTent, kSmooth };
+
+/// Ozone's density relative to its peak, over altitude.
+struct OzoneLayer {
+  double bottom_m = 10000.0;
+  double peak_m = 25000.0;
+  double top_m = 40000.0;
+  OzoneShape shape = OzoneShape::kTent;
+
+  bool operator==(const OzoneLayer&) const = default;
+};
+
+/// A smooth layer with its peak at `peak_m`. The default is that of the earth presets: peak at 22
+/// km, mean at 23.6 km, standard deviation 8.2 km.
+[[nodiscard]] OzoneLayer SmoothOzone(double peak_m = 22000.0);
+
+/// Height [m] of a layer of density 1 throughout that holds as much.
+[[nodiscard]] double EquivalentDepth_m(const OzoneLayer& layer);
+
+/// Lists hold one value per wavelength.
+struct Medium {
+  std::string name = "earth";
+  /// The ground is the WGS84 ellipsoid: a renderer replaces planet_radius_m by the radius of the
+  /// sphere that osculates it at the viewer. False when the planet is a sphere of exactly
+  /// planet_radius_m.
+  bool follows_wgs84 = true;
+  double planet_radius_m = 6371008.7714;
+  double atmosphere_height_m = 120000.0;  // top above the ground
+
+  std::vector<double> wavelengths_nm;    // ascending, in [200, 4000]
+  std::vector<double> solar_irradiance;  // W m^-2 nm^-1 above the air; at 1 au ("mars": 1.524 au)
+  std::vector<double> ground_albedo;     // [0, 1], Lambertian
+
+  std::vector<double> rayleigh_scattering_per_m;  // at altitude 0
+  double rayleigh_scale_height_m = 8000.0;
+  MoleculeDeficit rayleigh_deficit = {};
+
+  std::vector<double> mie_scattering_per_m;  // at altitude 0
+  std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
+  double mie_scale_height_m = 1200.0;
+  /// Of the aerosol: one for all wavelengths, or one per wavelength, all of one kind.
+  std::vector<PhaseFunction> mie_phase{PhaseFunction{}};
+
+  std::vector<double> ozone_absorption_per_m;  // at the peak of the layer
+  OzoneLayer ozone;
+
+  bool operator==(const Medium&) const = default;
+};
+
+/// Density of the molecules relative to altitude 0.
+[[nodiscard]] double MoleculeDensity(const Medium& medium, double altitude_m);
+/// Column of the molecules over altitude 0 at their density there [m].
+[[nodiscard]] double MoleculeColumn_m(const Medium& medium);
+
+/// The aerosol's phase function at the wavelength of this index.
+[[nodiscard]] inline const PhaseFunction& MiePhase(const Medium& medium, std::size_t band) {
+  return medium.mie_phase.size() == 1 ? medium.mie_phase.front() : medium.mie_phase[band];
+}
+
+/// Values [1/sr] of the aerosol's phase function, one per wavelength; evaluated once when all share
+/// it. @param cos_scattering  as for Phase().
+[[nodiscard]] std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering);
+
+/// A parameter out of range: its key in atmosphere.toml, and one line with key, value and range.
+struct MediumFault {
+  std::string key;
+  std::string text;
+
+  bool operator==(const MediumFault&) const = default;
+};
+
+/// The first parameter out of range, if there is one.
+[[nodiscard]] std::optional<MediumFault> FindFault(const Medium& medium);
+
+/// Throws InputError naming the key, the value and the range of the first parameter out of range.
+void Validate(const Medium& medium);
+
+/// A 64-bit hash (FNV-1a over the bit patterns, -0 read as 0) of everything that a table depends
+/// on: all but the name. Stable over programs, machines and versions.
+[[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
+
+/// The medium over the sphere that osculates the ellipsoid at a latitude, where its ground is one;
+/// unchanged where the planet is a sphere.
+[[nodiscard]] Medium OnOsculatingSphere(Medium medium, double latitude_rad);
+
+/// One of "earth", "bruneton2017", "clear-mountain", "hazy", "mars", on the preset's own
+/// wavelengths
+/// ("bruneton2017": 680, 550, 440 nm of the publication, given ascending; the others: the four
+/// optimised bands) or, for all but "bruneton2017", on the ones given, ascending in [360, 830]
+/// where the tables behind them reach. Throws InputError for another name or wavelength. Every
+/// number's source is in medium_presets.cpp.
+[[nodiscard]] Medium MediumPreset(std::string_view name);
+[[nodiscard]] Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm);
+[[nodiscard]] std::vector<std::string> MediumPresetNames();
+
+/// The wavelengths [nm] on which every preset but "bruneton2017" has data.
+inline constexpr double kFirstPresetWavelength_nm = 360.0;
+inline constexpr double kLastPresetWavelength_nm = 830.0;
+
+/// Reads atmosphere.toml: a preset, changed by what the file gives (keys, units and meaning in
+/// atmosphere_file.cpp). Wavelengths may ascend or descend; descending ones are stored reversed,
+/// with every list of the file. Throws InputError "file:line: key ..." for unknown keys (with the
+/// nearest known one), wrong types, NaN, infinities, lists of unequal length, values out of range,
+/// keys that contradict each other or would have no effect, and malformed text. The name is the
+/// preset's, or "custom (from PRESET)" when the file changes anything.
+[[nodiscard]] Medium ReadMedium(const std::filesystem::path& file);
+
+/// As ReadMedium, from text; `origin` stands in messages where the file's name would.
+[[nodiscard]] Medium MediumFromToml(std::string_view text, const std::string& origin);
+
+}  // namespace alpenglow

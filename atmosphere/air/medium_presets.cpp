@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+// The atmospheres that are known by name, with the source of every number.
+//
+// Aerosol of the earth presets: Angstrom (1929), tau(lambda) = tau(550) (lambda / 550 nm)^-a, in
+// one exponential layer; single scattering albedo and mean cosine of OPAC mixtures at 80 % relative
+// humidity (Hess, Koepke and Schult 1998, Bull. Amer. Meteor. Soc. 79, 831-844); the g of Cornette
+// and Shanks is the one whose mean cosine, 3 g (4 + g^2) / (5 (2 + g^2)), is the mixture's.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/air/ozone_column.h"
+#include "atmosphere/air/phase_table.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/embedded_table.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+template <typename Function>
+std::vector<double> Evaluate(const std::vector<double>& wavelengths_nm, Function function) {
+  std::vector<double> values;
+  for (const double wavelength_nm : wavelengths_nm) values.push_back(function(wavelength_nm));
+  return values;
+}
+
+struct Aerosol {
+  const char* name;
+  double optical_depth_550;
+  double angstrom_exponent;
+  std::array<double, 3> single_scattering_albedo;  // at 450, 550, 650 nm
+  double g;                                        // Cornette-Shanks
+};
+
+// Albedos and mean cosines (in brackets, at 550 nm): OPAC. Optical depths are round numbers: earth
+// a clean continental day, visibility near 74 km (Koschmieder); clear-mountain the cleanest days of
+// remote stations; hazy a summer day in the lowlands, visibility near 22 km. Exponent 1.3: the
+// usual mean over land (Angstrom 1929).
+constexpr Aerosol kEarthAerosols[] = {
+    // continental average (0.7034)
+    {"earth", 0.05, 1.3, {0.9304, 0.9253, 0.9186}, 0.6407},
+    // continental clean (0.7086)
+    {"clear-mountain", 0.02, 1.3, {0.9766, 0.9720, 0.9667}, 0.6463},
+    // continental polluted (0.6977)
+    {"hazy", 0.2, 1.3, {0.8977, 0.8925, 0.8849}, 0.6346},
+};
+
+void AddAerosol(const Aerosol& aerosol, Medium& medium) {
+  const SampledFunction albedo({450.0, 550.0, 650.0}, {aerosol.single_scattering_albedo.begin(),
+                                                       aerosol.single_scattering_albedo.end()});
+  medium.mie_scale_height_m = 1200.0;  // Elterman (1968), the layer below 5 km
+  medium.mie_extinction_per_m = Evaluate(medium.wavelengths_nm, [&](double wavelength_nm) {
+    return aerosol.optical_depth_550 * std::pow(wavelength_nm / 550.0, -aerosol.angstrom_exponent) /
+           medium.mie_scale_height_m;
+  });
+  for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+    medium.mie_scattering_per_m.push_back(medium.mie_extinction_per_m[i] *
+                                          albedo(medium.wavelengths_nm[i]));
+  }
+  medium.mie_phase = {{.kind = PhaseKind::kCornetteShanks, .g = aerosol.g}};
+}
+
+Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) {
+  Medium medium;
+  medium.name = aerosol.name;
+  medium.follows_wgs84 = true;
+  medium.planet_radius_m = kEarthMeanRadius_m;
+  medium.atmosphere_height_m = 120000.0;  // twilight needs air above 60 km
+  medium.wavelengths_nm = wavelengths_nm;
+  medium.solar_irradiance = Evaluate(wavelengths_nm, SolarIrradiance);
+  // A mixture of grass and soil, without the rise beyond 700 nm: 0.10 at 400 nm to 0.15 at 700 nm.
+  // A plausible mean, not a measurement.
+  const SampledFunction albedo({400.0, 700.0}, {0.10, 0.15});
+  medium.ground_albedo = Evaluate(wavelengths_nm, albedo);
+  medium.rayleigh_scattering_per_m = Evaluate(wavelengths_nm, RayleighScatteringAtSeaLevel);
+  // The density of the U.S. Standard Atmosphere (1976) within 10 % below 25 km and 22 % up to 55
+  // km, with its column, 8456 m: fitted to logarithms of density, those below 12 km counted twice.
+  // One exponential of 8 km is 2 times too dense at 40 km, where twilight comes from.
+  medium.rayleigh_scale_height_m = 6800.0;
+  medium.rayleigh_deficit = {0.42, 2857.0};
+  AddAerosol(aerosol, medium);
+  medium.ozone = SmoothOzone();
+  medium.ozone_absorption_per_m = Evaluate(wavelengths_nm, [&](double wavelength_nm) {
+    return OzoneAbsorptionAtPeak(300.0, medium.ozone, wavelength_nm);
+  });
+  return medium;
+}
+
+// Rayleigh scattering of carbon dioxide at the ground of Mars: refractivity 4.49e-4 and King factor
+// 1.15 (depolarisation 0.08) in (24 pi^3 / lambda^4 N^2) ((n^2 - 1)/(n^2 + 2))^2 F, for 610 Pa and
+// 210 K. The cross section at 532 nm, 1.32e-30 m^2, is 6 % above what Sneep and Ubachs (2005, JQSRT
+// 92, 293-310) measured; it is a two-hundredth of the dust.
+double RayleighScatteringOnMars(double wavelength_nm) {
+  constexpr double kLoschmidt_per_m3 = 2.6867811e25;
+  constexpr double kMolecules_per_m3 = 610.0 / (1.380649e-23 * 210.0);
+  constexpr double kIndex = 1.0 + 4.49e-4;
+  constexpr double kLorentzLorenz = (kIndex * kIndex - 1.0) / (kIndex * kIndex + 2.0);
+  const double wavelength_m = wavelength_nm * 1e-9;
+  const double cross_section_m2 =
+      24.0 * kPi * kPi * kPi * kLorentzLorenz * kLorentzLorenz * 1.15 /
+      (std::pow(wavelength_m, 4) * kLoschmidt_per_m3 * kLoschmidt_per_m3);
+  return kMolecules_per_m3 * cross_section_m2;
+}
+
+struct MarsDust {
+  SampledFunction relative_extinction, albedo;
+  SpectralPhase phase;
+};
+
+// Made, with sources, by tests/bench/mars_dust.cpp.
+MarsDust ReadMarsDust() {
+  const auto optics = atmosphere::ReadColumns("atmosphere/data/mars_dust.csv", {0, 1, 2});
+  const auto rows = atmosphere::ReadColumns("atmosphere/data/mars_dust_phase.csv", {0, 1, 2});
+  return {SampledFunction(optics[0], optics[1]), SampledFunction(optics[0], optics[2]),
+          SpectralPhaseFromRows(rows[0], rows[1], rows[2])};
+}
+
+// Mars on a clear day of its dusty season: dust of optical depth 0.5, mixed with the gas.
+Medium Mars(const std::vector<double>& wavelengths_nm) {
+  constexpr double kDistance_au = 1.524;      // semi-major axis of the orbit
+  constexpr double kDustOpticalDepth = 0.5;   // Smith et al. (1997), Science 278, 1758-1765
+  constexpr double kScaleHeight_m = 11000.0;  // R T / M g at 210 K; the dust is well mixed
+  static const MarsDust dust = ReadMarsDust();
+  // Bright, dusty ground (Bell et al. 1999, Icarus 138, 25-35), rounded to 0.02.
+  const SampledFunction ground({400.0, 500.0, 600.0, 700.0, 800.0}, {0.06, 0.08, 0.20, 0.28, 0.30});
+  Medium medium;
+  medium.name = "mars";
+  medium.follows_wgs84 = false;
+  medium.planet_radius_m = 3389500.0;  // mean; Archinal et al. (2018), Celest. Mech. 130, 22
+  medium.atmosphere_height_m = 120000.0;
+  medium.wavelengths_nm = wavelengths_nm;
+  medium.solar_irradiance = Evaluate(wavelengths_nm, [](double wavelength_nm) {
+    return SolarIrradiance(wavelength_nm) / (kDistance_au * kDistance_au);
+  });
+  medium.ground_albedo = Evaluate(wavelengths_nm, ground);
+  medium.rayleigh_scattering_per_m = Evaluate(wavelengths_nm, RayleighScatteringOnMars);
+  medium.rayleigh_scale_height_m = kScaleHeight_m;
+  medium.mie_scale_height_m = kScaleHeight_m;
+  medium.mie_phase.clear();
+  for (const double wavelength_nm : wavelengths_nm) {
+    const double extinction =
+        kDustOpticalDepth / kScaleHeight_m * dust.relative_extinction(wavelength_nm);
+    medium.mie_extinction_per_m.push_back(extinction);
+    medium.mie_scattering_per_m.push_back(extinction * dust.albedo(wavelength_nm));
+    medium.mie_phase.push_back(
+        {.kind = PhaseKind::kTable,
+         .table = std::make_shared<const PhaseTable>(dust.phase.At(wavelength_nm))});
+  }
+  medium.ozone_absorption_per_m.assign(wavelengths_nm.size(), 0.0);
+  return medium;
+}
+
+// The constants of Bruneton, E. (2017), "Precomputed Atmospheric Scattering: a New Implementation",
+// that engines share; ascending here.
+Medium Bruneton2017() {
+  Medium medium;
+  medium.name = "bruneton2017";
+  medium.follows_wgs84 = false;
+  medium.planet_radius_m = 6360000.0;
+  medium.atmosphere_height_m = 60000.0;
+  medium.wavelengths_nm = {440.0, 550.0, 680.0};
+  medium.solar_irradiance = {1.91198, 1.8504, 1.474};
+  medium.ground_albedo = {0.1, 0.1, 0.1};
+  medium.rayleigh_scattering_per_m = {33.1e-6, 13.558e-6, 5.802e-6};
+  medium.rayleigh_scale_height_m = 8000.0;
+  medium.mie_scattering_per_m = {3.996e-6, 3.996e-6, 3.996e-6};
+  medium.mie_extinction_per_m = {4.440e-6, 4.440e-6, 4.440e-6};
+  medium.mie_scale_height_m = 1200.0;
+  medium.mie_phase = {{.kind = PhaseKind::kCornetteShanks, .g = 0.8}};
+  medium.ozone_absorption_per_m = {0.085e-6, 1.881e-6, 0.650e-6};
+  medium.ozone = OzoneLayer{};
+  return medium;
+}
+
+void RequireKnownName(std::string_view name) {
+  const std::vector<std::string> names = MediumPresetNames();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  std::string known;
+  for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+  throw InputError(fmt::format("preset is \"{}\"; it must be one of {}", name, known));
+}
+
+void RequireTablesReach(std::string_view name, const std::vector<double>& wavelengths_nm) {
+  for (const double wavelength_nm : wavelengths_nm) {
+    RequireInRange(wavelength_nm, kFirstPresetWavelength_nm, kLastPresetWavelength_nm,
+                   fmt::format("a wavelength [nm] of preset {}", name));
+  }
+}
+
+}  // namespace
+
+double OzoneAbsorptionAtPeak(double column_dobson, const OzoneLayer& layer, double wavelength_nm) {
+  constexpr double kMoleculesPerSquareMetreAndDobson = 2.6867811e20;
+  return column_dobson * kMoleculesPerSquareMetreAndDobson / EquivalentDepth_m(layer) *
+         OzoneCrossSection(wavelength_nm);
+}
+
+std::vector<std::string> MediumPresetNames() {
+  return {"earth", "clear-mountain", "hazy", "mars", "bruneton2017"};
+}
+
+Medium MediumPreset(std::string_view name) {
+  if (name == "bruneton2017") return Bruneton2017();
+  return MediumPreset(name, WavelengthSet(4));
+}
+
+Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm) {
+  RequireKnownName(name);
+  if (name == "bruneton2017") {
+    Medium medium = Bruneton2017();
+    if (wavelengths_nm == medium.wavelengths_nm) return medium;
+    throw InputError("preset bruneton2017 is published at 440, 550 and 680 nm only");
+  }
+  RequireTablesReach(name, wavelengths_nm);
+  Medium medium = Mars(wavelengths_nm);
+  for (const Aerosol& aerosol : kEarthAerosols) {
+    if (name == aerosol.name) medium = Earth(aerosol, wavelengths_nm);
+  }
+  Validate(medium);
+  return medium;
+}
+
+}  // namespace alpenglow

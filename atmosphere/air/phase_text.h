@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// The shared text phase.glsl, read as C++: alpenglow::shared::PhaseHenyeyGreenstein(0.3, 0.8) in
+// double, (0.3f, 0.8f) as the graphics card computes it.
+#pragma once
+
+#include "atmosphere/dialect/shared_math.h"
+
+namespace alpenglow::shared {
+
+#include "atmosphere/dialect/shared_begin.h"
+//
+#include "atmosphere/air/phase.glsl"
+//
+#include "atmosphere/dialect/shared_end.h"
+
+}  // namespace alpenglow::shared

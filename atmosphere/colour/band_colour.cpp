@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+// From bands to colour.
+//
+// With radiance L(lambda) = E(lambda) f(lambda), E the sun above the air, f is smooth where E is
+// not. The starting point takes f linear between the bands and constant beyond the outermost,
+//
+//   XYZ_c = sum a_ci f_i,    a_ci = K integral of  cmf_c(lambda) E(lambda) hat_i(lambda)  d lambda,
+//
+// which is exact for the sun itself on any wavelength set: its white point never moves. With at
+// most sixteen bands a correction is added that makes the relative errors of XYZ least over a
+// family of daylight spectra; it keeps the sun exact and is as small as the family allows (ridge).
+//
+// The default sets do better: their rows come from a file, trained on simulated skies.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/colour/solar_table.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/colour/trained_bands.h"
+#include "atmosphere/number/cholesky.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+using Triple = std::array<double, 3>;
+using Seen = std::array<double, 4>;  // X, Y, Z of the cones; scotopic luminance of the rods
+
+constexpr std::size_t kMostTrainedBands = 16;
+constexpr double kFirst_nm = 360.0;  // of the colour-matching functions
+constexpr double kLast_nm = 830.0;
+
+// Share of band i in the broken line through the bands, at a wavelength.
+double Hat(std::span<const double> nodes, std::size_t i, double at) {
+  if (at <= nodes[i]) {
+    if (i == 0) return 1.0;
+    return std::max(0.0, (at - nodes[i - 1]) / (nodes[i] - nodes[i - 1]));
+  }
+  if (i + 1 == nodes.size()) return 1.0;
+  return std::max(0.0, (nodes[i + 1] - at) / (nodes[i + 1] - nodes[i]));
+}
+
+// The colour of the sun's light in one narrow interval, and its middle.
+struct Slice {
+  double wavelength_nm;
+  Seen seen;
+};
+
+// Colour-matching functions times the solar spectrum, integrated over steps of 5 nm by 0.5 nm
+// midpoints: daylight is smooth over 5 nm once it is divided by the sun.
+const std::vector<Slice>& SunlightSlices() {
+  static const std::vector<Slice> slices = [] {
+    constexpr double kStep_nm = 5.0;
+    constexpr double kFine_nm = 0.5;
+    std::vector<Slice> made;
+    for (double low = kFirst_nm; low < kLast_nm; low += kStep_nm) {
+      Slice slice{low + 0.5 * kStep_nm, {}};
+      for (double at = low + 0.5 * kFine_nm; at < low + kStep_nm; at += kFine_nm) {
+        const Triple matching = ColourMatching(at);
+        const double power = kLuminousEfficacy_lm_per_W * SolarTable()(at) * kFine_nm;
+        for (std::size_t c = 0; c < 3; ++c) slice.seen[c] += matching[c] * power;
+        slice.seen[3] += ScotopicEfficiency(at) * kScotopicEfficacy_lm_per_W /
+                         kLuminousEfficacy_lm_per_W * power;
+      }
+      made.push_back(slice);
+    }
+    return made;
+  }();
+  return slices;
+}
+
+// Vertical optical depths at a wavelength: molecules, aerosol relative to 550 nm, 300 DU of ozone.
+struct Air {
+  double molecules, log_wavelength_ratio, ozone;
+};
+
+Air AirAt(double wavelength_nm) {
+  constexpr double kOzoneColumn_per_m2 = 300.0 * 2.6867811e20;
+  return {RayleighScatteringAtSeaLevel(std::clamp(wavelength_nm, 250.0, 4000.0)) * 8000.0,
+          std::log(wavelength_nm / 550.0), OzoneCrossSection(wavelength_nm) * kOzoneColumn_per_m2};
+}
+
+// One spectrum of the family: sunlight after so many vertical columns of molecules, haze (optical
+// depth at 550 nm) and ozone; and if `path` is not 0, scattered by molecules and haze along a path
+// that may be so long that it saturates, and again by molecules.
+struct Daylight {
+  double molecules, haze, exponent, ozone;
+  double path, haze_source, again;
+};
+
+double RelativeToSun(const Daylight& light, const Air& air) {
+  const double haze = std::exp(-light.exponent * air.log_wavelength_ratio);
+  const double attenuation =
+      std::exp(-(light.molecules * air.molecules + light.haze * haze + light.ozone * air.ozone));
+  if (light.path == 0.0) return attenuation;
+  const double source = air.molecules + light.haze_source * haze;
+  return -std::expm1(-light.path * source) * (1.0 + light.again * air.molecules) * attenuation;
+}
+
+// Sunlight from the zenith to the horizon; skies from the zenith to the horizon, from noon to a
+// twilight that has crossed the ozone layer almost along it.
+std::vector<Daylight> DaylightFamily() {
+  std::vector<Daylight> family;
+  for (const double exponent : {0.6, 1.4}) {
+    for (const double molecules : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+      for (const double haze : {0.02, 0.1, 0.3}) {
+        family.push_back({molecules, haze * molecules, exponent, molecules, 0.0, 0.0, 0.0});
+      }
+    }
+    for (const double path : {0.01, 1.0, 8.0}) {
+      for (const double haze_source : {0.05, 0.5}) {
+        for (const double molecules : {0.2, 1.0, 3.0, 10.0}) {
+          for (const double haze : {0.02, 0.2}) {
+            for (const double ozone : {0.5, 2.0, 6.0, 15.0, 35.0}) {
+              for (const double again : {0.0, 3.0}) {
+                family.push_back(
+                    {molecules, haze * molecules, exponent, ozone, path, haze_source, again});
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+  return family;
+}
+
+// The least-squares system of one row of the matrix.
+class NormalEquations {
+ public:
+  explicit NormalEquations(std::size_t unknowns) : n_(unknowns), a_(n_ * n_), b_(n_) {}
+
+  void Add(std::span<const double> row, double target, double weight) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j < n_; ++j) a_[i * n_ + j] += weight * row[i] * row[j];
+      b_[i] += weight * row[i] * target;
+    }
+  }
+  // Keeps the system positive definite.
+  void AddRidge(double ridge) {
+    for (std::size_t i = 0; i < n_; ++i) a_[i * n_ + i] += ridge;
+  }
+
+  [[nodiscard]] std::vector<double> Solve() const { return SolvePositiveDefinite(a_, b_); }
+
+ private:
+  std::size_t n_;
+  std::vector<double> a_, b_;
+};
+
+// One spectrum of the family: true colour, and what the bands see of it.
+struct Example {
+  Seen seen;
+  std::vector<double> bands;
+};
+
+std::vector<Example> Examples(std::span<const double> wavelengths_nm) {
+  std::vector<std::pair<Air, Seen>> slices;
+  for (const Slice& slice : SunlightSlices()) {
+    slices.emplace_back(AirAt(slice.wavelength_nm), slice.seen);
+  }
+  std::vector<Air> bands;
+  for (const double wavelength_nm : wavelengths_nm) bands.push_back(AirAt(wavelength_nm));
+  std::vector<Example> examples;
+  for (const Daylight& light : DaylightFamily()) {
+    Example example{};
+    for (const auto& [air, seen] : slices) {
+      const double f = RelativeToSun(light, air);
+      for (std::size_t c = 0; c < 4; ++c) example.seen[c] += f * seen[c];
+    }
+    for (const Air& air : bands) example.bands.push_back(RelativeToSun(light, air));
+    examples.push_back(std::move(example));
+  }
+  return examples;
+}
+
+using Row = std::vector<double>;
+
+Row Starting(std::span<const double> wavelengths_nm, std::size_t component) {
+  Row row(wavelengths_nm.size(), 0.0);
+  for (const Slice& slice : SunlightSlices()) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      row[i] += Hat(wavelengths_nm, i, slice.wavelength_nm) * slice.seen[component];
+    }
+  }
+  return row;
+}
+
+double Sum(const Row& row) {
+  double sum = 0.0;
+  for (const double value : row) sum += value;
+  return sum;
+}
+
+double Dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+// The correction that trains a row on the examples. Errors count relative to the component, but not
+// below a fiftieth of the luminance: the blue of a deep red sun is not seen.
+Row Corrected(Row row, const std::vector<Example>& examples, std::size_t component) {
+  constexpr double kWeightOfSun = 1e5;
+  constexpr double kRidge = 1e-5;
+  const double whole = Sum(row);
+  NormalEquations equations(row.size());
+  for (const Example& example : examples) {
+    const double scale = example.seen[component] + 0.02 * example.seen[1];
+    const double residual = example.seen[component] - Dot(row, example.bands);
+    equations.Add(example.bands, residual / whole,
+                  whole * whole / (scale * scale) / static_cast<double>(examples.size()));
+  }
+  equations.Add(std::vector<double>(row.size(), 1.0), 0.0, kWeightOfSun);
+  equations.AddRidge(kRidge);
+  const Row correction = equations.Solve();
+  for (std::size_t i = 0; i < row.size(); ++i) row[i] += whole * correction[i];
+  return row;
+}
+
+void RequireAscending(const std::vector<double>& wavelengths_nm) {
+  ALPENGLOW_ENSURE(wavelengths_nm.size(), >, std::size_t{0});
+  for (std::size_t i = 1; i < wavelengths_nm.size(); ++i) {
+    ALPENGLOW_ENSURE(wavelengths_nm[i - 1], <, wavelengths_nm[i]);
+  }
+}
+
+// The rows that make X, Y, Z and scotopic luminance of light relative to the sun.
+std::array<Row, 4> RowsOf(std::span<const double> wavelengths_nm) {
+  std::array<Row, 4> rows;
+  for (std::size_t c = 0; c < 4; ++c) rows[c] = Starting(wavelengths_nm, c);
+  if (wavelengths_nm.size() <= kMostTrainedBands) {
+    const std::vector<Example> examples = Examples(wavelengths_nm);
+    for (std::size_t c = 0; c < 4; ++c) rows[c] = Corrected(std::move(rows[c]), examples, c);
+  }
+  if (const TrainedBands* trained = FindTrainedBands(wavelengths_nm)) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double sun = Sum(Starting(wavelengths_nm, c));
+      rows[c] = trained->share[c];
+      for (double& value : rows[c]) value *= sun;
+    }
+  }
+  return rows;
+}
+
+Triple Product(std::span<const double> matrix, std::span<const double> bands) {
+  const std::size_t n = bands.size();
+  return {Dot(matrix.subspan(0, n), bands), Dot(matrix.subspan(n, n), bands),
+          Dot(matrix.subspan(2 * n, n), bands)};
+}
+
+}  // namespace
+
+BandColour::BandColour(std::vector<double> wavelengths_nm)
+    : wavelengths_nm_(std::move(wavelengths_nm)) {
+  RequireAscending(wavelengths_nm_);
+  const std::size_t n = wavelengths_nm_.size();
+  const std::array<Row, 4> rows = RowsOf(wavelengths_nm_);
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (std::size_t i = 0; i < n; ++i) {
+      (c < 3 ? xyz_ : scotopic_).push_back(rows[c][i] / SolarIrradiance(wavelengths_nm_[i]));
+    }
+  }
+  for (const auto& srgb_row : LinearSrgbFromXyz()) {
+    for (std::size_t i = 0; i < n; ++i) {
+      srgb_.push_back(srgb_row[0] * xyz_[i] + srgb_row[1] * xyz_[n + i] +
+                      srgb_row[2] * xyz_[2 * n + i]);
+    }
+  }
+}
+
+std::array<double, 3> BandColour::Xyz(std::span<const double> radiance) const {
+  ALPENGLOW_ENSURE(radiance.size(), ==, wavelengths_nm_.size());
+  return Product(xyz_, radiance);
+}
+
+std::array<double, 3> BandColour::LinearSrgb(std::span<const double> radiance) const {
+  ALPENGLOW_ENSURE(radiance.size(), ==, wavelengths_nm_.size());
+  return Product(srgb_, radiance);
+}
+
+double BandColour::ScotopicLuminance(std::span<const double> radiance) const {
+  ALPENGLOW_ENSURE(radiance.size(), ==, wavelengths_nm_.size());
+  return Dot(scotopic_, radiance);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Kernels: loops compiled once per instruction set, of which the program takes the best that the
+// processor has when it runs.
+//
+// How to write one, in atmosphere/ or lut/:
+//  1. name.h declares a table of function pointers and its choice:
+//       struct LightKernel { void (*scatter)(const LightConstants&, float* light); };
+//       ALPENGLOW_DECLARE_KERNEL(LightKernel);
+//     Arguments are plain data: arrays, pointers, aggregates; no class with functions of its own.
+//  2. name_kernel.cpp includes atmosphere/ray/batch.h, keeps all of its functions in an unnamed
+//     namespace inside alpenglow, and ends with
+//       template <>
+//       const LightKernel& KernelOf<LightKernel, kThisSet>() {
+//         static constexpr LightKernel kernel{Scatter};
+//         return kernel;
+//       }
+//  3. CMakeLists.txt: alpenglow_kernels(alpenglow_lut name_kernel.cpp)
+//  4. Callers: Kernel<LightKernel>().scatter(...)
+//
+// A kernel is linked several times into one program. Whatever is not in the unnamed namespace (an
+// inline function of a header that the compiler did not inline) becomes one weak symbol for the
+// whole program, perhaps with instructions that the processor lacks; the tests kernel_symbols.*
+// refuse objects with such symbols.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace alpenglow {
+
+/// Baseline is what the compiler assumes of every processor: SSE2 on x86-64, NEON on AArch64,
+/// plain numbers elsewhere or when built without ALPENGLOW_SIMD.
+enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
+
+/// "sse2", "neon" or "scalar" for the baseline, "avx2", "avx512".
+[[nodiscard]] std::string_view NameOf(InstructionSet set);
+
+/// The sets that this program was built for and this processor and its operating system have,
+/// ascending.
+[[nodiscard]] const std::vector<InstructionSet>& AvailableInstructionSets();
+
+/// The set that kernels use: the last available one, or the one that the environment variable
+/// ALPENGLOW_INSTRUCTION_SET names. Throws InputError when that is not available.
+[[nodiscard]] InstructionSet CurrentInstructionSet();
+
+/// Makes the whole program use another available set while the object lives, so that sets can be
+/// held against each other. Samples made under one set are not to be read under another.
+class InstructionSetScope {
+ public:
+  /// Throws InputError when the set is not available.
+  explicit InstructionSetScope(InstructionSet set);
+  ~InstructionSetScope();
+  InstructionSetScope(const InstructionSetScope&) = delete;
+  InstructionSetScope& operator=(const InstructionSetScope&) = delete;
+
+ private:
+  InstructionSet before_;
+};
+
+/// The table of one set; specialised by the file of the kernel.
+template <typename Table, InstructionSet set>
+[[nodiscard]] const Table& KernelOf();
+
+#ifdef ALPENGLOW_X86_KERNELS
+#define ALPENGLOW_DECLARE_KERNEL(Table)                      \
+  template <>                                                \
+  const Table& KernelOf<Table, InstructionSet::kBaseline>(); \
+  template <>                                                \
+  const Table& KernelOf<Table, InstructionSet::kAvx2>();     \
+  template <>                                                \
+  const Table& KernelOf<Table, InstructionSet::kAvx512>()
+#else
+#define ALPENGLOW_DECLARE_KERNEL(Table) \
+  template <>                           \
+  const Table& KernelOf<Table, InstructionSet::kBaseline>()
+#endif
+
+/// The table of the current set.
+template <typename Table>
+[[nodiscard]] const Table& Kernel() {
+#ifdef ALPENGLOW_X86_KERNELS
+  switch (CurrentInstructionSet()) {
+    case InstructionSet::kAvx512:
+      return KernelOf<Table, InstructionSet::kAvx512>();
+    case InstructionSet::kAvx2:
+      return KernelOf<Table, InstructionSet::kAvx2>();
+    case InstructionSet::kBaseline:
+      break;
+  }
+#endif
+  return KernelOf<Table, InstructionSet::kBaseline>();
+}
+
+}  // namespace alpenglow

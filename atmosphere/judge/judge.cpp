@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/judge/judge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/quadrature.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow::judge {
+namespace {
+
+using Extended = long double;
+using Columns = std::array<double, 3>;  // molecules, aerosol, ozone [m]
+
+/// A straight line through the shell, by plain formulas in extended precision.
+struct Line {
+  Extended r, mu, radius;
+
+  [[nodiscard]] Extended Altitude(Extended t) const {
+    return std::sqrt(r * r + 2 * r * mu * t + t * t) - radius;
+  }
+  [[nodiscard]] Extended Perigee() const { return -r * mu; }
+
+  // Appends the distances in (begin, end) at which the line crosses altitude z.
+  void AppendCrossings(Extended z, Extended begin, Extended end, std::vector<double>& found) const {
+    const Extended discriminant = r * r * mu * mu - (r - radius - z) * (r + radius + z);
+    if (discriminant < 0) return;
+    for (const Extended t :
+         {-r * mu - std::sqrt(discriminant), -r * mu + std::sqrt(discriminant)}) {
+      if (t > begin && t < end) found.push_back(static_cast<double>(t));
+    }
+  }
+};
+
+Columns Densities(const Medium& medium, Extended altitude) {
+  const OzoneLayer& layer = medium.ozone;
+  const double h = static_cast<double>(altitude);
+  double ozone = 0.0;
+  if (layer.shape == OzoneShape::kSmooth) {
+    const double y = h / layer.top_m;
+    if (y > 0.0 && y < 1.0) ozone = std::pow(27.0 / 4.0 * y, 4) * std::pow(1.0 - y, 8);
+  } else if (h > layer.bottom_m && h <= layer.peak_m) {
+    ozone = (h - layer.bottom_m) / (layer.peak_m - layer.bottom_m);
+  } else if (h > layer.peak_m && h < layer.top_m) {
+    ozone = (layer.top_m - h) / (layer.top_m - layer.peak_m);
+  }
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  const double molecules = (1.0 + deficit.share) * std::exp(-h / medium.rayleigh_scale_height_m) -
+                           deficit.share * std::exp(-h / deficit.scale_height_m);
+  return {molecules, std::exp(-h / medium.mie_scale_height_m), ozone};
+}
+
+// Where the integrands along the line have a kink or bend hard: tent edges, perigee, and a ladder
+// of altitudes that brackets both scale heights so that no layer hides between the nodes of a first
+// panel.
+std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
+  std::vector<double> points{begin, end};
+  const Extended perigee = line.Perigee();
+  if (perigee > begin && perigee < end) points.push_back(static_cast<double>(perigee));
+  for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
+    line.AppendCrossings(z, begin, end, points);
+  }
+  for (const double height : {medium.rayleigh_scale_height_m, medium.mie_scale_height_m}) {
+    for (const double multiple : {1.0, 4.0, 16.0})
+      line.AppendCrossings(multiple * height, begin, end, points);
+  }
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+// Where the sunbeam that meets the view line at distance t has its perigee at altitude z: the line
+// leaves the cylinder of radius R + z around the axis from the planet's centre to the sun. The
+// tent's edges make the integrand there kink like (t - t0)^1.5, which no error estimate sees in
+// time.
+void AppendSunPerigees(const Line& line, const ViewRay& ray, Extended z, double begin, double end,
+                       std::vector<double>& points) {
+  const Extended nu = ray.nu;
+  const Extended a = (1 - nu) * (1 + nu);
+  const Extended b = line.r * (line.mu - ray.mu_s * nu);
+  const Extended c = line.r * line.r * (1 - static_cast<Extended>(ray.mu_s) * ray.mu_s) -
+                     (line.radius + z) * (line.radius + z);
+  const Extended discriminant = b * b - a * c;
+  if (a <= 0 || discriminant < 0) return;
+  for (const Extended t :
+       {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
+    if (t > begin && t < end) points.push_back(static_cast<double>(t));
+  }
+}
+
+AdaptiveResult ColumnsAlong(const Medium& medium, const Line& line, double begin, double end,
+                            double tolerance) {
+  const auto densities = [&](double t) {
+    const Columns now = Densities(medium, line.Altitude(t));
+    return std::vector<double>(now.begin(), now.end());
+  };
+  return IntegrateAdaptively(densities, 3, Breakpoints(medium, line, begin, end), tolerance);
+}
+
+double TauAt(const Medium& medium, std::size_t band, std::span<const double> columns) {
+  return medium.rayleigh_scattering_per_m[band] * columns[0] +
+         medium.mie_extinction_per_m[band] * columns[1] +
+         medium.ozone_absorption_per_m[band] * columns[2];
+}
+
+double PhaseRayleigh(double nu) { return 3.0 / (16.0 * kPi) * (1.0 + nu * nu); }
+
+// Columns from a point towards the sun, or nothing when the planet stands between.
+struct SunPath {
+  bool lit;
+  Columns columns;
+};
+
+SunPath TowardsSun(const Medium& medium, const Line& view, const ViewRay& ray, double t, bool lit,
+                   double tolerance) {
+  if (!lit) return {false, {}};
+  const Extended h = view.Altitude(t);
+  const Extended r = view.radius + h;
+  const Extended mu_s = std::clamp((view.r * ray.mu_s + static_cast<Extended>(t) * ray.nu) / r,
+                                   Extended(-1), Extended(1));
+  const Line sun{r, mu_s, view.radius};
+  const Extended top = view.radius + medium.atmosphere_height_m;
+  const Extended end =
+      -r * mu_s + std::sqrt(std::max<Extended>(r * r * mu_s * mu_s + (top - r) * (top + r), 0));
+  const AdaptiveResult columns =
+      ColumnsAlong(medium, sun, 0.0, static_cast<double>(end), tolerance);
+  return {true, {columns.value[0], columns.value[1], columns.value[2]}};
+}
+
+}  // namespace
+
+OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray) {
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  const Extended radius = medium.planet_radius_m;
+  const Line line{radius + std::max(ray.altitude_m, 0.0), ray.mu, radius};
+  const auto densities = [&](double t) {
+    const Columns now = Densities(medium, line.Altitude(t));
+    std::vector<double> extinction(medium.wavelengths_nm.size());
+    for (std::size_t band = 0; band < extinction.size(); ++band)
+      extinction[band] = TauAt(medium, band, now);
+    return extinction;
+  };
+  const AdaptiveResult result =
+      IntegrateAdaptively(densities, medium.wavelengths_nm.size(),
+                          Breakpoints(medium, line, extent.begin_m, extent.end_m), 1e-12);
+  return {result.value, extent.end == RayEnd::kGround, result.error < 1e-10};
+}
+
+SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
+  constexpr double kInnerTolerance = 1e-10;
+  constexpr double kOuterTolerance = 1e-9;
+  const std::size_t bands = medium.wavelengths_nm.size();
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
+  const Extended radius = medium.planet_radius_m;
+  const Line line{radius + std::max(ray.altitude_m, 0.0), ray.mu, radius};
+
+  std::vector<double> points = Breakpoints(medium, line, extent.begin_m, extent.end_m);
+  const bool any_dark = shadow.dark_begin_m < shadow.dark_end_m;
+  if (any_dark) points.insert(points.end(), {shadow.dark_begin_m, shadow.dark_end_m});
+  for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m,
+                         1.0 * medium.mie_scale_height_m, 4.0 * medium.mie_scale_height_m}) {
+    AppendSunPerigees(line, ray, z, extent.begin_m, extent.end_m, points);
+  }
+  std::sort(points.begin(), points.end());
+  const auto is_dark = [&](double t) {
+    return any_dark && t > shadow.dark_begin_m && t < shadow.dark_end_m;
+  };
+
+  const double phase_rayleigh = PhaseRayleigh(ray.nu);
+  const std::vector<double> phase_mie = MiePhaseValues(medium, ray.nu);
+  const auto source = [&](double t) {
+    std::vector<double> scattered(bands, 0.0);
+    const SunPath sun = TowardsSun(medium, line, ray, t, !is_dark(t), kInnerTolerance);
+    if (!sun.lit) return scattered;
+    const AdaptiveResult view = ColumnsAlong(medium, line, extent.begin_m, t, kInnerTolerance);
+    const Columns density = Densities(medium, line.Altitude(t));
+    for (std::size_t band = 0; band < bands; ++band) {
+      const double tau = TauAt(medium, band, view.value) + TauAt(medium, band, sun.columns);
+      scattered[band] =
+          std::exp(-tau) * (medium.rayleigh_scattering_per_m[band] * density[0] * phase_rayleigh +
+                            medium.mie_scattering_per_m[band] * density[1] * phase_mie[band]);
+    }
+    return scattered;
+  };
+  const AdaptiveResult scattered = IntegrateAdaptively(source, bands, points, kOuterTolerance);
+
+  SingleScattering result;
+  result.inscatter = scattered.value;
+  result.error = scattered.error;
+  result.converged = scattered.error < 1e-8;
+  result.ground.assign(bands, 0.0);
+  const OpticalDepth depth = OpticalDepthAlong(medium, ray);
+  for (const double tau : depth.tau) result.transmittance.push_back(std::exp(-tau));
+  if (extent.end != RayEnd::kGround) return result;
+  const Extended mu_s_ground =
+      (line.r * ray.mu_s + static_cast<Extended>(extent.end_m) * ray.nu) / radius;
+  const std::vector<double> irradiance =
+      SunIrradiance(medium, 0.0, std::clamp(static_cast<double>(mu_s_ground), -1.0, 1.0));
+  for (std::size_t band = 0; band < bands; ++band) {
+    result.ground[band] =
+        result.transmittance[band] * medium.ground_albedo[band] / kPi * irradiance[band];
+  }
+  return result;
+}
+
+std::vector<double> SunIrradiance(const Medium& medium, double altitude_m, double mu_s) {
+  std::vector<double> irradiance(medium.wavelengths_nm.size(), 0.0);
+  if (mu_s <= 0.0) return irradiance;
+  const OpticalDepth depth = OpticalDepthAlong(medium, {altitude_m, mu_s, mu_s, 1.0});
+  for (std::size_t band = 0; band < irradiance.size(); ++band)
+    irradiance[band] = mu_s * std::exp(-depth.tau[band]);
+  return irradiance;
+}
+
+}  // namespace alpenglow::judge

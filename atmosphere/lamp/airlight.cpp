@@ -1,0 +1,618 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/lamp/airlight.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/quadrature.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kSmallestApproach_m = 1e-12;
+
+/// A vector that lives on the stack.
+template <typename Element, std::size_t kCapacity>
+class Few {
+ public:
+  [[nodiscard]] bool full() const { return count_ == kCapacity; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  void push_back(const Element& element) {
+    ALPENGLOW_ENSURE(count_, <, kCapacity);
+    elements_[count_++] = element;
+  }
+  void insert(std::size_t at, const Element& element) {
+    push_back(element);
+    for (std::size_t i = count_ - 1; i > at; --i) std::swap(elements_[i], elements_[i - 1]);
+  }
+  Element& operator[](std::size_t i) { return elements_[i]; }
+  const Element& operator[](std::size_t i) const { return elements_[i]; }
+  Element* begin() { return elements_.data(); }
+  Element* end() { return elements_.data() + count_; }
+  [[nodiscard]] const Element* begin() const { return elements_.data(); }
+  [[nodiscard]] const Element* end() const { return elements_.data() + count_; }
+
+ private:
+  std::array<Element, kCapacity> elements_;
+  std::size_t count_ = 0;
+};
+
+/// Where the ray's distance to the lamp is that of the variable x, and what it sees there.
+class LampRay {
+ public:
+  LampRay(const LampAir& air, const Lamp& lamp, const LampSegment& segment)
+      : air_(air), lamp_(lamp) {
+    ALPENGLOW_ENSURE(air.layers.size(), <=, kMostLampLayers);
+    const glm::dvec3 to_lamp = lamp.position_m - segment.origin_m;
+    nearest_m_ = glm::dot(to_lamp, segment.direction);
+    const glm::dvec3 off = nearest_m_ * segment.direction - to_lamp;
+    const double distance = glm::length(off);
+    approach_m_ = std::max({distance, lamp.radius_m, kSmallestApproach_m});
+    SetPlane(segment.direction, distance > 1e-14 * glm::length(to_lamp)
+                                    ? off / distance
+                                    : AnyAcross(segment.direction));
+    slope_ = glm::dot(air.up, segment.direction);
+    z_eye_ = air.AltitudeOf(segment.origin_m);
+    z_lamp_ = air.AltitudeOf(lamp.position_m);
+    for (std::size_t k = 0; k < air.layers.size(); ++k) {
+      inverse_h_[k] = 1.0 / air.layers[k].scale_height_m;
+      rho_eye_[k] = std::exp(-z_eye_ * inverse_h_[k]);
+      rho_lamp_[k] = std::exp(-z_lamp_ * inverse_h_[k]);
+    }
+    reference_ = air.bands() / 2;
+    const double end = std::isinf(segment.end_m) ? HomogeneousEnd() : segment.end_m;
+    x_begin_ = XOf(segment.begin_m);
+    x_end_ = XOf(end);
+    ChooseLayers(z_eye_ + slope_ * segment.begin_m, z_eye_ + slope_ * end);
+  }
+
+  [[nodiscard]] double x_begin() const { return x_begin_; }
+  [[nodiscard]] double x_end() const { return x_end_; }
+
+  // Where the ray enters and leaves the cone of half angle alpha about the lamp's axis. In the
+  // plane of ray and lamp the cosine to the axis is a cos(theta - phi).
+  template <typename Add>
+  void AddCone(double cosine, const Add& add) const {
+    const double a = std::hypot(across_.x, along_.x);
+    const double phi = std::atan2(along_.x, across_.x);
+    if (!(std::abs(cosine) < a)) return;
+    const double half = std::acos(cosine / a);
+    for (const double theta :
+         {phi - half, phi + half, phi + half - 2.0 * kPi, phi - half + 2.0 * kPi}) {
+      if (std::abs(theta) < 0.5 * kPi) add(std::asinh(std::tan(theta)));
+    }
+  }
+  // Where the ray is nearest to the lamp's axis.
+  template <typename Add>
+  void AddAxis(const Add& add) const {
+    const double phi = std::atan2(along_.x, across_.x);
+    if (std::abs(phi) < 0.5 * kPi) add(std::asinh(std::tan(phi)));
+  }
+
+  [[nodiscard]] bool IsLit(double x) const {
+    return Profile(std::tanh(x), 1.0 / std::cosh(x)) > 0.0;
+  }
+
+  // The integrand in x, in the middle band, of the layers that matter.
+  [[nodiscard]] double Reference(double x) const {
+    double value = 0.0;
+    At(x, great_layers_, reference_, reference_ + 1,
+       [&](std::size_t, double found) { value = found; });
+    return value;
+  }
+
+  void Accumulate(double x, double weight, Bands<double>& sum) const {
+    At(x, all_layers_, 0, sum.count,
+       [&](std::size_t band, double found) { sum[band] += weight * found; });
+  }
+
+ private:
+  static glm::dvec3 AnyAcross(const glm::dvec3& direction) {
+    const glm::dvec3 other =
+        std::abs(direction.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+    return glm::normalize(glm::cross(direction, other));
+  }
+
+  // Cosines of the ray and of the direction from the lamp to the nearest point, to the lamp's axes.
+  void SetPlane(const glm::dvec3& ray, const glm::dvec3& off) {
+    const glm::dvec3 third = glm::cross(lamp_.side, lamp_.axis);
+    along_ = {glm::dot(ray, lamp_.axis), glm::dot(ray, lamp_.side), glm::dot(ray, third)};
+    across_ = {glm::dot(off, lamp_.axis), glm::dot(off, lamp_.side), glm::dot(off, third)};
+  }
+
+  [[nodiscard]] double XOf(double t) const { return std::asinh((t - nearest_m_) / approach_m_); }
+
+  // The tail beyond holds less than 1e-9 of the light: d has grown by as much, or 45 optical depths
+  // lie behind.
+  [[nodiscard]] double HomogeneousEnd() const {
+    double extinction = 0.0;
+    for (const LampLayer& layer : air_.layers) {
+      ALPENGLOW_ENSURE(layer.scale_height_m, ==, std::numeric_limits<double>::infinity());
+      extinction += layer.extinction_per_m[reference_];
+    }
+    const double far = 1e9 * (approach_m_ + std::abs(nearest_m_));
+    return nearest_m_ + std::min(far, 45.0 / extinction + std::abs(nearest_m_));
+  }
+
+  [[nodiscard]] double Profile(double sine, double cosine) const {
+    if (lamp_.profile.kind == LampProfile::Kind::kIsotropic) return 1.0;
+    return RelativeIntensity(lamp_.profile, sine * along_ + cosine * across_);
+  }
+
+  // Layers that scatter at least a fiftieth of the densest one there, somewhere on the ray: for
+  // scouting, where the shape of the integrand is enough. Over fog it is the clear air's.
+  void ChooseLayers(double begin_z, double end_z) {
+    constexpr int kHeights = 4;
+    std::array<bool, kMostLampLayers> is_great{};
+    for (int i = 0; i < kHeights; ++i) {
+      const double z = begin_z + (end_z - begin_z) * i / (kHeights - 1.0);
+      std::array<double, kMostLampLayers> here{};
+      for (std::size_t k = 0; k < air_.layers.size(); ++k)
+        here[k] = air_.layers[k].scattering_per_m[reference_] * std::exp(-z * inverse_h_[k]);
+      const double greatest = *std::max_element(here.begin(), here.end());
+      for (std::size_t k = 0; k < air_.layers.size(); ++k)
+        is_great[k] = is_great[k] || here[k] >= 0.02 * greatest;
+    }
+    for (std::size_t k = 0; k < air_.layers.size(); ++k) {
+      all_layers_.push_back(k);
+      if (is_great[k]) great_layers_.push_back(k);
+    }
+  }
+
+  using Layers = Few<std::size_t, kMostLampLayers>;
+
+  template <typename Take>
+  void At(double x, const Layers& layers, std::size_t first_band, std::size_t end_band,
+          const Take& take) const {
+    const double e = std::exp(x);
+    const double cosh = 0.5 * (e + 1.0 / e);
+    const double sinh = 0.5 * (e - 1.0 / e);
+    const double sech = 1.0 / cosh;
+    const double t = nearest_m_ + approach_m_ * sinh;
+    const double distance = approach_m_ * cosh;
+    const double z = z_eye_ + slope_ * t;
+    const double scale = sech / approach_m_ * Profile(sinh * sech, sech);
+    std::array<double, kMostLampLayers> column{}, scattered{};
+    for (const std::size_t k : layers) {
+      const double rho = inverse_h_[k] == 0.0 ? 1.0 : std::exp(-z * inverse_h_[k]);
+      column[k] = ExponentialColumn(t, rho_eye_[k], rho, (z - z_eye_) * inverse_h_[k]) +
+                  ExponentialColumn(distance, rho_lamp_[k], rho, (z - z_lamp_) * inverse_h_[k]);
+      scattered[k] = rho * scale * Phase(air_.layers[k].phase, -sinh * sech);
+    }
+    for (std::size_t band = first_band; band < end_band; ++band) {
+      double tau = 0.0;
+      double source = 0.0;
+      for (const std::size_t k : layers) {
+        tau += air_.layers[k].extinction_per_m[band] * column[k];
+        source += air_.layers[k].scattering_per_m[band] * scattered[k];
+      }
+      take(band, source * std::exp(-tau));
+    }
+  }
+
+  const LampAir& air_;
+  const Lamp& lamp_;
+  double nearest_m_, approach_m_;
+  glm::dvec3 along_{0.0}, across_{0.0};
+  double slope_, z_eye_, z_lamp_;
+  std::array<double, kMostLampLayers> inverse_h_{}, rho_eye_{}, rho_lamp_{};
+  Layers all_layers_, great_layers_;
+  std::size_t reference_ = 0;
+  double x_begin_ = 0.0, x_end_ = 0.0;
+};
+
+/// A piece of the ray with one maximum, ready for the map around it.
+struct Panel {
+  double low, high;
+  double mode, scale;
+  double content;  // estimate of its integral
+  int nodes = 0;
+};
+inline constexpr std::size_t kMostPanels = 48;
+using Panels = Few<Panel, kMostPanels>;
+
+/// The integrand at ascending points of one lit piece.
+class Scout {
+ public:
+  Scout(const LampRay& ray, double low, double high) : ray_(ray) {
+    constexpr double kSpacing = 1.0;
+    const int steps = std::clamp(static_cast<int>(std::ceil((high - low) / kSpacing)), 3, 24);
+    for (int i = 0; i <= steps; ++i) {
+      const double x = i == steps ? high : low + (high - low) * i / steps;
+      points_.push_back({x, ray.Reference(x)});
+    }
+    ray.AddAxis([&](double x) {
+      if (x > low && x < high) InsertAt(x);
+    });
+    LookBeside(low, high);
+    Refine();
+  }
+
+  [[nodiscard]] std::size_t evaluations() const { return points_.size(); }
+
+  // None where no light is (no air, or 700 optical depths of it).
+  void AppendPanels(Panels& panels) const {
+    const std::size_t last = points_.size() - 1;
+    if (!(Content(0, last) > 0.0)) return;
+    std::size_t low = 0;
+    while (low < last) {
+      const std::size_t climbed = Climb(low);
+      const std::size_t high = HasRoom(panels) ? Descend(climbed) : last;
+      const std::size_t mode = high < last ? climbed : HighestIn(low, last);
+      AppendMaximum(low, mode, high, panels);
+      low = high;
+    }
+  }
+
+ private:
+  struct Point {
+    double x, value;
+  };
+  static constexpr double kThin = 0.35;
+  static constexpr double kLeastStep = 1e-6;
+
+  // Profiles may have any number of maxima: the rest of the ray is one panel when many are found.
+  static bool HasRoom(const Panels& panels) { return panels.size() + 16 < kMostPanels; }
+
+  void InsertAt(double x) {
+    if (points_.full()) return;
+    std::size_t at = 0;
+    while (at < points_.size() && points_[at].x < x) ++at;
+    // Panels need a width.
+    const bool is_there = (at < points_.size() && points_[at].x - x < kLeastStep) ||
+                          (at > 0 && x - points_[at - 1].x < kLeastStep);
+    if (!is_there) points_.insert(at, {x, ray_.Reference(x)});
+  }
+
+  // A maximum at an end may be the slope of a higher one just inside.
+  void LookBeside(double low, double high) {
+    const std::size_t last = points_.size() - 1;
+    const double step = 0.25 * (points_[1].x - points_[0].x);
+    const bool at_high = points_[last].value > points_[last - 1].value;
+    if (points_[0].value > points_[1].value) InsertAt(low + step);
+    if (at_high) InsertAt(high - step);
+  }
+
+  // Halves the steps beside maxima that fall by more than e to the next point: layers thinner than
+  // the spacing. Maxima that cannot hold much of the light are left as they are.
+  void Refine() {
+    constexpr double kFall = 2.7;
+    constexpr double kWorth = 3e-3;
+    const double whole = Content(0, points_.size() - 1);
+    for (std::size_t i = 0; i < points_.size() && !points_.full();) {
+      const double here = points_[i].value;
+      const bool from_left = i > 0 && here >= points_[i - 1].value;
+      const bool from_right = i + 1 < points_.size() && here >= points_[i + 1].value;
+      const bool left = from_left && points_[i].x - points_[i - 1].x > 3.0 * kLeastStep &&
+                        here > kFall * points_[i - 1].value &&
+                        here * (points_[i].x - points_[i - 1].x) > kWorth * whole &&
+                        (i + 1 == points_.size() || from_right);
+      const bool right = from_right && points_[i + 1].x - points_[i].x > 3.0 * kLeastStep &&
+                         here > kFall * points_[i + 1].value &&
+                         here * (points_[i + 1].x - points_[i].x) > kWorth * whole &&
+                         (i == 0 || from_left);
+      if (left) {
+        InsertAt(0.5 * (points_[i - 1].x + points_[i].x));
+      } else if (right) {
+        InsertAt(0.5 * (points_[i].x + points_[i + 1].x));
+      }
+      i = left || right ? (i > 1 ? i - 2 : 0) : i + 1;
+    }
+  }
+
+  [[nodiscard]] std::size_t HighestIn(std::size_t low, std::size_t high) const {
+    std::size_t best = low;
+    for (std::size_t i = low; i <= high; ++i) {
+      if (points_[i].value > points_[best].value) best = i;
+    }
+    return best;
+  }
+
+  // The highest point before the integrand has fallen by a third from it.
+  [[nodiscard]] std::size_t Climb(std::size_t low) const {
+    std::size_t best = low;
+    for (std::size_t i = low + 1; i < points_.size(); ++i) {
+      if (points_[i].value >= points_[best].value) best = i;
+      if (points_[i].value < 0.7 * points_[best].value) break;
+    }
+    return best;
+  }
+
+  // The lowest point after a maximum and before the next one that is worth a panel.
+  [[nodiscard]] std::size_t Descend(std::size_t mode) const {
+    std::size_t lowest = mode;
+    for (std::size_t i = mode + 1; i < points_.size(); ++i) {
+      if (points_[i].value <= points_[lowest].value) lowest = i;
+      if (points_[i].value > 1.3 * points_[lowest].value && lowest > mode) return lowest;
+    }
+    return points_.size() - 1;
+  }
+
+  [[nodiscard]] double Depth(std::size_t mode, std::size_t i) const {
+    constexpr double kNothing = 745.0;  // the smallest double is e^-745
+    return points_[i].value > 0.0 ? std::log(points_[mode].value / points_[i].value) : kNothing;
+  }
+
+  // How far from a maximum, towards `end`, the integrand has fallen by e^fall; or, when it does not
+  // fall as far, where that would be.
+  [[nodiscard]] double FallWidth(std::size_t mode, std::size_t end, double fall) const {
+    double depth = 0.0;
+    std::size_t i = mode;
+    while (i != end) {
+      const std::size_t next = end > i ? i + 1 : i - 1;
+      const double step = std::abs(points_[next].x - points_[i].x);
+      const double next_depth = Depth(mode, next);
+      const double here = std::abs(points_[i].x - points_[mode].x);
+      // To nothing at once: the edge of a beam, a power and not an exponential.
+      if (next == end && next_depth > depth + 6.0) break;
+      if (next_depth >= fall) return here + step * (fall - depth) / (next_depth - depth);
+      depth = next_depth;
+      i = next;
+    }
+    const double width = std::abs(points_[i].x - points_[mode].x);
+    const double all = std::abs(points_[end].x - points_[mode].x);
+    return depth > 0.1 ? std::min(width * fall / depth, 0.75 * fall * all) : 20.0 * all;
+  }
+
+  // The scale of exp(-|x - mode| / s) to one side. A sech falls by e^2 at 2.7 of its scales, an
+  // exponential at 2. Far from the lamp every integrand falls as exp(-|x|): with whole scales the
+  // ends in v are smooth.
+  [[nodiscard]] double Scale(std::size_t mode, std::size_t end) const {
+    const double near = FallWidth(mode, end, 2.0) / 2.4;
+    const double far = FallWidth(mode, end, 9.0) / 9.6;
+    if (near < kThin && far > 4.0 * near) return near;
+    const double scale = std::max(near, far);
+    const bool is_deep = Depth(mode, end) > 9.0;
+    if (scale < (is_deep ? kThin : 1.0)) return scale;
+    return std::clamp(std::round(scale), 1.0, 3.0);
+  }
+
+  [[nodiscard]] double Content(std::size_t low, std::size_t high) const {
+    double sum = 0.0;
+    for (std::size_t i = low; i < high; ++i) {
+      sum += 0.5 * (points_[i + 1].x - points_[i].x) * (points_[i].value + points_[i + 1].value);
+    }
+    return sum;
+  }
+
+  // Where the integrand, away from a maximum, begins to fall much more slowly than the map is made
+  // for, if there is light worth a panel beyond.
+  [[nodiscard]] std::size_t Knee(std::size_t mode, std::size_t end, double scale) const {
+    constexpr double kWorth = 3e-4;
+    const double whole = Content(std::min(mode, end), std::max(mode, end));
+    std::size_t i = mode;
+    while (i != end) {
+      const std::size_t next = end > i ? i + 1 : i - 1;
+      const double slope =
+          (Depth(mode, next) - Depth(mode, i)) / std::abs(points_[next].x - points_[i].x);
+      if (i != mode && Depth(mode, i) > 1.0 && slope < 0.55 / scale) {
+        const bool worth = Content(std::min(i, end), std::max(i, end)) > kWorth * whole;
+        return worth ? i : end;
+      }
+      i = next;
+    }
+    return end;
+  }
+
+  void AppendPanel(std::size_t a, std::size_t b, double mode, double scale, Panels& panels) const {
+    const std::size_t low = std::min(a, b), high = std::max(a, b);
+    panels.push_back({points_[low].x, points_[high].x, mode, scale, Content(low, high)});
+  }
+
+  // From a maximum down to one side.
+  void AppendSide(std::size_t mode, std::size_t end, Panels& panels) const {
+    while (mode != end) {
+      const double scale = Scale(mode, end);
+      const std::size_t knee = HasRoom(panels) ? Knee(mode, end, scale) : end;
+      AppendPanel(mode, knee, points_[mode].x, scale, panels);
+      mode = knee;
+    }
+  }
+
+  void AppendMaximum(std::size_t low, std::size_t mode, std::size_t high, Panels& panels) const {
+    if (mode != low && mode != high) {
+      const double left = Scale(mode, low);
+      const double right = Scale(mode, high);
+      const bool thick = left >= kThin && right >= kThin;
+      const bool alike = left < 3.0 * right && right < 3.0 * left;
+      if (thick || alike) {
+        const double scale = std::max(left, right);
+        const std::size_t from = Knee(mode, low, scale), to = Knee(mode, high, scale);
+        AppendPanel(from, to, points_[mode].x, scale, panels);
+        AppendSide(from, low, panels);
+        AppendSide(to, high, panels);
+        return;
+      }
+    }
+    AppendSide(mode, low, panels);
+    AppendSide(mode, high, panels);
+  }
+
+  const LampRay& ray_;
+  Few<Point, 64> points_;
+};
+
+// The points at which the lamp's profile is not smooth, ends included, ascending.
+using Cuts = Few<double, 16>;
+Cuts CutsOf(const LampRay& ray, const LampProfile& profile) {
+  Cuts cuts;
+  cuts.push_back(ray.x_begin());
+  const auto add = [&](double x) {
+    if (x > ray.x_begin() && x < ray.x_end()) cuts.push_back(x);
+  };
+  switch (profile.kind) {
+    case LampProfile::Kind::kIsotropic:
+      break;
+    case LampProfile::Kind::kCosinePower:
+      ray.AddCone(0.0, add);
+      break;
+    case LampProfile::Kind::kCone:
+      ray.AddCone(std::cos(profile.inner_rad), add);
+      ray.AddCone(std::cos(profile.outer_rad), add);
+      break;
+    case LampProfile::Kind::kTable:
+      ray.AddCone(std::cos(profile.table.gamma_rad.front()), add);
+      ray.AddCone(std::cos(profile.table.gamma_rad.back()), add);
+      break;
+  }
+  cuts.push_back(ray.x_end());
+  std::sort(cuts.begin(), cuts.end());
+  return cuts;
+}
+
+/// A panel in its own variable v.
+struct MappedPanel {
+  double low, high;
+  explicit MappedPanel(const Panel& panel)
+      : low(std::tanh(0.5 * (panel.low - panel.mode) / panel.scale)),
+        high(std::tanh(0.5 * (panel.high - panel.mode) / panel.scale)) {}
+};
+
+// Gauss's error in a panel falls by the square of the sum of the semi-axes of the ellipse around
+// [low, high] that reaches the nearest singularity (Trefethen 2008, SIAM Review 50, 67, theorem
+// 4.5). The integrand's are those of sech and of the phase function, pi / 2 off the real x.
+// Each node goes where the most error is left.
+void ShareNodes(int nodes, Panels& panels) {
+  std::array<double, kMostPanels> log_error{}, gain{};
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const MappedPanel mapped(panels[i]);
+    const double half = 0.5 * (mapped.high - mapped.low);
+    const double singular = std::tan(0.25 * kPi / std::clamp(panels[i].scale, 1.0, 3.0)) *
+                            (panels[i].scale < 1.0 ? 0.7 : 1.0);
+    gain[i] = 2.0 * std::asinh(singular / std::max(half, 1e-6));
+    log_error[i] = std::log(std::max(panels[i].content, 1e-300)) - gain[i];
+    panels[i].nodes = 1;
+  }
+  for (int given = static_cast<int>(panels.size()); given < nodes; ++given) {
+    const auto worst = static_cast<std::size_t>(
+        std::max_element(log_error.begin(),
+                         log_error.begin() + static_cast<std::ptrdiff_t>(panels.size())) -
+        log_error.begin());
+    panels[worst].nodes += 1;
+    log_error[worst] -= gain[worst];
+  }
+}
+
+struct FoundPanels {
+  Panels panels;  // with their nodes
+  std::size_t scouted = 0;
+};
+FoundPanels FindPanels(const LampRay& ray, const Lamp& lamp, int nodes) {
+  ALPENGLOW_ENSURE(nodes, >=, kFewestLampNodes);
+  ALPENGLOW_ENSURE(nodes, <=, kMostLampNodes);
+  const Cuts cuts = CutsOf(ray, lamp.profile);
+  FoundPanels found;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    constexpr double kNothing = 1e-12;  // of a piece, whose light is as little
+    if (cuts[i + 1] - cuts[i] > kNothing && ray.IsLit(0.5 * (cuts[i] + cuts[i + 1]))) {
+      const Scout scout(ray, cuts[i], cuts[i + 1]);
+      scout.AppendPanels(found.panels);
+      found.scouted += scout.evaluations();
+    }
+  }
+  if (found.panels.size() > 0) ShareNodes(nodes, found.panels);
+  return found;
+}
+
+void Integrate(const LampRay& ray, const Panel& panel, Bands<double>& sum) {
+  const GaussRule& rule = GaussLegendre(panel.nodes);
+  const auto [low, high] = MappedPanel(panel);
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double v = low + (high - low) * rule.node[i];
+    const double x = panel.mode + panel.scale * std::log((1.0 + v) / (1.0 - v));
+    const double slope = 2.0 * panel.scale / ((1.0 - v) * (1.0 + v));
+    ray.Accumulate(x, rule.weight[i] * (high - low) * slope, sum);
+  }
+}
+
+}  // namespace
+
+Bands<double> Airlight(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
+                       int nodes) {
+  Bands<double> sum(air.bands());
+  if (!(segment.end_m > segment.begin_m)) return sum;
+  const LampRay ray(air, lamp, segment);
+  for (const Panel& panel : FindPanels(ray, lamp, nodes).panels) Integrate(ray, panel, sum);
+  return sum;
+}
+
+AirlightEffort EffortOfAirlight(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
+                                int nodes) {
+  if (!(segment.end_m > segment.begin_m)) return {};
+  const FoundPanels found = FindPanels(LampRay(air, lamp, segment), lamp, nodes);
+  AirlightEffort effort{static_cast<int>(found.scouted), 0};
+  for (const Panel& panel : found.panels) effort.integrated += panel.nodes;
+  return effort;
+}
+
+namespace {
+
+// The cosine to a surface's normal, where it is positive, integrated around a cone of half angle
+// alpha whose axis is at cos_normal from the normal.
+double CosinesAround(double cos_alpha, double sin_alpha, double cos_normal) {
+  const double sin_normal = std::sqrt(std::max(0.0, 1.0 - cos_normal * cos_normal));
+  const double middle = cos_alpha * cos_normal;
+  const double swing = sin_alpha * sin_normal;
+  if (middle >= swing) return 2.0 * kPi * middle;
+  if (middle <= -swing) return 0.0;
+  const double half = std::acos(-middle / swing);
+  return 2.0 * (half * middle + swing * std::sin(half));
+}
+
+}  // namespace
+
+Bands<double> AirlightOnSurface(const LampAir& air, double distance_m, double cos_normal) {
+  // Around the direction to the lamp radiance falls as 1 / sin(alpha), which the solid angle takes
+  // away; forward peaks of the phase function are as narrow as 0.1.
+  constexpr std::array<double, 4> kCuts{0.0, 0.1, 0.6, kPi};
+  const GaussRule& rule = GaussLegendre(8);
+  Lamp lamp;
+  lamp.position_m = {distance_m, 0.0, 0.0};
+  Bands<double> sum(air.bands());
+  for (std::size_t piece = 0; piece + 1 < kCuts.size(); ++piece) {
+    const double width = kCuts[piece + 1] - kCuts[piece];
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const double alpha = kCuts[piece] + width * rule.node[i];
+      const double cosine = std::cos(alpha), sine = std::sin(alpha);
+      const double facing = CosinesAround(cosine, sine, cos_normal);
+      if (facing <= 0.0) continue;
+      LampSegment segment;
+      segment.direction = {cosine, sine, 0.0};
+      const Bands<double> radiance = Airlight(air, lamp, segment);
+      for (std::size_t band = 0; band < sum.count; ++band) {
+        sum[band] += rule.weight[i] * width * sine * facing * radiance[band];
+      }
+    }
+  }
+  return sum;
+}
+
+double SunFunction(double u, double v) {
+  // With xi = atan y the integrand is exp(-u y) / (1 + y^2); beyond u y = 40 nothing is left.
+  const double end = u > 0.0 ? std::min(v, std::atan(40.0 / u)) : v;
+  const std::array<double, 3> panels{0.0, std::min(0.5 * end, std::atan(1.0 / std::max(u, 1e-3))),
+                                     end};
+  const auto integrand = [u](double xi) {
+    return std::vector<double>{std::exp(-u * std::tan(xi))};
+  };
+  return IntegrateAdaptively(integrand, 1, panels, 1e-13).value[0];
+}
+
+double AirlightOfSun2005(double scattering_per_m, double extinction_per_m, double length_m,
+                         double along_m, double across_m) {
+  const double distance = std::hypot(along_m, across_m);
+  const double gamma = std::atan2(across_m, along_m);
+  const double u = extinction_per_m * across_m;
+  const double v_end = std::isinf(length_m)
+                           ? 0.5 * kPi
+                           : 0.25 * kPi + 0.5 * std::atan((length_m - along_m) / across_m);
+  return scattering_per_m / (2.0 * kPi * across_m) *
+         std::exp(-extinction_per_m * distance * std::cos(gamma)) *
+         (SunFunction(u, v_end) - SunFunction(u, 0.5 * gamma));
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// Lamps, and the air around them.
+//
+// A lamp is a small luminous sphere: intensity I(direction) [cd or W/sr] over d^2, outside of its
+// radius. The air is a sum of layers, each of exponential density over a flat ground,
+//
+//   sigma(z) = sigma(0) exp(-z / H),          z = altitude_at_origin + up . p
+//
+// with H infinite for homogeneous fog. Over L kilometres the true ground falls L^2 / 8R below the
+// flat one that touches it in the middle: 2 m over 10 km. Columns along straight lines are closed:
+//
+//   integral from a to b of density = |b - a| (rho(a) - rho(b)) / ((z(b) - z(a)) / H)
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "atmosphere/air/phase.h"
+#include "atmosphere/ray/single_scattering.h"
+
+namespace alpenglow {
+
+/// Intensity measured over two angles, relative: gamma from the lamp's axis, C around it from its
+/// side vector towards side x axis: counterclockwise on a plan, that is for a lamp that shines down
+/// and is seen from above (ANSI/IESNA LM-63-2002, section 3, horizontal angles of type C). Linear
+/// between the angles, 0 beyond the last gamma.
+struct LampTable {
+  std::vector<double> gamma_rad;  // ascending from >= 0 to <= pi, at least 2
+  std::vector<double> c_rad;      // ascending in [0, 2 pi], 0 first; one: the same all around
+  std::vector<double> intensity;  // [c * gamma_rad.size() + gamma], >= 0
+
+  bool operator==(const LampTable&) const = default;
+};
+
+/// How a lamp's light is distributed over directions, relative to its intensity.
+struct LampProfile {
+  enum class Kind {
+    kIsotropic,
+    kCosinePower,  // cos^exponent of the angle to the axis, 0 behind
+    kCone,         // 1 inside inner_rad, 0 outside outer_rad, smoothstep in the cosine between
+    kTable,
+  };
+  Kind kind = Kind::kIsotropic;
+  double exponent = 1.0;  // of kCosinePower, >= 0
+  double inner_rad = 0.0, outer_rad = 0.0;
+  LampTable table;
+
+  bool operator==(const LampProfile&) const = default;
+};
+
+struct Lamp {
+  glm::dvec3 position_m{0.0};
+  /// The air within this distance of the lamp scatters as at this distance: what makes the ray
+  /// through a lamp finite. 0 is a point.
+  double radius_m = 0.0;
+  LampProfile profile;
+  glm::dvec3 axis{0.0, 0.0, -1.0};  // unit
+  glm::dvec3 side{1.0, 0.0, 0.0};   // unit, across the axis: where C is 0 in a table
+};
+
+/// Intensity relative to the lamp's, towards a direction given by its cosines to axis, side and
+/// side x axis.
+[[nodiscard]] double RelativeIntensity(const LampProfile& profile, const glm::dvec3& cosines);
+/// Towards a unit direction.
+[[nodiscard]] double RelativeIntensity(const Lamp& lamp, const glm::dvec3& direction);
+
+/// Throws InputError naming `prefix`.cone and so on for a profile that is none: angles not in
+/// order, tables of the wrong size, values negative or not finite.
+void Validate(const LampProfile& profile, const std::string& prefix);
+
+inline constexpr std::size_t kMostLampLayers = 4;
+
+/// One constituent of the air around lamps.
+struct LampLayer {
+  double scale_height_m = std::numeric_limits<double>::infinity();  // > 0; infinite: homogeneous
+  Bands<double> scattering_per_m;                                   // at altitude 0
+  Bands<double> extinction_per_m;                                   // at altitude 0, >= scattering
+  PhaseFunction phase;
+};
+
+/// The air around lamps: 1 to kMostLampLayers layers with the same number of bands.
+struct LampAir {
+  std::vector<LampLayer> layers;
+  glm::dvec3 up{0.0, 0.0, 1.0};
+  double altitude_at_origin_m = 0.0;
+
+  [[nodiscard]] std::size_t bands() const { return layers.front().scattering_per_m.count; }
+  [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
+};
+
+/// One layer of the same density everywhere, one band.
+[[nodiscard]] LampAir HomogeneousAir(double scattering_per_m, double extinction_per_m,
+                                     const PhaseFunction& phase);
+
+/// Transmittance of the straight line between two points, in every band. Relative error below 1e-12
+/// times the optical depth, or 1e-12.
+[[nodiscard]] Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
+                                                 const glm::dvec3& to);
+
+/// Column [m] over a length between points of relative densities rho_a and rho_b, rise_over_h =
+/// (z_b - z_a) / H scale heights apart.
+[[nodiscard]] double ExponentialColumn(double length_m, double rho_a, double rho_b,
+                                       double rise_over_h);
+
+}  // namespace alpenglow

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// For kernels only (instruction_set.h): the type in which a loop over samples is read, an xsimd
+// batch where SIMD is on, the plain number where it is off; and the shared formulas in it.
+//
+// All of it is in an unnamed namespace, against custom in a header, because the same names mean
+// other instructions in every object that includes it.
+#pragma once
+
+#ifndef ALPENGLOW_KERNEL_SET
+#error "batch.h is for files of alpenglow_kernels (.cmake/targets.cmake)"
+#endif
+
+#ifdef ALPENGLOW_SIMD
+#include <xsimd/xsimd.hpp>
+#endif
+
+#include <cmath>
+#include <cstddef>
+
+#include "atmosphere/dialect/instruction_set.h"
+
+namespace alpenglow {
+namespace {
+
+inline constexpr InstructionSet kThisSet = InstructionSet::ALPENGLOW_KERNEL_SET;
+
+template <typename Real>
+struct PlainNumber {
+  using Type = Real;
+  static constexpr std::size_t kLanes = 1;
+  static Type Load(const Real* from) { return *from; }
+  static void Store(Real* to, Type value) { *to = value; }
+  static void StoreAnywhere(Real* to, Type value) { *to = value; }
+  static Real Sum(Type value) { return value; }
+  static bool All(bool condition) { return condition; }
+  static Real Last(Type value) { return value; }
+};
+
+#if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
+/// Loads and stores are aligned but for StoreAnywhere: rows begin at multiples of 64 bytes.
+template <typename Real>
+struct BatchOf {
+  using Type = xsimd::batch<Real>;
+  static constexpr std::size_t kLanes = Type::size;
+  static Type Load(const Real* from) { return Type::load_aligned(from); }
+  static void Store(Real* to, const Type& value) { value.store_aligned(to); }
+  static void StoreAnywhere(Real* to, const Type& value) { value.store_unaligned(to); }
+  static Real Sum(const Type& value) { return xsimd::hadd(value); }
+  static bool All(const typename Type::batch_bool_type& condition) { return xsimd::all(condition); }
+  static Real Last(const Type& value) { return value.get(kLanes - 1); }
+};
+#else
+template <typename Real>
+using BatchOf = PlainNumber<Real>;
+#endif
+
+/// shared_math.h and shell.h again, with the linkage that a kernel needs.
+namespace shared {
+using std::abs;
+using std::exp;
+using std::log;
+using std::sqrt;
+
+inline double max(double a, double b) { return a < b ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline double min(double a, double b) { return b < a ? b : a; }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
+
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/ray/shell.glsl"
+#include "atmosphere/ray/optical_depth.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace shared
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/ray/ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/ray/shell.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+using Extended = long double;
+
+void RequireFinite(const ViewRay& ray, double planet_radius_m) {
+  RequireInRange(ray.altitude_m, -0.5 * planet_radius_m, 1e12, "altitude_m");
+  RequireInRange(ray.mu, -1.0, 1.0, "mu (cosine of the view zenith angle)");
+  RequireInRange(ray.mu_s, -1.0, 1.0, "mu_s (cosine of the sun zenith angle)");
+  RequireInRange(ray.nu, -1.0, 1.0, "nu (cosine between view and sun)");
+  if (!(ray.length_m >= 0.0))
+    throw InputError(fmt::format("length_m is {}; it must be >= 0", ray.length_m));
+}
+
+// Crossings of the line with the sphere of altitude z: distances, or nothing when it passes above.
+struct Crossings {
+  bool exist;
+  Extended near, far;
+};
+
+Crossings CrossAltitude(Extended h, Extended mu, Extended z, Extended radius) {
+  const Extended a = (radius + h) * mu;
+  const Extended c = (h - z) * (2 * radius + h + z);
+  const Extended discriminant = a * a - c;
+  if (discriminant < 0) return {false, 0, 0};
+  const Extended root = std::sqrt(discriminant);
+  // Conjugate roots: the one that does not cancel, and c over it.
+  const Extended far_side = a > 0 ? -a - root : -a + root;
+  const Extended other = far_side != 0 ? c / far_side : 0;
+  return {true, std::min(far_side, other), std::max(far_side, other)};
+}
+
+}  // namespace
+
+ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative_azimuth_deg,
+                      double sun_zenith_deg) {
+  const double view = view_zenith_deg * kRadiansPerDegree;
+  const double sun = sun_zenith_deg * kRadiansPerDegree;
+  const double azimuth = relative_azimuth_deg * kRadiansPerDegree;
+  ViewRay ray;
+  ray.altitude_m = altitude_m;
+  ray.mu = std::cos(view);
+  ray.mu_s = std::cos(sun);
+  ray.nu =
+      std::clamp(ray.mu * ray.mu_s + std::sin(view) * std::sin(sun) * std::cos(azimuth), -1.0, 1.0);
+  return ray;
+}
+
+namespace {
+
+// Whether a ray of finite length stays in the shell by a metre and more, ground and top aside.
+bool EndsWellInside(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
+  constexpr double kMargin_m = 1.0;
+  if (!(ray.length_m < 1e6)) return false;
+  const auto altitude = [&](double distance_m) {
+    return shared::AltitudeAlongRay<double>(ray.altitude_m, ray.mu, distance_m, planet_radius_m);
+  };
+  const double perigee_m = -(planet_radius_m + ray.altitude_m) * ray.mu;
+  const double lowest = altitude(std::clamp(perigee_m, 0.0, ray.length_m));
+  const double highest = std::max(ray.altitude_m, altitude(ray.length_m));
+  return lowest > kMargin_m && highest < atmosphere_height_m - kMargin_m;
+}
+
+}  // namespace
+
+RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
+  RequireFinite(ray, planet_radius_m);
+  if (EndsWellInside(ray, planet_radius_m, atmosphere_height_m))
+    return {0.0, ray.length_m, RayEnd::kLength};
+  const Extended h = std::max(ray.altitude_m, 0.0);
+  const Crossings top = CrossAltitude(h, ray.mu, atmosphere_height_m, planet_radius_m);
+  if (!top.exist || top.far <= 0) return {};
+  RayExtent extent;
+  extent.begin_m = static_cast<double>(std::max<Extended>(top.near, 0));
+  if (h <= atmosphere_height_m) extent.begin_m = 0.0;
+  extent.end_m = static_cast<double>(top.far);
+  if (ray.mu < 0.0) {
+    if (const Crossings ground = CrossAltitude(h, ray.mu, 0, planet_radius_m); ground.exist) {
+      extent.end_m = static_cast<double>(std::max<Extended>(ground.near, 0));
+      extent.end = RayEnd::kGround;
+    }
+  }
+  if (ray.length_m < extent.end_m) {
+    extent.end_m = std::max(ray.length_m, extent.begin_m);
+    extent.end = RayEnd::kLength;
+  }
+  return extent;
+}
+
+ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
+  // The sun is above the plane through the planet's centre at both ends: no shadow between.
+  const double height_m = (planet_radius_m + std::max(ray.altitude_m, 0.0)) * ray.mu_s;
+  if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
+  const Extended radius = planet_radius_m;
+  const Extended h = std::max(ray.altitude_m, 0.0);
+  const Extended r = radius + h;
+  const Extended sun = r * ray.mu_s;  // height of the observer over the terminator plane
+  const Extended nu = ray.nu;
+  // Squared distance from the shadow's axis minus R^2: a t^2 + 2 b t + c.
+  const Extended a = (1 - nu) * (1 + nu);
+  const Extended b = r * (ray.mu - ray.mu_s * nu);
+  const Extended horizon = std::sqrt(h * (2 * radius + h));
+  const Extended c = (horizon - sun) * (horizon + sun);
+  Extended begin = extent.begin_m;
+  Extended end = extent.end_m;
+  if (a > 1e-14L) {
+    const Extended discriminant = b * b - a * c;
+    if (discriminant <= 0) return {};
+    const Extended root = std::sqrt(discriminant);
+    const Extended q = b > 0 ? -b - root : -b + root;
+    const Extended first = q / a;
+    const Extended second = q != 0 ? c / q : 0;
+    begin = std::max(begin, std::min(first, second));
+    end = std::min(end, std::max(first, second));
+  } else if (c >= 0) {
+    return {};
+  }
+  // Only the half behind the terminator plane: sun + t nu < 0.
+  if (nu > 0) {
+    end = std::min(end, -sun / nu);
+  } else if (nu < 0) {
+    begin = std::max(begin, -sun / nu);
+  } else if (sun >= 0) {
+    return {};
+  }
+  if (!(begin < end)) return {};
+  return {static_cast<double>(begin), static_cast<double>(end)};
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The loops of single_scattering.h over the samples of a ray, one table an instruction set.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/ray/ray_samples.h"
+
+namespace alpenglow {
+
+/// A medium as kernels read it: lengths in km, coefficients per km.
+template <typename Real>
+struct AirConstants {
+  Real radius, top;
+  Real rayleigh_height, mie_height;
+  Real deficit, deficit_height;  // of molecules (MoleculeDeficit)
+  Real ozone_bottom, ozone_peak, ozone_top;
+  bool smooth_ozone;
+  bool mie_ends_below_top;  // its column beyond the top is below 1e-12 m
+  std::size_t bands;
+  std::array<Real, kMaxBands> rayleigh, mie_scattering, mie_extinction, ozone;
+};
+
+/// The observer, moved to where the ray enters the air; all distances count from here.
+struct RayEntry {
+  double altitude_km, mu, mu_s, nu;
+};
+
+/// Columns [km] of molecules, aerosol and ozone.
+template <typename T>
+struct ColumnSet {
+  T rayleigh, mie, ozone;
+};
+
+/// A panel of a ray (ray_panels.h) and the Gauss rule for it, both rows padded with zeros to whole
+/// lanes.
+template <typename Real>
+struct PanelRule {
+  Real begin, end;
+  Real stretch;  // b of t = length sinh(b v) / sinh(b); 0: t = length v
+  bool rises, lit;
+  std::size_t count;
+  const Real* node;
+  const Real* weight;
+};
+
+template <typename Real>
+struct RayKernel {
+  /// Numbers that one instruction takes: samples are padded to a multiple.
+  std::size_t lanes;
+  /// Distance, weight and lit of the samples of one panel, which follow those that are there.
+  void (*place)(const PanelRule<Real>& panel, RaySamples<Real>& samples);
+  /// Everything at the samples that depends on their position, from distance, weight and lit.
+  void (*fill)(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples);
+  /// The same by ViewColumns::kBetweenSamples.
+  void (*fill_between)(const AirConstants<Real>& air, const RayEntry& entry,
+                       RaySamples<Real>& samples);
+  /// ScatteredOnce of all bands.
+  void (*scatter)(const AirConstants<Real>& air, const RaySamples<Real>& samples,
+                  ScatteredOnce<Real>& scattered);
+  /// Columns of n points at altitudes [km] to space along zenith cosines; the directions must not
+  /// meet the ground. All arrays hold a multiple of `lanes` and begin at multiples of 64 bytes.
+  void (*columns_to_space)(const AirConstants<Real>& air, std::size_t n, const Real* altitude,
+                           const Real* mu, const ColumnSet<Real*>& columns);
+  /// The same for cosines in [0, 1].
+  void (*columns_up)(const AirConstants<Real>& air, std::size_t n, const Real* altitude,
+                     const Real* mu, const ColumnSet<Real*>& columns);
+};
+
+ALPENGLOW_DECLARE_KERNEL(RayKernel<float>);
+ALPENGLOW_DECLARE_KERNEL(RayKernel<double>);
+
+}  // namespace alpenglow

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/ray/ray_panels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "atmosphere/number/quadrature.h"
+#include "atmosphere/ray/shell.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMetresPerKilometre = 1000.0;
+
+double Kilometres(double metres) { return metres / kMetresPerKilometre; }
+
+/// Distances at which a ray is cut, in any order.
+class Cuts {
+ public:
+  explicit Cuts(double length) : length_(length) {
+    Add(0.0);
+    Add(length);
+  }
+
+  void Add(double distance) {
+    ALPENGLOW_ENSURE(count_, <, distance_.size());
+    distance_[count_++] = std::clamp(distance, 0.0, length_);
+  }
+
+  void Add(const LineCrossings& crossings) {
+    for (std::size_t i = 0; i < crossings.count; ++i) Add(crossings.distance[i]);
+  }
+
+  /// Ascending.
+  [[nodiscard]] std::span<const double> Sorted() {
+    std::sort(distance_.begin(), distance_.begin() + count_);
+    return {distance_.data(), count_};
+  }
+
+ private:
+  double length_;
+  std::array<double, RayPanels::kMost + 1> distance_{};
+  std::size_t count_ = 0;
+};
+
+// Where the sunbeam that meets the ray at distance t has its perigee at altitude z: a cylinder of
+// radius R + z around the axis from the planet's centre to the sun. Only beams that come from below
+// the horizontal count.
+LineCrossings SunPerigees(const RayEntry& entry, double z, double radius) {
+  const double r = radius + entry.altitude_km;
+  const double a = (1.0 - entry.nu) * (1.0 + entry.nu);
+  const double b = r * (entry.mu - entry.mu_s * entry.nu);
+  const double c = (entry.altitude_km - z) * (2.0 * radius + entry.altitude_km + z) -
+                   r * r * entry.mu_s * entry.mu_s;
+  const double discriminant = b * b - a * c;
+  LineCrossings found{0, {}};
+  if (a < 1e-12 || discriminant <= 0.0) return found;
+  for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
+    if (r * entry.mu_s + t * entry.nu < 0.0) found.distance[found.count++] = t;
+  }
+  return found;
+}
+
+void AddTent(const RayEntry& entry, const OzoneLayer& ozone, double radius, Cuts& cuts) {
+  for (const double z : {ozone.bottom_m, ozone.peak_m, ozone.top_m}) {
+    cuts.Add(CrossingsOf(entry.altitude_km, entry.mu, Kilometres(z), radius));
+    cuts.Add(SunPerigees(entry, Kilometres(z), radius));
+  }
+}
+
+/// The dark part of a ray [km from the entry]; empty when begin == end.
+struct DarkSpan {
+  double begin = 0.0, end = 0.0;
+};
+
+DarkSpan DarkSpanOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
+                    const Medium& medium) {
+  // The sun is above the plane through the planet's centre at both ends: no shadow between.
+  const double height = (Kilometres(medium.planet_radius_m) + entry.altitude_km) * entry.mu_s;
+  if (height > 0.0 && height + Kilometres(extent.end_m - extent.begin_m) * entry.nu > 0.0) {
+    return {};
+  }
+  const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
+  if (!(shadow.dark_begin_m < shadow.dark_end_m)) return {};
+  return {Kilometres(shadow.dark_begin_m - extent.begin_m),
+          Kilometres(shadow.dark_end_m - extent.begin_m)};
+}
+
+double LargestExtinctionPerKm(const Medium& medium) {
+  double largest = 0.0;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    largest = std::max(largest,
+                       medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
+  }
+  return largest * kMetresPerKilometre;
+}
+
+/// What the lower end of a panel is to the light along it.
+struct LowerEnd {
+  double altitude_km, cosine;
+  bool at_shadow;   // where the planet's shadow begins
+  bool grazed;      // by sunbeams from below the horizontal, or at the shadow
+  bool at_perigee;  // of the ray
+  bool ahead;       // the ray comes down to it
+  bool from_above;  // and began in air too thin to hide anything
+};
+
+double StretchOf(const LowerEnd& low, double length, double radius, double extinction_per_km) {
+  // Behind the edge of the shadow sunlight comes back slowly: the start wants fewer nodes.
+  const double rise_km = low.at_shadow ? 12.0 : 10.0;
+  const double strength = low.at_shadow ? 1.1 : 1.3;
+  double half =
+      shared::DistanceUpTo<double>(low.altitude_km, low.cosine, low.altitude_km + rise_km, radius);
+  if (extinction_per_km > 0.0) half = std::min(half, 10.0 / extinction_per_km);
+  return strength * std::log(std::max(2.0 * length / half, 1.0));
+}
+
+// Extra nodes in halves of the ordinary ones. A long way down through the air hides its lower end,
+// where the nodes are; above 50 km the air is too thin for that.
+int NodesOf(const LowerEnd& low, int nodes) {
+  int halves = low.grazed ? 3 : 2;
+  const bool slanting = low.ahead && low.cosine < 0.3;
+  if (low.altitude_km < 50.0) {
+    if (low.at_perigee || slanting)
+      halves += low.from_above || low.grazed ? 2 : 1;
+    else if (low.ahead && low.from_above)
+      halves += 1;
+  }
+  return std::min((nodes * halves + 1) / 2, kMaxGaussNodes);
+}
+
+}  // namespace
+
+LineCrossings CrossingsOf(double h, double mu, double z, double radius) {
+  const double a = (radius + h) * mu;
+  const double discriminant = a * a - (h - z) * (2.0 * radius + h + z);
+  if (discriminant <= 0.0) return {0, {}};
+  const double root = std::sqrt(discriminant);
+  return {2, {-a - root, -a + root}};
+}
+
+RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
+  const double radius = Kilometres(medium.planet_radius_m);
+  const double h = Kilometres(std::max(ray.altitude_m, 0.0));
+  const double d = Kilometres(extent.begin_m);
+  if (d == 0.0) return {h, ray.mu, ray.mu_s, ray.nu};
+  const double altitude = Kilometres(medium.atmosphere_height_m);
+  return {altitude, shared::ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
+          shared::SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius), ray.nu};
+}
+
+RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
+                   const Medium& medium, const Sampling& sampling) {
+  const double radius = Kilometres(medium.planet_radius_m);
+  const double length = Kilometres(extent.end_m - extent.begin_m);
+  const double perigee = -(radius + entry.altitude_km) * entry.mu;
+  const double extinction = LargestExtinctionPerKm(medium);
+  const DarkSpan dark = DarkSpanOf(ray, extent, entry, medium);
+  Cuts cuts(length);
+  if (perigee > 0.0 && perigee < length) cuts.Add(perigee);
+  if (dark.begin < dark.end) {
+    cuts.Add(dark.begin);
+    cuts.Add(dark.end);
+  }
+  if (sampling.split_ozone && medium.ozone.shape == OzoneShape::kTent) {
+    AddTent(entry, medium.ozone, radius, cuts);
+  }
+  const std::span<const double> ends = cuts.Sorted();
+  RayPanels panels;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double begin = ends[i], end = ends[i + 1];
+    if (end - begin <= 1e-12 * length) continue;
+    const double middle = 0.5 * (begin + end);
+    const bool lit = !(middle > dark.begin && middle < dark.end);
+    if (!lit && !sampling.dark_samples) continue;
+    const bool rises = middle > perigee;
+    const double at = rises ? begin : end;
+    const double altitude =
+        std::max(shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, at, radius), 0.0);
+    const bool at_shadow = lit && dark.begin < dark.end && (at == dark.begin || at == dark.end);
+    const double sun = (radius + entry.altitude_km) * entry.mu_s + at * entry.nu;
+    const LowerEnd low{altitude,
+                       std::abs(shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu,
+                                                                     at, altitude, radius)),
+                       at_shadow,
+                       lit && (at_shadow || sun < 0.0),
+                       at == perigee,
+                       !rises,
+                       entry.altitude_km > 60.0};
+    panels.panel[panels.count++] = {
+        begin,
+        end,
+        lit,
+        rises,
+        StretchOf(low, end - begin, radius, extinction * std::exp(-altitude / 8.0)),
+        NodesOf(low, sampling.nodes)};
+  }
+  return panels;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Where single scattering along a ray is sampled: panels on which the integrand is smooth, each
+// with a map that is dense where the air is.
+//
+// A ray is cut at the planet's shadow and at its perigee (and, for a tent of ozone, on request
+// where it bends the light). In a panel the distance from its lower end is
+//
+//   t = length sinh(b v) / sinh(b),   b = 1.2 ln(2 length / half),   v in [0, 1] of Gauss-Legendre
+//
+// where `half` is the distance to 10 km above the lower end, or 10 optical depths if less: beyond
+// it nodes thin out exponentially, as the air does. Beside a rational map with as many nodes the
+// error is 3 to 20 times less.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/ray_kernel.h"
+
+namespace alpenglow {
+
+/// A stretch of the ray on which the altitude is monotone [km from the entry].
+struct RayPanel {
+  double begin, end;
+  bool lit;        // outside the shadow of the planet
+  bool rises;      // its lower end is its beginning
+  double stretch;  // b
+  int nodes;
+};
+
+struct RayPanels {
+  static constexpr std::size_t kMost = 17;
+  std::array<RayPanel, kMost> panel;
+  std::size_t count = 0;
+};
+
+/// The entry of a ray into the air: the observer, or the first point in the shell.
+[[nodiscard]] RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium);
+
+/// @param sampling  nodes of an ordinary panel. One whose lower end sunbeams graze, or where the
+/// planet's shadow begins, gets half as many more; so does one that comes down through the air at a
+/// slant, or goes on from the perigee of such a ray, twice if the ray began above 60 km or sunbeams
+/// graze it; at most 64. Then all have about the same error.
+[[nodiscard]] RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
+                                 const Medium& medium, const Sampling& sampling);
+
+/// Distances at which the line from altitude h along mu crosses altitude z [km], inside and outside
+/// of [0, length] alike; none if it passes above.
+struct LineCrossings {
+  std::size_t count;
+  std::array<double, 2> distance;
+};
+[[nodiscard]] LineCrossings CrossingsOf(double h, double mu, double z, double radius);
+
+}  // namespace alpenglow

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// C++ reading of shell.glsl and optical_depth.glsl: templates over double, float and SIMD batches.
+// Lengths are kilometres here; the classes above (single_scattering.h) take metres.
+#pragma once
+
+#include "atmosphere/dialect/shared_math.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/ray/shell.glsl"
+#include "atmosphere/ray/optical_depth.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/sun/sun_disk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+
+VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad) {
+  const double elevation = std::asin(std::clamp(mu_s, -1.0, 1.0));
+  const double horizon = std::asin(std::clamp(horizon_mu, -1.0, 1.0));
+  const double x = (elevation - horizon) / radius_rad;  // centre over horizon, in radii
+  if (x >= 1.0) return {1.0, mu_s};
+  if (x <= -1.0) return {0.0, mu_s};
+  // Segment of the unit disk on the side of the centre's height over the chord at distance x below
+  // it.
+  const double chord = std::sqrt(1.0 - x * x);
+  const double area = kPi - std::acos(x) + x * chord;
+  const double centroid = 2.0 / 3.0 * chord * chord * chord / area;  // above the disk's centre
+  return {area / kPi, std::sin(elevation + centroid * radius_rad)};
+}
+
+double DiskSolidAngle(double radius_rad) {
+  const double half_sine = std::sin(0.5 * radius_rad);
+  return 4.0 * kPi * half_sine * half_sine;
+}
+
+double LimbDarkening(double rho) {
+  constexpr double kDarkening = 0.6;
+  const double mu = std::sqrt(std::max(1.0 - rho * rho, 0.0));
+  return (1.0 - kDarkening * (1.0 - mu)) / (1.0 - kDarkening / 3.0);
+}
+
+}  // namespace alpenglow

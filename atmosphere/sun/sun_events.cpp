@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The day of the sun: a function of time is sampled every half hour of the local mean solar day,
+// its extrema are refined where they could hide a crossing, and each change of sign is narrowed
+// down.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/root.h"
+#include "atmosphere/sun/refraction.h"
+#include "atmosphere/sun/sun.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kDay_s = 86400.0;
+constexpr double kStep_s = 1800.0;
+constexpr int kSteps = 48;
+constexpr double kTolerance_s = 0.01;
+
+constexpr std::array<std::pair<std::string_view, SunEvent>, 9> kNames = {{
+    {"noon", SunEvent::kNoon},
+    {"sunrise", SunEvent::kSunrise},
+    {"sunset", SunEvent::kSunset},
+    {"civil-dawn", SunEvent::kCivilDawn},
+    {"civil-dusk", SunEvent::kCivilDusk},
+    {"nautical-dawn", SunEvent::kNauticalDawn},
+    {"nautical-dusk", SunEvent::kNauticalDusk},
+    {"astronomical-dawn", SunEvent::kAstronomicalDawn},
+    {"astronomical-dusk", SunEvent::kAstronomicalDusk},
+}};
+
+/// What crosses what, and in which direction.
+struct Crossing {
+  double true_elevation_rad;
+  bool of_upper_limb;
+  bool rising;
+};
+
+/// For every event but noon.
+Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
+  const auto twilight = [](double degrees, bool rising) {
+    return Crossing{degrees * kRadiansPerDegree, false, rising};
+  };
+  switch (event) {
+    case SunEvent::kCivilDawn:
+      return twilight(-6.0, true);
+    case SunEvent::kCivilDusk:
+      return twilight(-6.0, false);
+    case SunEvent::kNauticalDawn:
+      return twilight(-12.0, true);
+    case SunEvent::kNauticalDusk:
+      return twilight(-12.0, false);
+    case SunEvent::kAstronomicalDawn:
+      return twilight(-18.0, true);
+    case SunEvent::kAstronomicalDusk:
+      return twilight(-18.0, false);
+    default:
+      break;
+  }
+  const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
+  return {SeaHorizonFrom(place.height_m, radius_m).true_elevation_rad, true,
+          event == SunEvent::kSunrise};
+}
+
+/// Mean solar midnight at the longitude, at or before `around`.
+UtcInstant StartOfSolarDay(double longitude_rad, const UtcInstant& around) {
+  const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // of Greenwich, in (-12 h, 12 h]
+  const double local_day = std::floor((around.second_of_day + ahead_s) / kDay_s);
+  const int day = around.modified_julian_day + static_cast<int>(local_day);
+  return AddSeconds(UtcInstant{day, 0.0}, -ahead_s);
+}
+
+struct Sample {
+  double time_s, value;
+  [[nodiscard]] bool IsAbove() const { return value >= 0.0; }
+};
+
+/// The largest (or least) value of f between two times around it, by golden sections; stops as soon
+/// as the value has the other sign.
+template <typename Function>
+Sample Extremum(const Function& f, double low_s, double high_s, bool largest) {
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  const double sign = largest ? 1.0 : -1.0;
+  Sample left{high_s - ratio * (high_s - low_s), 0.0};
+  Sample right{low_s + ratio * (high_s - low_s), 0.0};
+  left.value = f(left.time_s);
+  right.value = f(right.time_s);
+  while (high_s - low_s > 0.5) {
+    if (left.IsAbove() == largest) return left;
+    if (right.IsAbove() == largest) return right;
+    if (sign * left.value > sign * right.value) {
+      high_s = right.time_s;
+      right = left;
+      left.time_s = high_s - ratio * (high_s - low_s);
+      left.value = f(left.time_s);
+    } else {
+      low_s = left.time_s;
+      left = right;
+      right.time_s = low_s + ratio * (high_s - low_s);
+      right.value = f(right.time_s);
+    }
+  }
+  return sign * left.value > sign * right.value ? left : right;
+}
+
+/// Samples from half an hour before the day to half an hour after it, ascending, dense enough that
+/// the sign changes at most once between two.
+template <typename Function>
+std::vector<Sample> Samples(const Function& f) {
+  std::vector<Sample> regular;
+  for (int i = -1; i <= kSteps + 1; ++i) regular.push_back({i * kStep_s, f(i * kStep_s)});
+  std::vector<Sample> all = regular;
+  for (std::size_t i = 1; i + 1 < regular.size(); ++i) {
+    const Sample& before = regular[i - 1];
+    const Sample& here = regular[i];
+    const Sample& after = regular[i + 1];
+    const bool is_peak = here.value >= before.value && here.value >= after.value;
+    const bool is_trough = here.value <= before.value && here.value <= after.value;
+    const bool could_hide = is_peak ? !here.IsAbove() : is_trough && here.IsAbove();
+    if (could_hide) all.push_back(Extremum(f, before.time_s, after.time_s, is_peak));
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Sample& a, const Sample& b) { return a.time_s < b.time_s; });
+  return all;
+}
+
+/// First time in [0, one day) at which f changes its sign in the given direction.
+template <typename Function>
+std::optional<double> FirstChange(const Function& f, bool rising) {
+  const std::vector<Sample> samples = Samples(f);
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    if (samples[i].IsAbove() == rising || samples[i + 1].IsAbove() != rising) continue;
+    const double time_s = BracketedRoot(f, samples[i].time_s, samples[i + 1].time_s, kTolerance_s);
+    if (time_s >= 0.0 && time_s < kDay_s) return time_s;
+  }
+  return std::nullopt;
+}
+
+/// The sun's hour angle passes 0 within 17 minutes of mean noon (equation of time).
+double NoonOf(const GeodeticPosition& place, const UtcInstant& midnight) {
+  const auto hour_angle = [&](double time_s) {
+    const glm::dvec3 sun = SunAt(place, AddSeconds(midnight, time_s)).direction.xyz;
+    return WrappedLongitude(place.longitude_rad - std::atan2(sun.y, sun.x));
+  };
+  return BracketedRoot(hour_angle, 0.5 * kDay_s - kStep_s, 0.5 * kDay_s + kStep_s, kTolerance_s);
+}
+
+}  // namespace
+
+std::optional<SunEvent> SunEventFromName(std::string_view name) {
+  for (const auto& [known, event] : kNames) {
+    if (known == name) return event;
+  }
+  return std::nullopt;
+}
+
+std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& place,
+                                       const UtcInstant& around) {
+  const GeodeticPosition wrapped{place.latitude_rad, WrappedLongitude(place.longitude_rad),
+                                 place.height_m};
+  const UtcInstant midnight = StartOfSolarDay(wrapped.longitude_rad, around);
+  if (event == SunEvent::kNoon) return AddSeconds(midnight, NoonOf(wrapped, midnight));
+  const Crossing crossing = CrossingOf(event, wrapped);
+  const auto height_over_crossing = [&](double time_s) {
+    const SunPosition sun = SunAt(wrapped, AddSeconds(midnight, time_s));
+    const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad : 0.0;
+    return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
+  };
+  const std::optional<double> time_s = FirstChange(height_over_crossing, crossing.rising);
+  if (!time_s) return std::nullopt;
+  return AddSeconds(midnight, *time_s);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "lut/diffuse/diffuse_fan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lut/diffuse/diffuse_fan_kernel.h"
+#include "lut/diffuse/diffuse_grid.h"
+#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/table/cubic_taps.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kLanes = 4;
+constexpr int kTableCells = 4096;
+constexpr double kMetresPerKilometre = 1000.0;
+
+}  // namespace
+
+/// A call's arguments, and where the sun stands at every sample under every azimuth.
+struct DiffuseFan::Line {
+  const RaySamples<float>& samples;
+  std::size_t directions;
+  std::vector<float> position, twilight, cosine;  // [sample * directions + direction]
+};
+
+DiffuseFan::DiffuseFan(const DiffuseLight& light)
+    : light_(light),
+      stride_((light.bands() + kLanes - 1) / kLanes * kLanes),
+      chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)),
+      twilight_(TwilightAtNodes(light.grid())) {
+  if (const std::size_t bands = light.bands(); stride_ != bands) {
+    padded_.resize(light.values().size() / bands * stride_);
+    for (std::size_t i = 0; i < light.values().size(); ++i)
+      padded_[i / bands * stride_ + i % bands] = light.values()[i];
+  }
+  for (int i = 0; i <= kTableCells; ++i) {
+    const double mu_s = 2.0 * i / kTableCells - 1.0;
+    position_of_mu_s_.push_back(
+        static_cast<float>(DiffuseLight::SunCoordinate(mu_s) * (light.options().sun_angles - 1)));
+    twilight_of_mu_s_.push_back(TwilightOf(light.grid(), mu_s));
+  }
+}
+
+const float* DiffuseFan::Values() const {
+  return padded_.empty() ? light_.values().data() : padded_.data();
+}
+
+// Four bands. Where the medium has fewer left, lanes are filled with its last band.
+void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
+  const Medium& medium = light_.medium();
+  const DiffuseLightOptions& options = light_.options();
+  const RaySamples<float>& samples = line.samples;
+  const std::size_t bands = light_.bands();
+  const std::size_t node_floats = light_.channels() * stride_;
+  const auto suns = static_cast<std::size_t>(options.sun_angles);
+  const auto orders = static_cast<std::size_t>(options.degree) + 1;
+  const double top_km = medium.atmosphere_height_m / kMetresPerKilometre;
+  const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
+  std::vector<float> rows((suns + 2) * orders * kLanes);
+  for (std::size_t s = 0; s < samples.count; ++s) {
+    const float* position = &line.position[s * line.directions];
+    const auto [least, most] = std::minmax_element(position, position + line.directions);
+    // The nodes that the taps read, at least four; node -1 and the one after the last are added
+    // below.
+    const int low = std::clamp(static_cast<int>(*least) - 1, 0, options.sun_angles - 4);
+    const int high = std::clamp(static_cast<int>(*most) + 2, low + 3, options.sun_angles - 1);
+
+    std::array<float, kMaxMoments * kLanes> factors;
+    const Moments legendre = LegendreTerms(options.degree, samples.mu[s]);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t band = std::min(first_band + lane, bands - 1);
+      const auto per_km = [band](const std::vector<double>& per_m) {
+        return static_cast<float>(per_m[band] * kMetresPerKilometre);
+      };
+      const float rayleigh = per_km(medium.rayleigh_scattering_per_m);
+      const float tau = rayleigh * samples.view_rayleigh[s] +
+                        per_km(medium.mie_extinction_per_m) * samples.view_mie[s] +
+                        per_km(medium.ozone_absorption_per_m) * samples.view_ozone[s];
+      const float seen = samples.weight[s] * std::exp(-tau);
+      const float molecules = seen * rayleigh * samples.rayleigh_density[s];
+      const float aerosol = seen * per_km(medium.mie_scattering_per_m) * samples.mie_density[s];
+      for (std::size_t l = 0; l < orders; ++l) {
+        const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? 0.1F : 0.0F;
+        const float source =
+            molecules * rayleigh_chi + aerosol * static_cast<float>(chi_mie_[l * bands + band]);
+        for (std::size_t m = 0; m <= l; ++m) {
+          const std::size_t i = l * (l + 1) / 2 + m;
+          factors[i * kLanes + lane] = source * legendre[i];
+        }
+      }
+    }
+
+    const CubicTaps taps = TapsAt(
+        std::sqrt(std::clamp(double{samples.altitude[s]} / top_km, 0.0, 1.0)), options.altitudes);
+    FanContraction contraction{};
+    contraction.suns = static_cast<std::size_t>(high - low + 1);
+    contraction.sun_stride = node_floats;
+    contraction.moment_stride = stride_;
+    contraction.degree = options.degree;
+    contraction.factors = factors.data();
+    contraction.rows = &rows[orders * kLanes];
+    for (std::size_t a = 0; a < 4; ++a) {
+      contraction.weights[a] = taps.weight[a];
+      contraction.nodes[a] = Values() +
+                             (taps.node[a] * suns + static_cast<std::size_t>(low)) * node_floats +
+                             first_band;
+    }
+    kernel.contract(contraction);
+    for (std::size_t sun = 0; sun < contraction.suns; ++sun) {
+      const float twilight = twilight_[static_cast<std::size_t>(low) + sun];
+      float* row = contraction.rows + sun * orders * kLanes;
+      for (std::size_t k = 0; k < orders * kLanes; ++k) row[k] /= twilight;
+    }
+
+    // Beyond the ends of the grid the line through the last two nodes goes on, as in TapsAt.
+    const std::size_t width = orders * kLanes;
+    float* before = rows.data();
+    float* after = &rows[(contraction.suns + 1) * width];
+    for (std::size_t k = 0; k < width; ++k) {
+      before[k] = 2.0F * before[width + k] - before[2 * width + k];
+      after[k] = 2.0F * (after - width)[k] - (after - 2 * width)[k];
+    }
+    kernel.gather({line.directions, position, &line.twilight[s * line.directions],
+                   &line.cosine[s * line.directions], low - 1, high - low + 3, options.degree,
+                   rows.data(), light.data()});
+  }
+}
+
+std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, const ViewRay& ray,
+                                              std::span<const float> nus) const {
+  const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
+  Line line{samples, nus.size(), std::vector<float>(samples.count * nus.size()),
+            std::vector<float>(samples.count * nus.size()),
+            std::vector<float>(samples.count * nus.size())};
+  const double radius_km = light_.medium().planet_radius_m / kMetresPerKilometre;
+  const double observer_km = radius_km + std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
+  for (std::size_t s = 0; s < samples.count; ++s) {
+    const double distance_km =
+        samples.extent.begin_m / kMetresPerKilometre + double{samples.distance[s]};
+    kernel.find_suns({nus.size(), nus.data(), static_cast<float>(observer_km * ray.mu_s),
+                      static_cast<float>(distance_km),
+                      static_cast<float>(1.0 / (radius_km + double{samples.altitude[s]})),
+                      samples.mu[s], position_of_mu_s_.data(), twilight_of_mu_s_.data(),
+                      static_cast<float>(kTableCells), &line.position[s * nus.size()],
+                      &line.twilight[s * nus.size()], &line.cosine[s * nus.size()]});
+  }
+  const std::size_t bands = light_.bands();
+  std::vector<float> all(nus.size() * bands);
+  std::vector<float> block;
+  for (std::size_t band = 0; band < bands; band += kLanes) {
+    const std::size_t lanes = std::min(kLanes, bands - band);
+    block.assign(kLanes * nus.size(), 0.0F);
+    AddBlock(line, band, block);
+    for (std::size_t k = 0; k < nus.size(); ++k)
+      std::copy_n(&block[kLanes * k], lanes, &all[k * bands + band]);
+  }
+  return all;
+}
+
+}  // namespace alpenglow

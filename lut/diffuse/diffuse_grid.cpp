@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "lut/diffuse/diffuse_grid.h"
+
+#include <cmath>
+
+namespace alpenglow {
+
+DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
+  const double low =
+      std::asinh((DiffuseLight::kLowestMuS - DiffuseLight::kSunCentre) / DiffuseLight::kSunWidth);
+  const double high = std::asinh((1.0 - DiffuseLight::kSunCentre) / DiffuseLight::kSunWidth);
+  DiffuseGrid grid{};
+  grid.altitudes = static_cast<std::size_t>(options.altitudes);
+  grid.suns = static_cast<std::size_t>(options.sun_angles);
+  grid.degree = static_cast<std::size_t>(options.degree);
+  grid.top_km = static_cast<float>(medium.atmosphere_height_m / 1000.0);
+  grid.sun_centre = static_cast<float>(DiffuseLight::kSunCentre);
+  grid.sun_width = static_cast<float>(DiffuseLight::kSunWidth);
+  grid.first_asinh = static_cast<float>(low);
+  grid.cells_a_unit = static_cast<float>((options.sun_angles - 1) / (high - low));
+  // By a factor e a 1.25 degrees on earth; in proportion to radius over scale height elsewhere, but
+  // by 1e-6 at most.
+  const double fall = 46.0 / 796.0 * medium.planet_radius_m / medium.rayleigh_scale_height_m;
+  grid.twilight_start = -0.03F;
+  grid.twilight_width = 0.05F;
+  grid.twilight_fall = static_cast<float>(std::min(fall, 50.0));
+  return grid;
+}
+
+float TwilightOf(const DiffuseGrid& grid, double mu_s) {
+  const double x = static_cast<double>(grid.twilight_start) - mu_s;
+  const double width = static_cast<double>(grid.twilight_width);
+  return static_cast<float>(std::exp(-0.5 * static_cast<double>(grid.twilight_fall) *
+                                     (x + std::sqrt(x * x + width * width))));
+}
+
+CubicTaps SunTaps(const DiffuseGrid& grid, double mu_s) {
+  const int suns = static_cast<int>(grid.suns);
+  CubicTaps taps = TapsAt(DiffuseLight::SunCoordinate(mu_s), suns);
+  const float here = TwilightOf(grid, mu_s);
+  for (std::size_t tap = 0; tap < 4; ++tap) {
+    const double v = static_cast<double>(taps.node[tap]) / (suns - 1);
+    taps.weight[tap] *= here / TwilightOf(grid, DiffuseLight::MuSFromCoordinate(v));
+  }
+  return taps;
+}
+
+std::vector<float> TwilightAtNodes(const DiffuseGrid& grid) {
+  std::vector<float> twilight;
+  for (std::size_t sun = 0; sun < grid.suns; ++sun) {
+    const double v = static_cast<double>(sun) / static_cast<double>(grid.suns - 1);
+    twilight.push_back(TwilightOf(grid, DiffuseLight::MuSFromCoordinate(v)));
+  }
+  return twilight;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Directions from the nodes of DiffuseLight's table and points along them: what successive orders
+// march along, whatever band and order.
+#pragma once
+
+#include <vector>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/diffuse_grid.h"
+
+namespace alpenglow {
+
+/// One direction at one altitude, all suns and azimuths.
+struct March {
+  float mu = 0.0F, sine = 0.0F;
+  float solid_angle = 0.0F;  // of the direction and its mirror image, one azimuth of half a turn
+  std::array<float, 28> legendre{};
+  std::vector<MarchPoint> points;
+  std::vector<std::array<float, 6>>
+      air;                     // of points: weight [km], densities, columns from the node
+  std::vector<double> panels;  // where the ray begins, is lowest (if between), ends [km]
+  bool hits_ground = false;
+  double ground_distance_km = 0.0;
+  Bands<float> ground_transmittance;
+  std::vector<CubicTaps> ground_taps;  // [sun * azimuths + azimuth], for divided moments
+};
+
+class DiffuseMarches {
+ public:
+  DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options);
+
+  [[nodiscard]] const AirIntegrator<float>& air() const { return *air_; }
+  [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
+  [[nodiscard]] std::size_t azimuths() const { return azimuths_; }
+  [[nodiscard]] double altitude_km(std::size_t i) const { return altitude_km_[i]; }
+  [[nodiscard]] double mu_s(std::size_t sun) const { return mu_s_[sun]; }
+  [[nodiscard]] double radius_km() const { return radius_km_; }
+  [[nodiscard]] const std::vector<March>& At(std::size_t altitude) const {
+    return marches_[altitude];
+  }
+  /// cos(m phi) of an azimuth.
+  [[nodiscard]] float AzimuthCosine(std::size_t m, std::size_t azimuth) const {
+    return azimuth_cosines_[m].data()[azimuth];
+  }
+  [[nodiscard]] MarchDirection Direction(std::size_t altitude, const March& march) const;
+  /// Cosine between a march and the sun.
+  [[nodiscard]] double Nu(const March& march, std::size_t sun, std::size_t azimuth) const;
+
+ private:
+  [[nodiscard]] std::vector<March> MarchesAt(std::size_t altitude,
+                                             const DiffuseLightOptions& options) const;
+  void AddPoints(std::size_t altitude, const DiffuseLightOptions& options, double mu,
+                 March& march) const;
+  void AddGround(std::size_t altitude, March& march) const;
+
+  const AirIntegrator<float>* air_;
+  DiffuseGrid grid_;
+  double radius_km_;
+  std::size_t azimuths_;
+  std::vector<double> altitude_km_, mu_s_;
+  std::vector<float> mu_s_floats_, sine_s_;
+  std::array<AlignedFloats, kLargestDegree + 1> azimuth_cosines_;
+  std::vector<std::vector<March>> marches_;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "lut/diffuse/spherical_harmonics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/air/phase_table.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/quadrature.h"
+
+namespace alpenglow {
+namespace {
+
+struct HarmonicNorms {
+  std::array<float, kMaxMoments> norm{};
+  HarmonicNorms() {
+    std::size_t index = 0;
+    for (int l = 0; l <= kMaxDegree; ++l) {
+      for (int m = 0; m <= l; ++m, ++index) {
+        double ratio = 1.0;  // (l - m)! / (l + m)!
+        for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
+        norm[index] =
+            static_cast<float>(std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio));
+      }
+    }
+  }
+};
+
+}  // namespace
+
+Moments LegendreTerms(int degree, float mu) {
+  static const HarmonicNorms norms;
+  Moments p{};
+  const float sine = std::sqrt(std::max((1.0F - mu) * (1.0F + mu), 0.0F));
+  float diagonal = 1.0F;
+  for (int m = 0; m <= degree; ++m) {
+    p[MomentIndex(m, m)] = diagonal;
+    if (m < degree) p[MomentIndex(m + 1, m)] = mu * static_cast<float>(2 * m + 1) * diagonal;
+    for (int l = m + 2; l <= degree; ++l) {
+      p[MomentIndex(l, m)] = (static_cast<float>(2 * l - 1) * mu * p[MomentIndex(l - 1, m)] -
+                              static_cast<float>(l + m - 1) * p[MomentIndex(l - 2, m)]) /
+                             static_cast<float>(l - m);
+    }
+    diagonal *= static_cast<float>(2 * m + 1) * sine;
+  }
+  for (std::size_t i = 0; i < MomentCount(degree); ++i) p[i] *= norms.norm[i];
+  return p;
+}
+
+std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine) {
+  std::array<float, kMaxDegree + 1> values{};
+  values[0] = 1.0F;
+  if (degree >= 1) values[1] = cosine;
+  for (std::size_t m = 2; m <= static_cast<std::size_t>(degree); ++m) {
+    values[m] = 2.0F * cosine * values[m - 1] - values[m - 2];
+  }
+  return values;
+}
+
+Moments SphericalHarmonics(int degree, float mu, float cos_azimuth) {
+  Moments y = LegendreTerms(degree, mu);
+  const auto cosines = CosineMultiples(degree, cos_azimuth);
+  for (int l = 0; l <= degree; ++l) {
+    for (int m = 0; m <= l; ++m) y[MomentIndex(l, m)] *= cosines[static_cast<std::size_t>(m)];
+  }
+  return y;
+}
+
+float AzimuthCosine(float mu, float mu_s, float nu) {
+  const float sines =
+      std::sqrt(std::max((1.0F - mu) * (1.0F + mu) * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
+  return std::clamp((nu - mu * mu_s) / sines, -1.0F, 1.0F);
+}
+
+namespace {
+
+// Cosines, ascending, between which the phase function is smooth and as wide as the panel: the
+// nodes of a table; else panels that shrink towards the forward peak, so that g = 0.999 is
+// resolved.
+std::vector<double> PanelEdges(const PhaseFunction& phase) {
+  std::vector<double> edges{-1.0};
+  if (phase.kind == PhaseKind::kTable) {
+    constexpr double kLast = static_cast<double>(PhaseTable::kNodes - 1);
+    for (std::size_t node = PhaseTable::kNodes - 2; node > 0; --node) {
+      const double s = static_cast<double>(node) / kLast;
+      edges.push_back(std::cos(kPi * s * s * s));
+    }
+  } else {
+    edges.push_back(0.0);
+    for (double gap = 0.5; gap > 1e-9; gap *= 0.5) edges.push_back(1.0 - gap);
+  }
+  edges.push_back(1.0);
+  return edges;
+}
+
+}  // namespace
+
+std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
+  std::vector<double> chi(static_cast<std::size_t>(degree) + 1, 0.0);
+  const GaussRule& rule = GaussLegendre(phase.kind == PhaseKind::kTable ? 4 : 32);
+  const std::vector<double> edges = PanelEdges(phase);
+  for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const double x = edges[panel] + (edges[panel + 1] - edges[panel]) * rule.node[i];
+      const double weight =
+          2.0 * kPi * rule.weight[i] * (edges[panel + 1] - edges[panel]) * Phase(phase, x);
+      double before = 0.0, now = 1.0;
+      for (std::size_t l = 0; l < chi.size(); ++l) {
+        chi[l] += weight * now;
+        const double next =
+            ((2.0 * static_cast<double>(l) + 1.0) * x * now - static_cast<double>(l) * before) /
+            (static_cast<double>(l) + 1.0);
+        before = now;
+        now = next;
+      }
+    }
+  }
+  return chi;
+}
+
+std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree) {
+  const std::size_t bands = medium.wavelengths_nm.size();
+  const std::size_t different = medium.mie_phase.size();
+  const auto degrees = static_cast<std::size_t>(degree) + 1;
+  std::vector<double> chi(degrees * bands);
+  for (std::size_t phase = 0; phase < different; ++phase) {
+    const std::vector<double> row = LegendreCoefficients(medium.mie_phase[phase], degree);
+    for (std::size_t l = 0; l < degrees; ++l) {
+      for (std::size_t band = phase; band < bands; band += different)
+        chi[l * bands + band] = row[l];
+    }
+  }
+  return chi;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Real spherical harmonics around the vertical, even in azimuth, and Legendre series of phase
+// functions.
+//
+//   Y_lm(mu, phi) = norm_lm P_l^m(mu) cos(m phi),   0 <= m <= l
+//
+// orthonormal over the sphere, without the Condon-Shortley phase (it cancels between projection and
+// evaluation). Moments are stored l major: 00, 10, 11, 20, 21, 22, ...
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/air/phase.h"
+
+namespace alpenglow {
+
+inline constexpr int kMaxDegree = 6;
+
+[[nodiscard]] constexpr std::size_t MomentCount(int degree) {
+  return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2);
+}
+[[nodiscard]] constexpr std::size_t MomentIndex(int l, int m) {
+  return static_cast<std::size_t>(l * (l + 1) / 2 + m);
+}
+inline constexpr std::size_t kMaxMoments = MomentCount(kMaxDegree);
+
+using Moments = std::array<float, kMaxMoments>;
+
+/// norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
+[[nodiscard]] Moments LegendreTerms(int degree, float mu);
+
+/// cos(m phi) for m = 0 ... degree from cos(phi).
+[[nodiscard]] std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine);
+
+/// Y_lm for l <= degree. @param cos_azimuth cos(phi).
+[[nodiscard]] Moments SphericalHarmonics(int degree, float mu, float cos_azimuth);
+
+/// Cosine of the azimuth between two directions of zenith cosines mu and mu_s with cosine nu
+/// between them; some value in [-1, 1] where one of them is vertical.
+[[nodiscard]] float AzimuthCosine(float mu, float mu_s, float nu);
+
+/// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
+/// Error below 1e-6 for |g| <= 0.999 and for tables.
+[[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
+
+/// The same of the medium's aerosol at every wavelength: chi_l of a band at [l * bands + band].
+[[nodiscard]] std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree);
+
+}  // namespace alpenglow

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+#include "lut/diffuse/successive_orders.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec4.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "lut/diffuse/first_order.h"
+#include "lut/diffuse/spherical_harmonics.h"
+
+namespace alpenglow {
+namespace {
+
+using Light = glm::vec4;  // one value per band of a block
+
+/// Moments, packed, and sky irradiance at every node, divided by TwilightOf.
+struct Field {
+  AlignedFloats moments;
+  std::vector<Light> sky;
+};
+
+/// The nodes' layout.
+struct Layout {
+  explicit Layout(const DiffuseGrid& grid)
+      : degree(grid.degree),
+        suns(grid.suns),
+        nodes(grid.altitudes * grid.suns),
+        stride(kPackedRow[grid.degree + 1] * 8) {}
+  std::size_t degree, suns, nodes, stride;
+};
+
+Light Of(const std::vector<double>& bands, std::size_t first_band) {
+  Light block(0.0F);
+  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands.size(); ++lane)
+    block[static_cast<int>(lane)] = static_cast<float>(bands[first_band + lane]);
+  return block;
+}
+
+/// Four bands along the marches of one set.
+class Transport {
+ public:
+  Transport(const DiffuseMarches& marches, std::size_t first_band);
+
+  /// Moments of the light of the previous order that arrives at one altitude's nodes.
+  void NextOrder(std::size_t altitude, const Field& previous, Field& next) const;
+  /// The same of sunlight: radiance as SunlightScatteredOnce gives it.
+  void Project(const March& march, std::size_t altitude, const std::vector<float>& radiance,
+               Field& field) const;
+
+ private:
+  void ProjectSun(const March& march, std::size_t node, const Light* radiance, Field& field) const;
+  void AddGroundLight(const March& march, const Light& reflected, const Field& previous,
+                      std::vector<Light>& radiance) const;
+
+  const DiffuseMarches& marches_;
+  Layout layout_;
+  std::size_t first_band_;
+  Light albedo_;
+  BlockChi chi_{};
+  std::vector<float> twilight_;
+  std::vector<std::vector<std::vector<MarchLight>>> lights_;  // [altitude][march][point]
+  std::vector<std::vector<Light>> ground_transmittance_;      // [altitude][march]
+};
+
+// Transmittance to a point of a march, its weight, and what scatters there.
+MarchLight LightOf(const AirConstants<float>& air, std::size_t first_band,
+                   const std::array<float, 6>& at) {
+  MarchLight light{};
+  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane) {
+    const std::size_t band = first_band + lane;
+    const float depth =
+        air.rayleigh[band] * at[3] + air.mie_extinction[band] * at[4] + air.ozone[band] * at[5];
+    const float share = at[0] * std::exp(-depth);
+    light.rayleigh[lane] = share * air.rayleigh[band] * at[1];
+    light.mie[lane] = share * air.mie_scattering[band] * at[2];
+  }
+  return light;
+}
+
+Transport::Transport(const DiffuseMarches& marches, std::size_t first_band)
+    : marches_(marches),
+      layout_(marches.grid()),
+      first_band_(first_band),
+      albedo_(Of(marches.air().medium().ground_albedo, first_band)),
+      twilight_(TwilightAtNodes(marches.grid())) {
+  const AirConstants<float>& air = marches.air().constants();
+  const std::vector<double> chi =
+      MieLegendreCoefficients(marches.air().medium(), static_cast<int>(layout_.degree));
+  for (std::size_t l = 0; l <= layout_.degree; ++l) {
+    for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane)
+      chi_[l][lane] = static_cast<float>(chi[l * air.bands + first_band + lane]);
+  }
+  for (std::size_t altitude = 0; altitude < marches.grid().altitudes; ++altitude) {
+    auto& lights = lights_.emplace_back();
+    auto& transmittance = ground_transmittance_.emplace_back();
+    for (const March& march : marches.At(altitude)) {
+      auto& of_march = lights.emplace_back();
+      for (const auto& at : march.air) of_march.push_back(LightOf(air, first_band, at));
+      const Bands<float>& ground = march.ground_transmittance;
+      transmittance.push_back(Of(
+          {ground.value.begin(), ground.value.begin() + static_cast<std::ptrdiff_t>(ground.count)},
+          first_band));
+    }
+  }
+}
+
+// Radiance of all azimuths at one node along a march; they stand for their mirror images too.
+void Transport::ProjectSun(const March& march, std::size_t node, const Light* radiance,
+                           Field& field) const {
+  const float share = march.solid_angle / twilight_[node % layout_.suns];
+  std::array<Light, kLargestDegree + 1> around;
+  for (std::size_t m = 0; m <= layout_.degree; ++m) {
+    around[m] = Light(0.0F);
+    for (std::size_t k = 0; k < marches_.azimuths(); ++k)
+      around[m] += marches_.AzimuthCosine(m, k) * radiance[k];
+    around[m] *= share;
+  }
+  float* moments = field.moments.data() + node * layout_.stride;
+  for (std::size_t l = 0; l <= layout_.degree; ++l) {
+    for (std::size_t m = 0; m <= l; ++m) {
+      const float legendre = march.legendre[l * (l + 1) / 2 + m];
+      float* moment = moments + PackedIndex(l, m);
+      for (int lane = 0; lane < 4; ++lane) moment[lane] += legendre * around[m][lane];
+    }
+  }
+  if (march.mu > 0.0F) field.sky[node] += march.mu * around[0];
+}
+
+void Transport::Project(const March& march, std::size_t altitude,
+                        const std::vector<float>& radiance, Field& field) const {
+  const std::size_t rays = layout_.suns * marches_.azimuths();
+  const std::size_t bands = radiance.size() / rays;
+  std::vector<Light> light(rays, Light(0.0F));
+  for (std::size_t lane = 0; lane < kBlockBands && first_band_ + lane < bands; ++lane) {
+    for (std::size_t ray = 0; ray < rays; ++ray)
+      light[ray][static_cast<int>(lane)] = radiance[(first_band_ + lane) * rays + ray];
+  }
+  for (std::size_t sun = 0; sun < layout_.suns; ++sun) {
+    ProjectSun(march, altitude * layout_.suns + sun, &light[sun * marches_.azimuths()], field);
+  }
+}
+
+// Light of the previous order that the ground reflects into the march.
+void Transport::AddGroundLight(const March& march, const Light& reflected, const Field& previous,
+                               std::vector<Light>& radiance) const {
+  for (std::size_t ray = 0; ray < radiance.size(); ++ray) {
+    const CubicTaps& taps = march.ground_taps[ray];
+    Light irradiance(0.0F);
+    for (std::size_t tap = 0; tap < 4; ++tap)
+      irradiance += taps.weight[tap] * previous.sky[taps.node[tap]];
+    radiance[ray] += reflected * glm::max(irradiance, Light(0.0F));
+  }
+}
+
+void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& next) const {
+  const std::size_t rays = layout_.suns * marches_.azimuths();
+  AlignedFloats rows((layout_.suns + 2) * (layout_.degree / 2 + 1) * 8);
+  std::vector<Light> radiance(rays);
+  for (std::size_t i = 0; i < marches_.At(altitude).size(); ++i) {
+    const March& march = marches_.At(altitude)[i];
+    AlignedFloats arriving(rays * 8);
+    Kernel<DiffuseKernel>().arrive(marches_.grid(), marches_.Direction(altitude, march),
+                                   march.points.data(), lights_[altitude][i].data(),
+                                   march.points.size(), chi_, previous.moments.data(), rows.data(),
+                                   arriving.data());
+    for (std::size_t ray = 0; ray < rays; ++ray) {
+      const float* halves = arriving.data() + ray * 8;
+      for (int lane = 0; lane < 4; ++lane)
+        radiance[ray][lane] = std::max(halves[lane] + halves[lane + 4], 0.0F);
+    }
+    if (march.hits_ground) {
+      const Light reflected =
+          ground_transmittance_[altitude][i] * albedo_ * static_cast<float>(1.0 / kPi);
+      AddGroundLight(march, reflected, previous, radiance);
+    }
+    for (std::size_t sun = 0; sun < layout_.suns; ++sun) {
+      ProjectSun(march, altitude * layout_.suns + sun, &radiance[sun * marches_.azimuths()], next);
+    }
+  }
+}
+
+/// Four bands through all orders.
+class Block {
+ public:
+  /// @param later  the marches of the orders after the second.
+  Block(const DiffuseMarches& marches, const DiffuseMarches& later,
+        const DiffuseLightOptions& options, std::size_t first_band)
+      : options_(options),
+        layout_(marches.grid()),
+        twilight_(TwilightAtNodes(marches.grid())),
+        transport_(marches, first_band),
+        later_(later, first_band) {}
+
+  [[nodiscard]] const Transport& transport() const { return transport_; }
+  [[nodiscard]] Field Empty() const {
+    return {AlignedFloats(layout_.nodes * layout_.stride),
+            std::vector<Light>(layout_.nodes, Light(0.0F))};
+  }
+
+  struct Sum {
+    Field total;
+    int orders;
+    bool converged;
+  };
+  [[nodiscard]] Sum Solve(Field first_order) const;
+
+ private:
+  [[nodiscard]] Light Isotropic(const Field& field, std::size_t node) const {
+    const float* moment = field.moments.data() + node * layout_.stride;
+    return {moment[0], moment[1], moment[2], moment[3]};
+  }
+  [[nodiscard]] double LargestShare(const Field& part, const Field& whole) const;
+  void AddTail(const Field& last, const Field& before, Field& total) const;
+
+  const DiffuseLightOptions& options_;
+  Layout layout_;
+  std::vector<float> twilight_;
+  Transport transport_, later_;
+};
+
+// Largest ratio over nodes of the isotropic moment of a part to that of the whole.
+double Block::LargestShare(const Field& part, const Field& whole) const {
+  constexpr float kNight = 1e-9F;  // nodes with less light do not hold up the rest
+  double largest = 0.0;
+  for (std::size_t node = 0; node < layout_.nodes; ++node) {
+    const Light share = Isotropic(part, node), of = Isotropic(whole, node);
+    for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
+      if (of[lane] * twilight_[node % layout_.suns] <= kNight) continue;
+      largest = std::max(largest, static_cast<double>(share[lane] / of[lane]));
+    }
+  }
+  return largest;
+}
+
+// Adds last (q + q^2 + ...) for the ratio q of two consecutive orders.
+void Block::AddTail(const Field& last, const Field& before, Field& total) const {
+  for (std::size_t node = 0; node < layout_.nodes; ++node) {
+    const Light now = Isotropic(last, node), then = Isotropic(before, node);
+    Light factor(0.0F);
+    for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
+      if (then[lane] <= 0.0F) continue;
+      const float ratio = std::clamp(now[lane] / then[lane], 0.0F, 0.98F);
+      factor[lane] = ratio / (1.0F - ratio);
+    }
+    for (std::size_t i = 0; i < layout_.stride; ++i) {
+      const std::size_t at = node * layout_.stride + i;
+      total.moments.data()[at] +=
+          factor[static_cast<int>(i % kBlockBands)] * last.moments.data()[at];
+    }
+    total.sky[node] += factor * last.sky[node];
+  }
+}
+
+void Accumulate(const Field& part, Field& total) {
+  for (std::size_t i = 0; i < total.moments.size(); ++i)
+    total.moments.data()[i] += part.moments.data()[i];
+  for (std::size_t i = 0; i < total.sky.size(); ++i) total.sky[i] += part.sky[i];
+}
+
+Block::Sum Block::Solve(Field first_order) const {
+  Field order = std::move(first_order);
+  Field total = order;
+  Field before = order;
+  int orders = 1;
+  double share = 1.0, rest = 1.0;
+  const auto goes_on = [&] {
+    if (options_.exact_orders) return orders < *options_.exact_orders;
+    return rest > options_.tolerance && share > 0.0 && orders < options_.max_orders;
+  };
+  while (goes_on()) {
+    Field next = Empty();
+    const Transport& transport = orders == 1 ? transport_ : later_;
+    tbb::parallel_for(std::size_t{0}, layout_.nodes / layout_.suns,
+                      [&](std::size_t i) { transport.NextOrder(i, order, next); });
+    Accumulate(next, total);
+    before = std::move(order);
+    order = std::move(next);
+    ++orders;
+    const double share_before = share;
+    share = LargestShare(order, total);
+    const double ratio = std::clamp(share / share_before, 0.0, 0.999);
+    rest = share * ratio / (1.0 - ratio);
+  }
+  if (options_.exact_orders) return {std::move(total), orders, true};
+  AddTail(order, before, total);
+  return {std::move(total), orders, rest <= options_.tolerance || share == 0.0};
+}
+
+// Values of one block of bands in the order of DiffuseLight::values().
+void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band, std::size_t bands,
+            std::vector<float>& values) {
+  const Layout layout(grid);
+  const std::vector<float> twilight = TwilightAtNodes(grid);
+  const std::size_t channels = MomentCount(static_cast<int>(layout.degree)) + 1;
+  for (std::size_t node = 0; node < layout.nodes; ++node) {
+    const float factor = twilight[node % layout.suns];
+    const float* moments = field.moments.data() + node * layout.stride;
+    for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands; ++lane) {
+      float* value = &values[node * channels * bands + first_band + lane];
+      for (std::size_t l = 0; l <= layout.degree; ++l) {
+        for (std::size_t m = 0; m <= l; ++m, value += bands)
+          *value = factor * moments[PackedIndex(l, m) + lane];
+      }
+      *value = factor * field.sky[node][static_cast<int>(lane)];
+    }
+  }
+}
+
+// Orders after the second are smooth: fewer directions serve them.
+DiffuseLightOptions OfLaterOrders(DiffuseLightOptions options) {
+  options.zenith_nodes = std::min(options.zenith_nodes, options.later_zenith_nodes);
+  options.azimuth_nodes = std::min(options.azimuth_nodes, options.later_azimuth_nodes);
+  options.ray_nodes = std::min(options.ray_nodes, options.later_ray_nodes);
+  return options;
+}
+
+}  // namespace
+
+SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptions& options) {
+  const AirIntegrator<float> air(medium);
+  const DiffuseMarches marches(air, options);
+  const DiffuseMarches later(air, OfLaterOrders(options));
+  const std::size_t bands = medium.wavelengths_nm.size();
+  std::vector<Block> blocks;
+  std::vector<Field> first;
+  for (std::size_t band = 0; band < bands; band += kBlockBands) {
+    blocks.emplace_back(marches, later, options, band);
+    first.push_back(blocks.back().Empty());
+  }
+  tbb::parallel_for(std::size_t{0}, marches.grid().altitudes, [&](std::size_t altitude) {
+    for (const March& march : marches.At(altitude)) {
+      const std::vector<float> radiance =
+          SunlightScatteredOnce(marches, altitude, march, options.ray_nodes);
+      for (std::size_t block = 0; block < blocks.size(); ++block)
+        blocks[block].transport().Project(march, altitude, radiance, first[block]);
+    }
+  });
+  SolvedOrders solved;
+  const std::size_t channels = MomentCount(options.degree) + 1;
+  solved.values.resize(Layout(marches.grid()).nodes * channels * bands);
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    const Block::Sum sum = blocks[block].Solve(std::move(first[block]));
+    solved.orders = std::max(solved.orders, sum.orders);
+    solved.converged = solved.converged && sum.converged;
+    Unpack(marches.grid(), sum.total, block * kBlockBands, bands, solved.values);
+  }
+  return solved;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Cases to evaluate, one a line of a CSV file:
+//
+//   id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m
+//
+// as CsvReader reads them; distance_m may be empty (to the ground or out of the top). Cases of
+// lamps have columns of their own: lamp_cases.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "atmosphere/ray/ray.h"
+#include "lut/program/csv_reader.h"
+
+namespace alpenglow {
+
+enum class Quantity {
+  kTransmittance,    // of the ray [1]
+  kOpticalDepth,     // of the ray [1]
+  kSingle,           // scattered once, and sunlight from the ground at the end of the ray [1/sr]
+  kInscatterSingle,  // scattered once [1/sr]
+  kTotal,            // all orders, and light from the ground [1/sr]
+  kIrradianceSun,    // of the direct sun on a horizontal plane [1]
+  kIrradianceSky,    // of the sky on a horizontal plane [1]
+};
+
+struct Case {
+  std::string id;
+  std::size_t line = 0;
+  Quantity quantity = Quantity::kTransmittance;
+  ViewRay ray;
+};
+
+class CaseReader {
+ public:
+  /// Throws InputError, here and in Next(), for what CsvReader refuses and an unknown quantity.
+  explicit CaseReader(const std::filesystem::path& file);
+
+  /// The next case, or nothing at the end.
+  [[nodiscard]] std::optional<Case> Next();
+
+  /// An InputError "file:line: fault".
+  [[noreturn]] void Fail(std::size_t line, const std::string& fault) const {
+    lines_.Fail(line, fault);
+  }
+
+  /// How far it is, for progress.
+  [[nodiscard]] std::uint64_t bytes_read() const { return lines_.bytes_read(); }
+  [[nodiscard]] std::uint64_t bytes() const { return lines_.bytes(); }
+
+ private:
+  CsvReader lines_;
+};
+
+}  // namespace alpenglow

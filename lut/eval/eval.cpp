@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "lut/eval/eval.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+#include "atmosphere/text/error.h"
+#include "lut/eval/case_results.h"
+
+namespace alpenglow {
+namespace {
+
+std::string Lines(const Case& work, const Medium& medium, const Estimates& estimates) {
+  std::string lines;
+  for (std::size_t band = 0; band < estimates.size(); ++band) {
+    lines += ResultLine(work.id, fmt::format("{}", medium.wavelengths_nm[band]), estimates[band]);
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray) {
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  if (extent.end != RayEnd::kGround) return std::nullopt;
+  const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
+  return std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
+}
+
+std::optional<double> RelativeErrorFromText(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (percent) value /= 100.0;
+  return value >= kSmallestMaxError && value <= 1.0 ? std::optional(value) : std::nullopt;
+}
+
+std::string FaultOfRelativeError(const std::string& text) {
+  return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
+}
+
+void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
+                  Evaluator& evaluator, ProgressStyle style) {
+  CaseReader reader(cases);
+  const auto prepare = [&](std::span<const Case> work) {
+    for (const Case& next : work) {
+      if (const auto refusal = evaluator.Refusal(next.quantity)) {
+        reader.Fail(next.line, "its quantity " + *refusal);
+      }
+    }
+    evaluator.Prepare(work);
+  };
+  WriteCaseResults(reader, results, style, prepare, [&](const Case& work) {
+    return Lines(work, evaluator.medium(), evaluator.Evaluate(work));
+  });
+}
+
+}  // namespace alpenglow

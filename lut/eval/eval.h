@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Values of cases by one method, each with an estimate of its error: what `skylut eval` does.
+//
+//   integral  AirIntegrator in double; light of all orders from DiffuseLight. The error is the
+//             difference between two numbers of nodes and what closed forms leave (bounds below).
+//             For errors below what these can do, the judge.
+//   table     look-ups in stored tables; what they leave out, integrated on their number of nodes.
+//             The error is the distance to the integral.
+//   path-trace  the judge of multiple scattering. The error is one standard error.
+//
+// Radiances are per unit solar irradiance [1/sr], irradiances per unit solar irradiance [1].
+//
+// Light of lamps (quantity airlight) needs other columns and no atmosphere: such cases are a file
+// of their own (lamp_cases.h), and neither kind of file holds cases of the other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "lut/eval/case_file.h"
+#include "lut/program/progress.h"
+#include "lut/store/table_folder.h"
+
+namespace alpenglow {
+
+/// A value and the method's own estimate of its error, in the same unit.
+struct Estimate {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// One a wavelength.
+using Estimates = std::vector<Estimate>;
+
+struct IntegralOptions {
+  int samples = 16;  // Gauss nodes a panel, in [2, 32]
+  /// Relative: chooses the samples of every case, and the judge where they do not suffice. Light of
+  /// higher orders has the error it has.
+  std::optional<double> max_error;
+};
+
+struct PathTraceOptions {
+  double max_error = 0.005;  // relative: paths are added until one standard error is below it
+  std::size_t max_paths = std::size_t{1} << 22U;  // of a case; errors stay larger then
+  std::uint64_t seed = 1;                         // a case's value does not depend on others
+};
+
+inline constexpr int kFewestSamples = 2;
+inline constexpr int kMostSamples = 32;
+
+/// The smallest error that can be asked for: what the judge keeps.
+inline constexpr double kSmallestMaxError = 1e-8;
+
+/// "0.2%" or "0.002"; nothing for another text and outside of
+/// [kSmallestMaxError, 1].
+[[nodiscard]] std::optional<double> RelativeErrorFromText(std::string_view text);
+/// What is wrong with such a text, for the command line; empty when nothing is.
+[[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
+
+/// Relative error of closed-form optical depths (worst: rays that graze the top from outside).
+inline constexpr double kClosedFormError = 2e-5;
+
+[[nodiscard]] constexpr bool NeedsLightOfAllOrders(Quantity quantity) {
+  return quantity == Quantity::kTotal || quantity == Quantity::kIrradianceSky;
+}
+
+/// The sun's zenith cosine where a ray meets the ground; nothing when it does not.
+[[nodiscard]] std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray);
+
+/// Thread-safe once prepared.
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+
+  [[nodiscard]] virtual const Medium& medium() const = 0;
+  /// Why this method cannot give a quantity; nothing when it can.
+  [[nodiscard]] virtual std::optional<std::string> Refusal(Quantity quantity) const = 0;
+  /// Makes ready what these cases need (light of all orders takes seconds).
+  virtual void Prepare(std::span<const Case> cases) = 0;
+  [[nodiscard]] virtual Estimates Evaluate(const Case& work) const = 0;
+};
+
+/// Throws InputError for more than kMaxBands wavelengths, and options out of range.
+[[nodiscard]] std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
+                                                               const IntegralOptions& options = {});
+/// Refuses light of all orders where the tables hold single scattering only. Throws InputError for
+/// tables of different media.
+[[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables);
+
+/// Light scattered once or by all orders, and the sky's irradiance; refuses the other quantities.
+/// Throws InputError for options out of range.
+[[nodiscard]] std::unique_ptr<Evaluator> MakePathTraceEvaluator(
+    const Medium& medium, const PathTraceOptions& options = {});
+
+/// Evaluates every case of a file in parallel and writes "id,wavelength_nm,value,error" in the
+/// order of the cases, whole or not at all. Never holds more than a few thousand cases. Throws
+/// InputError naming file and line.
+void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
+                  Evaluator& evaluator, ProgressStyle style);
+
+}  // namespace alpenglow

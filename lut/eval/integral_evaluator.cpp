@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "atmosphere/judge/judge.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "lut/eval/eval.h"
+
+namespace alpenglow {
+namespace {
+
+// What closed forms leave in light scattered once, twice the worst stored case: for smaller errors
+// the judge takes over.
+constexpr double kFastPathFloor = 4e-6;
+
+// Numbers of nodes that a wanted error is sought with.
+constexpr std::array<int, 6> kLadder{4, 8, 12, 16, 24, 32};
+
+// The coarser solution that light of all orders is held against.
+constexpr DiffuseLightOptions kCoarseLight{.altitudes = 12,
+                                           .sun_angles = 28,
+                                           .degree = 2,
+                                           .zenith_nodes = 8,
+                                           .azimuth_nodes = 6,
+                                           .ray_nodes = 8};
+
+double Sum(const Estimate& a) { return std::abs(a.value) + a.error; }
+
+/// Product of two estimates; errors add to first order, and beyond it where they are large.
+Estimate operator*(const Estimate& a, const Estimate& b) {
+  return {a.value * b.value, Sum(a) * Sum(b) - std::abs(a.value * b.value)};
+}
+
+Estimate operator+(const Estimate& a, const Estimate& b) {
+  return {a.value + b.value, a.error + b.error};
+}
+
+template <typename Combine>
+Estimates Combined(const Estimates& a, const Estimates& b, const Combine& combine) {
+  Estimates result(a.size());
+  for (std::size_t band = 0; band < a.size(); ++band) result[band] = combine(a[band], b[band]);
+  return result;
+}
+
+Estimates operator+(const Estimates& a, const Estimates& b) {
+  return Combined(a, b, [](const Estimate& x, const Estimate& y) { return x + y; });
+}
+
+/// Light that the ground sends along a ray of this transmittance, for an irradiance on it.
+Estimates FromGround(const Medium& medium, const Estimates& transmittance,
+                     const Estimates& irradiance) {
+  Estimates light = Combined(transmittance, irradiance,
+                             [](const Estimate& t, const Estimate& e) { return t * e; });
+  for (std::size_t band = 0; band < light.size(); ++band) {
+    light[band] = light[band] * Estimate{medium.ground_albedo[band] / kPi, 0.0};
+  }
+  return light;
+}
+
+ViewRay TowardsSun(double altitude_m, double mu_s) { return {altitude_m, mu_s, mu_s, 1.0}; }
+
+bool WithinError(const Estimates& estimates, double max_error) {
+  return std::all_of(estimates.begin(), estimates.end(), [&](const Estimate& estimate) {
+    return estimate.error <= max_error * std::abs(estimate.value);
+  });
+}
+
+class IntegralEvaluator final : public Evaluator {
+ public:
+  IntegralEvaluator(const Medium& medium, const IntegralOptions& options)
+      : air_(medium), quick_air_(medium), options_(options) {
+    if (medium.wavelengths_nm.size() > kMaxBands) {
+      throw InputError(
+          fmt::format("spectrum.wavelengths_nm has {} values; at most {} are evaluated",
+                      medium.wavelengths_nm.size(), kMaxBands));
+    }
+    RequireInRange(options.samples, kFewestSamples, kMostSamples, "samples");
+    if (options.max_error) {
+      RequireInRange(*options.max_error, kSmallestMaxError, 1.0, "max_error");
+    }
+  }
+
+  [[nodiscard]] const Medium& medium() const override { return air_.medium(); }
+
+  [[nodiscard]] std::optional<std::string> Refusal(Quantity) const override { return {}; }
+
+  void Prepare(std::span<const Case> cases) override {
+    if (fine_light_ || std::none_of(cases.begin(), cases.end(), [](const Case& work) {
+          return NeedsLightOfAllOrders(work.quantity);
+        })) {
+      return;
+    }
+    fine_light_.emplace(medium());
+    coarse_light_.emplace(medium(), kCoarseLight);
+  }
+
+  [[nodiscard]] Estimates Evaluate(const Case& work) const override {
+    switch (work.quantity) {
+      case Quantity::kTransmittance:
+        return Transmittance(work.ray);
+      case Quantity::kOpticalDepth:
+        return OpticalDepth(work.ray);
+      case Quantity::kSingle:
+        return Inscatter(work.ray) + SunlitGround(work.ray);
+      case Quantity::kInscatterSingle:
+        return Inscatter(work.ray);
+      case Quantity::kTotal:
+        return Inscatter(work.ray) + HigherOrders(work.ray) + LitGround(work.ray);
+      case Quantity::kIrradianceSun:
+        return SunIrradiance(work.ray.altitude_m, work.ray.mu_s);
+      case Quantity::kIrradianceSky:
+        return SkyIrradiance(work.ray.altitude_m, work.ray.mu_s);
+    }
+    throw InternalError("a quantity without a method");
+  }
+
+ private:
+  /// Whether the wanted relative error is below this one.
+  [[nodiscard]] bool NeedsJudge(double error) const {
+    return options_.max_error && *options_.max_error < error;
+  }
+
+  [[nodiscard]] Estimates OpticalDepth(const ViewRay& ray) const {
+    if (NeedsJudge(kClosedFormError)) return JudgedOpticalDepth(ray);
+    const Bands<double> depth = air_.OpticalDepthAlong(ray);
+    Estimates result(depth.count);
+    for (std::size_t band = 0; band < depth.count; ++band) {
+      result[band] = {depth[band], kClosedFormError * depth[band]};
+    }
+    return result;
+  }
+
+  [[nodiscard]] Estimates JudgedOpticalDepth(const ViewRay& ray) const {
+    Estimates result;
+    for (const double tau : judge::OpticalDepthAlong(medium(), ray).tau) {
+      result.push_back({tau, kSmallestMaxError * tau});
+    }
+    return result;
+  }
+
+  [[nodiscard]] Estimates Transmittance(const ViewRay& ray) const {
+    Estimates result = OpticalDepth(ray);
+    const auto exponential = [](const Estimates& depth) {
+      Estimates transmittance;
+      for (const Estimate& tau : depth) {
+        const double value = std::exp(-tau.value);
+        transmittance.push_back({value, value * std::expm1(tau.error)});
+      }
+      return transmittance;
+    };
+    const Estimates transmittance = exponential(result);
+    if (!options_.max_error || WithinError(transmittance, *options_.max_error))
+      return transmittance;
+    return exponential(JudgedOpticalDepth(ray));
+  }
+
+  [[nodiscard]] Bands<double> InscatterWith(const ViewRay& ray, int nodes) const {
+    const Sampling sampling{.nodes = nodes, .split_ozone = true, .dark_samples = false};
+    return air_.Inscatter(air_.Scatter(air_.Sample(ray, sampling)), ray.nu);
+  }
+
+  [[nodiscard]] static Estimates Difference(const Bands<double>& fine,
+                                            const Bands<double>& coarse) {
+    Estimates result(fine.count);
+    for (std::size_t band = 0; band < fine.count; ++band) {
+      result[band] = {fine[band],
+                      std::abs(fine[band] - coarse[band]) + kFastPathFloor * fine[band]};
+    }
+    return result;
+  }
+
+  [[nodiscard]] Estimates Inscatter(const ViewRay& ray) const {
+    if (!options_.max_error) {
+      const int fewer = std::max(2 * options_.samples / 3, 1);
+      return Difference(InscatterWith(ray, options_.samples), InscatterWith(ray, fewer));
+    }
+    if (*options_.max_error >= kFastPathFloor) {
+      Bands<double> coarse = InscatterWith(ray, kLadder.front());
+      for (std::size_t rung = 1; rung < kLadder.size(); ++rung) {
+        const Bands<double> fine = InscatterWith(ray, kLadder[rung]);
+        Estimates result = Difference(fine, coarse);
+        if (WithinError(result, *options_.max_error)) return result;
+        coarse = fine;
+      }
+    }
+    const judge::SingleScattering judged = judge::SingleScatteringAlong(medium(), ray);
+    Estimates result;
+    for (const double value : judged.inscatter) {
+      result.push_back({value, std::max(judged.error, kSmallestMaxError) * value});
+    }
+    return result;
+  }
+
+  [[nodiscard]] Estimates SunIrradiance(double altitude_m, double mu_s) const {
+    if (mu_s <= 0.0) return Estimates(air_.bands());
+    Estimates result = Transmittance(TowardsSun(altitude_m, mu_s));
+    for (Estimate& estimate : result) estimate = estimate * Estimate{mu_s, 0.0};
+    return result;
+  }
+
+  [[nodiscard]] Estimates SunlitGround(const ViewRay& ray) const {
+    const std::optional<double> mu_s = SunOnGround(medium(), ray);
+    if (!mu_s) return Estimates(air_.bands());
+    return FromGround(medium(), Transmittance(ray), SunIrradiance(0.0, *mu_s));
+  }
+
+  [[nodiscard]] Estimates LitGround(const ViewRay& ray) const {
+    const std::optional<double> mu_s = SunOnGround(medium(), ray);
+    if (!mu_s) return Estimates(air_.bands());
+    return FromGround(medium(), Transmittance(ray),
+                      SunIrradiance(0.0, *mu_s) + SkyIrradiance(0.0, *mu_s));
+  }
+
+  [[nodiscard]] static Estimates Difference(const Bands<float>& fine, const Bands<float>& coarse) {
+    Estimates result(fine.count);
+    for (std::size_t band = 0; band < fine.count; ++band) {
+      const double value = fine[band];
+      result[band] = {value, std::abs(value - double{coarse[band]})};
+    }
+    return result;
+  }
+
+  [[nodiscard]] Estimates HigherOrders(const ViewRay& ray) const {
+    const RaySamples<float> samples =
+        quick_air_.Sample(ray, {.nodes = 24, .split_ozone = false, .dark_samples = true});
+    return Difference(fine_light_->InscatterAlong(samples, ray.nu),
+                      coarse_light_->InscatterAlong(samples, ray.nu));
+  }
+
+  [[nodiscard]] Estimates SkyIrradiance(double altitude_m, double mu_s) const {
+    return Difference(fine_light_->SkyIrradiance(altitude_m, mu_s),
+                      coarse_light_->SkyIrradiance(altitude_m, mu_s));
+  }
+
+  AirIntegrator<double> air_;
+  AirIntegrator<float> quick_air_;  // of the samples that diffuse light is gathered along
+  IntegralOptions options_;
+  std::optional<DiffuseLight> fine_light_, coarse_light_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
+                                                 const IntegralOptions& options) {
+  return std::make_unique<IntegralEvaluator>(medium, options);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Exposure as photographers count it: EV at ISO 100, reflected-light meters of K = 12.5 (ISO 2720),
+// saturation-based sensitivity (ISO 12232).
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "atmosphere/text/error.h"
+#include "lut/picture/image.h"
+#include "lut/picture/tone_curve.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr int kBinsPerStop = 16;
+constexpr int kLowestStop = -24;  // log2 cd/m^2; less than this is no light to meter
+constexpr int kHighestStop = 40;
+constexpr std::size_t kBins = (kHighestStop - kLowestStop) * kBinsPerStop;
+
+using Histogram = std::array<double, kBins>;
+
+Histogram HistogramOf(const Image& image, double ignore_above_cd_per_m2) {
+  Histogram histogram = {};
+  for (const std::array<float, 3>& pixel : image.rgb) {
+    const double y = shared::Luminance<double>(pixel[0], pixel[1], pixel[2]);
+    if (!(y >= std::exp2(kLowestStop) && y <= ignore_above_cd_per_m2)) continue;
+    const double bin = (std::log2(y) - kLowestStop) * kBinsPerStop;
+    histogram[static_cast<std::size_t>(std::clamp(bin, 0.0, kBins - 1.0))] += 1.0;
+  }
+  return histogram;
+}
+
+/// Mean of log2 luminance between two shares of the pixels; bins that a share cuts count in part.
+double MeanStop(const Histogram& histogram, double pixels, double low_share, double high_share) {
+  const double low = low_share * pixels;
+  const double high = high_share * pixels;
+  double seen = 0.0;
+  double weight = 0.0;
+  double sum = 0.0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const double inside =
+        std::max(0.0, std::min(seen + histogram[bin], high) - std::max(seen, low));
+    sum += inside * (kLowestStop + (static_cast<double>(bin) + 0.5) / kBinsPerStop);
+    weight += inside;
+    seen += histogram[bin];
+  }
+  return sum / weight;
+}
+
+}  // namespace
+
+double ExposureScale(double ev100) { return 1.0 / (1.2 * std::exp2(ev100)); }
+
+double MeterEv100(const Image& image, double ignore_above_cd_per_m2) {
+  const Histogram histogram = HistogramOf(image, ignore_above_cd_per_m2);
+  double pixels = 0.0;
+  for (const double count : histogram) pixels += count;
+  if (pixels == 0.0) return kDarkestEv100;
+  const double stop = MeanStop(histogram, pixels, 0.40, 0.95);
+  const double ev100 = stop + std::log2(100.0 / kMeterConstant);
+  return std::clamp(ev100, kDarkestEv100, kBrightestEv100);
+}
+
+}  // namespace alpenglow

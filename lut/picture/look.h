@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// How a picture of physical light becomes one to look at: the eye's adaptation, exposure, curve.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lut/picture/image.h"
+
+namespace alpenglow {
+
+struct Look {
+  ToneCurve curve = ToneCurve::kAgx;
+  bool local_exposure = false;  // lut/picture/local_exposure.h
+  bool night_vision = false;    // lut/picture/night_vision.h
+
+  bool operator==(const Look&) const = default;
+};
+
+/// A tone curve by name, or "local": local exposure and AgX. Throws InputError for another name.
+[[nodiscard]] Look LookFromName(const std::string& name);
+[[nodiscard]] std::string NameOf(const Look& look);
+
+/// A picture as it is metered and developed: with night vision, as the eye sees it.
+[[nodiscard]] Image Seen(const Image& image, const Look& look);
+
+/// A picture from Seen(), developed. Throws InternalError for a pixel that is not finite.
+[[nodiscard]] DisplayImage Develop(const Image& seen, double ev100, const Look& look);
+
+/// Where the exposure of a picture comes from.
+struct ExposureRule {
+  enum class Kind {
+    kMetered,   // MeterEv100 of the picture
+    kIncident,  // IncidentEv100 of the light on the place: smooth in time, whatever is in view
+    kFixed,
+  };
+  Kind kind = Kind::kMetered;
+  double ev100 = 0.0;  // kFixed
+
+  bool operator==(const ExposureRule&) const = default;
+};
+
+/// "auto", "incident", or a number in [-30, 30]; throws InputError for another text.
+[[nodiscard]] ExposureRule ExposureRuleFromText(const std::string& text);
+
+/// "metered", "incident" or "fixed".
+[[nodiscard]] std::string NameOf(ExposureRule::Kind kind);
+
+/// What an incident-light meter reads: E S / C = 2^EV with C = 250 for a flat receptor (ISO 2720).
+/// @param illuminance_lux  on a horizontal plane, >= 0. Within [kDarkestEv100, kBrightestEv100].
+[[nodiscard]] double IncidentEv100(double illuminance_lux);
+
+}  // namespace alpenglow

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "lut/program/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <fstream>
+#include <random>
+#include <string>
+#include <system_error>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Fail(const fs::path& target, const std::string& fault) {
+  throw OutputError(fmt::format("{}: {}", target.string(), fault));
+}
+
+std::string LastSystemError() { return std::generic_category().message(errno); }
+
+/// A descriptor that is closed whatever happens.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] bool valid() const { return number_ >= 0; }
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+/// A name in the target's folder that no other process and no other thread uses. It is hidden, so
+/// that patterns like "frame.*.exr" do not find it, and keeps the extension, by which libraries
+/// choose formats.
+fs::path TemporaryName(const fs::path& target) {
+  static const unsigned run = std::random_device{}();  // processes on other machines, same folder
+  static std::atomic<unsigned> count{0};
+  return target.parent_path() / fmt::format(".{}.{}-{:08x}-{}.part{}", target.stem().string(),
+                                            getpid(), run, count++, target.extension().string());
+}
+
+/// Created here and not by mkstemp, whose files are private to the user whatever the umask says.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target) : name_(TemporaryName(target)) {
+    const Descriptor file(open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
+    if (!file.valid()) Fail(target, "cannot be written: " + LastSystemError());
+  }
+  ~Temporary() {
+    std::error_code ignored;
+    fs::remove(name_, ignored);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  [[nodiscard]] const fs::path& name() const { return name_; }
+
+ private:
+  fs::path name_;
+};
+
+void FlushToDisk(const fs::path& file, const fs::path& target) {
+  const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!descriptor.valid() || fsync(descriptor.number()) != 0) {
+    Fail(target, "cannot be written: " + LastSystemError());
+  }
+}
+
+/// The name the content goes to: the end of a symbolic link, and never a folder or a device.
+fs::path RealTarget(const fs::path& target) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  std::error_code error;
+  fs::path real = target;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(real, error); ++links) {
+    real = real.parent_path() / fs::read_symlink(real, error);
+  }
+  if (real.filename().empty()) Fail(target, "is not the name of a file");
+  const fs::file_status status = fs::status(real, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) Fail(target, "is not a regular file");
+  return real;
+}
+
+void CallWriter(const fs::path& target, const fs::path& temporary,
+                const std::function<void(const fs::path&)>& write) {
+  const auto rethrow = [&](std::string fault) {
+    const std::string hidden = temporary.string();
+    if (const std::size_t at = fault.find(hidden); at != std::string::npos) {
+      throw OutputError(fault.replace(at, hidden.size(), target.string()));
+    }
+    Fail(target, fault);
+  };
+  try {
+    write(temporary);
+  } catch (const OutputError& error) {
+    rethrow(error.what());
+  } catch (const fs::filesystem_error& error) {
+    rethrow(error.code().message());
+  }
+}
+
+}  // namespace
+
+void WriteFileAtomically(const fs::path& target,
+                         const std::function<void(const fs::path&)>& write) {
+  const fs::path real = RealTarget(target);
+  const Temporary temporary(real);
+  CallWriter(target, temporary.name(), write);
+  FlushToDisk(temporary.name(), target);
+  std::error_code error;
+  fs::rename(temporary.name(), real, error);
+  if (error) Fail(target, "cannot be written: " + error.message());
+  // The name itself reaches the disk with its folder; a folder that cannot be opened for reading
+  // has the file all the same.
+  const fs::path folder = real.has_parent_path() ? real.parent_path() : fs::path(".");
+  const Descriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (descriptor.valid()) fsync(descriptor.number());
+}
+
+void WriteTextAtomically(const fs::path& target, std::string_view text) {
+  WriteFileAtomically(target, [&](const fs::path& name) {
+    std::ofstream file(name, std::ios::binary);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    file.close();
+    if (!file) throw OutputError("cannot be written: " + LastSystemError());
+  });
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Options that every program has, and what a subcommand is. Included by the translation units that
+// parse a command line, and no others (CLI11 is slow to compile).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "atmosphere/text/error.h"
+#include "lut/program/program.h"
+
+namespace alpenglow {
+
+struct CommonOptions {
+  int threads = 0;
+  bool quiet = false;
+  std::string progress = "auto";
+
+  [[nodiscard]] ProgressStyle progress_style() const {
+    return quiet ? ProgressStyle::kQuiet : ProgressStyleFromName(progress);
+  }
+};
+
+/// What a subcommand does, with options of its own that it was parsed with. Each has a pair of
+/// files NAME_command.h and .cpp with `Subcommand AddNameCommand(CLI::App&)`.
+using Subcommand = std::function<void(const CommonOptions&)>;
+
+/// Adds --atmosphere. `atmosphere` must outlive the parsing.
+inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& atmosphere) {
+  command.add_option("--atmosphere", atmosphere,
+                     "Atmosphere file (TOML); without it the preset earth");
+}
+
+/// Adds --threads, --quiet, --progress and --version. `options` must outlive the parsing.
+inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOptions& options) {
+  app.add_option("--threads", options.threads, "Threads to use; 0: all")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet,
+               "No progress and no summary on standard error; warnings stay");
+  app.add_option("--progress", options.progress,
+                 "Progress on standard error: auto, plain, json or quiet")
+      ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))
+      ->capture_default_str();
+  app.set_version_flag("--version", [program] { return VersionText(program); });
+}
+
+/// Refuses on the command line what `read` refuses.
+[[nodiscard]] inline CLI::Validator ReadableBy(
+    const std::function<void(const std::string&)>& read) {
+  const auto fault = [read](const std::string& text) -> std::string {
+    try {
+      read(text);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  return CLI::Validator(fault, "");
+}
+
+/// Parses. Gives an exit status when the program has nothing left to do: 0 after --help and
+/// --version, 2 when the command line is wrong.
+inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+}
+
+}  // namespace alpenglow

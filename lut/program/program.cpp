@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "lut/program/program.h"
+
+#include <OpenEXR/OpenEXRConfig.h>
+#include <fmt/core.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/version.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+#include <system_error>
+
+#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/text/error.h"
+#include "lut/version.h"
+
+namespace alpenglow {
+namespace {
+
+// What a signal handler may touch: a lock-free atomic.
+std::atomic<int> received_signal{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void RememberSignal(int signal) { received_signal.store(signal); }
+
+/// Unwinds the stack to RunProgram. No std::exception, so that no handler on the way takes it for
+/// a fault.
+struct Stopped {
+  int signal;
+};
+
+void InstallHandlers() {
+  received_signal.store(0);
+  struct sigaction action = {};
+  action.sa_handler = RememberSignal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void FlushStandardOutput() {
+  errno = 0;
+  const bool streams = static_cast<bool>(std::cout.flush());
+  if (!streams || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw OutputError("standard output: cannot be written: " +
+                      std::generic_category().message(errno == 0 ? EIO : errno));
+  }
+}
+
+int Report(const std::string& name, std::string message, int status) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  fmt::print(stderr, "{}: {}\n", name, message);
+  return status;
+}
+
+// "avx512 (of sse2, avx2, avx512)".
+std::string SimdText() {
+  std::string available;
+  for (const InstructionSet set : AvailableInstructionSets()) {
+    available += available.empty() ? "" : ", ";
+    available += NameOf(set);
+  }
+  return fmt::format("{} (of {})", NameOf(CurrentInstructionSet()), available);
+}
+
+}  // namespace
+
+int RunProgram(const std::string& name, const std::function<int()>& body) {
+  InstallHandlers();
+  try {
+    const int status = body();
+    FlushStandardOutput();
+    return status;
+  } catch (const InputError& error) {
+    return Report(name, error.what(), 3);
+  } catch (const OutputError& error) {
+    return Report(name, error.what(), 4);
+  } catch (const DisplayError& error) {
+    return Report(name, error.what(), 5);
+  } catch (const Stopped& stopped) {
+    return Report(name, stopped.signal == SIGINT ? "interrupted" : "terminated",
+                  128 + stopped.signal);
+  } catch (const std::exception& error) {
+    return Report(name, fmt::format("internal error: {}", error.what()), 70);
+  } catch (...) {
+    return Report(name, "internal error: unknown exception", 70);
+  }
+}
+
+bool Interrupted() { return received_signal.load() != 0; }
+
+void ThrowIfInterrupted() {
+  if (const int signal = received_signal.load(); signal != 0) throw Stopped{signal};
+}
+
+std::string ProducerText() {
+  return fmt::format("alpenglow {} ({})", version::kRelease, version::kGitDescribe);
+}
+
+std::string VersionText(const std::string& program) {
+  return fmt::format(
+      "{} of {}\n"
+      "compiled by {} {}\n"
+      "libraries: OpenEXR {}, oneTBB {} (run time {}), fmt {}.{}.{}\n"
+      "SIMD: {}\n",
+      program, ProducerText(), version::kCompiler, version::kCompilerVersion,
+      OPENEXR_VERSION_STRING, TBB_VERSION_STRING, TBB_runtime_version(), FMT_VERSION / 10000,
+      FMT_VERSION / 100 % 100, FMT_VERSION % 100, SimdText());
+}
+
+struct ThreadLimit::State {
+  std::optional<tbb::global_control> control;
+};
+
+ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>()) {
+  if (threads < 0) {
+    throw InputError(fmt::format("--threads is {}; it must be 0 (all) or more", threads));
+  }
+  if (threads > 0) {
+    state_->control.emplace(tbb::global_control::max_allowed_parallelism,
+                            static_cast<std::size_t>(threads));
+  }
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
+}  // namespace alpenglow

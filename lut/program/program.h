@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// What the three programs have in common: exit statuses, signals, version, threads; progress and
+// atomic output have headers of their own, included here.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "lut/program/atomic_file.h"
+#include "lut/program/progress.h"
+
+namespace alpenglow {
+
+/// Runs `body` and maps failures to exit statuses, one line on standard error each: InputError 3,
+/// OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else 70. Output
+/// that standard output did not take is an OutputError too.
+/// Installs handlers for SIGINT and SIGTERM that make Interrupted() true; the second signal of a
+/// kind ends the program at once. SIGXFSZ is ignored: a file over the limit is an OutputError.
+int RunProgram(const std::string& name, const std::function<int()>& body);
+
+/// True once SIGINT or SIGTERM has arrived. Long loops ask it and call ThrowIfInterrupted between
+/// units of work.
+[[nodiscard]] bool Interrupted();
+void ThrowIfInterrupted();
+
+/// Program version, git describe, library versions, SIMD used: what --version prints.
+[[nodiscard]] std::string VersionText(const std::string& program);
+/// "alpenglow 0.1.0 (git describe)": what every output file carries.
+[[nodiscard]] std::string ProducerText();
+
+/// Uses `threads` threads (0: all) from here to the end of the object.
+class ThreadLimit {
+ public:
+  /// Throws InputError for a negative number.
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace alpenglow

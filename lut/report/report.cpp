@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "lut/report/report.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <sys/utsname.h>
+
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <utility>
+
+#include "lut/program/program.h"
+#include "lut/report/report_measure.h"
+#include "lut/version.h"
+
+namespace alpenglow {
+namespace {
+
+/// Value of the first line of /proc/cpuinfo with this key; "unknown" where there is none.
+std::string ProcessorText(const std::string& key) {
+  std::ifstream text("/proc/cpuinfo");
+  for (std::string line; std::getline(text, line);) {
+    const std::size_t colon = line.find(':');
+    if (line.rfind(key, 0) == 0 && colon != std::string::npos && colon + 2 <= line.size())
+      return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+/// The widest of the vector instructions that the processor has.
+std::string VectorInstructions() {
+  std::istringstream flags(ProcessorText("flags"));
+  std::string widest = "unknown";
+  for (std::string flag; flags >> flag;) {
+    if (flag == "avx512f") return "AVX-512";
+    if (flag == "avx2") widest = "AVX2";
+    if (flag == "sse2" && widest == "unknown") widest = "SSE2";
+  }
+  return widest;
+}
+
+std::string SystemText() {
+  utsname name{};
+  if (uname(&name) != 0) return "unknown";
+  return fmt::format("{} {} ({})", name.sysname, name.release, name.machine);
+}
+
+/// The line of --version that says which SIMD the program uses.
+std::string SimdLine() {
+  std::istringstream text(VersionText("skylut"));
+  for (std::string line; std::getline(text, line);) {
+    if (line.rfind("SIMD: ", 0) == 0) return line.substr(6);
+  }
+  return "unknown";
+}
+
+ReportMaker Maker() {
+  const std::size_t threads =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return {.machine = fmt::format("{}, {} thread{}, {}", ProcessorText("model name"), threads,
+                                 threads == 1 ? "" : "s", VectorInstructions()),
+          .system = SystemText(),
+          .program = fmt::format("{}, SIMD in use: {}", ProducerText(), SimdLine()),
+          .compiler = fmt::format("{} {}, {}, {}", version::kCompiler, version::kCompilerVersion,
+                                  version::kBuildType, version::kFlags),
+          .date = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
+}
+
+ReportWords Words() {
+  return {
+      .title = "Alpenglow: speed and accuracy",
+      .lead =
+          "Every method of this library, and what the literature does in its place, answer the "
+          "same questions about the same rays in one run. This page holds what they got wrong "
+          "against what they cost.",
+      .minute =
+          "For each topic: the fastest method that nobody could tell from the truth, by day, at "
+          "sunset and in twilight. An error of 1 % in radiance is about the smallest step that an "
+          "eye sees side by side.",
+      .reading =
+          "Rays are points of Halton's sequence. Sun: elevation uniform over the range of the "
+          "column. Observer: 2 m, 1.5 km or 10 km above the ground. View: half of the rays "
+          "anywhere in the sky (uniform in solid angle), a quarter within 10° above the "
+          "horizontal, a quarter down to the ground; azimuth uniform. Beams to the sun "
+          "(transmittance) start in the lower half of the air, dense near the ground; in twilight "
+          "their lowest points are drawn so. Errors of radiance are relative to the radiance; what "
+          "is darker than a hundredth of the singly scattered light of the zenith, same place and "
+          "sun, counts as if it were that bright. Light is scalar, the sun a point, rays are "
+          "straight."};
+}
+
+}  // namespace
+
+Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
+                     const std::vector<MeasureTopic>& topics) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu_start = std::clock();
+  Report report{.words = std::move(words), .maker = Maker(), .quick = quick};
+  Progress progress("report", topics.size(), style);
+  for (const MeasureTopic& measure : topics) {
+    report.topics.push_back(measure());
+    progress.Advance();
+  }
+  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.cpu_s = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+  return report;
+}
+
+std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file, bool quick) {
+  if (atmosphere_file) return {ReadMedium(*atmosphere_file)};
+  std::vector<Medium> mediums{MediumPreset("earth")};
+  if (!quick) mediums.push_back(MediumPreset("hazy"));
+  return mediums;
+}
+
+Report MeasureReport(const ReportOptions& options) {
+  const ReportEffort effort = options.quick ? ReportEffort::Quick() : ReportEffort{};
+  std::vector<MeasureTopic> topics;
+  for (const auto measure :
+       {MeasureTransmittance, MeasureSingleScattering, MeasureAllOrders, MeasurePanoramas}) {
+    for (const Medium& medium : options.mediums)
+      topics.emplace_back([measure, &medium, &effort] { return measure(medium, effort); });
+  }
+  return MeasureTopics(Words(), options.quick, options.progress, topics);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// What the literature does, written anew from the publications, for the report to compare with.
+//
+// Every one is given this library's exact geometry, and where it needs columns that are not its
+// subject, this library's closed forms: the errors that are left are the method's own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/single_scattering.h"
+
+namespace alpenglow {
+
+/// Rules that march along a ray in steps.
+enum class MarchRule {
+  kMidpoint,   // equal steps, air taken from their middles
+  kTrapezoid,  // equal steps, air taken from both ends: Bruneton and Neyret (2008), 500 steps
+  kQuadratic,  // steps that grow with the square of their number, air taken at 0.3 of a step:
+               // Hillaire (2020), Computer Graphics Forum 39, 13
+};
+
+/// Nodes of the rule on [begin_m, end_m]; the trapezoid has steps + 1.
+[[nodiscard]] std::vector<RayNode> MarchNodes(MarchRule rule, int steps, const RayExtent& extent);
+
+/// Transmittance of a ray by a march through the densities, in float.
+[[nodiscard]] Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray,
+                                                MarchRule rule, int steps);
+
+/// Closed approximations of Chapman's function Ch(X, chi) for X = (R + h) / H, cos(chi) >= 0.
+enum class ChapmanRule {
+  /// c / ((c - 1) cos(chi) + 1), c = sqrt(pi X / 2): Schueler (2012), An approximation to the
+  /// Chapman grazing-incidence function for atmospheric scattering, GPU Pro 3, 105.
+  kSchueler,
+  /// A rational approximation of the scaled complementary error function: Golubev (2019), Sampling
+  /// analytic participating media, zero-radiance.github.io; after Ren and MacKenzie (2007), Atmos.
+  /// Sci. Lett. 8, 70. Unity's HDRP uses it.
+  kGolubev,
+};
+[[nodiscard]] float ChapmanFunction(ChapmanRule rule, float x, float cos_chi);
+
+/// Transmittance to space with the exponential layers by a Chapman approximation, ozone by the
+/// closed form of this library. The ray must not meet the ground.
+[[nodiscard]] Bands<float> ChapmanTransmittance(const AirIntegrator<float>& air, ChapmanRule rule,
+                                                const ViewRay& ray);
+
+/// Multiple scattering as in Hillaire (2020), A scalable and production ready sky and atmosphere
+/// rendering technique, Computer Graphics Forum 39, 13, section 5.5: light of order two, isotropic,
+/// gathered over the sphere around a point, times the geometric series that it would become in
+/// infinite air like that of the point,
+///
+///   psi = L_2 / (1 - f),   L_2 = mean of L' over directions,   f = mean of L_f over directions
+///   L'  = integral of sigma_s T p_u lit T_sun dt + ground,     L_f = integral of sigma_s T dt
+///
+/// with p_u = 1 / 4 pi; tabulated over (sun zenith cosine, altitude), both linear, bilinear.
+class IsotropicTable {
+ public:
+  struct Size {
+    std::size_t side = 32;    // texels along both axes
+    int directions_side = 8;  // squared: directions, stratified over the sphere
+    int steps = 20;           // along each
+  };
+  IsotropicTable(const Medium& medium, const Size& size);
+
+  /// In-scattered light of orders two and up along a ray [1/sr]; samples as for DiffuseLight.
+  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples) const;
+
+  [[nodiscard]] std::uint64_t bytes() const { return texels_.size() * sizeof(float); }
+
+ private:
+  /// Light of order two, and of radiance one everywhere, from one direction.
+  struct Light {
+    Bands<float> second, series;
+  };
+  [[nodiscard]] Light GatherFrom(const ViewRay& ray) const;
+  void FillTexel(std::size_t row, std::size_t column);
+
+  AirIntegrator<float> air_;
+  Size size_;
+  std::vector<float> texels_;  // [(altitude * side + sun) * bands + band]
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// One row of the report: a method's errors on judged rays, and the time of its answers.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/program/program.h"
+#include "lut/report/report.h"
+#include "lut/report/report_baselines.h"
+#include "lut/report/report_rays.h"
+
+namespace alpenglow {
+
+/// How much care a report takes.
+struct ReportEffort {
+  bool quick = false;
+  int rays = 400;             // of a regime, for judges without noise
+  int traced_rays = 36;       // of a regime, for the path tracer
+  std::size_t paths = 30000;  // of a traced ray
+  std::size_t passes = 7;     // at least so many over the rays of a regime
+  double seconds = 0.02;      // and at least for so long
+
+  [[nodiscard]] static ReportEffort Quick() { return {true, 40, 6, 2000, 3, 0.0}; }
+};
+
+/// Time that `make` takes, and what it made. Short work is done up to three times; the shortest
+/// counts.
+template <typename Make>
+[[nodiscard]] auto Built(const Make& make) {
+  using Clock = std::chrono::steady_clock;
+  double shortest = 0.0, all = 0.0;
+  for (int i = 0;; ++i) {
+    const auto start = Clock::now();
+    auto made = make();
+    const double taken = std::chrono::duration<double>(Clock::now() - start).count();
+    shortest = i == 0 ? taken : std::min(shortest, taken);
+    all += taken;
+    if (i == 2 || all > 0.4) return std::pair{std::move(made), shortest};
+  }
+}
+
+/// Times `pass`, which gives so many answers and returns something of them, on this thread, after
+/// one pass to warm up.
+template <typename Pass>
+void TimePasses(std::size_t answers, const ReportEffort& effort, const Pass& pass,
+                RegimeResult& result) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> passes;
+  float sum = pass();
+  for (double all = 0.0; passes.size() < effort.passes || all < effort.seconds;) {
+    const auto start = Clock::now();
+    sum += pass();
+    passes.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    all += passes.back();
+  }
+  [[maybe_unused]] static volatile float kept;  // else a compiler may see that nobody asks
+  kept = sum;
+  std::sort(passes.begin(), passes.end());
+  result.time_s = passes.front() / static_cast<double>(answers);
+  result.time_spread = passes[passes.size() / 2] / passes.front() - 1.0;
+}
+
+/// All values of some bands.
+template <typename Real>
+[[nodiscard]] std::vector<double> ValuesOf(const Bands<Real>& bands) {
+  return {bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count)};
+}
+
+/// Fills in what `answer`, a function from ViewRay to Bands<>, is worth on the rays.
+/// @param samples  function from ViewRay to the number of points that an answer looks at.
+template <typename Answer, typename Samples>
+[[nodiscard]] ReportRow Measured(ReportRow row, const JudgedRays& judged,
+                                 const ReportEffort& effort, const Answer& answer,
+                                 const Samples& samples) {
+  for (std::size_t r = 0; r < kReportRegimes; ++r) {
+    const std::vector<JudgedRay>& rays = judged.rays[r];
+    std::vector<std::vector<double>> answers;
+    double points = 0.0;
+    for (const JudgedRay& one : rays) {
+      answers.push_back(ValuesOf(answer(one.ray)));
+      points += static_cast<double>(samples(one.ray));
+    }
+    row.at[r].error = StatisticsOf(rays, judged.kind, answers);
+    row.at[r].samples = points / static_cast<double>(rays.size());
+    const auto pass = [&] {
+      float sum = 0.0F;
+      for (const JudgedRay& one : rays) sum += static_cast<float>(answer(one.ray)[0]);
+      return sum;
+    };
+    TimePasses(rays.size(), effort, pass, row.at[r]);
+    ThrowIfInterrupted();
+  }
+  return row;
+}
+
+/// A topic in the making: judged rays, and the rows measured on them.
+class TopicWork {
+ public:
+  TopicWork(const Medium& medium, const ReportEffort& effort, JudgedRays judged)
+      : medium_(medium), effort_(effort), judged_(std::move(judged)) {}
+
+  /// Measures a method; see Measured.
+  template <typename Answer, typename Samples>
+  void AddRow(ReportRow row, const Answer& answer, const Samples& samples) {
+    rows_.push_back(Measured(std::move(row), judged_, effort_, answer, samples));
+  }
+
+  /// Light scattered once by a march in steps; `style` is that of its line.
+  void AddMarch(const AirIntegrator<float>& air, MarchRule rule, int steps, int style,
+                bool in_summary) {
+    AddRow(
+        {.series = rule == MarchRule::kMidpoint ? "uniform march" : "quadratic march",
+         .parameter = fmt::format("{} steps", steps),
+         .origin = MethodOrigin::kLiterature,
+         .style = style,
+         .in_summary = in_summary},
+        [&](const ViewRay& ray) {
+          const RayExtent extent =
+              ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
+          const auto samples = air.SampleAt(ray, MarchNodes(rule, steps, extent));
+          return air.Inscatter(air.Scatter(samples), ray.nu);
+        },
+        [&](const ViewRay&) { return steps; });
+  }
+
+  /// Adds what was measured elsewhere.
+  void AddMeasured(ReportRow row) { rows_.push_back(std::move(row)); }
+
+  [[nodiscard]] const JudgedRays& judged() const { return judged_; }
+
+  /// `words` with what was measured.
+  [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
+    words.medium = medium_;
+    words.rays = judged_.rays[0].size();
+    words.judge = judged_.judge;
+    words.rows = std::move(rows_);
+    return words;
+  }
+
+ protected:
+  const Medium& medium_;
+  const ReportEffort& effort_;
+
+ private:
+  JudgedRays judged_;
+  std::vector<ReportRow> rows_;
+};
+
+/// The topics, each for one medium.
+[[nodiscard]] ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort);
+[[nodiscard]] ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort);
+[[nodiscard]] ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort);
+[[nodiscard]] ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort);
+
+}  // namespace alpenglow

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Topic of the report: light of all orders along a view.
+#include <fmt/format.h>
+
+#include "lut/diffuse/multiple_scattering.h"
+#include "lut/report/report_baselines.h"
+#include "lut/report/report_measure.h"
+#include "lut/store/table_folder.h"
+
+namespace alpenglow {
+namespace {
+
+// Lines of the plot.
+enum Style { kDegree4 = 0, kIsotropic = 1, kDegree2 = 2, kNothing = 5, kDegree6 = 6 };
+
+int StyleOf(int degree) { return degree == 2 ? kDegree2 : degree == 4 ? kDegree4 : kDegree6; }
+
+// What a renderer takes: one set of samples for all orders.
+constexpr Sampling kSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
+
+class Topic : public TopicWork {
+ public:
+  Topic(const Medium& medium, const ReportEffort& effort)
+      : TopicWork(medium, effort, TracedViews(medium, effort.traced_rays, effort.paths)),
+        air_(medium) {}
+
+  /// @param higher  function from samples and nu to light of orders two and up.
+  template <typename Higher>
+  void Add(ReportRow row, const Higher& higher) {
+    AddRow(
+        std::move(row),
+        [&](const ViewRay& ray) {
+          const RaySamples<float> samples = air_.Sample(ray, kSampling);
+          Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);
+          const Bands<float> more = higher(samples, ray.nu);
+          for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
+          return light;
+        },
+        [&](const ViewRay& ray) { return air_.Sample(ray, kSampling).count; });
+  }
+
+  void AddNothing() {
+    Add({.series = "single scattering only",
+         .parameter = "",
+         .style = kNothing,
+         .in_summary = true},
+        [&](const RaySamples<float>&, double) { return Bands<float>(air_.bands()); });
+  }
+
+  void AddIsotropic(const IsotropicTable::Size& size, bool published) {
+    const auto [table, seconds] = Built([&] { return IsotropicTable(medium_, size); });
+    Add({.series = "isotropic table (Hillaire 2020)",
+         .parameter = fmt::format("{} x {}, {} directions", size.side, size.side,
+                                  size.directions_side * size.directions_side),
+         .origin = MethodOrigin::kLiterature,
+         .style = kIsotropic,
+         .in_summary = published,
+         .memory_bytes = table.bytes(),
+         .build_s = seconds},
+        [&](const RaySamples<float>& samples, double) { return table.InscatterAlong(samples); });
+  }
+
+  void AddDiffuse(const DiffuseLightOptions& options) {
+    const DiffuseLightOptions usual;
+    const bool in_summary = options.degree == usual.degree &&
+                            options.altitudes == usual.altitudes &&
+                            options.sun_angles == usual.sun_angles;
+    const auto [light, seconds] = Built([&] { return DiffuseLight(medium_, options); });
+    Add({.series = fmt::format("moments to degree {}", options.degree),
+         .parameter = fmt::format("{} x {}", options.altitudes, options.sun_angles),
+         .style = StyleOf(options.degree),
+         .in_summary = in_summary,
+         .memory_bytes = light.values().size() * sizeof(float),
+         .build_s = seconds},
+        [&](const RaySamples<float>& samples, double nu) {
+          return light.InscatterAlong(samples, nu);
+        });
+  }
+
+ private:
+  AirIntegrator<float> air_;
+};
+
+}  // namespace
+
+ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
+  Topic topic(medium, effort);
+  topic.AddNothing();
+  topic.AddIsotropic({}, true);
+  if (!effort.quick) topic.AddIsotropic({.side = 32, .directions_side = 16, .steps = 20}, false);
+  for (const int degree : {2, 4, 6}) {
+    DiffuseLightOptions options;
+    const bool usual = degree == options.degree;
+    options.degree = degree;
+    const DiffuseLightOptions same = options;
+    options.altitudes = 12;
+    options.sun_angles = 24;
+    if (degree == 2 || !effort.quick) topic.AddDiffuse(options);
+    if (usual || !effort.quick) topic.AddDiffuse(same);
+    options.altitudes = 28;
+    options.sun_angles = 56;
+    if (usual && !effort.quick) topic.AddDiffuse(options);
+  }
+  if (!effort.quick) topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
+  return std::move(topic).Finished(
+      {.key = "all_orders",
+       .title = "All orders: the light of the sky as a whole",
+       .what = "The same views; the question is the radiance that the air on the way sends to "
+               "the eye after any number of scatterings and reflections by the ground. Every "
+               "method takes single scattering from the same 12 Gauss nodes; only light of "
+               "orders two and up differs.",
+       .error_unit = "parts of the whole radiance",
+       .notes = "The isotropic table is the one of Hillaire (2020), its integrals taken as "
+                "published (64 directions, 20 steps) and with four times the directions. Moments "
+                "are this library's spherical-harmonic moments of the diffuse light over altitude "
+                "and sun; the "
+                "largest is the quality fine of skylut build, which also has more directions.",
+       .wanted = 0.02,
+       .cost = CostAxis::kTimeToBuild});
+}
+
+}  // namespace alpenglow

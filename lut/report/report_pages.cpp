@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: MIT
+// The report as CSV, plots, Markdown and a page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <system_error>
+
+#include "atmosphere/text/error.h"
+#include "lut/embedded_text.h"
+#include "lut/program/atomic_file.h"
+#include "lut/report/report.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A number as the CSV has it; the page carries the same text behind every rounded one.
+std::string CsvNumber(double value) { return fmt::format("{:.6g}", value); }
+
+/// In quotation marks, as RFC 4180 wants them for commas.
+std::string CsvText(const std::string& text) {
+  std::string quoted(1, '"');
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  quoted.push_back('"');
+  return quoted;
+}
+
+/// Letters, digits and single dashes only, for names of files and anchors.
+std::string FileKey(const std::string& text) {
+  std::string key;
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (plain || (!key.empty() && key.back() != '-')) key += plain ? c : '-';
+  }
+  return key;
+}
+
+/// "earth", "range, earth" or, where the scene is all that there is, "fog".
+std::string PlaceName(const ReportTopic& topic) {
+  if (topic.scene.empty()) return topic.medium.name;
+  return topic.medium.name.empty() ? topic.scene : topic.scene + ", " + topic.medium.name;
+}
+
+std::string TopicKey(const ReportTopic& topic) {
+  return topic.key + "." + FileKey(PlaceName(topic));
+}
+
+/// Of the atmosphere, where there is one.
+std::string HashText(const ReportTopic& topic) {
+  return topic.medium.name.empty() ? "" : fmt::format("{:016x}", MediumHash(topic.medium));
+}
+
+bool IsMeasuredEverywhere(const ReportRow& row) {
+  return std::all_of(row.at.begin(), row.at.end(),
+                     [](const RegimeResult& result) { return result.IsMeasured(); });
+}
+
+double CostOf(const ReportTopic& topic, const ReportRow& row, std::size_t regime) {
+  return topic.cost == CostAxis::kTimeToBuild ? row.build_s : row.at[regime].time_s;
+}
+
+PlotPoint PointOf(const ReportRow& row, double x, std::size_t regime) {
+  const ErrorStatistics& error = row.at[regime].error;
+  return {x, error.rms, error.percentile_99, row.parameter};
+}
+
+/// One panel a regime; `cost` is the x of a row in a regime, not positive: no such point.
+template <typename Cost>
+std::vector<PlotPanel> PanelsOf(const ReportTopic& topic, const Cost& cost) {
+  std::vector<PlotPanel> panels;
+  for (std::size_t regime = 0; regime < topic.regimes.size(); ++regime) {
+    PlotPanel panel{topic.regimes[regime].name, {}, {}};
+    for (const ReportRow& row : topic.rows) {
+      const double x = cost(row, regime);
+      if (!(x > 0.0) || !row.at[regime].IsMeasured()) continue;
+      auto series = std::find_if(panel.series.begin(), panel.series.end(),
+                                 [&](const PlotSeries& one) { return one.name == row.series; });
+      if (series == panel.series.end()) {
+        panel.series.push_back(
+            {row.series, row.style, row.origin == MethodOrigin::kLiterature, {}});
+        series = panel.series.end() - 1;
+      }
+      series->points.push_back(PointOf(row, x, regime));
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+std::string PlotSubtitle(const ReportTopic& topic) {
+  return fmt::format(
+      "Atmosphere: {}. Marks: root mean square over {} {}s a panel, {} wavelength{}; "
+      "thin lines: up to the 99th percentile. Lower left is better.",
+      PlaceName(topic), topic.rays, topic.answer, topic.medium.wavelengths_nm.size(),
+      topic.medium.wavelengths_nm.size() == 1 ? "" : "s");
+}
+
+/// The plot over samples, which no processor's speed is in; nothing where rows have none.
+std::optional<Plot> PlotOverSamples(const ReportTopic& topic) {
+  const auto samples = [](const ReportRow& row, std::size_t regime) {
+    return row.at[regime].samples;
+  };
+  const bool any = std::any_of(topic.rows.begin(), topic.rows.end(), [](const ReportRow& row) {
+    return row.origin == MethodOrigin::kOurs && row.at[0].samples > 0.0;
+  });
+  if (!any || topic.cost == CostAxis::kTimeToBuild) return {};
+  return Plot{topic.title,
+              PlotSubtitle(topic),
+              {"points of the air looked at, mean of the " + topic.answer + "s", PlotUnit::kCount},
+              {"error", PlotUnit::kShare},
+              PanelsOf(topic, samples)};
+}
+
+std::string PlotFile(const ReportTopic& topic) { return TopicKey(topic) + ".svg"; }
+std::string SamplesPlotFile(const ReportTopic& topic) { return TopicKey(topic) + ".samples.svg"; }
+
+/// The aerosol's optical depth at the wavelength nearest to 550 nm, in words.
+std::string AerosolText(const Medium& medium) {
+  std::size_t nearest = 0;
+  const auto off = [&](std::size_t band) { return std::abs(medium.wavelengths_nm[band] - 550.0); };
+  for (std::size_t band = 1; band < medium.wavelengths_nm.size(); ++band) {
+    if (off(band) < off(nearest)) nearest = band;
+  }
+  return fmt::format("aerosol optical depth {:.2g} at {:.0f} nm",
+                     medium.mie_extinction_per_m[nearest] * medium.mie_scale_height_m,
+                     medium.wavelengths_nm[nearest]);
+}
+
+std::string MediumText(const Medium& medium) {
+  std::string wavelengths;
+  for (const double nm : medium.wavelengths_nm)
+    wavelengths += fmt::format("{}{:.0f}", wavelengths.empty() ? "" : ", ", nm);
+  return fmt::format("{} (hash {:016x}): {}; wavelengths {} nm", medium.name, MediumHash(medium),
+                     AerosolText(medium), wavelengths);
+}
+
+std::string RmsText(const ErrorStatistics& error) {
+  return fmt::format("{}{}", error.rms_is_bound ? "< " : "",
+                     QuantityText(error.rms, PlotUnit::kShare));
+}
+
+/// Time of an answer in the worst regime.
+double SlowestAnswer(const ReportRow& row) {
+  double slowest = 0.0;
+  for (const RegimeResult& result : row.at) slowest = std::max(slowest, result.time_s);
+  return slowest;
+}
+
+double LargestPercentile99(const ReportRow& row) {
+  double largest = 0.0;
+  for (const RegimeResult& result : row.at) largest = std::max(largest, result.error.percentile_99);
+  return largest;
+}
+
+/// The fastest row of an origin that is wanted() in every regime; null when there is none.
+const ReportRow* FastestWithin(const ReportTopic& topic, MethodOrigin origin) {
+  const ReportRow* fastest = nullptr;
+  for (const ReportRow& row : topic.rows) {
+    if (row.origin != origin || LargestPercentile99(row) > topic.wanted) continue;
+    if (!IsMeasuredEverywhere(row)) continue;
+    if (fastest == nullptr || SlowestAnswer(row) < SlowestAnswer(*fastest)) fastest = &row;
+  }
+  return fastest;
+}
+
+/// The row of an origin whose 99th percentile is the smallest in its worst regime.
+const ReportRow* MostAccurate(const ReportTopic& topic, MethodOrigin origin) {
+  const ReportRow* best = nullptr;
+  for (const ReportRow& row : topic.rows) {
+    if (row.origin != origin || !IsMeasuredEverywhere(row)) continue;
+    if (best == nullptr || LargestPercentile99(row) < LargestPercentile99(*best)) best = &row;
+  }
+  return best;
+}
+
+std::string CostText(const ReportTopic& topic, const ReportRow& row) {
+  std::string text = QuantityText(SlowestAnswer(row), PlotUnit::kSeconds) + " a " + topic.answer;
+  if (row.memory_bytes > 0)
+    text += ", " + QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes);
+  if (row.build_s > 0.0) text += ", ready in " + QuantityText(row.build_s, PlotUnit::kSeconds);
+  return text;
+}
+
+/// What the numbers of a topic say about one origin, in a sentence.
+std::string FindingOf(const ReportTopic& topic, MethodOrigin origin) {
+  const std::string wanted = QuantityText(topic.wanted, PlotUnit::kShare);
+  if (const ReportRow* row = FastestWithin(topic, origin)) {
+    return fmt::format("{}: {}. 99 of 100 errors below {} {}.", row->Name(), CostText(topic, *row),
+                       QuantityText(LargestPercentile99(*row), PlotUnit::kShare), topic.everywhere);
+  }
+  const ReportRow* best = MostAccurate(topic, origin);
+  if (best == nullptr) return "none measured";
+  std::string parts;
+  for (std::size_t r = 0; r < topic.regimes.size(); ++r)
+    parts += fmt::format("{}{} {}", r == 0 ? "" : ", ",
+                         QuantityText(best->at[r].error.percentile_99, PlotUnit::kShare),
+                         topic.regimes[r].key);
+  return fmt::format("none keeps 99 of 100 errors below {} {}; nearest {} ({}): {}", wanted,
+                     topic.everywhere, best->Name(), CostText(topic, *best), parts);
+}
+
+std::string CellClass(double error) {
+  return error < 1e-4   ? "e0"
+         : error < 1e-3 ? "e1"
+         : error < 1e-2 ? "e2"
+         : error < 1e-1 ? "e3"
+                        : "e4";
+}
+
+std::string Cell(double value, PlotUnit unit, const std::string& kind = "",
+                 const std::string& before = "") {
+  return fmt::format("<td{} data-csv=\"{}\">{}{}</td>",
+                     kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), CsvNumber(value),
+                     XmlText(before), XmlText(QuantityText(value, unit)));
+}
+
+std::string RegimeCells(const RegimeResult& result) {
+  if (!result.IsMeasured()) return "<td class=\"first\"></td><td></td><td></td><td></td>";
+  const ErrorStatistics& error = result.error;
+  return Cell(result.time_s, PlotUnit::kSeconds, "first") +
+         Cell(error.rms, PlotUnit::kShare, CellClass(error.rms), error.rms_is_bound ? "< " : "") +
+         Cell(error.percentile_99, PlotUnit::kShare, CellClass(error.percentile_99)) +
+         Cell(error.largest, PlotUnit::kShare, CellClass(error.largest));
+}
+
+std::string TableRow(const ReportRow& row) {
+  double spread = 0.0;
+  for (const RegimeResult& result : row.at) spread = std::max(spread, result.time_spread);
+  std::string text = fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th><td>{}</td>",
+                                 row.origin == MethodOrigin::kOurs ? "ours" : "theirs",
+                                 XmlText(row.series), XmlText(row.parameter));
+  text += row.memory_bytes == 0
+              ? "<td data-csv=\"0\">–</td>"
+              : fmt::format("<td data-csv=\"{}\">{}</td>", row.memory_bytes,
+                            QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes));
+  text += row.build_s == 0.0 ? "<td data-csv=\"0\">–</td>" : Cell(row.build_s, PlotUnit::kSeconds);
+  for (const RegimeResult& result : row.at) text += RegimeCells(result);
+  return text + Cell(spread, PlotUnit::kShare, "first") + "</tr>\n";
+}
+
+std::string TableOf(const ReportTopic& topic) {
+  std::string text =
+      "<div class=\"wide\"><table>\n<thead><tr><th rowspan=\"2\">method</th><th "
+      "rowspan=\"2\">size</th><th rowspan=\"2\">memory</th><th rowspan=\"2\">build</th>";
+  for (const ReportRegime& regime : topic.regimes)
+    text += fmt::format("<th colspan=\"4\" class=\"first\">{}</th>", regime.name);
+  text += "<th rowspan=\"2\" class=\"first\">spread</th></tr>\n<tr>";
+  for (std::size_t r = 0; r < topic.regimes.size(); ++r)
+    text += "<th class=\"first\">time</th><th>rms</th><th>99 %</th><th>max</th>";
+  text += "</tr></thead>\n<tbody>\n";
+  for (const ReportRow& row : topic.rows) text += TableRow(row);
+  return text + "</tbody></table></div>\n";
+}
+
+std::string JudgeText(const ReportTopic& topic) {
+  std::string text = fmt::format("Judge: {}; {} an answer.", topic.judge.text,
+                                 QuantityText(topic.judge.time_s, PlotUnit::kSeconds));
+  if (topic.judge.noise[0] > 0.0) {
+    text += " Its own standard error, rms:";
+    for (std::size_t r = 0; r < topic.regimes.size(); ++r)
+      text +=
+          fmt::format("{} {} {}", r == 0 ? "" : ",",
+                      QuantityText(topic.judge.noise[r], PlotUnit::kShare), topic.regimes[r].key);
+    text +=
+        "; subtracted from the rms errors (not from percentiles and maxima), of which none "
+        "below half of it can be told.";
+  }
+  return text;
+}
+
+/// Atmosphere and scene, in words.
+std::string PlaceText(const ReportTopic& topic) {
+  if (topic.medium.name.empty()) return topic.scene;
+  const std::string place = "Atmosphere " + topic.medium.name + ": " + AerosolText(topic.medium);
+  return topic.scene.empty() ? place : topic.scene + "; " + place;
+}
+
+std::string SectionOf(const ReportTopic& topic) {
+  std::string text =
+      fmt::format("<section id=\"{}\">\n<h3>{}</h3>\n", TopicKey(topic), XmlText(PlaceText(topic)));
+  text += fmt::format("<figure>{}</figure>\n", SvgOfPlot(PlotOfTopic(topic)));
+  if (const auto plot = PlotOverSamples(topic)) {
+    text +=
+        "<details><summary>The same over the number of samples, whatever the "
+        "machine</summary><figure>" +
+        SvgOfPlot(*plot) + "</figure></details>\n";
+  }
+  text += TableOf(topic);
+  return text + fmt::format("<p class=\"judge\">{}</p>\n</section>\n", XmlText(JudgeText(topic)));
+}
+
+std::string CardsOf(const Report& report) {
+  std::string text = "<div class=\"cards\">\n";
+  for (const ReportTopic& topic : report.topics) {
+    text += fmt::format(
+        "<div class=\"card\"><h3><a href=\"#{}\">{}</a></h3><p class=\"air\">{}; wanted: 99 of "
+        "100 errors below {}</p>\n"
+        "<p><b>This library.</b> {}</p>\n<p><b>Literature.</b> {}</p></div>\n",
+        TopicKey(topic), XmlText(topic.title.substr(0, topic.title.find(':'))),
+        XmlText(PlaceName(topic)), QuantityText(topic.wanted, PlotUnit::kShare),
+        XmlText(FindingOf(topic, MethodOrigin::kOurs)),
+        XmlText(FindingOf(topic, MethodOrigin::kLiterature)));
+  }
+  return text + "</div>\n";
+}
+
+std::string MakerText(const Report& report) {
+  const ReportMaker& maker = report.maker;
+  std::string text = "<dl>\n";
+  const auto add = [&](const char* name, const std::string& value) {
+    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, XmlText(value));
+  };
+  add("machine", maker.machine);
+  add("system", maker.system);
+  add("program", maker.program);
+  add("compiler", maker.compiler);
+  add("date", maker.date);
+  for (const ReportTopic& topic : report.topics) {
+    if (topic.key == report.topics.front().key) add("atmosphere", MediumText(topic.medium));
+  }
+  add("this report",
+      fmt::format("took {:.0f} s, {:.0f} s of processor time{}", report.wall_s, report.cpu_s,
+                  report.quick ? "; --quick: of no use but as a test" : ""));
+  return text + "</dl>\n";
+}
+
+std::string TopicsText(const Report& report) {
+  std::string text, key;
+  for (const ReportTopic& topic : report.topics) {
+    if (topic.key != key) {
+      text +=
+          fmt::format("<h2>{}</h2>\n<p>{}</p>\n<p>Errors are {}. {}</p>\n", XmlText(topic.title),
+                      XmlText(topic.what), XmlText(topic.error_unit), XmlText(topic.notes));
+    }
+    key = topic.key;
+    text += SectionOf(topic);
+  }
+  return text;
+}
+
+void Replace(std::string& text, const std::string& place, const std::string& value) {
+  std::size_t at = text.find(place);
+  ALPENGLOW_ENSURE(at, !=, std::string::npos);
+  for (; at != std::string::npos; at = text.find(place, at + value.size()))
+    text.replace(at, place.size(), value);
+}
+
+std::string SummaryRow(const ReportRow& row) {
+  std::string text = fmt::format(
+      "| {} | {} | {} | {} |", row.Name(),
+      row.memory_bytes == 0 ? "-"
+                            : QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes),
+      row.build_s == 0.0 ? "-" : QuantityText(row.build_s, PlotUnit::kSeconds),
+      QuantityText(SlowestAnswer(row), PlotUnit::kSeconds));
+  for (const RegimeResult& result : row.at) {
+    text += result.IsMeasured()
+                ? fmt::format(" {} / {} |", RmsText(result.error),
+                              QuantityText(result.error.percentile_99, PlotUnit::kShare))
+                : " |";
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+Plot PlotOfTopic(const ReportTopic& topic) {
+  const bool build = topic.cost == CostAxis::kTimeToBuild;
+  Plot plot{
+      topic.title,
+      PlotSubtitle(topic),
+      {build ? "time to build, all threads" : "time of one answer, one thread", PlotUnit::kSeconds},
+      {"error", PlotUnit::kShare},
+      PanelsOf(topic, [&](const ReportRow& row, std::size_t regime) {
+        return CostOf(topic, row, regime);
+      })};
+  for (std::size_t regime = 0; regime < topic.regimes.size(); ++regime) {
+    for (const ReportRow& row : topic.rows) {
+      if (row.at[regime].IsMeasured() && !(CostOf(topic, row, regime) > 0.0))
+        plot.panels[regime].levels.push_back({row.Name(), row.at[regime].error.rms});
+    }
+  }
+  return plot;
+}
+
+std::string CsvHeader() {
+  return "topic,scene,atmosphere,atmosphere_hash,series,parameter,origin,memory_bytes,build_s,"
+         "regime,"
+         "sun_low_deg,sun_high_deg,rays,samples,time_s,time_spread,error_median,error_rms,"
+         "error_rms_is_bound,error_99,error_max,judge_noise,machine,made_by,date\n";
+}
+
+std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
+  std::string text;
+  for (const ReportRow& row : topic.rows) {
+    for (std::size_t r = 0; r < topic.regimes.size(); ++r) {
+      const RegimeResult& at = row.at[r];
+      if (!at.IsMeasured()) continue;
+      const ReportRegime& regime = topic.regimes[r];
+      text += fmt::format(
+          "{},{},{},{},{},{},{},{},{},", topic.key, topic.scene.empty() ? "" : CsvText(topic.scene),
+          CsvText(topic.medium.name), HashText(topic), CsvText(row.series), CsvText(row.parameter),
+          row.origin == MethodOrigin::kOurs ? "this library" : "literature", row.memory_bytes,
+          CsvNumber(row.build_s));
+      text += fmt::format(
+          "{},{},{},{},{},{},", regime.key,
+          regime.sun ? fmt::format("{},{}", regime.sun->lowest_deg, regime.sun->highest_deg) : ",",
+          topic.rays, CsvNumber(at.samples), CsvNumber(at.time_s), CsvNumber(at.time_spread));
+      text += fmt::format("{},{},{},{},{},{},", CsvNumber(at.error.median), CsvNumber(at.error.rms),
+                          at.error.rms_is_bound ? 1 : 0, CsvNumber(at.error.percentile_99),
+                          CsvNumber(at.error.largest), CsvNumber(topic.judge.noise[r]));
+      text += fmt::format("{},{},{}\n", CsvText(maker.machine), CsvText(maker.program),
+                          CsvText(maker.date));
+    }
+  }
+  return text;
+}
+
+std::string SummaryOf(const Report& report) {
+  std::string text;
+  for (const ReportTopic& topic : report.topics) {
+    text += fmt::format("**{}**. {}; {} {}s a column; error: rms / 99th percentile\n\n",
+                        topic.title.substr(0, topic.title.find(':')), PlaceText(topic), topic.rays,
+                        topic.answer);
+    text += fmt::format("| method | memory | build | time of a {} |", topic.answer);
+    for (const ReportRegime& regime : topic.regimes) text += fmt::format(" {} |", regime.name);
+    text += "\n|---|---|---|---|";
+    for (std::size_t r = 0; r < topic.regimes.size(); ++r) text += "---|";
+    text += "\n";
+    for (const ReportRow& row : topic.rows) {
+      if (row.in_summary) text += SummaryRow(row);
+    }
+    if (topic.judge.noise[0] > 0.0) text += fmt::format("\n{}\n", JudgeText(topic));
+    text += "\n";
+  }
+  return text + fmt::format("{}; {}; {}; {}.\n", report.maker.machine, report.maker.program,
+                            report.maker.compiler, report.maker.date);
+}
+
+std::string PageOf(const Report& report) {
+  std::string page(lut::EmbeddedText("lut/report/report_page.html"));
+  Replace(page, "@title@", XmlText(report.words.title));
+  Replace(page, "@lead@", XmlText(report.words.lead));
+  Replace(page, "@minute@", XmlText(report.words.minute));
+  Replace(page, "@reading@", XmlText(report.words.reading));
+  Replace(page, "@findings@", CardsOf(report));
+  Replace(page, "@maker@", MakerText(report));
+  Replace(page, "@topics@", TopicsText(report));
+  return page;
+}
+
+void WriteReport(const Report& report, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
+                                  error ? error.message() : "it is a file"));
+  }
+  std::map<std::string, std::string> tables;
+  for (const ReportTopic& topic : report.topics) {
+    std::string& table = tables.try_emplace(topic.key, CsvHeader()).first->second;
+    table += CsvOfTopic(topic, report.maker);
+    WriteTextAtomically(folder / PlotFile(topic), SvgOfPlot(PlotOfTopic(topic)));
+    if (const auto plot = PlotOverSamples(topic))
+      WriteTextAtomically(folder / SamplesPlotFile(topic), SvgOfPlot(*plot));
+  }
+  for (const auto& [key, table] : tables) WriteTextAtomically(folder / (key + ".csv"), table);
+  WriteTextAtomically(folder / "summary.md", SummaryOf(report));
+  WriteTextAtomically(folder / "index.html", PageOf(report));
+}
+
+}  // namespace alpenglow

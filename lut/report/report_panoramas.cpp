@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: MIT
+// Topic of the report: the whole sphere around an observer under one sun.
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "lut/eval/eval.h"
+#include "lut/report/report_baselines.h"
+#include "lut/report/report_measure.h"
+#include "lut/sky/panorama.h"
+#include "lut/sky/sky_view.h"
+
+namespace alpenglow {
+namespace {
+
+// Lines of the plot.
+enum Style { kSkyViewRows = 0, kLatitudes = 1, kDirect = 2, kSkyView = 6 };
+
+constexpr double kAltitude_m = 2.0;
+constexpr std::size_t kSuns = 3;
+constexpr std::array<std::array<double, kSuns>, kReportRegimes> kElevations_deg{
+    {{60.0, 25.0, 8.0}, {4.0, 1.5, 0.2}, {-1.0, -3.5, -6.0}}};
+
+double MuS(std::size_t regime, std::size_t sun) {
+  return std::sin(kElevations_deg[regime][sun] * kRadiansPerDegree);
+}
+
+/// A direction, with the sun that shines.
+struct Direction {
+  std::size_t sun;
+  double zenith_rad, azimuth_rad;
+
+  [[nodiscard]] ViewRay Ray(double mu_s) const {
+    const double mu = std::cos(zenith_rad);
+    const double nu =
+        mu * mu_s + std::sin(zenith_rad) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(azimuth_rad);
+    return {kAltitude_m, mu, mu_s, std::clamp(nu, -1.0, 1.0)};
+  }
+};
+
+/// Uniform over the sphere; every other one within 10 degrees of the horizontal instead.
+std::vector<Direction> Directions(int count) {
+  std::vector<Direction> directions;
+  constexpr double kGolden = 0.6180339887498949, kPlastic = 0.7548776662466927;
+  for (int i = 0; i < count; ++i) {
+    const double u = std::fmod(0.5 + i * kGolden, 1.0), v = std::fmod(0.5 + i * kPlastic, 1.0);
+    const double zenith =
+        i % 2 == 0 ? std::acos(1.0 - 2.0 * u) : (80.0 + 20.0 * u) * kRadiansPerDegree;
+    directions.push_back({static_cast<std::size_t>(i / 2) % kSuns, zenith, kPi * v});
+  }
+  return directions;
+}
+
+/// Light of a direction, evaluated: sky of all orders, and the lit ground behind the air.
+template <typename Real>
+class DirectSky {
+ public:
+  DirectSky(const Medium& medium, const DiffuseLight& diffuse, int nodes, bool split_ozone)
+      : air_(medium), quick_(medium), diffuse_(diffuse), nodes_(nodes), split_(split_ozone) {}
+
+  [[nodiscard]] Bands<Real> Radiance(const ViewRay& ray) const {
+    Bands<Real> light = air_.Inscatter(
+        air_.Scatter(air_.Sample(ray, {.nodes = nodes_, .split_ozone = split_})), ray.nu);
+    const Bands<float> rest = diffuse_.InscatterAlong(
+        quick_.Sample(ray, {.nodes = nodes_, .dark_samples = true}), ray.nu);
+    for (std::size_t band = 0; band < light.count; ++band) light[band] += Real{rest[band]};
+    if (const auto mu_s = SunOnGround(air_.medium(), ray)) AddGround(ray, *mu_s, light);
+    return light;
+  }
+
+ private:
+  void AddGround(const ViewRay& ray, double mu_s, Bands<Real>& light) const {
+    const Bands<Real> through = air_.TransmittanceAlong(ray);
+    const Bands<Real> sun = air_.TransmittanceToSpace(0.0, mu_s);
+    const Bands<float> sky = diffuse_.SkyIrradiance(0.0, mu_s);
+    const Real cosine = static_cast<Real>(std::max(mu_s, 0.0));
+    for (std::size_t band = 0; band < light.count; ++band) {
+      const Real reflected = static_cast<Real>(air_.medium().ground_albedo[band] / kPi);
+      light[band] += through[band] * reflected * (Real{sky[band]} + cosine * sun[band]);
+    }
+  }
+
+  AirIntegrator<Real> air_;
+  AirIntegrator<float> quick_;
+  const DiffuseLight& diffuse_;
+  int nodes_;
+  bool split_;
+};
+
+/// A table of radiance over longitude (linear) and latitude (square root, dense at the horizontal),
+/// bilinear: the sky-view table of Hillaire (2020), section 5.3, filled by direct evaluation.
+class LatitudeTable {
+ public:
+  LatitudeTable(const DirectSky<float>& direct, double mu_s, std::size_t bands, int width,
+                int height)
+      : bands_(bands), width_(width), height_(height), texels_(Count(width, height, bands)) {
+    tbb::parallel_for(0, height, [&](int y) {
+      for (int x = 0; x < width; ++x) {
+        const double v = 2.0 * y / (height - 1.0) - 1.0;
+        const Direction direction{0, 0.5 * kPi * (1.0 + std::copysign(v * v, v)),
+                                  2.0 * kPi * x / width};
+        const Bands<float> light = direct.Radiance(direction.Ray(mu_s));
+        std::copy_n(light.value.begin(), bands_,
+                    texels_.begin() + static_cast<std::ptrdiff_t>(Count(width_, y, bands_) +
+                                                                  Count(x, 1, bands_)));
+      }
+    });
+  }
+
+  [[nodiscard]] Bands<float> Radiance(double zenith_rad, double azimuth_rad) const {
+    const double latitude = zenith_rad / (0.5 * kPi) - 1.0;
+    const double y =
+        0.5 * (1.0 + std::copysign(std::sqrt(std::abs(latitude)), latitude)) * (height_ - 1.0);
+    const double x = azimuth_rad / (2.0 * kPi) * width_;
+    const int row = std::clamp(static_cast<int>(y), 0, height_ - 2);
+    const int column = static_cast<int>(x) % width_;
+    const auto fx = static_cast<float>(x - std::floor(x)), fy = static_cast<float>(y - row);
+    const float* left = &texels_[Count(width_, row, bands_) + Count(column, 1, bands_)];
+    const float* right =
+        &texels_[Count(width_, row, bands_) + Count((column + 1) % width_, 1, bands_)];
+    const std::size_t below = Count(width_, 1, bands_);
+    Bands<float> light(bands_);
+    for (std::size_t band = 0; band < bands_; ++band) {
+      light[band] = (left[band] * (1.0F - fx) + right[band] * fx) * (1.0F - fy) +
+                    (left[below + band] * (1.0F - fx) + right[below + band] * fx) * fy;
+    }
+    return light;
+  }
+
+  [[nodiscard]] std::uint64_t bytes() const { return texels_.size() * sizeof(float); }
+
+ private:
+  static std::size_t Count(int a, int b, std::size_t c) {
+    return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * c;
+  }
+
+  std::size_t bands_;
+  int width_, height_;
+  std::vector<float> texels_;
+};
+
+class Topic {
+ public:
+  Topic(const Medium& medium, const ReportEffort& effort)
+      : medium_(medium),
+        effort_(effort),
+        air_(medium),
+        diffuse_(medium),
+        direct_(medium, diffuse_, 12, false),
+        directions_(Directions(effort.rays)) {
+    judged_.judge.text =
+        "direct evaluation in double with 32 Gauss nodes a panel, cut at ozone; "
+        "light of higher orders is the same for all methods";
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t r = 0; r < kReportRegimes; ++r) Judge(r);
+    judged_.judge.time_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
+        static_cast<double>(kReportRegimes * directions_.size());
+  }
+
+  void AddDirect() {
+    ReportRow row{.series = "direct evaluation",
+                  .parameter = "12 nodes",
+                  .style = kDirect,
+                  .in_summary = true};
+    Measure(row, [&](std::size_t r) {
+      return [&, r](const Direction& one) { return direct_.Radiance(one.Ray(MuS(r, one.sun))); };
+    });
+  }
+
+  /// @param size  nothing: chosen by SkyViewSizeFor.
+  void AddSkyView(const std::optional<SkyViewSize>& size) {
+    ReportRow row{.series = "sky view, one by one",
+                  .parameter = size ? fmt::format("({} + {}) x {}", size->sky_rows,
+                                                  size->ground_rows, size->azimuths)
+                                    : "size chosen",
+                  .style = kSkyView,
+                  .in_summary = !size.has_value()};
+    const auto view = [&](std::size_t r, std::size_t sun) {
+      return size ? SkyView(air_, diffuse_, kAltitude_m, MuS(r, sun), *size)
+                  : SkyView(air_, diffuse_, kAltitude_m, MuS(r, sun));
+    };
+    AddTables(row, view);
+    row = rows_.back();
+    row.series = "sky view, in rows";
+    row.style = kSkyViewRows;
+    for (std::size_t r = 0; r < kReportRegimes; ++r) TimeRows(view(r, 1), row.at[r]);
+    rows_.push_back(std::move(row));
+  }
+
+  void AddLatitudes(int width, int height, bool published) {
+    ReportRow row{.series = "latitude table (Hillaire 2020)",
+                  .parameter = fmt::format("{} x {}", width, height),
+                  .origin = MethodOrigin::kLiterature,
+                  .style = kLatitudes,
+                  .in_summary = published};
+    AddTables(row, [&](std::size_t r, std::size_t sun) {
+      return LatitudeTable(direct_, MuS(r, sun), air_.bands(), width, height);
+    });
+  }
+
+  /// Wall time [s] of a whole picture, all threads, with the sun at 25 degrees.
+  [[nodiscard]] double PictureSeconds(int width) const {
+    PanoramaSettings settings;
+    settings.width = width;
+    settings.height = width / 2;
+    settings.sun.elevation_rad = 25.0 * kRadiansPerDegree;
+    return Built([&] { return RenderPanorama(air_, diffuse_, settings); }).second;
+  }
+
+  [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
+    words.medium = medium_;
+    words.rays = directions_.size();
+    words.judge = judged_.judge;
+    words.rows = std::move(rows_);
+    return words;
+  }
+
+ private:
+  void Judge(std::size_t r) {
+    const DirectSky<double> exact(medium_, diffuse_, 32, true);
+    std::array<std::vector<double>, kSuns> floor;
+    for (std::size_t sun = 0; sun < kSuns; ++sun) {
+      floor[sun] = ValuesOf(exact.Radiance(Direction{sun, 0.0, 0.0}.Ray(MuS(r, sun))));
+      for (double& value : floor[sun]) value *= kDarkestPart;
+    }
+    judged_.rays[r].resize(directions_.size());
+    tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t i) {
+      const std::size_t sun = directions_[i].sun;
+      const ViewRay ray = directions_[i].Ray(MuS(r, sun));
+      judged_.rays[r][i] = {ray, ValuesOf(exact.Radiance(ray)), {}, floor[sun]};
+    });
+  }
+
+  /// Times look-ups as a panorama makes them, row by row.
+  void TimeRows(const SkyView& view, RegimeResult& result) const {
+    constexpr std::size_t kRows = 32, kColumns = 256;
+    std::vector<double> azimuth_rad;
+    for (std::size_t i = 0; i < kColumns; ++i)
+      azimuth_rad.push_back(2.0 * kPi * static_cast<double>(i) / kColumns);
+    const SkyAzimuths azimuths(view, azimuth_rad);
+    std::vector<float> radiance(kColumns * view.stride());
+    const auto pass = [&] {
+      for (std::size_t row = 0; row < kRows; ++row)
+        view.FillRow(kPi * (static_cast<double>(row) + 0.5) / kRows, azimuths, radiance);
+      return radiance.front();
+    };
+    TimePasses(kRows * kColumns, effort_, pass, result);
+  }
+
+  /// @param make  table of a regime's sun.
+  template <typename Make>
+  void AddTables(ReportRow row, const Make& make) {
+    const auto [first, seconds] = Built([&] { return make(0, 1); });
+    row.build_s = seconds;
+    row.memory_bytes = first.bytes();
+    Measure(std::move(row), [&](std::size_t r) {
+      std::vector<decltype(make(0, 0))> tables;
+      for (std::size_t sun = 0; sun < kSuns; ++sun) tables.push_back(make(r, sun));
+      return [tables = std::move(tables)](const Direction& one) {
+        return tables[one.sun].Radiance(one.zenith_rad, one.azimuth_rad);
+      };
+    });
+  }
+
+  /// @param answers  what answers directions in a regime.
+  template <typename Answers>
+  void Measure(ReportRow row, const Answers& answers) {
+    for (std::size_t r = 0; r < kReportRegimes; ++r) {
+      const auto answer = answers(r);
+      std::vector<std::vector<double>> values;
+      for (const Direction& one : directions_) values.push_back(ValuesOf(answer(one)));
+      row.at[r].error = StatisticsOf(judged_.rays[r], judged_.kind, values);
+      const auto pass = [&] {
+        float sum = 0.0F;
+        for (const Direction& one : directions_) sum += answer(one)[0];
+        return sum;
+      };
+      TimePasses(directions_.size(), effort_, pass, row.at[r]);
+      ThrowIfInterrupted();
+    }
+    rows_.push_back(std::move(row));
+  }
+
+  const Medium& medium_;
+  const ReportEffort& effort_;
+  AirIntegrator<float> air_;
+  DiffuseLight diffuse_;
+  DirectSky<float> direct_;
+  std::vector<Direction> directions_;
+  JudgedRays judged_;
+  std::vector<ReportRow> rows_;
+};
+
+}  // namespace
+
+ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
+  Topic topic(medium, effort);
+  topic.AddDirect();
+  topic.AddSkyView(SkyViewSize{.sky_rows = 20, .ground_rows = 12, .azimuths = 9});
+  topic.AddSkyView({});
+  if (!effort.quick)
+    topic.AddSkyView(SkyViewSize{.sky_rows = 80, .ground_rows = 48, .azimuths = 33});
+  topic.AddLatitudes(96, 54, false);
+  if (!effort.quick) topic.AddLatitudes(192, 108, true);
+  const int width = effort.quick ? 128 : 2048;
+  const std::string notes = fmt::format(
+      "Nine suns, three a column, seen from 2 m; half of the directions anywhere on the sphere, "
+      "half within 10° of the horizontal. The table over latitudes is the sky-view table of "
+      "Hillaire (2020), 192 x 108, filled here by direct evaluation: its errors are those of "
+      "interpolation alone. A whole panorama of {} x {} pixels, sky view, colours and all, took "
+      "{} on all threads.",
+      width, width / 2, QuantityText(topic.PictureSeconds(width), PlotUnit::kSeconds));
+  return std::move(topic).Finished(
+      {.key = "panoramas",
+       .title = "Panoramas: the whole sphere under one sun",
+       .what = "One observer, one sun, any direction: the radiance of sky and lit ground, light of "
+               "all orders.",
+       .error_unit = "parts of the radiance",
+       .notes = notes,
+       .wanted = 0.01,
+       .cost = CostAxis::kTimeOfAnswer});
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky/panorama.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/text/error.h"
+#include "lut/program/program.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::array<std::pair<PanoramaOrientation, const char*>, 6> kNames{{
+    {PanoramaOrientation::kNorth, "north"},
+    {PanoramaOrientation::kBlender, "blender"},
+    {PanoramaOrientation::kOpenExr, "openexr"},
+    {PanoramaOrientation::kThree, "three"},
+    {PanoramaOrientation::kUnity, "unity"},
+    {PanoramaOrientation::kGodot, "godot"},
+}};
+
+/// Where the pixels of a latitude-longitude picture look.
+struct Grid {
+  int width, height;
+  double centre_azimuth_rad;
+
+  [[nodiscard]] double ZenithAngle(double y) const { return kPi * y / height; }
+  [[nodiscard]] double Azimuth(double x) const {
+    return centre_azimuth_rad + 2.0 * kPi * (x / width - 0.5);
+  }
+  /// Of a pixel of a row [sr].
+  [[nodiscard]] double SolidAngle(int y) const {
+    return 2.0 * kPi / width * (std::cos(ZenithAngle(y)) - std::cos(ZenithAngle(y + 1.0)));
+  }
+};
+
+/// Row-major 3 x bands: linear sRGB [cd/m^2] from radiance per unit solar irradiance.
+std::vector<float> SrgbFromRelative(const Medium& medium, double sun_distance) {
+  const BandColour colour(medium.wavelengths_nm);
+  const std::span<const double> matrix = colour.linear_srgb_from_bands();
+  const std::size_t bands = medium.wavelengths_nm.size();
+  std::vector<float> scaled(matrix.size());
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    scaled[i] = static_cast<float>(matrix[i] * medium.solar_irradiance[i % bands] /
+                                   (sun_distance * sun_distance));
+  }
+  return scaled;
+}
+
+std::array<float, 3> Srgb(const std::vector<float>& matrix, const float* bands, std::size_t count) {
+  std::array<float, 3> rgb{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t band = 0; band < count; ++band)
+      rgb[c] += matrix[c * count + band] * bands[band];
+  }
+  return rgb;
+}
+
+/// A piece of a pixel that lies on the disk.
+struct DiskPiece {
+  int x, y;
+  double zenith_angle_rad;
+  double weight;  // its share of the whole disk's light
+};
+
+// Sine of half the angle between two directions, squared.
+double HalfSine2(double zenith_a, double zenith_b, double azimuth) {
+  const double across = std::sin(0.5 * (zenith_a - zenith_b));
+  const double along = std::sin(0.5 * azimuth);
+  return across * across + std::sin(zenith_a) * std::sin(zenith_b) * along * along;
+}
+
+/// Pieces of all pixels near the sun, small against its disk. Their weights add up to 1.
+std::vector<DiskPiece> PiecesOfDisk(const Grid& grid, const PanoramaSun& sun) {
+  constexpr int kPiecesPerRadius = 12;
+  const double zenith = 0.5 * kPi - sun.elevation_rad;
+  const double radius = sun.angular_radius_rad;
+  const int down =
+      std::max(1, static_cast<int>(std::ceil(kPiecesPerRadius * kPi / grid.height / radius)));
+  const int across =
+      std::max(1, static_cast<int>(std::ceil(kPiecesPerRadius * 2.0 * kPi / grid.width / radius)));
+  const auto row_of = [&](double angle) {
+    return std::clamp(static_cast<int>(std::floor(angle / kPi * grid.height)), 0, grid.height - 1);
+  };
+  std::vector<DiskPiece> pieces;
+  double total = 0.0;
+  for (int y = row_of(zenith - radius); y <= row_of(zenith + radius); ++y) {
+    for (int j = 0; j < down; ++j) {
+      const double angle = grid.ZenithAngle(y + (j + 0.5) / down);
+      for (int x = 0; x < grid.width; ++x) {
+        const double middle = grid.Azimuth(x + 0.5) - sun.azimuth_rad;
+        const double reach = std::sin(angle) * std::sin(zenith);
+        const double half = std::sin(0.5 * std::abs(std::remainder(middle, 2.0 * kPi)));
+        const double edge = 0.5 * radius + std::sqrt(std::max(reach, 0.0)) * kPi / grid.width;
+        if (std::sqrt(std::max(reach, 0.0)) * half > 2.0 * edge) continue;
+        for (int i = 0; i < across; ++i) {
+          const double azimuth = grid.Azimuth(x + (i + 0.5) / across) - sun.azimuth_rad;
+          const double rho =
+              2.0 * std::asin(std::sqrt(std::min(HalfSine2(angle, zenith, azimuth), 1.0))) / radius;
+          if (rho >= 1.0) continue;
+          const double weight = LimbDarkening(rho) * std::sin(angle);
+          pieces.push_back({x, y, angle, weight});
+          total += weight;
+        }
+      }
+    }
+  }
+  for (DiskPiece& piece : pieces) piece.weight /= total;
+  return pieces;
+}
+
+void DrawSunDisk(const AirIntegrator<float>& air, const PanoramaSettings& settings,
+                 const Grid& grid, const std::vector<float>& srgb, Image& image) {
+  for (const DiskPiece& piece : PiecesOfDisk(grid, settings.sun)) {
+    const Bands<float> seen =
+        air.TransmittanceToSpace(settings.altitude_m, std::cos(piece.zenith_angle_rad));
+    const std::array<float, 3> rgb = Srgb(srgb, seen.value.data(), seen.count);
+    const auto share = static_cast<float>(piece.weight / grid.SolidAngle(piece.y));
+    for (std::size_t c = 0; c < 3; ++c) image.at(piece.x, piece.y)[c] += share * rgb[c];
+  }
+}
+
+/// Five rows of five bits each, the left one highest.
+using Letter = std::array<unsigned, 5>;
+constexpr std::array<Letter, 4> kCompassLetters{{
+    {0b10001, 0b11001, 0b10101, 0b10011, 0b10001},  // N
+    {0b11111, 0b10000, 0b11110, 0b10000, 0b11111},  // E
+    {0b01111, 0b10000, 0b01110, 0b00001, 0b11110},  // S
+    {0b10001, 0b10001, 0b10101, 0b10101, 0b01010},  // W
+}};
+
+// Twice as bright as the brightest pixel of the middle row, in letters 10 degrees high.
+void PaintCompass(const Grid& grid, Image& image) {
+  float ink = 1e-3F;
+  for (int x = 0; x < grid.width; ++x) ink = std::max(ink, 2.0F * image.at(x, grid.height / 2)[1]);
+  constexpr double kCell_rad = 2.0 * kRadiansPerDegree;
+  for (int y = 0; y < grid.height; ++y) {
+    const double down = (grid.ZenithAngle(y + 0.5) - 0.5 * kPi) / kCell_rad + 2.5;
+    for (int x = 0; x < grid.width; ++x) {
+      const double quarter = 2.0 * grid.Azimuth(x + 0.5) / kPi;
+      const double nearest = std::round(quarter);
+      const double across = (quarter - nearest) * 0.5 * kPi / kCell_rad + 2.5;
+      if (down < 0.0 || down >= 5.0 || across < 0.0 || across >= 5.0) continue;
+      const auto letter = static_cast<std::size_t>(static_cast<int>(nearest + 8.0) % 4);
+      const unsigned row = kCompassLetters[letter][static_cast<std::size_t>(down)];
+      if ((row >> (4U - static_cast<unsigned>(across)) & 1U) != 0U)
+        image.at(x, y) = {ink, ink, ink};
+    }
+  }
+}
+
+// A picture has time for a finer view than one that is built for every frame.
+SkyViewSize FineSize(const SkyViewSize& size) {
+  return {size.sky_rows * 3 / 2, size.ground_rows * 3 / 2, 2 * size.azimuths - 1, 24};
+}
+
+}  // namespace
+
+PanoramaOrientation PanoramaOrientationFromName(const std::string& name) {
+  if (name == "geographic") return PanoramaOrientation::kNorth;
+  for (const auto& [orientation, known] : kNames) {
+    if (name == known) return orientation;
+  }
+  throw InputError(fmt::format(
+      "orientation is \"{}\"; it must be north, blender, openexr, three, unity or godot", name));
+}
+
+std::string NameOf(PanoramaOrientation orientation) {
+  for (const auto& [known, name] : kNames) {
+    if (known == orientation) return name;
+  }
+  throw InternalError("an orientation without a name");
+}
+
+double CentreAzimuth(PanoramaOrientation orientation) {
+  switch (orientation) {
+    case PanoramaOrientation::kNorth:
+      return 0.0;
+    case PanoramaOrientation::kBlender:
+    case PanoramaOrientation::kThree:
+    case PanoramaOrientation::kUnity:
+      return 0.5 * kPi;
+    case PanoramaOrientation::kOpenExr:
+    case PanoramaOrientation::kGodot:
+      return kPi;
+  }
+  throw InternalError("an orientation without a centre");
+}
+
+Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                     const PanoramaSettings& settings, const std::function<void()>& row_done) {
+  Image image(settings.width, settings.height);
+  const double mu_s = std::sin(settings.sun.elevation_rad);
+  const SkyView view(air, diffuse, settings.altitude_m, mu_s,
+                     settings.view_size.value_or(
+                         FineSize(SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))));
+  const Grid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
+  std::vector<double> from_sun;
+  for (int x = 0; x < grid.width; ++x)
+    from_sun.push_back(grid.Azimuth(x + 0.5) - settings.sun.azimuth_rad);
+  const SkyAzimuths azimuths(view, from_sun);
+  const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance);
+  oneapi::tbb::parallel_for(0, grid.height, [&](int y) {
+    if (Interrupted()) return;
+    std::vector<float> row(azimuths.count() * view.stride());
+    view.FillRow(grid.ZenithAngle(y + 0.5), azimuths, row);
+    for (int x = 0; x < grid.width; ++x) {
+      image.at(x, y) = Srgb(srgb, &row[static_cast<std::size_t>(x) * view.stride()], view.bands());
+    }
+    row_done();
+  });
+  ThrowIfInterrupted();
+  if (settings.compass) PaintCompass(grid, image);
+  if (settings.sun_disk) DrawSunDisk(air, settings, grid, srgb, image);
+  return image;
+}
+
+double HorizontalIlluminance(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                             double altitude_m, const PanoramaSun& sun) {
+  const Medium& medium = air.medium();
+  const double h = std::max(altitude_m, 0.0);
+  const double mu_s = std::sin(sun.elevation_rad);
+  const double horizon = std::cos(SkyViewMap(medium, h, mu_s).horizon_zenith_angle_rad());
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad);
+  const double mu = disk.mu_s_effective;
+  const Bands<float> direct = air.TransmittanceToSpace(h, mu);
+  const Bands<float> sky = diffuse.SkyIrradiance(h, mu_s);
+  std::vector<double> light;
+  for (std::size_t band = 0; band < sky.count; ++band) {
+    light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *
+                    (double{sky[band]} + disk.fraction * std::max(mu, 0.0) * double{direct[band]}));
+  }
+  return BandColour(medium.wavelengths_nm).Xyz(light)[1];
+}
+
+}  // namespace alpenglow

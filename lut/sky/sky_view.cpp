@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky/sky_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/diffuse/diffuse_fan.h"
+#include "lut/sky/sky_row_kernel.h"
+#include "lut/table/cubic_taps.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kLanes = 4;
+
+/// Weights of the four uniform cubic B-splines that reach a fraction t of a cell.
+std::array<float, 4> SplineWeights(double t) {
+  const double s = 1.0 - t;
+  const auto weight = [](double six_times) { return static_cast<float>(six_times / 6.0); };
+  return {weight(s * s * s), weight(4.0 - 3.0 * t * t * (2.0 - t)),
+          weight(4.0 - 3.0 * s * s * (2.0 - s)), weight(t * t * t)};
+}
+
+/// A cell and the fraction of it, of a coordinate in [0, 1] over n nodes.
+struct CellPosition {
+  int cell;
+  double fraction;
+};
+CellPosition PositionOf(double coordinate, int n) {
+  const double x = std::clamp(coordinate, 0.0, 1.0) * (n - 1);
+  const int cell = std::min(static_cast<int>(x), n - 2);
+  return {cell, x - cell};
+}
+
+/// What lies between two neighbours of a line of nodes in memory, each of `width` floats.
+struct Line {
+  float* first;        // the node before the first one
+  std::size_t stride;  // floats between neighbours
+  std::size_t width;
+  int n;  // nodes, not counting one more at each end
+  [[nodiscard]] float* node(int i) const {
+    return first + stride * static_cast<std::size_t>(i + 1);
+  }
+};
+
+// Solves c[i - 1] + 4 c[i] + c[i + 1] = 6 f[i] for i in [from, to] in place, c known at from - 1
+// and to + 1 (Thomas' algorithm).
+void SolveTridiagonal(const Line& line, int from, int to) {
+  if (from > to) return;
+  std::vector<float> factor(static_cast<std::size_t>(to - from + 1));
+  float last = 0.0F;
+  for (int i = from; i <= to; ++i) {
+    const float f = 1.0F / (4.0F - last);
+    factor[static_cast<std::size_t>(i - from)] = last = f;
+    float* c = line.node(i);
+    const float* before = line.node(i - 1);
+    for (std::size_t k = 0; k < line.width; ++k) c[k] = (6.0F * c[k] - before[k]) * f;
+  }
+  // The first equation has its known neighbour in full; the others had it eliminated: c[i - 1]
+  // above was already the reduced right side.
+  const float* after = line.node(to + 1);
+  float* c = line.node(to);
+  for (std::size_t k = 0; k < line.width; ++k)
+    c[k] -= factor[static_cast<std::size_t>(to - from)] * after[k];
+  for (int i = to - 1; i >= from; --i) {
+    const float f = factor[static_cast<std::size_t>(i - from)];
+    float* here = line.node(i);
+    const float* next = line.node(i + 1);
+    for (std::size_t k = 0; k < line.width; ++k) here[k] -= f * next[k];
+  }
+}
+
+// Coefficients in place of values, the third derivative continuous over the second node from each
+// end ("not a knot"): there c[1] = f[1] - (f[0] - 2 f[1] + f[2]) / 6.
+void SplineOpenLine(const Line& line) {
+  const int n = line.n;
+  for (std::size_t k = 0; k < line.width; ++k) {
+    const auto f = [&](int i) { return line.node(i)[k]; };
+    const float first = (8.0F * f(1) - f(0) - f(2)) / 6.0F;
+    const float last = (8.0F * f(n - 2) - f(n - 1) - f(n - 3)) / 6.0F;
+    line.node(-1)[k] = f(1);  // kept for c[0] = 6 f[1] - 4 c[1] - c[2]
+    line.node(n)[k] = f(n - 2);
+    line.node(1)[k] = first;
+    line.node(n - 2)[k] = last;
+  }
+  SolveTridiagonal(line, 2, n - 3);
+  for (std::size_t k = 0; k < line.width; ++k) {
+    const auto c = [&](int i) -> float& { return line.node(i)[k]; };
+    c(0) = 6.0F * c(-1) - 4.0F * c(1) - c(2);
+    c(n - 1) = 6.0F * c(n) - 4.0F * c(n - 2) - c(n - 3);
+    c(-1) = 4.0F * c(0) - 6.0F * c(1) + 4.0F * c(2) - c(3);
+    c(n) = 4.0F * c(n - 1) - 6.0F * c(n - 2) + 4.0F * c(n - 3) - c(n - 4);
+  }
+}
+
+// The same for a line that goes on beyond each end as its mirror image.
+void SplineMirroredLine(const Line& line) {
+  const int n = line.n;
+  std::vector<float> factor(static_cast<std::size_t>(n));
+  // 4 c[0] + 2 c[1] = 6 f[0] at the first end, likewise at the last.
+  for (int i = 0; i < n; ++i) {
+    const float lower = i == 0 ? 0.0F : i == n - 1 ? 2.0F : 1.0F;
+    const float upper = i == 0 ? 2.0F : 1.0F;
+    const float before = i == 0 ? 0.0F : factor[static_cast<std::size_t>(i - 1)];
+    const float f = 1.0F / (4.0F - lower * before);
+    factor[static_cast<std::size_t>(i)] = upper * f;
+    float* c = line.node(i);
+    const float* left = line.node(i - 1);
+    for (std::size_t k = 0; k < line.width; ++k)
+      c[k] = (6.0F * c[k] - (i == 0 ? 0.0F : lower * left[k])) * f;
+  }
+  for (int i = n - 2; i >= 0; --i) {
+    float* here = line.node(i);
+    const float* next = line.node(i + 1);
+    for (std::size_t k = 0; k < line.width; ++k)
+      here[k] -= factor[static_cast<std::size_t>(i)] * next[k];
+  }
+  std::copy_n(line.node(1), line.width, line.node(-1));
+  std::copy_n(line.node(n - 2), line.width, line.node(n));
+}
+
+std::vector<float> PhaseSamples(const Medium& medium, std::size_t first_band) {
+  std::vector<float> table(kLanes * (kSkyPhaseNodes + 1));
+  for (int k = 0; k <= kSkyPhaseNodes; ++k) {
+    const double x = static_cast<double>(k) / kSkyPhaseNodes;
+    const std::vector<double> values = MiePhaseValues(medium, std::cos(kPi * x * x));
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t band = std::min(first_band + lane, values.size() - 1);
+      table[kLanes * static_cast<std::size_t>(k) + lane] = static_cast<float>(values[band]);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+// Smallest sizes, of those tried with sky_error (tests/bench), that keep the stated error.
+SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
+  constexpr double kHigh_m = 15e3;
+  constexpr double kMidday = 0.15;  // sines of the sun's elevation
+  constexpr double kDay = 0.1;
+  if (altitude_m > medium.atmosphere_height_m) {
+    if (mu_s > kMidday) return {40, 28, 25, 14};
+    return altitude_m > 1e6 ? SkyViewSize{48, 48, 97, 14} : SkyViewSize{44, 36, 61, 14};
+  }
+  if (altitude_m > kHigh_m) return {38, 26, 25, 16};
+  if (mu_s > kDay) return {28, 16, 13, 12};
+  return altitude_m > 2000.0 ? SkyViewSize{36, 24, 25, 16} : SkyViewSize{32, 16, 21, 16};
+}
+
+namespace {
+
+/// Where an azimuth lies between columns.
+struct AzimuthTap {
+  std::int32_t cell;
+  std::array<float, 4> weights;
+  float half_sine2;
+};
+
+AzimuthTap TapAt(const SkyViewMap& map, int columns, double azimuth_rad) {
+  const double half_turn = std::abs(std::remainder(azimuth_rad, 2.0 * kPi));
+  const CellPosition at = PositionOf(map.AzimuthCoordinate(half_turn), columns);
+  const double sine = std::sin(0.5 * half_turn);
+  return {at.cell, SplineWeights(at.fraction), static_cast<float>(sine * sine)};
+}
+
+}  // namespace
+
+SkyAzimuths::SkyAzimuths(const SkyView& view, std::span<const double> azimuth_rad)
+    : columns_(view.size().azimuths) {
+  for (const double azimuth : azimuth_rad) {
+    const AzimuthTap tap = TapAt(view.map(), columns_, azimuth);
+    cell_.push_back(tap.cell);
+    weights_.insert(weights_.end(), tap.weights.begin(), tap.weights.end());
+    half_sine2_.push_back(tap.half_sine2);
+  }
+}
+
+namespace {
+
+/// Light that Lambert ground sends up [1/sr], over the sun's zenith cosines that are in view.
+class GroundLight {
+ public:
+  GroundLight(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double least_mu_s,
+              double most_mu_s)
+      : bands_(air.bands()),
+        least_(DiffuseLight::SunCoordinate(least_mu_s)),
+        most_(DiffuseLight::SunCoordinate(most_mu_s)),
+        nodes_(most_ - least_ < kOneNode ? 4 : kNodes) {
+    for (int i = 0; i < nodes_; ++i) {
+      const double v = least_ + (most_ - least_) * i / (nodes_ - 1);
+      const double mu_s = DiffuseLight::MuSFromCoordinate(v);
+      Bands<float> irradiance = diffuse.SkyIrradiance(0.0, mu_s);
+      if (mu_s > 0.0) {
+        const Bands<float> sun = air.TransmittanceToSpace(0.0, mu_s);
+        for (std::size_t band = 0; band < bands_; ++band)
+          irradiance[band] += static_cast<float>(mu_s) * sun[band];
+      }
+      for (std::size_t band = 0; band < bands_; ++band) {
+        light_.push_back(irradiance[band] *
+                         static_cast<float>(air.medium().ground_albedo[band] / kPi));
+      }
+    }
+  }
+
+  [[nodiscard]] Bands<float> At(double mu_s) const {
+    const double width = std::max(most_ - least_, 1e-12);
+    const CubicTaps taps = TapsAt((DiffuseLight::SunCoordinate(mu_s) - least_) / width, nodes_);
+    Bands<float> light(bands_);
+    for (std::size_t tap = 0; tap < 4; ++tap) {
+      const float* node = &light_[taps.node[tap] * bands_];
+      for (std::size_t band = 0; band < bands_; ++band)
+        light[band] += taps.weight[tap] * node[band];
+    }
+    return light;
+  }
+
+ private:
+  static constexpr int kNodes = 128;
+  static constexpr double kOneNode = 1e-3;  // of the coordinate: light is a straight line over it
+
+  std::size_t bands_;
+  double least_, most_;
+  int nodes_;
+  std::vector<float> light_;
+};
+
+}  // namespace
+
+/// Evaluates the nodes.
+class SkyView::Builder {
+ public:
+  Builder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+          double mu_s, SkyView& view)
+      : air_(air),
+        fan_(diffuse),
+        altitude_m_(altitude_m),
+        mu_s_(std::clamp(mu_s, -1.0, 1.0)),
+        view_(view),
+        ground_light_(GroundInView(air, diffuse)) {
+    for (int k = 0; k < view.size_.azimuths; ++k) {
+      cosines_.push_back(
+          std::cos(view.map_.Azimuth(static_cast<double>(k) / (view.size_.azimuths - 1))));
+    }
+  }
+
+  void Fill() {
+    const std::size_t columns = Columns();
+    const auto rows = static_cast<std::size_t>(view_.size_.sky_rows + view_.size_.ground_rows + 4);
+    for (Block& block : view_.blocks_)
+      block.coefficients.assign(rows * columns * kSkyNodeFloats, 0.0F);
+    for (int i = 0; i < view_.size_.sky_rows; ++i) {
+      const double v = static_cast<double>(i) / (view_.size_.sky_rows - 1);
+      FillRow(view_.map_.SkyZenithAngle(v), 1 + i, false, i == 0);
+    }
+    const int ground = view_.size_.sky_rows + 3;
+    for (int i = 0; i < view_.size_.ground_rows; ++i) {
+      const double v = static_cast<double>(i) / (view_.size_.ground_rows - 1);
+      FillRow(view_.map_.GroundZenithAngle(v), ground + i, true, i == 0);
+    }
+    for (Block& block : view_.blocks_) {
+      SplineColumns(block, 0, view_.size_.sky_rows);
+      SplineColumns(block, ground - 1, view_.size_.ground_rows);
+    }
+  }
+
+ private:
+  // The ground in view reaches as far as the horizon, a dip along the ground from the observer.
+  [[nodiscard]] GroundLight GroundInView(const AirIntegrator<float>& air,
+                                         const DiffuseLight& diffuse) const {
+    const double dip = view_.map_.horizon_zenith_angle_rad() - 0.5 * kPi;
+    const double sun = std::acos(mu_s_);
+    return {air, diffuse, std::cos(std::min(sun + dip, kPi)), std::cos(std::max(sun - dip, 0.0))};
+  }
+
+  [[nodiscard]] std::size_t Columns() const {
+    return static_cast<std::size_t>(view_.size_.azimuths + 2);
+  }
+  [[nodiscard]] float* Node(Block& block, int row, int column) const {
+    return &block.coefficients[(static_cast<std::size_t>(row) * Columns() +
+                                static_cast<std::size_t>(column)) *
+                               kSkyNodeFloats];
+  }
+
+  // On the horizon the two sides differ: each row there is moved to its own by a hair.
+  void FillRow(double zenith_angle, int row, bool ground, bool on_horizon) {
+    constexpr double kHair_rad = 1e-9;
+    const double angle =
+        on_horizon ? zenith_angle + (ground ? kHair_rad : -kHair_rad) : zenith_angle;
+    const double mu = std::clamp(std::cos(angle), -1.0, 1.0);
+    const double sines = std::sin(angle) * std::sqrt(std::max(1.0 - mu_s_ * mu_s_, 0.0));
+    std::vector<float> nus;
+    for (const double cosine : cosines_)
+      nus.push_back(static_cast<float>(std::clamp(mu * mu_s_ + sines * cosine, -1.0, 1.0)));
+    AddOnce(mu, sines, row);
+    AddRest(mu, nus, row);
+    for (Block& block : view_.blocks_) {
+      SplineMirroredLine(
+          {Node(block, row, 0), kSkyNodeFloats, kSkyNodeFloats, view_.size_.azimuths});
+    }
+  }
+
+  void AddOnce(double mu, double sines, int row) {
+    for (std::size_t k = 0; k < cosines_.size(); ++k) {
+      const double nu = std::clamp(mu * mu_s_ + sines * cosines_[k], -1.0, 1.0);
+      const ScatteredOnce<float> once = air_.Scatter(air_.Sample(
+          {altitude_m_, mu, mu_s_, nu}, {.nodes = view_.size_.ray_nodes, .dark_samples = false}));
+      for (std::size_t band = 0; band < view_.bands_; ++band) {
+        float* node = Node(view_.blocks_[band / kLanes], row, static_cast<int>(k) + 1);
+        node[band % kLanes] = once.rayleigh[band];
+        node[kLanes + band % kLanes] = once.mie[band];
+      }
+    }
+  }
+
+  // A sun in the zenith leaves no part of the ray dark: its samples serve every sun.
+  void AddRest(double mu, const std::vector<float>& nus, int row) {
+    const ViewRay under_zenith_sun{altitude_m_, mu, 1.0, mu};
+    const RaySamples<float> samples =
+        air_.Sample(under_zenith_sun, {.nodes = view_.size_.ray_nodes, .dark_samples = false});
+    const std::vector<float> rest =
+        fan_.InscatterAlong(samples, {altitude_m_, mu, mu_s_, 0.0}, nus);
+    const bool ground = samples.extent.end == RayEnd::kGround;
+    const Bands<float> through =
+        ground ? air_.TransmittanceAlong(under_zenith_sun) : Bands<float>(view_.bands_);
+    const double r = air_.medium().planet_radius_m + std::max(altitude_m_, 0.0);
+    for (std::size_t k = 0; k < nus.size(); ++k) {
+      Bands<float> reflected(view_.bands_);
+      if (ground) {
+        reflected = ground_light_.At(std::clamp(
+            (r * mu_s_ + samples.extent.end_m * double{nus[k]}) / air_.medium().planet_radius_m,
+            -1.0, 1.0));
+      }
+      for (std::size_t band = 0; band < view_.bands_; ++band) {
+        float* node = Node(view_.blocks_[band / kLanes], row, static_cast<int>(k) + 1);
+        node[2 * kLanes + band % kLanes] =
+            rest[k * view_.bands_ + band] + through[band] * reflected[band];
+      }
+    }
+  }
+
+  void SplineColumns(Block& block, int first_row, int rows) {
+    const std::size_t width = Columns() * kSkyNodeFloats;
+    SplineOpenLine({Node(block, first_row, 0), width, width, rows});
+  }
+
+  const AirIntegrator<float>& air_;
+  DiffuseFan fan_;
+  double altitude_m_, mu_s_;
+  SkyView& view_;
+  GroundLight ground_light_;
+  std::vector<double> cosines_;  // of the columns' azimuths
+};
+
+SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+                 double mu_s)
+    : SkyView(air, diffuse, altitude_m, mu_s, SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
+
+SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+                 double mu_s, const SkyViewSize& size)
+    : map_(air.medium(), altitude_m, mu_s),
+      size_(size),
+      bands_(air.bands()),
+      sun_zenith_angle_rad_(std::acos(std::clamp(mu_s, -1.0, 1.0))),
+      blocks_((air.bands() + kLanes - 1) / kLanes) {
+  RequireInRange(size.sky_rows, 5, 4096, "sky_rows");
+  RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
+  RequireInRange(size.azimuths, 3, 4096, "azimuths");
+  ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    blocks_[i].phase = PhaseSamples(air.medium(), kLanes * i);
+  Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
+}
+
+std::size_t SkyView::bytes() const {
+  std::size_t floats = 0;
+  for (const Block& block : blocks_) floats += block.coefficients.size() + block.phase.size();
+  return floats * sizeof(float);
+}
+
+/// Where a zenith angle lies between rows.
+struct SkyView::RowPosition {
+  std::size_t first_row;
+  std::array<float, 4> weights;
+  float offset, scale;  // sin^2 of half the angle to the sun: offset + scale sin^2(azimuth / 2)
+};
+
+std::optional<SkyView::RowPosition> SkyView::PositionOfRow(double zenith_angle_rad) const {
+  const bool ground = zenith_angle_rad > map_.horizon_zenith_angle_rad();
+  if (!ground && map_.sees_upper_edge() && zenith_angle_rad <= map_.upper_edge_zenith_angle_rad())
+    return std::nullopt;
+  const CellPosition at =
+      ground ? PositionOf(map_.GroundCoordinate(zenith_angle_rad), size_.ground_rows)
+             : PositionOf(map_.SkyCoordinate(zenith_angle_rad), size_.sky_rows);
+  const double sine = std::sin(0.5 * (zenith_angle_rad - sun_zenith_angle_rad_));
+  return RowPosition{
+      static_cast<std::size_t>(at.cell + (ground ? size_.sky_rows + 2 : 0)),
+      SplineWeights(at.fraction), static_cast<float>(sine * sine),
+      static_cast<float>(std::sin(zenith_angle_rad) * std::sin(sun_zenith_angle_rad_))};
+}
+
+void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
+                      std::span<float> radiance) const {
+  ALPENGLOW_ENSURE(azimuths.columns_, ==, size_.azimuths);
+  ALPENGLOW_ENSURE(radiance.size(), ==, azimuths.count() * stride());
+  const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);
+  if (!at) {
+    std::fill(radiance.begin(), radiance.end(), 0.0F);
+    return;
+  }
+  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
+  std::vector<float> row(width);
+  const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    kernel.blend({&blocks_[i].coefficients[at->first_row * width], width, width, at->weights.data(),
+                  row.data()});
+    kernel.fill({row.data(), blocks_[i].phase.data(), azimuths.cell_.data(),
+                 azimuths.weights_.data(), azimuths.half_sine2_.data(), at->offset, at->scale,
+                 azimuths.count(), radiance.data() + kLanes * i, stride()});
+  }
+}
+
+// Of the row only the four nodes that are looked up are added.
+Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) const {
+  Bands<float> radiance(bands_);
+  const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);
+  if (!at) return radiance;
+  const AzimuthTap tap = TapAt(map_, size_.azimuths, azimuth_rad);
+  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
+  const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
+  std::array<float, 4 * kSkyNodeFloats> nodes;
+  std::array<float, kLanes> light;
+  constexpr std::int32_t kFirst = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    kernel.blend({&blocks_[i].coefficients[at->first_row * width +
+                                           static_cast<std::size_t>(tap.cell) * kSkyNodeFloats],
+                  width, nodes.size(), at->weights.data(), nodes.data()});
+    kernel.fill({nodes.data(), blocks_[i].phase.data(), &kFirst, tap.weights.data(),
+                 &tap.half_sine2, at->offset, at->scale, 1, light.data(), kLanes});
+    for (std::size_t lane = 0; lane < kLanes && kLanes * i + lane < bands_; ++lane)
+      radiance[kLanes * i + lane] = light[lane];
+  }
+  return radiance;
+}
+
+}  // namespace alpenglow

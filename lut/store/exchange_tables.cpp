@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: MIT
+#include "lut/store/exchange_tables.h"
+
+#include <half.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <utility>
+
+#include "atmosphere/air/medium_toml.h"
+#include "atmosphere/air/phase_text.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "lut/program/program.h"
+#include "lut/store/table_folder.h"
+#include "lut/table/scattering_table.h"
+#include "lut/table/transmittance_table.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The sizes are constants of the programs that load the tables.
+constexpr TransmittanceTableSize kTransmittanceSize{.mu = 256, .altitudes = 64};
+constexpr ScatteringTableSize kScatteringSize{.nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
+constexpr std::size_t kIrradianceSuns = 64, kIrradianceAltitudes = 16;
+
+// Four orders of scattering: three of the light that is scattered once more.
+constexpr DiffuseLightOptions kFourOrders{.altitudes = 32,
+                                          .sun_angles = 56,
+                                          .degree = 6,
+                                          .zenith_nodes = 14,
+                                          .azimuth_nodes = 10,
+                                          .ray_nodes = 12,
+                                          .exact_orders = 3};
+constexpr Sampling kHigherOrderSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
+
+TexelType TypeOf(const ExchangeOptions& options) {
+  return options.type.value_or(options.layout == ExchangeLayout::kTakram ? TexelType::kHalf
+                                                                         : TexelType::kFloat);
+}
+
+TexelFormat FormatOf(const ExchangeOptions& options) {
+  return options.format.value_or(options.layout == ExchangeLayout::kTakram ? TexelFormat::kExr
+                                                                           : TexelFormat::kDat);
+}
+
+void RequireThreeBands(const Medium& medium) {
+  if (medium.wavelengths_nm.size() == 3) return;
+  throw InputError(fmt::format(
+      "spectrum.wavelengths_nm has {} values; tables for other programs hold red, green and blue",
+      medium.wavelengths_nm.size()));
+}
+
+/// Red, green and blue are the bands from the longest wavelength to the shortest.
+std::array<float, 4> Rgba(const Medium& medium, const Bands<float>& unit, bool times_sun,
+                          float alpha) {
+  std::array<float, 4> rgba{0.0F, 0.0F, 0.0F, alpha};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t band = 2 - c;
+    rgba[c] = unit[band] * (times_sun ? static_cast<float>(medium.solar_irradiance[band]) : 1.0F);
+  }
+  return rgba;
+}
+
+ExchangeTexture EmptyTexture(std::string name, std::size_t width, std::size_t height,
+                             std::size_t depth) {
+  return {std::move(name), width, height, depth, std::vector<float>(4 * width * height * depth)};
+}
+
+void Put(ExchangeTexture& texture, std::size_t texel, const std::array<float, 4>& rgba) {
+  std::copy(rgba.begin(), rgba.end(), &texture.rgba[4 * texel]);
+}
+
+ExchangeTexture TransmittanceTexture(const Medium& medium) {
+  const TransmittanceTable table(medium, kTransmittanceSize);
+  ExchangeTexture texture =
+      EmptyTexture("transmittance", kTransmittanceSize.mu, kTransmittanceSize.altitudes, 1);
+  for (std::size_t texel = 0; texel < texture.width * texture.height; ++texel) {
+    Bands<float> transmittance(3);
+    std::copy_n(&table.texels()[3 * texel], 3, transmittance.value.begin());
+    Put(texture, texel, Rgba(medium, transmittance, false, 1.0F));
+  }
+  return texture;
+}
+
+ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& light) {
+  ExchangeTexture texture = EmptyTexture("irradiance", kIrradianceSuns, kIrradianceAltitudes, 1);
+  for (std::size_t y = 0; y < texture.height; ++y) {
+    const double h = medium.atmosphere_height_m * static_cast<double>(y) /
+                     static_cast<double>(texture.height - 1);
+    for (std::size_t x = 0; x < texture.width; ++x) {
+      const double mu_s =
+          2.0 * static_cast<double>(x) / static_cast<double>(texture.width - 1) - 1.0;
+      Put(texture, y * texture.width + x, Rgba(medium, light.SkyIrradiance(h, mu_s), true, 1.0F));
+    }
+  }
+  return texture;
+}
+
+/// Orders 2 to 4 over the molecules' phase function, one row (a view angle at an altitude) at a
+/// time.
+class HigherOrders {
+ public:
+  HigherOrders(const ScatteringTable& rays, const DiffuseLight& light)
+      : rays_(rays), light_(light), air_(rays.medium()) {}
+
+  /// [(nu * mu_s + mu_s) * 3 + band]
+  [[nodiscard]] std::vector<float> Row(std::size_t row) const {
+    const ScatteringTableSize& size = rays_.size();
+    std::vector<float> values;
+    values.reserve(size.nu * size.mu_s * 3);
+    for (std::size_t nu = 0; nu < size.nu; ++nu) {
+      for (std::size_t mu_s = 0; mu_s < size.mu_s; ++mu_s) {
+        const ViewRay ray = rays_.RayOfTexel(nu, mu_s, row % size.mu, row / size.mu);
+        const Bands<float> more =
+            light_.InscatterAlong(air_.Sample(ray, kHigherOrderSampling), ray.nu);
+        const auto phase = static_cast<float>(shared::PhaseRayleigh<double>(ray.nu));
+        for (std::size_t band = 0; band < 3; ++band) values.push_back(more[band] / phase);
+      }
+    }
+    return values;
+  }
+
+ private:
+  const ScatteringTable& rays_;
+  const DiffuseLight& light_;
+  AirIntegrator<float> air_;
+};
+
+ExchangeTexture EmptyScattering(std::string name) {
+  return EmptyTexture(std::move(name), kScatteringSize.nu * kScatteringSize.mu_s,
+                      kScatteringSize.mu, kScatteringSize.altitudes);
+}
+
+/// scattering, higher_order_scattering, single_mie_scattering.
+std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const DiffuseLight& light,
+                                                  double lowest_mu_s, ProgressStyle style) {
+  const std::size_t rows = ScatteringTable::Rows(kScatteringSize);
+  Progress progress("scattering", 2 * rows, style);
+  const ScatteringTable once(medium, {.size = kScatteringSize, .lowest_mu_s = lowest_mu_s},
+                             &progress);
+  const HigherOrders higher(once, light);
+  std::array<ExchangeTexture, 3> textures{EmptyScattering("scattering"),
+                                          EmptyScattering("higher_order_scattering"),
+                                          EmptyScattering("single_mie_scattering")};
+  const std::size_t width = textures[0].width;
+  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t row) {
+    if (Interrupted()) return;
+    const std::vector<float> more = higher.Row(row);
+    for (std::size_t x = 0; x < width; ++x) {
+      Bands<float> molecules(3), mie(3), orders(3);
+      const float* texel = &once.texels()[6 * (row * width + x)];
+      for (std::size_t band = 0; band < 3; ++band) {
+        orders[band] = more[3 * x + band];
+        molecules[band] = texel[band] + orders[band];
+        mie[band] = texel[3 + band];
+      }
+      const std::array<float, 4> mie_rgb = Rgba(medium, mie, true, 1.0F);
+      Put(textures[0], row * width + x, Rgba(medium, molecules, true, mie_rgb[0]));
+      Put(textures[1], row * width + x, Rgba(medium, orders, true, 0.0F));
+      Put(textures[2], row * width + x, mie_rgb);
+    }
+    progress.Advance();
+  });
+  ThrowIfInterrupted();
+  return textures;
+}
+
+/// Rows from the last to the first.
+std::vector<float> UpsideDown(const ExchangeTexture& texture) {
+  std::vector<float> values;
+  values.reserve(texture.rgba.size());
+  const std::size_t row = 4 * texture.width;
+  for (std::size_t y = texture.height * texture.depth; y-- > 0;) {
+    const auto begin = texture.rgba.begin() + static_cast<std::ptrdiff_t>(y * row);
+    values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+  }
+  return values;
+}
+
+void WriteExr(const fs::path& file, const ExchangeTexture& texture, const ExchangeOptions& options,
+              const Medium& medium) {
+  const bool reversed = options.layout == ExchangeLayout::kTakram;
+  const std::vector<float> values = reversed ? UpsideDown(texture) : texture.rgba;
+  const TableImage image{texture.width,
+                         texture.height * texture.depth,
+                         {"R", "G", "B", "A"},
+                         values,
+                         {{"alpenglow.layout", reversed ? "takram, rows reversed" : "bruneton"},
+                          {"alpenglow.texture", texture.name},
+                          {"alpenglow.lowestMuS", fmt::format("{}", LowestSunOf(options))},
+                          {"alpenglow.mediumHash", fmt::format("{:016x}", MediumHash(medium))},
+                          {"alpenglow.mediumName", medium.name},
+                          {"alpenglow.medium", TomlFromMedium(medium)},
+                          {"alpenglow.producer", ProducerText()}},
+                         TypeOf(options)};
+  WriteTableImage(file, image);
+}
+
+std::string LittleEndian(const std::vector<float>& values, TexelType type) {
+  std::string bytes;
+  const auto append = [&](std::uint32_t bits, unsigned size) {
+    for (unsigned i = 0; i < size; ++i) bytes.push_back(static_cast<char>(bits >> (8U * i) & 255U));
+  };
+  for (const float value : values) {
+    if (type == TexelType::kHalf) {
+      append(half(value).bits(), 2);
+    } else {
+      append(std::bit_cast<std::uint32_t>(value), 4);
+    }
+  }
+  return bytes;
+}
+
+const char* Suffix(TexelFormat format) {
+  switch (format) {
+    case TexelFormat::kExr:
+      return ".exr";
+    case TexelFormat::kBin:
+      return ".bin";
+    case TexelFormat::kDat:
+      return ".dat";
+  }
+  throw InternalError("an unknown format");
+}
+
+std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
+  return fmt::format(
+      "# What the tables beside this file were made for, by {}.\n"
+      "# Layout {}, {} texels, lowest sun at zenith cosine {:.6f}; medium {}, hash {:016x}.\n{}",
+      ProducerText(), options.layout == ExchangeLayout::kTakram ? "takram" : "bruneton",
+      TypeOf(options) == TexelType::kHalf ? "half" : "float", LowestSunOf(options), medium.name,
+      MediumHash(medium), TomlFromMedium(medium));
+}
+
+}  // namespace
+
+TexelType TexelTypeFromName(std::string_view name) {
+  if (name == "float") return TexelType::kFloat;
+  if (name == "half") return TexelType::kHalf;
+  throw InputError(fmt::format("type is \"{}\"; it must be float or half", name));
+}
+
+TexelFormat TexelFormatFromName(std::string_view name) {
+  if (name == "exr") return TexelFormat::kExr;
+  if (name == "bin") return TexelFormat::kBin;
+  if (name == "dat") return TexelFormat::kDat;
+  throw InputError(fmt::format("format is \"{}\"; it must be exr, bin or dat", name));
+}
+
+std::optional<std::string> FaultOf(const ExchangeOptions& options) {
+  const TexelFormat format = FormatOf(options);
+  if (options.layout == ExchangeLayout::kTakram) {
+    if (format == TexelFormat::kDat) return "layout takram is exr or bin, not dat";
+    if (format == TexelFormat::kBin && TypeOf(options) == TexelType::kFloat) {
+      return "layout takram reads bin as half, not float";
+    }
+  } else {
+    if (format == TexelFormat::kBin) return "layout bruneton is dat or exr, not bin";
+    if (format == TexelFormat::kDat && TypeOf(options) == TexelType::kHalf) {
+      return "layout bruneton reads dat as float, not half";
+    }
+  }
+  return std::nullopt;
+}
+
+double LowestSunOf(const ExchangeOptions& options) {
+  const bool demo_in_half =
+      options.layout == ExchangeLayout::kBruneton && TypeOf(options) == TexelType::kHalf;
+  return demo_in_half ? std::cos(102.0 / 180.0 * kPi) : -0.5;
+}
+
+bool IsTheMediumThatLoadersAssume(const Medium& medium) {
+  return MediumHash(medium) == MediumHash(MediumPreset("bruneton2017"));
+}
+
+std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
+                                                  const ExchangeOptions& options,
+                                                  ProgressStyle style) {
+  RequireThreeBands(medium);
+  const DiffuseLight light(medium, kFourOrders);
+  std::vector<ExchangeTexture> textures{TransmittanceTexture(medium),
+                                        IrradianceTexture(medium, light)};
+  auto [scattering, higher, mie] = ScatteringTextures(medium, light, LowestSunOf(options), style);
+  textures.push_back(std::move(scattering));
+  if (options.layout == ExchangeLayout::kTakram) {
+    textures.push_back(std::move(higher));
+    textures.push_back(std::move(mie));
+  }
+  return textures;
+}
+
+void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Medium& medium,
+                         const ExchangeOptions& options, const fs::path& folder) {
+  if (const auto fault = FaultOf(options)) throw InputError(*fault);
+  MakeFolder(folder);
+  const TexelFormat format = FormatOf(options);
+  for (const ExchangeTexture& texture : textures) {
+    const fs::path file = folder / (texture.name + Suffix(format));
+    if (format == TexelFormat::kExr) {
+      WriteExr(file, texture, options, medium);
+    } else {
+      WriteTextAtomically(file, LittleEndian(texture.rgba, TypeOf(options)));
+    }
+  }
+  WriteTextAtomically(folder / "atmosphere.toml", MediumText(medium, options));
+}
+
+}  // namespace alpenglow

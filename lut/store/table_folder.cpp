@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "lut/store/table_folder.h"
+
+#include <system_error>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+
+namespace fs = std::filesystem;
+
+TableQuality TableQualityFromName(std::string_view name) {
+  if (name == "preview") {
+    return {{.mu = 128, .altitudes = 32},
+            {.nu = 6, .mu_s = 16, .mu = 32, .altitudes = 24},
+            {.altitudes = 14,
+             .sun_angles = 28,
+             .degree = 2,
+             .zenith_nodes = 8,
+             .azimuth_nodes = 6,
+             .ray_nodes = 8},
+            8};
+  }
+  if (name == "standard") {
+    return {{}, {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48}, {}, 12};
+  }
+  if (name == "fine") {
+    return {{.mu = 512, .altitudes = 128},
+            {.nu = 10, .mu_s = 48, .mu = 96, .altitudes = 64},
+            {.altitudes = 32,
+             .sun_angles = 64,
+             .degree = 6,
+             .zenith_nodes = 14,
+             .azimuth_nodes = 12,
+             .ray_nodes = 14},
+            16};
+  }
+  throw InputError(fmt::format("quality is \"{}\"; it must be preview, standard or fine", name));
+}
+
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
+                                  error ? error.message() : "it is a file"));
+  }
+}
+
+void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
+                      const fs::path& folder, ProgressStyle style) {
+  MakeFolder(folder);
+  // What is left of an earlier build would speak for these tables. The new one comes last.
+  std::error_code error;
+  fs::remove(folder / kMultipleScatteringFileName, error);
+  WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, quality.transmittance));
+  Progress progress("single scattering", ScatteringTable::Rows(quality.single_scattering), style);
+  WriteTable(folder / kSingleScatteringFileName, ScatteringTable(medium,
+                                                                 {.size = quality.single_scattering,
+                                                                  .lowest_mu_s = {},
+                                                                  .axes = ScatteringAxes::kAzimuth},
+                                                                 &progress));
+  if (orders == TableOrders::kSingleOnly) return;
+  WriteTable(folder / kMultipleScatteringFileName,
+             DiffuseLight(medium, quality.multiple_scattering), {.ray_nodes = quality.ray_nodes});
+}
+
+TableFolder ReadTableFolder(const fs::path& folder,
+                            const std::optional<std::uint64_t>& medium_hash) {
+  TableFolder tables;
+  std::optional<std::uint64_t> hash = medium_hash;
+  const auto of_medium = [&](const Medium& medium) {
+    tables.medium = medium;
+    hash = MediumHash(medium);
+  };
+  FolderUse use;
+  std::error_code error;
+  if (fs::exists(folder / kMultipleScatteringFileName, error)) {
+    StoredDiffuseLight stored = ReadDiffuseLight(folder / kMultipleScatteringFileName, hash);
+    use = stored.use;
+    tables.ray_nodes = use.ray_nodes;
+    tables.multiple_scattering = std::move(stored.light);
+    of_medium(tables.multiple_scattering->medium());
+  }
+  if (use.transmittance) {
+    tables.transmittance = ReadTransmittanceTable(folder / kTransmittanceFileName, hash);
+    of_medium(tables.transmittance->medium());
+  }
+  if (use.single_scattering) {
+    tables.single_scattering = ReadScatteringTable(folder / kSingleScatteringFileName, hash);
+    of_medium(tables.single_scattering->medium());
+  }
+  return tables;
+}
+
+std::string DescribeTables(const fs::path& file_or_folder) {
+  std::error_code error;
+  if (!fs::is_directory(file_or_folder, error)) {
+    return DescriptionText(file_or_folder, DescribeTable(file_or_folder));
+  }
+  std::string text;
+  for (const char* name :
+       {kTransmittanceFileName, kSingleScatteringFileName, kMultipleScatteringFileName}) {
+    const fs::path file = file_or_folder / name;
+    if (fs::exists(file, error)) text += DescriptionText(file, DescribeTable(file));
+  }
+  if (text.empty()) {
+    throw InputError(fmt::format("{}: has none of {}, {} and {}", file_or_folder.string(),
+                                 kTransmittanceFileName, kSingleScatteringFileName,
+                                 kMultipleScatteringFileName));
+  }
+  return text;
+}
+
+}  // namespace alpenglow

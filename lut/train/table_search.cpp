@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+#include "lut/train/table_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <system_error>
+
+#include "atmosphere/text/error.h"
+#include "lut/program/program.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kRayNodes{4, 6, 8, 10, 12, 16, 20, 24, 28, 32};
+constexpr std::array kAltitudes{4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40};
+constexpr std::array kSunAngles{8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80};
+
+// Sizes of the tables that are made when all are wanted, by bytes.
+constexpr std::array kTransmittanceSizes{
+    TransmittanceTableSize{32, 8},    TransmittanceTableSize{64, 16},
+    TransmittanceTableSize{128, 32},  TransmittanceTableSize{128, 64},
+    TransmittanceTableSize{256, 64},  TransmittanceTableSize{256, 128},
+    TransmittanceTableSize{512, 256}, TransmittanceTableSize{1024, 512}};
+constexpr std::array kSingleScatteringSizes{
+    ScatteringTableSize{4, 12, 16, 16},   ScatteringTableSize{5, 16, 32, 24},
+    ScatteringTableSize{6, 20, 32, 32},   ScatteringTableSize{6, 24, 48, 48},
+    ScatteringTableSize{8, 32, 64, 64},   ScatteringTableSize{8, 32, 64, 96},
+    ScatteringTableSize{10, 48, 64, 128}, ScatteringTableSize{10, 48, 96, 160}};
+
+// Views that the search did not see are a little worse than those that it did.
+constexpr double kShareForUnseenViews = 0.85;
+// Standard error of path-traced views, at least: a quarter of it costs sixteen times as much.
+constexpr double kLeastNoise = 1e-3;
+// The parts of the bound that the nodes along a ray may take, and with the other tables.
+constexpr double kShareOfNodes = 0.5;
+constexpr double kShareOfTables = 0.75;
+
+/// Whether look-ups stay under the bounds, and which kind is furthest off where they do not.
+struct Verdict {
+  double excess = 0.0;  // largest error over its bound
+  ViewKind worst = ViewKind::kSky;
+  double error = 0.0;  // of that kind
+};
+
+/// What an rms may be, by kind.
+using Bounds = std::array<double, kViewKinds.size()>;
+
+Verdict Judge(const JudgedViews& views, const TableLookup& tables, const Bounds& bounds,
+              double enough) {
+  Verdict verdict;
+  // From the last: irradiance is cheap to look up and rules most tables out.
+  for (std::size_t k = kViewKinds.size(); k-- > 0;) {
+    const double error = views.ErrorsOf(tables, kViewKinds[k]).rms;
+    if (error / bounds[k] > verdict.excess) verdict = {error / bounds[k], kViewKinds[k], error};
+    if (verdict.excess > enough) return verdict;
+  }
+  return verdict;
+}
+
+struct Grid {
+  int altitudes, sun_angles, degree;
+  [[nodiscard]] std::size_t Values() const {
+    return static_cast<std::size_t>(altitudes) * static_cast<std::size_t>(sun_angles) *
+           (MomentCount(degree) + 1);
+  }
+};
+
+std::vector<Grid> GridsBySize() {
+  std::vector<Grid> grids;
+  for (int degree = 2; degree <= kMaxDegree; ++degree) {
+    for (const int altitudes : kAltitudes) {
+      for (const int sun_angles : kSunAngles) grids.push_back({altitudes, sun_angles, degree});
+    }
+  }
+  std::stable_sort(grids.begin(), grids.end(),
+                   [](const Grid& a, const Grid& b) { return a.Values() < b.Values(); });
+  return grids;
+}
+
+TableFolder Folder(const Medium& medium, DiffuseLight light, int ray_nodes) {
+  return {.medium = medium,
+          .transmittance = {},
+          .single_scattering = {},
+          .multiple_scattering = std::move(light),
+          .ray_nodes = ray_nodes};
+}
+
+[[noreturn]] void Refuse(double max_error, const std::string& best) {
+  throw InputError(
+      fmt::format("max-error {:g} %: no tables reach it: {}", 100.0 * max_error, best));
+}
+
+/// What the truths leave of the bound. Throws where they leave nothing.
+Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& measured) {
+  Bounds bounds{};
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const double missing = measured[k].paths.Unexplained();
+    const double rest = max_error * max_error - missing * missing;
+    if (rest <= 0.0) {
+      Refuse(max_error, fmt::format("the finest light of all orders is {:.2g} % from path tracing "
+                                    "({})",
+                                    100.0 * missing, NameOf(measured[k].kind)));
+    }
+    bounds[k] = kShareForUnseenViews * std::sqrt(rest);
+  }
+  return bounds;
+}
+
+int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Bounds& bounds,
+                double max_error) {
+  Verdict best;
+  for (const double share : {kShareOfNodes, 1.0}) {
+    for (const int nodes : kRayNodes) {
+      ThrowIfInterrupted();
+      const TableLookup tables(Folder(finest.medium(), finest, nodes));
+      best = Judge(views, tables, bounds, share);
+      if (best.excess <= share) return nodes;
+    }
+  }
+  Refuse(max_error, fmt::format("{} nodes along a ray leave {:.2g} % ({})", kRayNodes.back(),
+                                100.0 * best.error, NameOf(best.worst)));
+}
+
+/// Gives `tables` the first of these tables under a share of the bounds.
+template <typename Sizes, typename Put>
+TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const Bounds& bounds,
+                         double max_error, const Sizes& sizes, const TableFolder& tables,
+                         const Put& put) {
+  Verdict best;
+  for (const auto& size : sizes) {
+    ThrowIfInterrupted();
+    TableFolder with = tables;
+    put(with, size);
+    const TableLookup lookup(std::move(with));
+    best = Judge(views, lookup, bounds, kShareOfTables);
+    if (best.excess <= kShareOfTables) return lookup.tables();
+  }
+  Refuse(max_error, fmt::format("the largest table of {} leaves {:.2g} % ({})", name,
+                                100.0 * best.error, NameOf(best.worst)));
+}
+
+TableFolder WithAllTables(const JudgedViews& views, const Bounds& bounds, double max_error,
+                          const TableFolder& tables) {
+  const TableFolder with_transmittance =
+      WithSmallest("transmittance", views, bounds, max_error, kTransmittanceSizes, tables,
+                   [](TableFolder& folder, const TransmittanceTableSize& size) {
+                     folder.transmittance.emplace(folder.medium, size);
+                   });
+  return WithSmallest("single scattering", views, bounds, max_error, kSingleScatteringSizes,
+                      with_transmittance, [](TableFolder& folder, const ScatteringTableSize& size) {
+                        folder.single_scattering.emplace(
+                            folder.medium,
+                            ScatteringTableOptions{
+                                .size = size, .lowest_mu_s = {}, .axes = ScatteringAxes::kAzimuth});
+                      });
+}
+
+/// Replaces the finest light by the smallest that does.
+TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, double max_error,
+                              TableFolder tables) {
+  const DiffuseLight finest = *tables.multiple_scattering;
+  TableLookup lookup(std::move(tables));
+  Verdict best;
+  for (const Grid& grid : GridsBySize()) {
+    ThrowIfInterrupted();
+    lookup.ReplaceMultipleScattering(
+        Resampled(finest, grid.altitudes, grid.sun_angles, grid.degree));
+    best = Judge(views, lookup, bounds, 1.0);
+    if (best.excess <= 1.0) return lookup.tables();
+  }
+  Refuse(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
+                                NameOf(best.worst)));
+}
+
+std::uint64_t BytesOf(const TableFolder& tables) {
+  std::uint64_t bytes = tables.multiple_scattering->values().size() * sizeof(float);
+  if (tables.transmittance) bytes += tables.transmittance->bytes();
+  if (tables.single_scattering) bytes += tables.single_scattering->bytes();
+  return bytes;
+}
+
+std::string MeasuredText(const TableChoice& choice) {
+  std::string text;
+  for (const auto& [kind, errors, paths] : choice.measured) {
+    text += fmt::format(
+        "  {:<22} rms {:6.3f} %, 99th percentile {:6.3f} %; truth against paths "
+        "{:.3f} % (noise {:.3f} %)\n",
+        NameOf(kind), 100.0 * errors.rms, 100.0 * errors.percentile_99, 100.0 * paths.rms,
+        100.0 * paths.noise);
+  }
+  return text;
+}
+
+void RemoveOld(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error)
+    throw OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+}
+
+}  // namespace
+
+DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles, int degree) {
+  const std::size_t moments = MomentCount(degree);
+  const auto share = [](int i, int n) { return static_cast<double>(i) / (n - 1); };
+  SolvedOrders solved{{}, light.orders(), light.converged()};
+  for (int a = 0; a < altitudes; ++a) {
+    for (int s = 0; s < sun_angles; ++s) {
+      const std::vector<float> all = light.ValuesAt(share(a, altitudes), share(s, sun_angles));
+      const auto bands = static_cast<std::ptrdiff_t>(light.bands());
+      const auto kept = static_cast<std::ptrdiff_t>(moments) * bands;
+      solved.values.insert(solved.values.end(), all.begin(), all.begin() + kept);
+      solved.values.insert(solved.values.end(), all.end() - bands, all.end());
+    }
+  }
+  DiffuseLightOptions options = light.options();
+  options.altitudes = altitudes;
+  options.sun_angles = sun_angles;
+  options.degree = degree;
+  return DiffuseLight(light.medium(), options, std::move(solved));
+}
+
+TableChoice ChooseTables(const Medium& medium, const TableSearch& search) {
+  RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
+  return ChooseTables(FinestDiffuseLight(medium), search);
+}
+
+TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) {
+  RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
+  const Medium& medium = finest.medium();
+  const JudgedViews views(medium, finest, search.views_of_a_kind, 0);
+  TableChoice choice;
+  for (const ViewKind kind : kViewKinds) {
+    choice.measured.push_back(
+        {kind,
+         {},
+         views.HeldAgainstPaths(medium, kind, search.path_traced_views_of_a_kind,
+                                std::max(search.max_error / 4.0, kLeastNoise))});
+  }
+  const Bounds bounds = BoundsOf(search.max_error, choice.measured);
+  const int ray_nodes = FewestNodes(views, finest, bounds, search.max_error);
+  TableFolder tables = Folder(medium, finest, ray_nodes);
+  if (search.wanted == TablesWanted::kAll) {
+    tables = WithAllTables(views, bounds, search.max_error, tables);
+  }
+  choice.tables = WithSmallestLight(views, bounds, search.max_error, std::move(tables));
+  choice.bytes = BytesOf(choice.tables);
+  const TableLookup chosen(choice.tables);
+  for (TableChoice::Measured& measured : choice.measured) {
+    measured.errors = views.ErrorsOf(chosen, measured.kind);
+  }
+  return choice;
+}
+
+std::string ChoiceText(const TableChoice& choice, double max_error) {
+  const TableFolder& tables = choice.tables;
+  const DiffuseLightOptions& grid = tables.multiple_scattering->options();
+  std::string text =
+      fmt::format("for errors below {:g} %: {} bytes\n", 100.0 * max_error, choice.bytes);
+  text += "  transmittance          ";
+  if (tables.transmittance) {
+    const TransmittanceTableSize& size = tables.transmittance->size();
+    text += fmt::format("{} view angles x {} altitudes\n", size.mu, size.altitudes);
+  } else {
+    text += "no table: closed form\n";
+  }
+  text += "  single scattering      ";
+  if (tables.single_scattering) {
+    const ScatteringTableSize& size = tables.single_scattering->size();
+    text += fmt::format("{} azimuths x {} sun angles x {} view angles x {} altitudes; segments: ",
+                        size.nu, size.mu_s, size.mu, size.altitudes);
+  } else {
+    text += "no table: ";
+  }
+  text += fmt::format(
+      "{} Gauss nodes on each smooth piece of a ray\n"
+      "  multiple scattering    {} sun angles x {} altitudes, moments to degree {}\n"
+      "measured, total light of all orders:\n",
+      tables.ray_nodes, grid.sun_angles, grid.altitudes, grid.degree);
+  return text + MeasuredText(choice);
+}
+
+void WriteTables(const TableChoice& choice, const fs::path& folder) {
+  MakeFolder(folder);
+  for (const char* file :
+       {kMultipleScatteringFileName, kTransmittanceFileName, kSingleScatteringFileName}) {
+    RemoveOld(folder / file);
+  }
+  const TableFolder& tables = choice.tables;
+  if (tables.transmittance) WriteTable(folder / kTransmittanceFileName, *tables.transmittance);
+  if (tables.single_scattering) {
+    WriteTable(folder / kSingleScatteringFileName, *tables.single_scattering);
+  }
+  WriteTable(folder / kMultipleScatteringFileName, *tables.multiple_scattering,
+             {.ray_nodes = tables.ray_nodes,
+              .transmittance = tables.transmittance.has_value(),
+              .single_scattering = tables.single_scattering.has_value()});
+}
+
+}  // namespace alpenglow

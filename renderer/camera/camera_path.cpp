@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/camera/camera_path.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/program/csv_reader.h"
+#include "renderer/scene/scene.h"
+
+namespace alpenglow {
+namespace {
+
+enum Column : std::size_t {
+  kTime,
+  kLatitude,
+  kLongitude,
+  kHeight,
+  kHeading,
+  kPitch,
+  kRoll,
+  kFov,
+  kUtc
+};
+constexpr std::array<std::string_view, 9> kColumns{
+    "t_s", "latitude", "longitude", "height_m", "heading", "pitch", "roll", "fov", "utc"};
+constexpr std::size_t kNeeded = kHeading;
+
+double Degrees(double radians) { return radians / kRadiansPerDegree; }
+
+glm::dvec3 NormalAt(const GeodeticPosition& place) {
+  const double c = std::cos(place.latitude_rad);
+  return {c * std::cos(place.longitude_rad), c * std::sin(place.longitude_rad),
+          std::sin(place.latitude_rad)};
+}
+
+GeodeticPosition PlaceOfNormal(const glm::dvec3& normal, double height_m) {
+  return {std::atan2(normal.z, std::hypot(normal.x, normal.y)), std::atan2(normal.y, normal.x),
+          height_m};
+}
+
+/// Cubic between two values with slopes at both.
+template <typename Value>
+Value Hermite(const Value& a, const Value& slope_a, const Value& b, const Value& slope_b,
+              double step, double share) {
+  const double rest = 1.0 - share;
+  return (1.0 + 2.0 * share) * rest * rest * a + share * share * (3.0 - 2.0 * share) * b +
+         step * share * rest * (rest * slope_a - share * slope_b);
+}
+
+/// Slope at a point between two steps: of the parabola through the three points.
+template <typename Value>
+Value SlopeOfParabola(double step_before, const Value& before, double step_after,
+                      const Value& after) {
+  return (step_after * before + step_before * after) / (step_before + step_after);
+}
+
+/// Slope that overshoots nowhere: Fritsch and Butland's harmonic mean, 0 at an extreme.
+double SlopeWithoutOvershoot(double step_before, double before, double step_after, double after) {
+  if (!(before * after > 0.0)) return 0.0;
+  const double w_before = step_before + 2.0 * step_after;
+  const double w_after = 2.0 * step_before + step_after;
+  return (w_before + w_after) / (w_before / before + w_after / after);
+}
+
+/// Slopes at all points: those of the first and last step at the ends.
+template <typename Value, typename Between>
+std::vector<Value> SlopesOf(const std::vector<CameraPathPoint>& points,
+                            const std::vector<Value>& values, const Between& between) {
+  const std::size_t count = values.size();
+  if (count == 1) return {Value(0.0)};
+  const auto step = [&](std::size_t i) { return points[i + 1].time_s - points[i].time_s; };
+  const auto slope = [&](std::size_t i) { return (values[i + 1] - values[i]) / step(i); };
+  std::vector<Value> slopes{slope(0)};
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    slopes.push_back(between(step(i - 1), slope(i - 1), step(i), slope(i)));
+  }
+  slopes.push_back(slope(count - 2));
+  return slopes;
+}
+
+/// Angles that go on from each other the shorter way.
+std::vector<double> Unwound(std::vector<double> angles) {
+  for (std::size_t i = 1; i < angles.size(); ++i) {
+    angles[i] = angles[i - 1] + std::remainder(angles[i] - angles[i - 1], 2.0 * kPi);
+  }
+  return angles;
+}
+
+void RequireOrder(const std::vector<CameraPathPoint>& points) {
+  if (points.empty()) throw InputError("a camera path has no points");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!std::isfinite(points[i].time_s) || (i > 0 && !(points[i].time_s > points[i - 1].time_s))) {
+      throw InputError(fmt::format("point {} of the camera path is at {} s; times must grow", i + 1,
+                                   points[i].time_s));
+    }
+    if (points[i].utc.has_value() != points[0].utc.has_value()) {
+      throw InputError(fmt::format("point {} of the camera path {} utc; all points have it or none",
+                                   i + 1, points[i].utc ? "has" : "has no"));
+    }
+  }
+}
+
+}  // namespace
+
+CameraPath::CameraPath(std::vector<CameraPathPoint> points) : points_(std::move(points)) {
+  RequireOrder(points_);
+  for (const CameraPathPoint& point : points_) {
+    const CameraPose& pose = point.pose;
+    normals_.push_back(NormalAt(pose.place));
+    const std::array<double, kScalars> values{pose.place.height_m, pose.heading_rad, pose.pitch_rad,
+                                              pose.roll_rad, pose.fov_rad};
+    for (std::size_t k = 0; k < kScalars; ++k) scalars_[k].push_back(values[k]);
+    if (point.utc) utc_s_.push_back(SecondsBetween(*points_[0].utc, *point.utc));
+  }
+  constexpr std::size_t kOfHeading = 1, kOfRoll = 3;
+  for (const std::size_t k : {kOfHeading, kOfRoll}) scalars_[k] = Unwound(std::move(scalars_[k]));
+  normal_slopes_ = SlopesOf(points_, normals_, SlopeOfParabola<glm::dvec3>);
+  for (std::size_t k = 0; k < kScalars; ++k) {
+    scalar_slopes_[k] = SlopesOf(points_, scalars_[k], SlopeWithoutOvershoot);
+  }
+}
+
+CameraPath::Span CameraPath::SpanAt(double time_s) const {
+  const auto after = std::upper_bound(
+      points_.begin(), points_.end(), time_s,
+      [](double time, const CameraPathPoint& point) { return time < point.time_s; });
+  if (after == points_.begin()) return {0, 0.0};
+  const auto left = static_cast<std::size_t>(after - points_.begin()) - 1;
+  if (after == points_.end()) return {left, 0.0};
+  const double begin = points_[left].time_s;
+  return {left, (time_s - begin) / (after->time_s - begin)};
+}
+
+template <typename Value>
+Value CameraPath::Smooth(const std::vector<Value>& values, const std::vector<Value>& slopes,
+                         const Span& span) const {
+  const std::size_t i = span.left;
+  if (span.share == 0.0) return values[i];
+  return Hermite(values[i], slopes[i], values[i + 1], slopes[i + 1],
+                 points_[i + 1].time_s - points_[i].time_s, span.share);
+}
+
+CameraPose CameraPath::PoseAt(double time_s) const {
+  const Span span = SpanAt(time_s);
+  // A point of the path is what it was said to be, to the bit.
+  if (span.share == 0.0) return points_[span.left].pose;
+  const auto scalar = [&](std::size_t k) { return Smooth(scalars_[k], scalar_slopes_[k], span); };
+  CameraPose pose;
+  pose.place = PlaceOfNormal(glm::normalize(Smooth(normals_, normal_slopes_, span)), scalar(0));
+  pose.heading_rad = std::remainder(scalar(1), 2.0 * kPi);
+  pose.pitch_rad = scalar(2);
+  pose.roll_rad = std::remainder(scalar(3), 2.0 * kPi);
+  pose.fov_rad = scalar(4);
+  return pose;
+}
+
+std::optional<UtcInstant> CameraPath::UtcAt(double time_s) const {
+  if (utc_s_.empty()) return std::nullopt;
+  const Span span = SpanAt(time_s);
+  const double begin = utc_s_[span.left];
+  if (span.share == 0.0) return points_[span.left].utc;
+  return AddSeconds(*points_[0].utc, begin + span.share * (utc_s_[span.left + 1] - begin));
+}
+
+std::vector<CameraPose> CameraPath::PosesBetween(double from_s, double to_s, int count) const {
+  if (count == 1) return {PoseAt(0.5 * (from_s + to_s))};
+  std::vector<CameraPose> poses;
+  for (int i = 0; i < count; ++i) {
+    poses.push_back(PoseAt(from_s + (to_s - from_s) * i / (count - 1)));
+  }
+  return poses;
+}
+
+CameraPath ReadCameraPath(const std::filesystem::path& file, const CameraPose& otherwise) {
+  CsvReader lines(file, kColumns, {.needed = kNeeded, .comments = true});
+  const auto degrees = [&](Column column, double low, double high, double radians) {
+    return lines.Has(column) ? lines.Number(column, low, high) : Degrees(radians);
+  };
+  std::vector<CameraPathPoint> points;
+  while (lines.Next()) {
+    CameraPathPoint point;
+    point.time_s = lines.Number(kTime, -1e12, 1e12);
+    if (!points.empty() && !(point.time_s > points.back().time_s)) {
+      lines.Fail(lines.line(), fmt::format("t_s is {}; it must grow", point.time_s));
+    }
+    try {
+      const Camera camera =
+          CameraFromDegrees({}, degrees(kHeading, -360.0, 360.0, otherwise.heading_rad),
+                            degrees(kPitch, -90.0, 90.0, otherwise.pitch_rad),
+                            degrees(kRoll, -180.0, 180.0, otherwise.roll_rad),
+                            degrees(kFov, 0.0, 360.0, otherwise.fov_rad));
+      point.pose = {PlaceFromDegrees(lines.Number(kLatitude, -90.0, 90.0),
+                                     lines.Number(kLongitude, -180.0, 360.0),
+                                     lines.Number(kHeight, -12000.0, 1e9)),
+                    camera.heading_rad, camera.pitch_rad, camera.roll_rad, camera.fov_rad};
+      if (lines.Has(kUtc)) point.utc = ParseInstant(lines.Field(kUtc));
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      if (text.starts_with(file.string())) throw;
+      lines.Fail(lines.line(), text);
+    }
+    points.push_back(point);
+  }
+  return CameraPath(std::move(points));
+}
+
+std::string TextOf(const CameraPath& path) {
+  const bool has_utc = path.points().front().utc.has_value();
+  std::string text =
+      fmt::format("{}", fmt::join(kColumns.begin(), kColumns.end() - (has_utc ? 0 : 1), ","));
+  for (const CameraPathPoint& point : path.points()) {
+    const CameraPose& pose = point.pose;
+    text += fmt::format("\n{},{:.10f},{:.10f},{:.4f},{:.10f},{:.10f},{:.10f},{:.10f}", point.time_s,
+                        Degrees(pose.place.latitude_rad), Degrees(pose.place.longitude_rad),
+                        pose.place.height_m, Degrees(pose.heading_rad), Degrees(pose.pitch_rad),
+                        Degrees(pose.roll_rad), Degrees(pose.fov_rad));
+    if (has_utc) text += fmt::format(",{}", FormatUtc(*point.utc, 6));
+  }
+  return text + "\n";
+}
+
+}  // namespace alpenglow

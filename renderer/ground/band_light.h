@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Sums and products of light in bands, band by band.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "atmosphere/ray/single_scattering.h"
+
+namespace alpenglow {
+
+/// Light, or a factor of light, in each band of a picture.
+using BandLight = Bands<float>;
+
+[[nodiscard]] inline BandLight operator+(const BandLight& a, const BandLight& b) {
+  BandLight sum(a.count);
+  for (std::size_t band = 0; band < a.count; ++band) sum[band] = a[band] + b[band];
+  return sum;
+}
+
+[[nodiscard]] inline BandLight operator*(const BandLight& a, const BandLight& b) {
+  BandLight product(a.count);
+  for (std::size_t band = 0; band < a.count; ++band) product[band] = a[band] * b[band];
+  return product;
+}
+
+[[nodiscard]] inline BandLight operator*(float scale, const BandLight& a) {
+  BandLight product(a.count);
+  for (std::size_t band = 0; band < a.count; ++band) product[band] = scale * a[band];
+  return product;
+}
+
+/// The same light for the sums of colours.
+class InDouble {
+ public:
+  explicit InDouble(const BandLight& light) : count_(light.count) {
+    std::copy_n(light.value.begin(), count_, value_.begin());
+  }
+  operator std::span<const double>() const { return {value_.data(), count_}; }  // NOLINT: a view
+
+ private:
+  std::array<double, kMaxBands> value_{};
+  std::size_t count_;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground/colour_drape.h"
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/terrain/elevation_raster.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
+constexpr int kGridNodes = 33;  // of places, a side
+
+[[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& fault) {
+  throw InputError(fmt::format("{}: {}", file.string(), fault));
+}
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+Dataset Open(const std::filesystem::path& file) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    GDALRegister_GTiff();
+    GDALRegister_PNG();
+  });
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) Refuse(file, "there is no such file");
+  static const char* const kDrivers[] = {"GTiff", "PNG", nullptr};
+  Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
+      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kDrivers, nullptr, nullptr)));
+  if (!dataset)
+    Refuse(file, fmt::format("not a readable GeoTIFF or PNG ({})", CPLGetLastErrorMsg()));
+  const int bands = dataset->GetRasterCount();
+  if (bands < 1 || (bands < 3 && dataset->GetRasterBand(1)->GetColorTable() != nullptr))
+    Refuse(file, "has a palette; colours are read from red, green and blue bands");
+  if (std::int64_t{dataset->GetRasterXSize()} * dataset->GetRasterYSize() > kMostPixels) {
+    Refuse(file, fmt::format("has {} x {} pixels; at most {} can be held",
+                             dataset->GetRasterXSize(), dataset->GetRasterYSize(), kMostPixels));
+  }
+  return dataset;
+}
+
+// IEC 61966-2-1.
+double Linear(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+/// 16-bit linear values of what a band stores.
+class Decoder {
+ public:
+  explicit Decoder(GDALDataType type) : type_(type) {
+    if (type != GDT_Byte && type != GDT_UInt16) return;
+    const std::size_t codes = type == GDT_Byte ? 256 : 65536;
+    for (std::size_t code = 0; code < codes; ++code) {
+      table_.push_back(
+          ToStored(Linear(static_cast<double>(code) / static_cast<double>(codes - 1))));
+    }
+  }
+  [[nodiscard]] std::uint16_t operator()(float value) const {
+    if (table_.empty()) return ToStored(static_cast<double>(value));
+    return table_[static_cast<std::size_t>(
+        std::clamp(value, 0.0F, static_cast<float>(table_.size() - 1)))];
+  }
+  [[nodiscard]] bool IsKnown() const {
+    return !table_.empty() || type_ == GDT_Float32 || type_ == GDT_Float64;
+  }
+
+ private:
+  static std::uint16_t ToStored(double linear) {
+    const double clamped = std::isfinite(linear) ? std::clamp(linear, 0.0, 1.0) : 0.0;
+    return static_cast<std::uint16_t>(std::lround(65535.0 * clamped));
+  }
+  GDALDataType type_;
+  std::vector<std::uint16_t> table_;
+};
+
+std::vector<std::array<std::uint16_t, 3>> ReadPixels(const std::filesystem::path& file,
+                                                     GDALDataset& dataset) {
+  const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
+  std::vector<std::array<std::uint16_t, 3>> rgb(static_cast<std::size_t>(columns) *
+                                                static_cast<std::size_t>(rows));
+  std::vector<float> row(static_cast<std::size_t>(columns));
+  for (int channel = 0; channel < 3; ++channel) {
+    GDALRasterBand* band = dataset.GetRasterBand(dataset.GetRasterCount() < 3 ? 1 : channel + 1);
+    const Decoder decoder(band->GetRasterDataType());
+    if (!decoder.IsKnown()) Refuse(file, "has values that are neither 8 nor 16 bits nor floats");
+    for (int y = 0; y < rows; ++y) {
+      if (band->RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1, GDT_Float32, 0, 0) !=
+          CE_None)
+        Refuse(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
+      for (std::size_t x = 0; x < row.size(); ++x) {
+        rgb[static_cast<std::size_t>(y) * row.size() + x][static_cast<std::size_t>(channel)] =
+            decoder(row[x]);
+      }
+    }
+  }
+  return rgb;
+}
+
+/// From longitude and latitude to pixels, by the file's own coordinate system.
+class Georeference {
+ public:
+  /// Nothing for a file that does not say where it lies.
+  static std::optional<Georeference> Of(const std::filesystem::path& file, GDALDataset& dataset) {
+    Georeference reference;
+    const OGRSpatialReference* crs = dataset.GetSpatialRef();
+    std::array<double, 6> forward{};
+    if (crs == nullptr || crs->IsEmpty() || dataset.GetGeoTransform(forward.data()) != CE_None)
+      return std::nullopt;
+    if (GDALInvGeoTransform(forward.data(), reference.pixel_from_crs_.data()) == 0)
+      Refuse(file, "has a geotransform that cannot be inverted");
+    OGRSpatialReference wgs84, own = *crs;
+    wgs84.SetWellKnownGeogCS("WGS84");
+    wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    reference.crs_from_geographic_.reset(OGRCreateCoordinateTransformation(&wgs84, &own));
+    if (!reference.crs_from_geographic_)
+      Refuse(file, "has a coordinate system that cannot be reached from longitude and latitude");
+    return reference;
+  }
+
+  [[nodiscard]] std::array<double, 2> PixelOf(const GeodeticPosition& place) const {
+    double x = place.longitude_rad / kRadiansPerDegree, y = place.latitude_rad / kRadiansPerDegree;
+    if (crs_from_geographic_->Transform(1, &x, &y) == 0)
+      return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    return {pixel_from_crs_[0] + pixel_from_crs_[1] * x + pixel_from_crs_[2] * y,
+            pixel_from_crs_[3] + pixel_from_crs_[4] * x + pixel_from_crs_[5] * y};
+  }
+
+ private:
+  std::array<double, 6> pixel_from_crs_{};
+  std::unique_ptr<OGRCoordinateTransformation> crs_from_geographic_;
+};
+
+struct Rectangle {
+  double west, east, south, north;  // x and y of the frame
+};
+
+Rectangle RectangleOf(const TriangleMesh& mesh) {
+  Rectangle bounds{
+      std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+      std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const auto& position : mesh.positions) {
+    const auto x = static_cast<double>(position[0]), y = static_cast<double>(position[1]);
+    bounds = {std::min(bounds.west, x), std::max(bounds.east, x), std::min(bounds.south, y),
+              std::max(bounds.north, y)};
+  }
+  return bounds;
+}
+
+}  // namespace
+
+// Albedos are linear in colours that are not too saturated: three differences around grey.
+BandsOfColour::BandsOfColour(std::span<const double> wavelengths_nm) {
+  constexpr double kGrey = 0.5, kStep = 0.05;
+  const std::vector<double> grey = AlbedoFromLinearSrgb({kGrey, kGrey, kGrey}, wavelengths_nm);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    std::array<double, 3> rgb{kGrey, kGrey, kGrey};
+    rgb[channel] += kStep;
+    const std::vector<double> moved = AlbedoFromLinearSrgb(rgb, wavelengths_nm);
+    of_primary_[channel] = BandLight(grey.size());
+    for (std::size_t band = 0; band < grey.size(); ++band) {
+      of_primary_[channel][band] = static_cast<float>((moved[band] - grey[band]) / kStep);
+    }
+  }
+}
+
+BandLight BandsOfColour::Albedo(const std::array<double, 3>& rgb) const {
+  BandLight albedo(of_primary_[0].count);
+  for (std::size_t band = 0; band < albedo.count; ++band) {
+    float sum = 0.0F;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      sum += static_cast<float>(rgb[channel]) * of_primary_[channel][band];
+    albedo[band] = std::clamp(sum, 0.0F, 1.0F);
+  }
+  return albedo;
+}
+
+std::shared_ptr<const ColourDrape> ColourDrape::Of(const Scene& scene, const SceneGround& ground) {
+  if (scene.terrain.colour.empty()) return nullptr;
+  if (!ground.terrain) Refuse(scene.terrain.colour, "there is no terrain under it");
+  const QuietGdal quiet;
+  return std::shared_ptr<const ColourDrape>(new ColourDrape(scene.terrain.colour, ground));
+}
+
+ColourDrape::ColourDrape(const std::filesystem::path& file, const SceneGround& ground)
+    : radius_m_(ground.frame.ellipsoid().equatorial_radius_m) {
+  const Dataset dataset = Open(file);
+  levels_.push_back(
+      {dataset->GetRasterXSize(), dataset->GetRasterYSize(), ReadPixels(file, *dataset)});
+  while (levels_.back().columns > 1 && levels_.back().rows > 1) {
+    const Level& fine = levels_.back();
+    Level coarse{fine.columns / 2, fine.rows / 2, {}};
+    for (int y = 0; y < coarse.rows; ++y) {
+      for (int x = 0; x < coarse.columns; ++x) {
+        std::array<std::uint16_t, 3> mean;
+        for (std::size_t c = 0; c < 3; ++c) {
+          unsigned sum = 2;
+          for (const int corner : {0, 1, 2, 3}) {
+            const int from = (2 * y + corner / 2) * fine.columns + 2 * x + corner % 2;
+            sum += fine.rgb[static_cast<std::size_t>(from)][c];
+          }
+          mean[c] = static_cast<std::uint16_t>(sum / 4);
+        }
+        coarse.rgb.push_back(mean);
+      }
+    }
+    levels_.push_back(std::move(coarse));
+  }
+  const Rectangle bounds = RectangleOf(ground.terrain->mesh());
+  first_x_m_ = bounds.west;
+  first_y_m_ = bounds.south;
+  step_x_m_ = std::max(bounds.east - bounds.west, 1e-3) / (kGridNodes - 1);
+  step_y_m_ = std::max(bounds.north - bounds.south, 1e-3) / (kGridNodes - 1);
+  const auto reference = Georeference::Of(file, *dataset);
+  for (int row = 0; row < kGridNodes; ++row) {
+    for (int column = 0; column < kGridNodes; ++column) {
+      const double x = first_x_m_ + column * step_x_m_, y = first_y_m_ + row * step_y_m_;
+      if (!reference) {
+        places_.push_back({levels_[0].columns * static_cast<double>(column) / (kGridNodes - 1),
+                           levels_[0].rows * (1.0 - static_cast<double>(row) / (kGridNodes - 1))});
+        continue;
+      }
+      const double z = -(x * x + y * y) / (2.0 * radius_m_);  // on the sphere
+      const auto [px, py] =
+          reference->PixelOf(ground.frame.GeodeticFromEnu(Point<Enu>{glm::dvec3(x, y, z)}));
+      places_.push_back({px, py});
+    }
+  }
+  const Place& a = places_.front();
+  const Place& b = places_.back();
+  const double across = std::hypot(step_x_m_, step_y_m_) * (kGridNodes - 1);
+  pixel_m_ = across / std::max(std::hypot(b.x - a.x, b.y - a.y), 1e-6);
+}
+
+std::array<double, 3> ColourDrape::Bilinear(std::size_t number, const Place& at) const {
+  const Level& level = levels_[number];
+  const double scale = 1.0 / static_cast<double>(std::size_t{1} << number);
+  const double x = std::clamp(at.x * scale - 0.5, 0.0, level.columns - 1.0);
+  const double y = std::clamp(at.y * scale - 0.5, 0.0, level.rows - 1.0);
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const double fx = x - column, fy = y - row;
+  std::array<double, 3> rgb{};
+  for (const int corner : {0, 1, 2, 3}) {
+    const int c = std::min(column + corner % 2, level.columns - 1);
+    const int r = std::min(row + corner / 2, level.rows - 1);
+    const double weight = (corner % 2 == 1 ? fx : 1.0 - fx) * (corner / 2 == 1 ? fy : 1.0 - fy);
+    const auto& pixel =
+        level.rgb[static_cast<std::size_t>(r) * static_cast<std::size_t>(level.columns) +
+                  static_cast<std::size_t>(c)];
+    for (std::size_t k = 0; k < 3; ++k) rgb[k] += weight * pixel[k] / 65535.0;
+  }
+  return rgb;
+}
+
+std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, double altitude_m,
+                                                     double footprint_m) const {
+  // The foot of the point on the sphere.
+  const double shrink = radius_m_ / (radius_m_ + altitude_m);
+  const double gx = std::clamp((point.x * shrink - first_x_m_) / step_x_m_, 0.0,
+                               static_cast<double>(kGridNodes - 1));
+  const double gy = std::clamp((point.y * shrink - first_y_m_) / step_y_m_, 0.0,
+                               static_cast<double>(kGridNodes - 1));
+  const int column = std::min(static_cast<int>(gx), kGridNodes - 2);
+  const int row = std::min(static_cast<int>(gy), kGridNodes - 2);
+  const double fx = gx - column, fy = gy - row;
+  const Place* low = &places_[static_cast<std::size_t>(row * kGridNodes + column)];
+  const Place* high = low + kGridNodes;
+  const auto between = [&](double Place::*of) {
+    const double south = low[0].*of + fx * (low[1].*of - low[0].*of);
+    const double north = high[0].*of + fx * (high[1].*of - high[0].*of);
+    return south + fy * (north - south);
+  };
+  const Place at{between(&Place::x), between(&Place::y)};
+  if (!(at.x >= 0.0 && at.y >= 0.0 && at.x <= levels_[0].columns && at.y <= levels_[0].rows))
+    return std::nullopt;
+  const double wanted = std::log2(std::max(footprint_m / pixel_m_, 1.0));
+  const double finest = std::min(std::floor(wanted), static_cast<double>(levels_.size() - 1));
+  const auto level = static_cast<std::size_t>(finest);
+  std::array<double, 3> rgb = Bilinear(level, at);
+  if (level + 1 < levels_.size()) {
+    const std::array<double, 3> coarse = Bilinear(level + 1, at);
+    for (std::size_t k = 0; k < 3; ++k) rgb[k] += (wanted - finest) * (coarse[k] - rgb[k]);
+  }
+  return rgb;
+}
+
+}  // namespace alpenglow

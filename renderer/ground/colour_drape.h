@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// A picture of colours laid over the terrain: an orthophoto, a map.
+//
+// Read by GDAL: GeoTIFF and PNG, 8 or 16 bits (sRGB-encoded) or floating point (linear), three
+// bands or more (the first three are red, green, blue), or one (grey). With a coordinate system it
+// lies where it says; without, it covers the terrain from rim to rim, its upper edge in the north.
+// Averages over 2 x 2, 4 x 4, ... pixels serve distant ground.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/ground/band_light.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/scene/scene.h"
+
+namespace alpenglow {
+
+/// Spectral albedo from a colour of a picture, quick: AlbedoFromLinearSrgb, but for colours too
+/// saturated for it, which are clamped band by band.
+class BandsOfColour {
+ public:
+  explicit BandsOfColour(std::span<const double> wavelengths_nm);
+
+  /// @param rgb  linear sRGB.
+  [[nodiscard]] BandLight Albedo(const std::array<double, 3>& rgb) const;
+
+ private:
+  std::array<BandLight, 3> of_primary_;
+};
+
+/// Colours on the terrain. Immutable; safe to ask from many threads.
+class ColourDrape {
+ public:
+  /// The picture that a scene names, over its ground; null if it names none. Throws InputError
+  /// naming the file and the fault for what cannot be read, has over 2^26 pixels or no terrain
+  /// under it.
+  [[nodiscard]] static std::shared_ptr<const ColourDrape> Of(const Scene& scene,
+                                                             const SceneGround& ground);
+
+  /// Linear sRGB, averaged over about a footprint; nothing outside the picture.
+  /// @param point  in the ground's frame, at that altitude.
+  [[nodiscard]] std::optional<std::array<double, 3>> At(const glm::dvec3& point, double altitude_m,
+                                                        double footprint_m) const;
+
+ private:
+  /// Linear sRGB in 16 bits.
+  struct Level {
+    int columns = 0, rows = 0;
+    std::vector<std::array<std::uint16_t, 3>> rgb;
+  };
+  /// Where a place lies in the picture [pixels from its upper left corner].
+  struct Place {
+    double x, y;
+  };
+
+  ColourDrape(const std::filesystem::path& file, const SceneGround& ground);
+  [[nodiscard]] std::array<double, 3> Bilinear(std::size_t level, const Place& at) const;
+
+  std::vector<Level> levels_;  // each half as fine as the one before
+  // Places at the nodes of a grid over the frame's plane.
+  double first_x_m_ = 0.0, first_y_m_ = 0.0, step_x_m_ = 1.0, step_y_m_ = 1.0;
+  std::vector<Place> places_;
+  double radius_m_ = 0.0;
+  double pixel_m_ = 1.0;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground/ground_material.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+using Kind = GroundCover::Kind;
+
+// Elevation models give the sea's level to a rounding.
+constexpr double kWaterLine_m = 0.5;
+
+}  // namespace
+
+BandLight GroundPatch::Brdf(const ReflectionAngles& at) const {
+  switch (kind_) {
+    case Kind::kOrenNayar:
+      return material_.rough_.Brdf(albedo_, at);
+    case Kind::kBlinnPhong:
+      return material_.glossy_.Brdf(albedo_, at);
+    case Kind::kWater:
+      return material_.water_.Brdf(at);
+    case Kind::kSnow:
+      return material_.snow_.Brdf(at);
+    case Kind::kMountain:
+    case Kind::kLambert:
+      break;
+  }
+  return static_cast<float>(1.0 / kPi) * albedo_;
+}
+
+BandLight GroundPatch::BodyAlbedo(double mu_eye) const {
+  switch (kind_) {
+    case Kind::kOrenNayar:
+      return material_.rough_.Albedo(albedo_, mu_eye);
+    case Kind::kBlinnPhong:
+      return material_.glossy_.BodyAlbedo(albedo_, mu_eye);
+    case Kind::kWater:
+      return material_.water_.BodyAlbedo(mu_eye);
+    case Kind::kSnow:
+      return material_.snow_.Albedo(mu_eye);
+    case Kind::kMountain:
+    case Kind::kLambert:
+      break;
+  }
+  return albedo_;
+}
+
+MirroredRays GroundPatch::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const {
+  if (kind_ == Kind::kWater) return material_.water_.Mirrored(normal, to_eye);
+  if (kind_ == Kind::kBlinnPhong) return material_.glossy_.Mirrored(normal, to_eye);
+  return {};
+}
+
+GroundMaterial::GroundMaterial(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
+                               std::span<const double> wavelengths_nm)
+    : cover_(cover),
+      drape_(std::move(drape)),
+      bands_of_colour_(wavelengths_nm),
+      albedo_(bands_of_colour_.Albedo(cover.albedo)),
+      rough_(cover.kind == Kind::kOrenNayar ? cover.roughness : 0.0),
+      glossy_(cover.kind == Kind::kBlinnPhong ? cover.roughness : 1.0, cover.reflectance),
+      water_(cover.wind_m_per_s, wavelengths_nm),
+      snow_(cover.grain_diameter_m, wavelengths_nm) {}
+
+bool GroundMaterial::HasGloss() const {
+  return cover_.kind == Kind::kWater || cover_.kind == Kind::kBlinnPhong || cover_.sea_level_m;
+}
+
+BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, const glm::dvec3& point, double normal_up,
+                                   const MountainSurface& season) const {
+  if (drape_) {
+    if (const auto rgb = drape_->At(point, at.altitude_m, at.footprint_m))
+      return bands_of_colour_.Albedo(*rgb);
+  }
+  return cover_.kind == Kind::kMountain ? season.Albedo(at, normal_up) : albedo_;
+}
+
+GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& point,
+                                      double normal_up, const MountainSurface& season) const {
+  if (cover_.sea_level_m && at.altitude_m <= *cover_.sea_level_m + kWaterLine_m)
+    return {*this, Kind::kWater, BandLight(albedo_.count)};
+  if (cover_.kind == Kind::kWater || cover_.kind == Kind::kSnow)
+    return {*this, cover_.kind, BandLight(albedo_.count)};
+  return {*this, cover_.kind, AlbedoAt(at, point, normal_up, season)};
+}
+
+GroundPatch GroundMaterial::OfPlanet(const BandLight& planet_albedo) const {
+  if (cover_.sea_level_m && *cover_.sea_level_m + kWaterLine_m >= 0.0)
+    return {*this, Kind::kWater, planet_albedo};
+  if (cover_.kind == Kind::kMountain) return {*this, cover_.kind, planet_albedo};
+  return {*this, cover_.kind, albedo_};
+}
+
+}  // namespace alpenglow

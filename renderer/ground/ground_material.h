@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// What the ground of a scene is made of, place by place, and how it sends light on.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "renderer/ground/band_light.h"
+#include "renderer/ground/colour_drape.h"
+#include "renderer/ground/reflectance.h"
+#include "renderer/ground/surface.h"
+#include "renderer/scene/scene.h"
+
+namespace alpenglow {
+
+class GroundMaterial;
+
+/// The ground at a place: how it sends light on.
+class GroundPatch {
+ public:
+  /// @param albedo  of the diffuse body; not used by water and snow.
+  GroundPatch(const GroundMaterial& material, GroundCover::Kind kind, BandLight albedo)
+      : material_(material), kind_(kind), albedo_(std::move(albedo)) {}
+
+  [[nodiscard]] bool IsWater() const { return kind_ == GroundCover::Kind::kWater; }
+  /// Whether it mirrors the sky.
+  [[nodiscard]] bool IsGlossy() const {
+    return IsWater() || kind_ == GroundCover::Kind::kBlinnPhong;
+  }
+
+  /// Radiance over irradiance from one direction [1/sr].
+  [[nodiscard]] BandLight Brdf(const ReflectionAngles& at) const;
+  /// Share of an even sky that is sent to an eye, but for what is mirrored.
+  [[nodiscard]] BandLight BodyAlbedo(double mu_eye) const;
+  /// Empty for what is not glossy.
+  [[nodiscard]] MirroredRays Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const;
+
+ private:
+  const GroundMaterial& material_;
+  GroundCover::Kind kind_;
+  BandLight albedo_;
+};
+
+/// Immutable; safe to ask from many threads.
+class GroundMaterial {
+ public:
+  /// @param drape  colours over the terrain, or nothing.
+  GroundMaterial(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
+                 std::span<const double> wavelengths_nm);
+
+  /// The terrain at a point.
+  /// @param at  the point as its material sees it; normal_up: vertical component of the normal of
+  ///     the mesh.
+  /// @param season  what covers mountains.
+  [[nodiscard]] GroundPatch OfTerrain(const GroundPoint& at, const glm::dvec3& point,
+                                      double normal_up, const MountainSurface& season) const;
+  /// The bare planet.
+  /// @param planet_albedo  the medium's, for a cover that says nothing of it.
+  [[nodiscard]] GroundPatch OfPlanet(const BandLight& planet_albedo) const;
+
+  /// Whether any of it mirrors the sky.
+  [[nodiscard]] bool HasGloss() const;
+
+ private:
+  friend class GroundPatch;
+  [[nodiscard]] BandLight AlbedoAt(const GroundPoint& at, const glm::dvec3& point, double normal_up,
+                                   const MountainSurface& season) const;
+
+  GroundCover cover_;
+  std::shared_ptr<const ColourDrape> drape_;
+  BandsOfColour bands_of_colour_;
+  BandLight albedo_;
+  RoughDiffuse rough_;
+  Glossy glossy_;
+  Water water_;
+  Snow snow_;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground/reflectance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/colour/water.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/quadrature.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+double FifthPower(double x) {
+  const double x2 = x * x;
+  return x2 * x2 * x;
+}
+
+/// Half vector of light and eye.
+struct Half {
+  double mu;         // its cosine with the normal
+  double cos_light;  // and with the light
+};
+
+Half HalfOf(const ReflectionAngles& at) {
+  const double length = std::sqrt(std::max(2.0 + 2.0 * at.cos_between, 1e-12));
+  return {std::min((at.mu_light + at.mu_eye) / length, 1.0), 0.5 * length};
+}
+
+/// Axes around a normal, the first towards the eye's foot point.
+struct Axes {
+  glm::dvec3 eyewards, across, normal;
+};
+
+Axes AxesAround(const glm::dvec3& normal, const glm::dvec3& to_eye) {
+  glm::dvec3 flat = to_eye - glm::dot(to_eye, normal) * normal;
+  if (glm::dot(flat, flat) < 1e-12) {
+    const glm::dvec3 any =
+        std::abs(normal.x) < 0.5 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+    flat = any - glm::dot(any, normal) * normal;
+  }
+  const glm::dvec3 eyewards = glm::normalize(flat);
+  return {eyewards, glm::cross(normal, eyewards), normal};
+}
+
+}  // namespace
+
+ReflectionAngles AnglesBetween(const glm::dvec3& normal, const glm::dvec3& to_light,
+                               const glm::dvec3& to_eye) {
+  const auto raised = [](double cosine) { return std::clamp(cosine, 1e-4, 1.0); };
+  return {raised(glm::dot(normal, to_light)), raised(glm::dot(normal, to_eye)),
+          std::clamp(glm::dot(to_light, to_eye), -1.0, 1.0)};
+}
+
+double MirroredRays::TotalWeight() const {
+  double sum = 0.0;
+  for (const MirroredRay& ray : All()) sum += ray.weight;
+  return sum;
+}
+
+double FresnelReflectance(double cosine, double refractive_index) {
+  const double sine2 =
+      (1.0 - cosine * cosine) / (refractive_index * refractive_index);  // Snell, inside
+  const double inside = std::sqrt(std::max(1.0 - sine2, 0.0));
+  const double across = (cosine - refractive_index * inside) / (cosine + refractive_index * inside);
+  const double along = (refractive_index * cosine - inside) / (refractive_index * cosine + inside);
+  return 0.5 * (across * across + along * along);
+}
+
+double SchlickReflectance(double cosine, double f0) {
+  return f0 + (1.0 - f0) * FifthPower(1.0 - std::clamp(cosine, 0.0, 1.0));
+}
+
+// Portsmouth et al. (2025), equations of sections 2 and 3: "FON" for light reflected once.
+RoughDiffuse::RoughDiffuse(double roughness)
+    : roughness_(RequireInRange(roughness, 0.0, 1.0, "roughness")),
+      scale_(1.0 / (1.0 + (0.5 - 2.0 / (3.0 * kPi)) * roughness)),
+      mean_single_(scale_ * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * kPi)) * roughness)) {}
+
+double RoughDiffuse::Single(double mu) const {
+  const double sine = std::sqrt(std::max(1.0 - mu * mu, 0.0));
+  // sin / mu (1 - sin^3), without the division by 0 of the horizontal.
+  const double far = sine * mu * (1.0 + sine + sine * sine) / (1.0 + sine);
+  const double g = sine * (std::acos(std::min(mu, 1.0)) - sine * mu) + 2.0 / 3.0 * (far - sine);
+  return scale_ * (1.0 + roughness_ * g / kPi);
+}
+
+Bands<float> RoughDiffuse::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
+  const double s = at.cos_between - at.mu_light * at.mu_eye;
+  const double ratio = s > 0.0 ? s / std::max(at.mu_light, at.mu_eye) : s;
+  const auto once = static_cast<float>(scale_ * (1.0 + roughness_ * ratio) / kPi);
+  const double lost = (1.0 - Single(at.mu_light)) * (1.0 - Single(at.mu_eye));
+  const auto again =
+      roughness_ > 0.0 ? static_cast<float>(lost / ((1.0 - mean_single_) * kPi)) : 0.0F;
+  const auto mean = static_cast<float>(mean_single_);
+  Bands<float> f(albedo.count);
+  for (std::size_t band = 0; band < albedo.count; ++band) {
+    const float rho = albedo[band];
+    f[band] = rho * once + again * rho * rho * mean / (1.0F - rho * (1.0F - mean));
+  }
+  return f;
+}
+
+Bands<float> RoughDiffuse::Albedo(const Bands<float>& albedo, double mu) const {
+  const auto once = static_cast<float>(Single(mu));
+  const auto mean = static_cast<float>(mean_single_);
+  Bands<float> sent(albedo.count);
+  for (std::size_t band = 0; band < albedo.count; ++band) {
+    const float rho = albedo[band];
+    sent[band] = rho * once + (1.0F - once) * rho * rho * mean / (1.0F - rho * (1.0F - mean));
+  }
+  return sent;
+}
+
+// Giesen (2009), "Phong Normalization Factor derivation": the integral of cos^n of the half vector
+// times the cosine of the light over the hemisphere, eye at the normal.
+Glossy::Glossy(double roughness, double f0)
+    : exponent_(2.0 / std::pow(RequireInRange(roughness, 0.1, 1.0, "roughness"), 4) - 2.0),
+      f0_(RequireInRange(f0, 0.0, 1.0, "reflectance at normal incidence")),
+      normalisation_((exponent_ + 2.0) * (exponent_ + 4.0) /
+                     (8.0 * kPi * (std::exp2(-0.5 * exponent_) + exponent_))) {}
+
+double Glossy::Coat(const ReflectionAngles& at) const {
+  const Half half = HalfOf(at);
+  return SchlickReflectance(half.cos_light, f0_) * normalisation_ * std::pow(half.mu, exponent_);
+}
+
+Bands<float> Glossy::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
+  const auto coat = static_cast<float>(Coat(at));
+  const auto body = static_cast<float>(28.0 / (23.0 * kPi) * (1.0 - f0_) *
+                                       (1.0 - FifthPower(1.0 - 0.5 * at.mu_light)) *
+                                       (1.0 - FifthPower(1.0 - 0.5 * at.mu_eye)));
+  Bands<float> f(albedo.count);
+  for (std::size_t band = 0; band < albedo.count; ++band) f[band] = coat + body * albedo[band];
+  return f;
+}
+
+Bands<float> Glossy::BodyAlbedo(const Bands<float>& albedo, double mu) const {
+  const auto share = static_cast<float>((1.0 - f0_) * (1.0 - FifthPower(1.0 - 0.5 * mu)));
+  Bands<float> sent(albedo.count);
+  for (std::size_t band = 0; band < albedo.count; ++band) sent[band] = share * albedo[band];
+  return sent;
+}
+
+// Half vectors drawn evenly from cos^n: 3 Gauss nodes in u = cos^(n + 1) by 8 azimuths. A solid
+// angle of half vectors is a quarter of that of the lights they mirror, per cosine.
+MirroredRays Glossy::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const {
+  const Axes axes = AxesAround(normal, to_eye);
+  const GaussRule& rule = GaussLegendre(3);
+  constexpr int kAzimuths = 8;
+  MirroredRays mirrored;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double mu = std::pow(rule.node[i], 1.0 / (exponent_ + 1.0));
+    const double sine = std::sqrt(1.0 - mu * mu);
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2.0 * kPi * (k + 0.5) / kAzimuths;
+      const glm::dvec3 half =
+          sine * (std::cos(azimuth) * axes.eyewards + std::sin(azimuth) * axes.across) +
+          mu * normal;
+      const double cosine = glm::dot(half, to_eye);
+      const glm::dvec3 light = 2.0 * cosine * half - to_eye;
+      const double mu_light = glm::dot(light, normal);
+      if (cosine <= 0.0 || mu_light <= 0.0) continue;
+      const double solid_angle =
+          2.0 * kPi / (exponent_ + 1.0) * rule.weight[i] / kAzimuths * 4.0 * cosine;
+      mirrored.rays[mirrored.count++] = {
+          light, SchlickReflectance(cosine, f0_) * normalisation_ * mu_light * solid_angle};
+    }
+  }
+  return mirrored;
+}
+
+namespace {
+
+constexpr double kZenithTransmittance = 0.9789;  // 1 - (0.34 / 2.34)^2
+
+// Lee, Carder, Arnone (2002), equations 2, 3 and table 2.
+Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
+  Bands<float> reflectance(wavelengths_nm.size());
+  for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
+    const double nm = wavelengths_nm[band];
+    const double absorption = WaterAbsorption(nm) + 0.02 * std::exp(-0.015 * (nm - 440.0));
+    const double backwards = 0.5 * SeaWaterScattering(nm) + 0.001 * 550.0 / nm;
+    const double u = backwards / (absorption + backwards);
+    const double under = (0.0895 + 0.1247 * u) * u;
+    reflectance[band] = static_cast<float>(kPi * 0.52 * under / (1.0 - 1.7 * under));
+  }
+  return reflectance;
+}
+
+// Share of the surface that waves hide from a direction, over the share that they do not.
+double SmithLambda(double mu, double variance) {
+  const double sine = std::sqrt(std::max(1.0 - mu * mu, 1e-12));
+  const double a = mu / (sine * std::sqrt(variance));
+  if (a > 4.0) return 0.0;
+  return 0.5 * (std::exp(-a * a) / (a * std::sqrt(kPi)) - std::erfc(a));
+}
+
+double Transmitted(double mu) {
+  return (1.0 - FresnelReflectance(mu, Water::kRefractiveIndex)) / kZenithTransmittance;
+}
+
+/// Slopes across the line of sight: Gauss-Hermite of weight exp(-x^2), normalised to 1 (Abramowitz
+/// and Stegun, table 25.10).
+struct SlopeNode {
+  double x, weight;
+};
+constexpr std::array<SlopeNode, 3> kAcross{
+    {{-1.224744871391589, 1.0 / 6.0}, {0.0, 2.0 / 3.0}, {1.224744871391589, 1.0 / 6.0}}};
+
+}  // namespace
+
+Water::Water(double wind_m_per_s, std::span<const double> wavelengths_nm)
+    : variance_(0.003 + 0.00512 * RequireInRange(wind_m_per_s, 0.0, 20.0, "wind")),
+      under_surface_(LightFromUnderWater(wavelengths_nm)) {}
+
+double Water::Glitter(const ReflectionAngles& at) const {
+  const Half half = HalfOf(at);
+  const double mu2 = half.mu * half.mu;
+  const double slopes = std::exp(-(1.0 - mu2) / (mu2 * variance_)) / (kPi * variance_);
+  const double visible =
+      1.0 / (1.0 + SmithLambda(at.mu_light, variance_) + SmithLambda(at.mu_eye, variance_));
+  return FresnelReflectance(half.cos_light, kRefractiveIndex) * slopes * visible /
+         (4.0 * at.mu_light * at.mu_eye * mu2 * mu2);
+}
+
+Bands<float> Water::Brdf(const ReflectionAngles& at) const {
+  const auto glitter = static_cast<float>(Glitter(at));
+  const auto through = static_cast<float>(Transmitted(at.mu_light) * Transmitted(at.mu_eye) / kPi);
+  Bands<float> f(under_surface_.count);
+  for (std::size_t band = 0; band < f.count; ++band)
+    f[band] = glitter + through * under_surface_[band];
+  return f;
+}
+
+Bands<float> Water::BodyAlbedo(double mu) const {
+  // A flat surface of index 1.34 lets 0.934 of an even sky in.
+  const auto through = static_cast<float>(0.934 / kZenithTransmittance * Transmitted(mu));
+  Bands<float> sent(under_surface_.count);
+  for (std::size_t band = 0; band < sent.count; ++band) sent[band] = through * under_surface_[band];
+  return sent;
+}
+
+// Faces weigh as much as the eye sees of them: their slope's probability times their projection.
+// Slopes along the line of sight are those of faces that do not turn away.
+MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const {
+  constexpr double kSteepest = 3.0;  // in units of the width: one in 10^5 is steeper
+  const Axes axes = AxesAround(normal, to_eye);
+  const double mu = std::max(glm::dot(normal, to_eye), 1e-4);
+  const double sine = std::sqrt(std::max(1.0 - mu * mu, 0.0));
+  const double width = std::sqrt(variance_);
+  const double first = std::max(-kSteepest, -mu / std::max(width * sine, 1e-9));
+  const GaussRule& rule = GaussLegendre(8);
+  MirroredRays mirrored;
+  double total = 0.0;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double x = first + (kSteepest - first) * rule.node[i];
+    const double seen = (mu + width * x * sine) * std::exp(-x * x) * rule.weight[i];
+    for (const SlopeNode& across : kAcross) {
+      const glm::dvec3 face =
+          glm::normalize(normal + width * (x * axes.eyewards + across.x * axes.across));
+      const double cosine = std::clamp(glm::dot(face, to_eye), 0.0, 1.0);
+      const glm::dvec3 light = 2.0 * cosine * face - to_eye;
+      const double share = across.weight * seen;
+      total += share;
+      mirrored.rays[mirrored.count++] = {light,
+                                         share * FresnelReflectance(cosine, kRefractiveIndex)};
+    }
+  }
+  for (std::size_t i = 0; i < mirrored.count; ++i) {
+    MirroredRay& ray = mirrored.rays[i];
+    ray.weight /= total;
+    const double below = glm::dot(ray.direction, normal);
+    if (below < 0.0) ray.direction = glm::normalize(ray.direction - below * normal);
+  }
+  return mirrored;
+}
+
+namespace {
+
+double Escape(double mu) { return 3.0 / 7.0 * (1.0 + 2.0 * mu); }
+
+// Kokhanovsky (2005), equations 13 and 14; the scattering angle in degrees.
+double WithoutAbsorption(const ReflectionAngles& at) {
+  const double scattering = std::acos(-at.cos_between) / kRadiansPerDegree;
+  const double phase = 11.1 * std::exp(-0.087 * scattering) + 1.1 * std::exp(-0.014 * scattering);
+  const double sum = at.mu_light + at.mu_eye;
+  return (1.247 + 1.186 * sum + 5.157 * at.mu_light * at.mu_eye + phase) / (4.0 * sum);
+}
+
+/// What both directions of R0 are multiplied by so that snow without absorption sends on exactly
+/// what it receives, from wherever it comes. Found by successive halving of the error in both
+/// directions (Sinkhorn, Knopp 1967, Pacific J. Math. 21, 343); even steps of the root of mu.
+class Balance {
+ public:
+  Balance() {
+    const GaussRule& rule = GaussLegendre(48);
+    std::array<std::array<double, 48>, kNodes> received;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      for (std::size_t j = 0; j < rule.node.size(); ++j) {
+        const double mu = rule.node[j] * rule.node[j];  // dense at the horizon
+        received[i][j] = MeanOverAzimuth(MuOf(i), mu) * 4.0 * mu * rule.node[j] * rule.weight[j];
+      }
+    }
+    factor_.fill(1.0);
+    for (int step = 0; step < 24; ++step) {
+      const Balance before = *this;
+      for (std::size_t i = 0; i < kNodes; ++i) {
+        double sent = 0.0;
+        for (std::size_t j = 0; j < rule.node.size(); ++j)
+          sent += received[i][j] * before.AtRoot(rule.node[j]);
+        factor_[i] = std::sqrt(before.factor_[i] / sent);
+      }
+    }
+  }
+
+  [[nodiscard]] double At(double mu) const { return AtRoot(std::sqrt(mu)); }
+
+ private:
+  static constexpr std::size_t kNodes = 65;
+
+  static double MuOf(std::size_t node) {
+    const double root = static_cast<double>(node) / (kNodes - 1);
+    return std::max(root * root, 1e-4);
+  }
+
+  static double MeanOverAzimuth(double a, double b) {
+    constexpr int kAzimuths = 90;
+    const double sines = std::sqrt((1.0 - a * a) * (1.0 - b * b));
+    double sum = 0.0;
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = kPi * (k + 0.5) / kAzimuths;
+      sum += WithoutAbsorption({a, b, std::clamp(a * b + sines * std::cos(azimuth), -1.0, 1.0)});
+    }
+    return sum / kAzimuths;
+  }
+
+  [[nodiscard]] double AtRoot(double root) const {
+    const double at = root * (kNodes - 1);
+    const std::size_t node = std::min(static_cast<std::size_t>(at), kNodes - 2);
+    return factor_[node] + (at - static_cast<double>(node)) * (factor_[node + 1] - factor_[node]);
+  }
+
+  std::array<double, kNodes> factor_;
+};
+
+double Balanced(double mu) {
+  static const Balance balance;
+  return balance.At(mu);
+}
+
+}  // namespace
+
+Snow::Snow(double grain_diameter_m, std::span<const double> wavelengths_nm)
+    : y_(wavelengths_nm.size()) {
+  constexpr double kEnhancement = 1.6;  // B
+  constexpr double kAsymmetry = 0.845;  // g
+  const double length = 16.0 * kEnhancement / (9.0 * (1.0 - kAsymmetry)) *
+                        RequireInRange(grain_diameter_m, 5e-5, 5e-3, "grain diameter [m]");
+  for (std::size_t band = 0; band < y_.count; ++band)
+    y_[band] = static_cast<float>(std::sqrt(length * IceAbsorption(wavelengths_nm[band])));
+}
+
+Bands<float> Snow::Brdf(const ReflectionAngles& at) const {
+  const double r0 = WithoutAbsorption(at) * Balanced(at.mu_light) * Balanced(at.mu_eye);
+  const auto fall = static_cast<float>(Escape(at.mu_light) * Escape(at.mu_eye) / r0);
+  const auto scale = static_cast<float>(r0 / kPi);
+  Bands<float> f(y_.count);
+  for (std::size_t band = 0; band < f.count; ++band) f[band] = scale * std::exp(-y_[band] * fall);
+  return f;
+}
+
+Bands<float> Snow::Albedo(double mu) const {
+  const auto escape = static_cast<float>(Escape(mu));
+  Bands<float> sent(y_.count);
+  for (std::size_t band = 0; band < sent.count; ++band) sent[band] = std::exp(-y_[band] * escape);
+  return sent;
+}
+
+Bands<float> Snow::SphericalAlbedo() const {
+  Bands<float> sent(y_.count);
+  for (std::size_t band = 0; band < sent.count; ++band) sent[band] = std::exp(-y_[band]);
+  return sent;
+}
+
+}  // namespace alpenglow

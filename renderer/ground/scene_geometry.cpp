@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground/scene_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/ray/ray.h"
+
+namespace alpenglow {
+
+// |p - c| - R without cancelling.
+double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
+  const double across = point.x * point.x + point.y * point.y;
+  const double q = across + point.z * (2.0 * radius_m + point.z);
+  return q / (std::sqrt(across + (radius_m + point.z) * (radius_m + point.z)) + radius_m);
+}
+
+SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief)
+    : ground_(ground), medium_(medium), with_relief_(with_relief) {}
+
+double SceneGeometry::AltitudeOf(const glm::dvec3& point) const {
+  return AltitudeOverSphere(point, radius_m());
+}
+
+glm::dvec3 SceneGeometry::UpAt(const glm::dvec3& point) const {
+  return glm::normalize(point + glm::dvec3(0.0, 0.0, radius_m()));
+}
+
+GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m) const {
+  const GeodeticPosition& origin = ground_.frame.origin();
+  return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius_m() + point.x,
+          origin.latitude_rad * radius_m() + point.y, std::max(AltitudeOf(point), 0.0),
+          footprint_m};
+}
+
+// Whether the bare planet stands between the eye and terrain behind its horizon: the ray goes
+// through it, comes out again before the terrain, and no terrain covers the planet there (a ray
+// through a basin below the sphere is in free air).
+bool SceneGeometry::HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& direction,
+                                   double distance_m) const {
+  const double mu = std::clamp(glm::dot(direction, UpAt(origin)), -1.0, 1.0);
+  if (mu >= 0.0) return false;
+  const double altitude = AltitudeOf(origin);
+  const double deepest_m = -(radius_m() + altitude) * mu;
+  if (distance_m < deepest_m) return false;  // it would have to come out beyond
+  const RayExtent extent =
+      ExtentOf({altitude, mu, 1.0, mu}, radius_m(), medium_.atmosphere_height_m);
+  if (extent.end != RayEnd::kGround || 2.0 * deepest_m - extent.end_m > distance_m) return false;
+  const glm::dvec3 inside = origin + deepest_m * direction;
+  constexpr double kAbove_m = 20000.0;
+  const glm::dvec3 up = UpAt(inside);
+  return !ground_.terrain->Intersect(inside + kAbove_m * up, -up);
+}
+
+Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
+                         double pixel_angle_rad) const {
+  if (ground_.terrain) {
+    const auto hit = ground_.terrain->Intersect(origin, direction);
+    if (hit && !HiddenByPlanet(origin, direction, hit->distance_m)) {
+      Hit found{HitKind::kTerrain,
+                hit->distance_m,
+                hit->normal,
+                hit->normal,
+                hit->geometric_normal,
+                hit->smooth_point,
+                hit->distance_m * pixel_angle_rad};
+      if (with_relief_) {
+        found.normal =
+            MountainSurface::DetailedNormal(GroundAt(found.point, found.footprint_m), found.normal);
+      }
+      return found;
+    }
+  }
+  const double mu = std::clamp(glm::dot(direction, UpAt(origin)), -1.0, 1.0);
+  if (mu >= 0.0) return {};
+  const RayExtent extent =
+      ExtentOf({AltitudeOf(origin), mu, 1.0, mu}, radius_m(), medium_.atmosphere_height_m);
+  if (extent.end != RayEnd::kGround) return {};
+  const glm::dvec3 point = origin + extent.end_m * direction;
+  const glm::dvec3 up = UpAt(point);
+  return {HitKind::kPlanet, extent.end_m, up, up, up, point, extent.end_m * pixel_angle_rad};
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What rays of a picture meet: terrain, the bare planet, or the sky.
+//
+// Frame: that of SceneGround. Altitudes are distances from the sphere that osculates the ellipsoid
+// at the frame's origin, its centre at (0, 0, -R).
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <limits>
+
+#include "atmosphere/air/medium.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/ground/surface.h"
+
+namespace alpenglow {
+
+/// Distance of a point from the sphere with its centre at (0, 0, -R) [m], to the rounding of its
+/// coordinates.
+[[nodiscard]] double AltitudeOverSphere(const glm::dvec3& point, double radius_m);
+
+/// What a ray of the camera meets first.
+enum class HitKind { kSky, kTerrain, kPlanet };
+struct Hit {
+  HitKind kind = HitKind::kSky;
+  double distance_m = std::numeric_limits<double>::infinity();
+  glm::dvec3 normal{0.0, 0.0, 1.0};       // with relief finer than the mesh
+  glm::dvec3 mesh_normal{0.0, 0.0, 1.0};  // interpolated between vertices
+  glm::dvec3 geometric_normal{0.0, 0.0, 1.0};
+  glm::dvec3 point{0.0};
+  double footprint_m = 0.0;  // width of a pixel there
+};
+
+/// Immutable, safe to share between threads. Refers to the ground and the medium.
+class SceneGeometry {
+ public:
+  /// @param with_relief  normals have the relief that samples of elevation leave out.
+  SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief);
+
+  [[nodiscard]] double radius_m() const { return medium_.planet_radius_m; }
+  /// Distance from the sphere [m], to the rounding of the point's coordinates.
+  [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
+  /// Unit.
+  [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
+  [[nodiscard]] GroundPoint GroundAt(const glm::dvec3& point, double footprint_m) const;
+
+  /// @param direction  unit; pixel_angle_rad: between neighbouring pixels.
+  [[nodiscard]] Hit Trace(const glm::dvec3& origin, const glm::dvec3& direction,
+                          double pixel_angle_rad) const;
+
+ private:
+  [[nodiscard]] bool HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& direction,
+                                    double distance_m) const;
+
+  const SceneGround& ground_;
+  const Medium& medium_;
+  bool with_relief_;
+};
+
+}  // namespace alpenglow

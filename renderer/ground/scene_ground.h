@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The ground of a scene: terrain ready for rays, in the frame of the eye.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "renderer/scene/scene.h"
+#include "renderer/terrain/terrain.h"
+
+namespace alpenglow {
+
+struct SceneGround {
+  LocalFrame frame;                // ENU at the foot of the eye on the ellipsoid
+  std::optional<Terrain> terrain;  // nothing: the ellipsoid alone
+  double eye_height_m;             // over the ellipsoid
+  std::string message;             // what loading has to tell, empty if nothing
+  bool is_one_surface;             // no overhangs: see IsOneSurface
+};
+
+/// The ellipsoid that the scene's planet has: WGS84, or a sphere of the medium's radius.
+[[nodiscard]] Ellipsoid EllipsoidOf(const Medium& medium);
+
+/// Loads or generates the terrain and stands the eye on it. Throws InputError for files that cannot
+/// be read and for an eye given above_ground where the terrain has none, or below the ground.
+[[nodiscard]] SceneGround LoadGround(const Scene& scene);
+
+}  // namespace alpenglow

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/light/ground_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun_disk.h"
+#include "renderer/media/media_light.h"
+
+namespace alpenglow {
+namespace {
+
+/// A direction to the sun's disk, uniform in its area.
+glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
+  const glm::dvec3 side = glm::normalize(glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
+  const double rho = light.sun_radius_rad * std::sqrt(sample[0]);
+  const double angle = 2.0 * kPi * sample[1];
+  return glm::normalize(light.to_sun + rho * (std::cos(angle) * side +
+                                              std::sin(angle) * glm::cross(light.to_sun, side)));
+}
+
+// Whether terrain may stand between the ground there and the sky.
+bool SeesTerrain(const Hit& hit, const Lighting& light) {
+  return hit.kind == HitKind::kTerrain && light.on_terrain && light.on_terrain->horizons();
+}
+
+}  // namespace
+
+Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double latitude_rad,
+                    const Medium& medium) {
+  const MountainCover cover = CoverInSeason(latitude_rad, instant.modified_julian_day);
+  Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+                 sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
+                 MountainSurface(medium.wavelengths_nm, cover)};
+  for (std::size_t band = 0; band < light.irradiance.count; ++band) {
+    light.irradiance[band] =
+        static_cast<float>(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));
+  }
+  return light;
+}
+
+GroundLight::GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
+                         const DiffuseLight& diffuse)
+    : parts_(parts), air_(air), diffuse_(diffuse) {}
+
+std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const Lighting& light) const {
+  if (!light.effects.Has(Effect::kSkylight)) return nullptr;
+  const std::shared_ptr<const TerrainHorizons> horizons =
+      light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
+  if (!horizons && !parts_.material.HasGloss()) return nullptr;
+  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, diffuse_, light.to_sun);
+  if (horizons && light.effects.Has(Effect::kBounce)) {
+    on_terrain->AddSlopes(
+        air_.medium(),
+        [&](const SlopePlace& place) { return SentToSlopes(place, light, *on_terrain); },
+        light.to_sun.z);
+  }
+  return on_terrain;
+}
+
+BandLight GroundLight::SentToSlopes(const SlopePlace& place, const Lighting& light,
+                                    const TerrainLight& sky) const {
+  const double cell_m = sky.horizons()->views().heights().cell_m;
+  Hit hit;
+  hit.kind = HitKind::kTerrain;
+  hit.normal = hit.mesh_normal = hit.geometric_normal = place.normal;
+  hit.point = place.point + 0.01 * cell_m * place.normal;  // nodes lie in the surface, not on it
+  hit.footprint_m = cell_m;
+  const LocalSun sun = LocalSunAt(hit.point, light);
+  BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
+  if (const auto direct = SunIrradiance(hit, light, sun, {0.0, 0.0}))
+    irradiance = irradiance + *direct;
+  // Seen at 60 degrees, which stands for the mean over directions.
+  return static_cast<float>(1.0 / kPi) * (PatchAt(hit, light, sun.up).BodyAlbedo(0.5) * irradiance);
+}
+
+LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
+                    const glm::dvec3& to_sun, double sun_radius_rad) {
+  const double altitude = std::max(geometry.AltitudeOf(point), 0.0);
+  const double r = geometry.radius_m();
+  const glm::dvec3 up = geometry.UpAt(point);
+  const double mu_s = std::clamp(glm::dot(up, to_sun), -1.0, 1.0);
+  const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun_radius_rad);
+  return {altitude, up, mu_s, disk.fraction, disk.mu_s_effective};
+}
+
+LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
+  return alpenglow::LocalSunAt(parts_.geometry, point, light.to_sun, light.sun_radius_rad);
+}
+
+double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
+                              std::array<double, 2> disk_sample) const {
+  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  const double cosine = glm::dot(hit.normal, to_disk);
+  const bool faces =
+      cosine > 0.0 && glm::dot(hit.geometric_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
+  const bool occluded = faces && parts_.ground.terrain && light.effects.Has(Effect::kShadows) &&
+                        parts_.ground.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
+                                                        std::numeric_limits<double>::infinity());
+  return faces && !occluded ? cosine : 0.0;
+}
+
+BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
+                                     const LocalSun& sun) const {
+  const glm::dvec3 flat_sun = light.to_sun - sun.mu_s * sun.up;
+  const double normal_mu = std::clamp(glm::dot(hit.normal, sun.up), -1.0, 1.0);
+  const glm::dvec3 flat_normal = hit.normal - normal_mu * sun.up;
+  const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
+  const double azimuth =
+      lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
+  const BandLight clear =
+      SeesTerrain(hit, light)
+          ? light.on_terrain->Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s})
+          : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+  if (light.media == nullptr) return clear;
+  const SkyThroughFog fog = light.media->SkyOnSurface(sun.altitude_m, normal_mu);
+  return fog.left * clear + fog.added;
+}
+
+GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light,
+                                 const glm::dvec3& up) const {
+  if (hit.kind == HitKind::kTerrain) {
+    return parts_.material.OfTerrain(parts_.geometry.GroundAt(hit.point, hit.footprint_m),
+                                     hit.point, glm::dot(hit.mesh_normal, up), light.surface);
+  }
+  BandLight albedo(air_.bands());
+  for (std::size_t band = 0; band < albedo.count; ++band)
+    albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);
+  return parts_.material.OfPlanet(albedo);
+}
+
+BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
+                                const Lighting& light, const LocalSun& sun) const {
+  BandLight sum(air_.bands());
+  const SlopePoint at{hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
+  const auto rays = patch.Mirrored(hit.normal, to_eye);
+  for (const MirroredRay& ray : rays.All()) {
+    const BandLight seen = SeesTerrain(hit, light)
+                               ? light.on_terrain->Radiance(at, ray.direction)
+                               : light.on_terrain->SkyRadiance(at, ray.direction);
+    sum = sum + static_cast<float>(ray.weight) * seen;
+  }
+  return sum;
+}
+
+std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Lighting& light,
+                                                    const LocalSun& sun,
+                                                    std::array<double, 2> disk_sample) const {
+  const double cosine = LitCosine(hit, light, sun, disk_sample);
+  if (cosine <= 0.0) return std::nullopt;
+  const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
+                          air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+  if (light.media == nullptr) return clear;
+  return clear * light.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
+}
+
+GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
+                                    const Lighting& light, const LampNodes& near,
+                                    std::array<double, 2> disk_sample) const {
+  const LocalSun sun = LocalSunAt(seen.point, light);
+  const GroundPatch patch = PatchAt(seen, light, sun.up);
+  Hit hit = seen;
+  if (patch.IsWater()) hit.normal = hit.mesh_normal = sun.up;  // waves are its own
+  const double mu_eye = AnglesBetween(hit.normal, hit.normal, to_eye).mu_eye;
+  const BandLight body = patch.BodyAlbedo(mu_eye);
+  BandLight radiance(air_.bands());
+  GroundRadiance sent;
+  if (const auto direct = SunIrradiance(hit, light, sun, disk_sample)) {
+    sent.sun_visibility = static_cast<float>(sun.visible_fraction);
+    const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+    radiance = patch.Brdf(AnglesBetween(hit.normal, to_disk, to_eye)) * *direct;
+  }
+  if (light.effects.Has(Effect::kSkylight)) {
+    radiance = radiance + static_cast<float>(1.0 / kPi) * (body * SkyIrradiance(hit, light, sun));
+    if (patch.IsGlossy() && light.on_terrain)
+      radiance = radiance + Mirrored(patch, hit, to_eye, light, sun);
+  }
+  sent.albedo = body;
+  sent.natural = light.irradiance * radiance;
+  sent.lamps = static_cast<float>(1.0 / kPi) *
+               (body * parts_.lamps.OnSurface(near, {hit.point, hit.normal, hit.geometric_normal}));
+  return sent;
+}
+
+}  // namespace alpenglow

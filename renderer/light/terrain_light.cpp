@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/light/terrain_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kMostHorizonNodes = std::size_t{1} << 18;
+
+// East, north, up at a place; the frame's axes leaning with the vertical.
+glm::dvec3 AtPlace(const glm::dvec3& direction, const glm::dvec3& up) {
+  const double z = glm::dot(direction, up);
+  return {direction.x - z * up.x, direction.y - z * up.y, z};
+}
+
+}  // namespace
+
+std::shared_ptr<const TerrainHorizons> HorizonsOnDemand::Get() const {
+  std::call_once(once_, [&] {
+    if (ground_.terrain && ground_.is_one_surface)
+      made_ = std::make_shared<const TerrainHorizons>(ground_.terrain->mesh(), medium_);
+  });
+  return made_;
+}
+
+TerrainHorizons::TerrainHorizons(const TriangleMesh& mesh, const Medium& medium)
+    : TerrainHorizons(RasterOf(mesh, kMostHorizonNodes), mesh, medium) {}
+
+TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh& mesh,
+                                 const Medium& medium)
+    : map_(heights, medium.planet_radius_m),
+      views_(RasterOf(mesh, SlopeViews::kMostNodes), medium),
+      extent_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+              0.0} {
+  for (const float z : heights.z_m) {
+    if (z <= HeightRaster::kNothing) continue;
+    extent_.lowest_m = std::min(extent_.lowest_m, static_cast<double>(z));
+    extent_.highest_m = std::max(extent_.highest_m, static_cast<double>(z));
+  }
+  for (const int row : {0, heights.rows - 1}) {
+    for (const int column : {0, heights.columns - 1}) {
+      const auto [x, y] = heights.Place(column, row);
+      extent_.radius_m = std::max(extent_.radius_m, std::hypot(x, y));
+    }
+  }
+}
+
+TerrainLight::TerrainLight(std::shared_ptr<const TerrainHorizons> horizons,
+                           const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                           const glm::dvec3& to_sun)
+    : horizons_(std::move(horizons)),
+      sky_(air, diffuse, to_sun, horizons_ ? horizons_->extent() : OpenSky::Extent{0.0, 1.0, 5e5}) {
+}
+
+void TerrainLight::AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing,
+                             double mu_s) {
+  slopes_.emplace(horizons_->views(), medium, outgoing, sky_, mu_s);
+}
+
+BandLight TerrainLight::Irradiance(const SlopePoint& at) const {
+  const SurfaceSectors surface = SectorsOf(AtPlace(at.normal, at.up));
+  const Horizons horizons = horizons_->map().At(at.point);
+  const BandLight sky = sky_.Irradiance(at.altitude_m, at.mu_s, surface, horizons);
+  return slopes_ ? sky + slopes_->Irradiance(at.point, surface, horizons) : sky;
+}
+
+BandLight TerrainLight::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {
+  return sky_.Radiance(at.altitude_m, at.mu_s, AtPlace(direction, at.up));
+}
+
+BandLight TerrainLight::Radiance(const SlopePoint& at, const glm::dvec3& direction) const {
+  const glm::dvec3 here = AtPlace(direction, at.up);
+  const double azimuth = std::atan2(here.y, here.x);
+  const double turn = azimuth / (2.0 * kPi);
+  const auto sector = static_cast<std::size_t>(std::lround((turn - std::floor(turn)) *
+                                                           static_cast<double>(kHorizonAzimuths))) %
+                      kHorizonAzimuths;
+  const Horizons horizons = horizons_->map().At(at.point);
+  if (slopes_ && here.z < static_cast<double>(horizons[sector]))
+    return slopes_->Radiance(at.point, azimuth);
+  return sky_.Radiance(at.altitude_m, at.mu_s, here);
+}
+
+}  // namespace alpenglow

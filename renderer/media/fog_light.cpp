@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/media/fog_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "lut/diffuse/spherical_harmonics.h"
+#include "renderer/media/eddington_slab.h"
+
+namespace alpenglow {
+namespace {
+
+/// Sky light falls through fog as a beam of this zenith cosine would: the diffusivity factor 1.66
+/// of Elsasser (1942).
+constexpr double kSkyCosine = 0.6;
+constexpr int kGlowNodes = 65;
+
+std::vector<double> AltitudesOver(double bottom_m, const FogLayer& layer) {
+  constexpr double kEndless_m = 8000.0;
+  const double step = std::isinf(layer.scale_height_m()) ? kEndless_m : layer.scale_height_m();
+  std::vector<double> altitudes;
+  for (const double share : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+    altitudes.push_back(bottom_m + share * step);
+  }
+  return altitudes;
+}
+
+}  // namespace
+
+FogLight::FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
+                   const BandLight& sun, double bottom_m)
+    : fog_(fog),
+      to_sun_(to_sun),
+      chi_(LegendreCoefficients(fog.optics.phase, diffuse.options().degree)),
+      extinction_per_m_(fog.optics.extinction_per_m[0]),
+      depth_(extinction_per_m_ * fog.fog()->ColumnAbove(bottom_m)),
+      sky_(diffuse, {0.0, 0.0, 1.0}, to_sun, AltitudesOver(bottom_m, *fog.fog())),
+      ground_(diffuse.bands()) {
+  const double albedo = fog.optics.scattering_per_m[0] / extinction_per_m_;
+  peak_scale_ = 1.0 - albedo * std::max(chi_[2], 0.0);
+  broad_.kind = PhaseKind::kHenyeyGreenstein;
+  broad_.g = std::clamp(chi_[1], -0.99, 0.99);
+  const double mu_s = sky_.mu_s();
+  const BandLight sky = diffuse.SkyIrradiance(std::max(bottom_m, 0.0), mu_s);
+  const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
+  for (std::size_t band = 0; band < ground_.count; ++band) {
+    ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
+                    (static_cast<float>(std::max(mu_s, 0.0)) * sun[band] + sky[band]);
+  }
+  sky_ = sky_.WithoutGround(ground_);
+  // The cosine that makes the layer as deep towards the sun as it is over a round planet.
+  const FogLayer& layer = *fog.fog();
+  const double slant =
+      layer.ColumnToSpace({0.0, 0.0, bottom_m}, to_sun) / layer.ColumnAbove(bottom_m);
+  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), sun, sky, ground_albedo);
+}
+
+void FogLight::Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,
+                     const std::vector<double>& ground_albedo) {
+  const SlabScattering scattering{albedo, chi_[1], chi_[2]};
+  for (Glow* glow : {&of_sun_, &of_sky_}) {
+    glow->mean.assign(kGlowNodes, BandLight(sun.count));
+    glow->slope.assign(kGlowNodes, BandLight(sun.count));
+  }
+  for (std::size_t band = 0; band < sun.count; ++band) {
+    const EddingtonSlab under_sun(scattering, depth_, ground_albedo[band], mu0);
+    const EddingtonSlab under_sky(scattering, depth_, ground_albedo[band], kSkyCosine);
+    const auto beam = static_cast<double>(sun[band]);
+    const double sky_beam = static_cast<double>(sky[band]) / kSkyCosine;
+    for (std::size_t i = 0; i < kGlowNodes; ++i) {
+      const double u = static_cast<double>(i) / (kGlowNodes - 1);
+      const SlabField sunny = under_sun.At(depth_ * u * u * u * u);
+      const SlabField dull = under_sky.At(depth_ * u * u * u * u);
+      of_sun_.mean[i][band] = static_cast<float>(beam * sunny.mean);
+      of_sun_.slope[i][band] = static_cast<float>(beam * sunny.slope);
+      of_sky_.mean[i][band] = static_cast<float>(sky_beam * dull.mean);
+      of_sky_.slope[i][band] = static_cast<float>(sky_beam * dull.slope);
+    }
+  }
+}
+
+double FogLight::DepthAbove(double altitude_m) const {
+  return std::min(extinction_per_m_ * fog_.fog()->ColumnAbove(altitude_m), depth_);
+}
+
+FogLight::Place FogLight::PlaceOf(double altitude_m) const {
+  const double u =
+      depth_ > 0.0 ? (kGlowNodes - 1) * std::sqrt(std::sqrt(DepthAbove(altitude_m) / depth_)) : 0.0;
+  const double low = std::min(std::floor(u), kGlowNodes - 2.0);
+  return {static_cast<std::size_t>(low), static_cast<float>(u - low)};
+}
+
+BandLight FogLight::At(const std::vector<BandLight>& nodes, const Place& place) {
+  return (1.0F - place.share) * nodes[place.low] + place.share * nodes[place.low + 1];
+}
+
+FogLight::Look FogLight::LookAlong(const glm::dvec3& look) const {
+  const double cosine = glm::dot(look, to_sun_);
+  return {Phase(fog_.optics.phase, cosine), Phase(broad_, cosine), look.z,
+          sky_.Towards(look, chi_)};
+}
+
+FogLight::Scattered FogLight::At(const Look& look, double altitude_m, const BandLight& sun,
+                                 const BandLight& lit, double slant_depth) const {
+  const double direct = std::exp(-slant_depth);
+  const double taken_along = std::exp(-peak_scale_ * slant_depth) - direct;
+  const auto once = static_cast<float>(look.phase * direct + look.broad_phase * taken_along);
+  // Light that ends in the eye goes against the look: down where the look goes up.
+  const auto tilt = static_cast<float>(chi_[1] * look.down);
+  const Place place = PlaceOf(altitude_m);
+  return {once * sun + lit * (At(of_sun_.mean, place) + tilt * At(of_sun_.slope, place)),
+          SkyLeft(altitude_m) * sky_.At(look.sky, altitude_m) + At(of_sky_.mean, place) +
+              tilt * At(of_sky_.slope, place)};
+}
+
+float FogLight::SkyLeft(double altitude_m) const {
+  return static_cast<float>(std::exp(-peak_scale_ * DepthAbove(altitude_m) / kSkyCosine));
+}
+
+float FogLight::BeamLeft(double slant_depth) const {
+  return static_cast<float>(std::exp(-peak_scale_ * slant_depth));
+}
+
+BandLight FogLight::OnSurface(double altitude_m, double cos_up) const {
+  const Place place = PlaceOf(altitude_m);
+  const auto tilt = static_cast<float>(2.0 * kPi / 3.0 * cos_up);
+  BandLight irradiance =
+      static_cast<float>(kPi) * (At(of_sun_.mean, place) + At(of_sky_.mean, place)) +
+      tilt * (At(of_sun_.slope, place) + At(of_sky_.slope, place));
+  // The ground's light in it is part of the clear sky's irradiance of a slope already.
+  const auto twice = static_cast<float>(kPi * 0.5 * (1.0 - cos_up)) * SkyLeft(altitude_m);
+  for (std::size_t band = 0; band < irradiance.count; ++band) {
+    irradiance[band] = std::max(irradiance[band] - twice * ground_[band], 0.0F);
+  }
+  return irradiance;
+}
+
+}  // namespace alpenglow

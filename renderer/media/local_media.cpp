@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/media/local_media.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+
+#include "atmosphere/colour/black_body.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kAbove_m = 20000.0;
+
+// Of a list with one value, or one a band.
+double ValueAt(const std::vector<double>& values, std::size_t band) {
+  return values.size() == 1 ? values.front() : values[band];
+}
+
+MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengths_nm) {
+  const std::size_t bands = wavelengths_nm.size();
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
+                      volume.phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double extinction = ValueAt(volume.extinction_per_m, band);
+    const double albedo = ValueAt(volume.albedo, band);
+    optics.extinction_per_m[band] = extinction;
+    optics.scattering_per_m[band] = extinction * albedo;
+    optics.emission_per_m[band] = ValueAt(volume.emission_per_m, band);
+    // Kirchhoff: what absorbs shines.
+    if (volume.temperature_k) {
+      optics.emission_per_m[band] += extinction * (1.0 - albedo) *
+                                     BlackBodyRadiance(wavelengths_nm[band], *volume.temperature_k);
+    }
+  }
+  return optics;
+}
+
+MediumOptics OpticsOf(const Fog& fog, std::size_t bands) {
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands), fog.phase};
+  for (std::size_t band = 0; band < bands; ++band) {
+    optics.extinction_per_m[band] = fog.extinction_per_m;
+    optics.scattering_per_m[band] = fog.extinction_per_m * fog.albedo;
+  }
+  return optics;
+}
+
+VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
+  GeodeticPosition place{volume.latitude_rad, volume.longitude_rad, 0.0};
+  if (!volume.height.above_ground) place.height_m = volume.height.value_m;
+  VolumePlacement placement;
+  placement.bottom = ground.frame.EnuFromGeodetic(place).xyz;
+  place.height_m += 1000.0;
+  placement.up = (ground.frame.EnuFromGeodetic(place).xyz - placement.bottom) / 1000.0;
+  if (volume.height.above_ground) {
+    if (ground.terrain) {
+      const auto hit = ground.terrain->Intersect({placement.bottom.x, placement.bottom.y, kAbove_m},
+                                                 {0.0, 0.0, -1.0});
+      if (hit) placement.bottom.z = kAbove_m - hit->distance_m;
+    }
+    placement.bottom += volume.height.value_m * placement.up;
+  }
+  const glm::dvec3 ahead(std::sin(volume.heading_rad), std::cos(volume.heading_rad), 0.0);
+  placement.up = glm::normalize(placement.up);
+  placement.ahead = glm::normalize(ahead - glm::dot(ahead, placement.up) * placement.up);
+  placement.across = glm::cross(placement.ahead, placement.up);
+  placement.size_m = {volume.size_m[0], volume.size_m[1], volume.size_m[2]};
+  placement.shape = volume.shape;
+  return placement;
+}
+
+std::shared_ptr<const VolumeGrid> GridOf(const Volume& volume) {
+  if (volume.grid.empty()) return nullptr;
+  return std::make_shared<const VolumeGrid>(
+      volume.grid_size ? ReadRawGrid(volume.grid, *volume.grid_size) : ReadNrrd(volume.grid));
+}
+
+double FogBase(const Fog& fog, const SceneGround& ground) {
+  if (fog.base_height_m) return *fog.base_height_m;
+  if (!ground.terrain) return 0.0;
+  const auto hit = ground.terrain->Intersect({0.0, 0.0, kAbove_m}, {0.0, 0.0, -1.0});
+  return hit ? kAbove_m - hit->distance_m : 0.0;
+}
+
+double FogBottom(const FogLayer& fog, const SceneGround& ground) {
+  if (!ground.terrain) return std::max(fog.base_m(), 0.0);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& [x, y, z] : ground.terrain->mesh().positions) {
+    lowest = std::min(lowest, fog.AltitudeOf({x, y, z}));
+  }
+  return std::max(fog.base_m(), lowest);
+}
+
+}  // namespace
+
+double LocalMedium::DensityAt(const glm::dvec3& point) const {
+  return std::visit([&](const auto& of) { return of.DensityAt(point); }, body);
+}
+
+std::vector<DensePiece> LocalMedium::PiecesAlong(const glm::dvec3& origin,
+                                                 const glm::dvec3& direction,
+                                                 double length_m) const {
+  return std::visit([&](const auto& of) { return of.PiecesAlong(origin, direction, length_m); },
+                    body);
+}
+
+double LocalMedium::ColumnTowards(const glm::dvec3& point, const glm::dvec3& direction) const {
+  if (const FogLayer* layer = fog()) return layer->ColumnToSpace(point, direction);
+  return volume()->Column(point, direction, std::numeric_limits<double>::infinity());
+}
+
+namespace {
+
+/// Neither takes light nor gives any: to cut rays there would only round them.
+bool IsVoid(const Volume& volume) {
+  const auto is_zero = [](double value) { return value == 0.0; };
+  return std::all_of(volume.extinction_per_m.begin(), volume.extinction_per_m.end(), is_zero) &&
+         std::all_of(volume.emission_per_m.begin(), volume.emission_per_m.end(), is_zero);
+}
+
+}  // namespace
+
+LocalMedia::LocalMedia(const Scene& scene, const SceneGround& ground, const Medium& medium)
+    : bands_(medium.wavelengths_nm.size()) {
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    const Volume& volume = scene.volumes[i];
+    try {
+      LocalMedium made{
+          LocalVolume(PlacementOf(volume, ground), volume.scale_height_m, GridOf(volume)),
+          OpticsOf(volume, medium.wavelengths_nm)};
+      if (!IsVoid(volume)) all_.push_back(std::move(made));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("volume {}: {}", i + 1, error.what()));
+    }
+  }
+  if (scene.fog && scene.fog->extinction_per_m > 0.0) {
+    all_.push_back({FogLayer(FogBase(*scene.fog, ground), scene.fog->scale_height_m,
+                             medium.planet_radius_m, medium.atmosphere_height_m),
+                    OpticsOf(*scene.fog, bands_)});
+    fog_bottom_m_ = FogBottom(*all_.back().fog(), ground);
+  }
+}
+
+LocalMedia::LocalMedia(std::vector<LocalMedium> all, std::size_t bands)
+    : all_(std::move(all)), bands_(bands) {
+  if (fog() != nullptr) fog_bottom_m_ = all_.back().fog()->base_m();
+}
+
+LocalMedia LocalMedia::Only(bool volumes, bool with_fog) const {
+  LocalMedia some = *this;
+  std::erase_if(some.all_, [&](const LocalMedium& medium) {
+    return medium.fog() != nullptr ? !with_fog : !volumes;
+  });
+  return some;
+}
+
+Bands<double> LocalMedia::OpticalDepthTowards(const glm::dvec3& point,
+                                              const glm::dvec3& direction) const {
+  Bands<double> depth(bands_);
+  for (const LocalMedium& medium : all_) {
+    const double column = medium.ColumnTowards(point, direction);
+    if (column == 0.0) continue;
+    for (std::size_t band = 0; band < bands_; ++band) {
+      depth[band] += column * medium.optics.extinction_per_m[band];
+    }
+  }
+  return depth;
+}
+
+}  // namespace alpenglow

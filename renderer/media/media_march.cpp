@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/media/media_march.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "atmosphere/number/quadrature.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kNodes = 7;
+
+/// Kronrod's seven nodes on [0, 1], the weights of both rules, and the integrals from 0 to each
+/// node of the polynomials that are 1 at one node and 0 at the others.
+struct KronrodRule {
+  std::array<double, kNodes> node{}, weight{}, gauss_weight{};
+  std::array<std::array<double, kNodes>, kNodes> upto{};  // [node][of which]
+};
+
+KronrodRule MakeRule() {
+  constexpr std::array<double, 4> kAbscissa{0.960491268708020283, 0.774596669241483377,
+                                            0.434243749346802558, 0.0};
+  constexpr std::array<double, 4> kWeight{0.104656226026467265, 0.268488089868333441,
+                                          0.401397414775962223, 0.450916538658474142};
+  constexpr std::array<double, 4> kGaussWeight{0.0, 5.0 / 9.0, 0.0, 8.0 / 9.0};
+  KronrodRule rule;
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    const std::size_t k = std::min(i, kNodes - 1 - i);
+    rule.node[i] = 0.5 * (i < 3 ? 1.0 - kAbscissa[k] : 1.0 + kAbscissa[k]);
+    rule.weight[i] = 0.5 * kWeight[k];
+    rule.gauss_weight[i] = 0.5 * kGaussWeight[k];
+  }
+  const GaussRule& exact = GaussLegendre(4);
+  const auto basis = [&](std::size_t of, double x) {
+    double product = 1.0;
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      if (k != of) product *= (x - rule.node[k]) / (rule.node[of] - rule.node[k]);
+    }
+    return product;
+  };
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    for (std::size_t of = 0; of < kNodes; ++of) {
+      for (std::size_t q = 0; q < exact.node.size(); ++q) {
+        rule.upto[i][of] +=
+            exact.weight[q] * rule.node[i] * basis(of, rule.node[i] * exact.node[q]);
+      }
+    }
+  }
+  return rule;
+}
+
+const KronrodRule& Rule() {
+  static const KronrodRule kRule = MakeRule();
+  return kRule;
+}
+
+/// What a panel adds, as if it began at the eye.
+struct Panel {
+  double begin_m = 0.0, end_m = 0.0;
+  Bands<double> light, depth, volume_depth, mean, mean_past_volumes;
+  double light_error = 0.0;  // of the band that is worst, absolute
+  double depth_error = 0.0;
+  double most_light = 0.0, most_depth = 0.0;
+};
+
+class March {
+ public:
+  March(const LocalMedia& media, const glm::dvec3& origin, const glm::dvec3& direction,
+        double length_m, const MediaSource& source, double tolerance,
+        std::span<const double> cuts_m)
+      : media_(media),
+        origin_(origin),
+        direction_(direction),
+        source_(source),
+        tolerance_(tolerance),
+        bands_(media.bands()),
+        passed_(bands_),
+        passed_volumes_(bands_),
+        light_(bands_) {
+    for (const LocalMedium& medium : media.all()) {
+      pieces_.push_back(medium.PiecesAlong(origin, direction, length_m));
+      double thickest = 0.0;
+      for (std::size_t band = 0; band < bands_; ++band) {
+        thickest = std::max(thickest, medium.optics.extinction_per_m[band]);
+      }
+      thickest_per_m_.push_back(thickest);
+      for (const DensePiece& piece : pieces_.back()) {
+        cuts_.push_back(piece.begin_m);
+        cuts_.push_back(piece.end_m);
+      }
+    }
+    largest_.assign(pieces_.size(), 0.0);
+    if (cuts_.empty()) return;
+    const auto [first, last] = std::minmax_element(cuts_.begin(), cuts_.end());
+    const double begin_m = *first, end_m = *last;
+    whole_m_ = end_m - begin_m;
+    for (const double cut : cuts_m) {
+      if (begin_m < cut && cut < end_m) cuts_.push_back(cut);
+    }
+    std::sort(cuts_.begin(), cuts_.end());
+    cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
+  }
+
+  [[nodiscard]] MarchedLight Run() {
+    for (std::size_t i = 0; i + 1 < cuts_.size() && !IsOpaque(); ++i) {
+      bool anything = false;
+      for (std::size_t m = 0; m < pieces_.size(); ++m) {
+        largest_[m] = LargestOn(pieces_[m], 0.5 * (cuts_[i] + cuts_[i + 1]));
+        anything = anything || largest_[m] > 0.0;
+      }
+      if (anything) Take(cuts_[i], cuts_[i + 1], 0);
+    }
+    return Result();
+  }
+
+ private:
+  static constexpr double kMostDepth = 2.0;
+  static constexpr double kOpaque = 13.9;  // -ln 1e-6
+  static constexpr int kMostHalvings = 30;
+  static constexpr std::size_t kMostNodes = 20000;
+
+  static double LargestOn(const std::vector<DensePiece>& pieces, double at_m) {
+    const auto after =
+        std::upper_bound(pieces.begin(), pieces.end(), at_m,
+                         [](double at, const DensePiece& piece) { return at < piece.end_m; });
+    return after != pieces.end() && after->begin_m <= at_m ? after->largest : 0.0;
+  }
+
+  [[nodiscard]] bool IsOpaque() const {
+    return std::all_of(passed_.value.begin(), passed_.value.begin() + static_cast<int>(bands_),
+                       [](double depth) { return depth > kOpaque; });
+  }
+
+  void Take(double begin_m, double end_m, int halvings) {
+    if (IsOpaque()) return;
+    const double middle = 0.5 * (begin_m + end_m);
+    const bool may_halve =
+        halvings < kMostHalvings && nodes_ < kMostNodes && begin_m < middle && middle < end_m;
+    if (!may_halve || MostPerMetre(begin_m, end_m) * (end_m - begin_m) <= kMostDepth) {
+      const Panel panel = Evaluate(begin_m, end_m);
+      if (!may_halve || IsGood(panel)) {
+        Add(panel);
+        return;
+      }
+    }
+    Take(begin_m, middle, halvings + 1);
+    Take(middle, end_m, halvings + 1);
+  }
+
+  // Extinction, or more, of the thickest band. But for grids densities rise or fall throughout a
+  // piece: what is largest is at an end.
+  [[nodiscard]] double MostPerMetre(double begin_m, double end_m) const {
+    const double inside = 1e-6 * (end_m - begin_m);
+    double sum = 0.0;
+    for (std::size_t m = 0; m < largest_.size(); ++m) {
+      const LocalMedium& medium = media_.all()[m];
+      double most = largest_[m];
+      if (most > 0.0 && (medium.volume() == nullptr || medium.volume()->grid() == nullptr)) {
+        most = std::max(medium.DensityAt(origin_ + (begin_m + inside) * direction_),
+                        medium.DensityAt(origin_ + (end_m - inside) * direction_));
+      }
+      sum += most * thickest_per_m_[m];
+    }
+    return sum;
+  }
+
+  // Each panel may be wrong by the tolerance's part of what it adds, or by its share in length of
+  // what all have added so far.
+  [[nodiscard]] bool IsGood(const Panel& panel) const {
+    const double share = (panel.end_m - panel.begin_m) / whole_m_;
+    const double most = std::max(panel.most_light, share * most_light_);
+    return panel.light_error <= tolerance_ * most &&
+           panel.depth_error <= tolerance_ * std::max(panel.most_depth, share);
+  }
+
+  [[nodiscard]] Panel Evaluate(double begin_m, double end_m) {
+    const KronrodRule& rule = Rule();
+    const std::size_t count = media_.all().size();
+    const double length = end_m - begin_m;
+    std::array<glm::dvec3, kNodes> point{};
+    densities_.assign(kNodes * count, 0.0);
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      point[i] = origin_ + (begin_m + length * rule.node[i]) * direction_;
+      for (std::size_t m = 0; m < count; ++m) {
+        if (largest_[m] > 0.0) densities_[i * count + m] = media_.all()[m].DensityAt(point[i]);
+      }
+    }
+    Panel panel;
+    panel.begin_m = begin_m;
+    panel.end_m = end_m;
+    panel.depth = panel.volume_depth = panel.light = Bands<double>(bands_);
+    panel.mean = panel.mean_past_volumes = Bands<double>(bands_);
+    Bands<double> gauss_light(bands_);
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      const auto [depth, volume_depth] = DepthUpto(rule.upto[i], length, count);
+      const BandLight source = source_(begin_m + length * rule.node[i], point[i],
+                                       std::span(densities_).subspan(i * count, count));
+      ++nodes_;
+      for (std::size_t band = 0; band < bands_; ++band) {
+        const double left = std::exp(-depth[band] - passed_[band]);
+        const double light = length * left * static_cast<double>(source[band]);
+        panel.light[band] += rule.weight[i] * light;
+        gauss_light[band] += rule.gauss_weight[i] * light;
+        panel.mean[band] += rule.weight[i] * left;
+        panel.mean_past_volumes[band] +=
+            rule.weight[i] * std::exp(-volume_depth[band] - passed_volumes_[band]);
+      }
+    }
+    std::tie(panel.depth, panel.volume_depth) = DepthUpto(rule.weight, length, count);
+    const Bands<double> gauss_depth = DepthUpto(rule.gauss_weight, length, count).first;
+    for (std::size_t band = 0; band < bands_; ++band) {
+      panel.light_error =
+          std::max(panel.light_error, std::abs(panel.light[band] - gauss_light[band]));
+      panel.depth_error =
+          std::max(panel.depth_error, std::abs(panel.depth[band] - gauss_depth[band]));
+      panel.most_light = std::max(panel.most_light, panel.light[band]);
+      panel.most_depth = std::max(panel.most_depth, panel.depth[band]);
+    }
+    return panel;
+  }
+
+  // Optical depth of all and of volumes, by the weights of an integral over densities_.
+  [[nodiscard]] std::pair<Bands<double>, Bands<double>> DepthUpto(
+      const std::array<double, kNodes>& weights, double length, std::size_t count) const {
+    std::pair<Bands<double>, Bands<double>> depth{Bands<double>(bands_), Bands<double>(bands_)};
+    for (std::size_t m = 0; m < count; ++m) {
+      if (largest_[m] == 0.0) continue;
+      double column = 0.0;
+      for (std::size_t j = 0; j < kNodes; ++j) column += weights[j] * densities_[j * count + m];
+      const LocalMedium& medium = media_.all()[m];
+      for (std::size_t band = 0; band < bands_; ++band) {
+        const double of_this = length * column * medium.optics.extinction_per_m[band];
+        depth.first[band] += of_this;
+        if (medium.fog() == nullptr) depth.second[band] += of_this;
+      }
+    }
+    return depth;
+  }
+
+  void Add(const Panel& panel) {
+    MarchedPiece piece{panel.begin_m,     panel.end_m,       BandLight(bands_),
+                       BandLight(bands_), BandLight(bands_), BandLight(bands_)};
+    for (std::size_t band = 0; band < bands_; ++band) {
+      light_[band] += panel.light[band];
+      passed_[band] += panel.depth[band];
+      passed_volumes_[band] += panel.volume_depth[band];
+      piece.transmittance[band] = static_cast<float>(std::exp(-passed_[band]));
+      piece.past_volumes[band] = static_cast<float>(std::exp(-passed_volumes_[band]));
+      piece.mean_transmittance[band] = static_cast<float>(panel.mean[band]);
+      piece.mean_past_volumes[band] = static_cast<float>(panel.mean_past_volumes[band]);
+      most_light_ = std::max(most_light_, light_[band]);
+    }
+    error_ += panel.light_error;
+    done_.push_back(piece);
+  }
+
+  [[nodiscard]] MarchedLight Result() {
+    MarchedLight result;
+    result.radiance = result.transmittance = BandLight(bands_);
+    for (std::size_t band = 0; band < bands_; ++band) {
+      result.radiance[band] = static_cast<float>(light_[band]);
+      result.transmittance[band] = static_cast<float>(std::exp(-passed_[band]));
+    }
+    result.error = most_light_ > 0.0 ? error_ / most_light_ : 0.0;
+    result.nodes = nodes_;
+    result.pieces = std::move(done_);
+    return result;
+  }
+
+  const LocalMedia& media_;
+  glm::dvec3 origin_, direction_;
+  const MediaSource& source_;
+  double tolerance_;
+  std::size_t bands_;
+  std::vector<std::vector<DensePiece>> pieces_;  // of each body
+  std::vector<double> thickest_per_m_;
+  std::vector<double> cuts_;
+  std::vector<double> largest_;    // densities of the piece at hand; 0: not there
+  std::vector<double> densities_;  // [node][body]
+  Bands<double> passed_, passed_volumes_, light_;
+  double whole_m_ = 0.0, most_light_ = 0.0, error_ = 0.0;
+  std::size_t nodes_ = 0;
+  std::vector<MarchedPiece> done_;
+};
+
+}  // namespace
+
+MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
+                        const glm::dvec3& direction, double length_m, const MediaSource& source,
+                        double tolerance, std::span<const double> cuts_m) {
+  return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The air of a scene, solved, whole and without some of its parts.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "renderer/effect/effects.h"
+#include "renderer/light/aerial_perspective.h"
+#include "renderer/light/ground_light.h"
+
+namespace alpenglow {
+
+/// Air and what its light reaches. Refers to the parts of the ground.
+struct AirModel {
+  AirModel(const Medium& medium, const GroundParts& parts)
+      : air(medium), diffuse(medium), aerial(air, diffuse), ground_light(parts, air, diffuse) {}
+
+  AirIntegrator<float> air;
+  DiffuseLight diffuse;
+  AerialPerspective aerial;
+  GroundLight ground_light;
+};
+
+/// Safe to share between threads. Air that lacks a part is solved when it is first asked for. The
+/// air in front of lamps has all parts always.
+class AirModels {
+ public:
+  AirModels(const Medium& medium, const GroundParts& parts)
+      : parts_(parts), whole_(medium, parts) {}
+
+  [[nodiscard]] const AirModel& whole() const { return whole_; }
+  /// With those of molecules, aerosol and ozone that are among the effects.
+  [[nodiscard]] const AirModel& With(EffectSet effects) const;
+
+ private:
+  GroundParts parts_;
+  AirModel whole_;
+  mutable std::mutex mutex_;
+  mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Pictures of what a scene needs: the pilot of effect_choice.h, with a scene's own pixels.
+#include <optional>
+
+#include "atmosphere/air/medium_bands.h"
+#include "renderer/picture/scene_state.h"
+
+namespace alpenglow {
+
+std::unique_ptr<SceneRenderer::State> SceneRenderer::State::OnOtherBands(int bands) const {
+  const std::optional<Medium> other = OnBands(scene.medium, bands);
+  if (!other) return nullptr;
+  Scene same = scene;
+  same.medium = *other;
+  return std::make_unique<State>(same, shared_ground, horizons);
+}
+
+const SceneRenderer::State& SceneRenderer::State::OnFewBands() const {
+  constexpr int kFew = 4;
+  std::call_once(few_bands_asked, [&] {
+    if (medium.wavelengths_nm.size() > kFew) few_bands = OnOtherBands(kFew);
+  });
+  return few_bands ? *few_bands : *this;
+}
+
+// Effects that have something to do.
+EffectSet SceneRenderer::State::Present(const PictureFrame& frame) const {
+  const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
+    if (is_there) return effects;
+    for (const Effect effect : those.List()) effects = effects.Without(effect);
+    return effects;
+  };
+  EffectSet present = EffectSet::All();
+  present = without(present, frame.sunlight->IsBroken(), {Effect::kShafts});
+  present = without(present, !lamps.All().empty(), {Effect::kLights, Effect::kBeams});
+  present = without(present, ground.terrain.has_value(), {Effect::kShadows, Effect::kRelief});
+  present =
+      without(present, frame.light.on_terrain != nullptr, {Effect::kHorizons, Effect::kBounce});
+  present = without(present, media.HasVolumes(), {Effect::kVolumes});
+  present = without(present, media.fog() != nullptr, {Effect::kFogGlow});
+  return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
+}
+
+ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings& settings,
+                                          const EffectBudget& budget) const {
+  ValidateSettings(settings);
+  const State& whole = state_->For(settings.effects);
+  const PictureFrame frame = whole.FrameAt(shot, settings);
+  std::optional<PictureFrame> on_few_bands;
+  const auto with = [&](EffectSet effects) {
+    const State& state = state_->For(effects);
+    if (&state == &whole) return whole.Reduced(frame, effects);
+    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings, frame.sunlight));
+    return state.Reduced(*on_few_bands, effects);
+  };
+  Pilot pilot;
+  pilot.groups = PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun,
+                             frame.lamps->Directions());
+  std::vector<PixelPlace> places;
+  for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
+  const auto timed = [&](const State& state, const PictureFrame& of) {
+    const Stopwatch watch;
+    Image image = state.Pixels(of, places);
+    return PilotPicture{std::move(image), watch.seconds()};
+  };
+  pilot.render = [&](EffectSet effects) { return timed(state_->For(effects), with(effects)); };
+  pilot.pixels_of_picture = static_cast<double>(settings.width) * settings.height;
+  pilot.preparation_s = [&](Effect effect) {
+    return effect == Effect::kShafts   ? frame.sunlight_s
+           : effect == Effect::kLights ? frame.plan_s
+           : effect == Effect::kBounce ? frame.slopes_s
+                                       : 0.0;
+  };
+  pilot.present = whole.Present(frame);
+  const auto refine = [&](const char* name, const auto& change) {
+    pilot.refinements.push_back({name, [&, change] {
+                                   PictureFrame finer = frame;
+                                   change(finer.settings);
+                                   return timed(whole, finer);
+                                 }});
+  };
+  refine("16 air nodes", [](RenderSettings& finer) { finer.air_nodes = 16; });
+  refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
+  const std::unique_ptr<State> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
+  if (more_bands && frame.model->air.bands() < 16) {
+    pilot.refinements.push_back(
+        {"16 bands",
+         [&] { return timed(*more_bands, more_bands->FrameAt(shot, settings, frame.sunlight)); }});
+  }
+  EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
+  Image image = state_->For(choice.effects).Picture(with(choice.effects));
+  return {std::move(image), std::move(choice)};
+}
+
+}  // namespace alpenglow

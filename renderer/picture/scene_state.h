@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// What a SceneRenderer is made of. For its own translation units.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "renderer/ground/camera_stand.h"
+#include "renderer/ground/scene_geometry.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/lamp/lamp_light.h"
+#include "renderer/light/ground_light.h"
+#include "renderer/picture/air_model.h"
+#include "renderer/picture/pixel_writer.h"
+#include "renderer/picture/render.h"
+#include "renderer/picture/shared_air.h"
+
+namespace alpenglow {
+
+/// Throws InputError for what is out of range.
+void ValidateSettings(const RenderSettings& settings);
+
+struct SceneRenderer::State {
+  explicit State(const Scene& of)
+      : State(of, std::make_shared<SceneGround>(LoadGround(of)), nullptr) {}
+  /// @param known  the horizons of that ground, or null.
+  State(const Scene& of, std::shared_ptr<const SceneGround> on,
+        std::shared_ptr<const HorizonsOnDemand> known)
+      : scene(of),
+        shared_ground(std::move(on)),
+        ground(*shared_ground),
+        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+        colour(medium.wavelengths_nm),
+        lamps(scene, ground, medium, colour),
+        media(scene, ground, medium),
+        // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
+        geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
+        smooth_geometry(ground, medium, false),
+        horizons(known ? std::move(known) : std::make_shared<HorizonsOnDemand>(ground, medium)),
+        material(scene.ground, ColourDrape::Of(scene, ground), medium.wavelengths_nm),
+        models(medium, {ground, geometry, lamps, *horizons, material}) {}
+
+  /// @param known  sunlight over the terrain at that time, or null.
+  [[nodiscard]] PictureFrame FrameAt(
+      const Shot& shot, const RenderSettings& settings,
+      const std::shared_ptr<const TerrainSunlight>& known = nullptr) const;
+  void LightMedia(PictureFrame& frame) const;
+  void LightTerrain(PictureFrame& frame) const;
+  [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
+  [[nodiscard]] Image Pixels(const PictureFrame& frame,
+                             const std::vector<PixelPlace>& places) const;
+  [[nodiscard]] Image Picture(const PictureFrame& frame) const;
+  [[nodiscard]] std::vector<Shaded> Pixel(const PictureFrame& frame, int x, int y) const;
+  [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
+    return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
+        .Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
+  }
+  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
+                             const PictureFrame& frame, const LampTile& near,
+                             std::array<double, 2> disk_sample) const;
+  [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
+                                  const Lighting& light) const;
+  [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
+  [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
+  [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;
+  /// See SceneRenderer.
+  [[nodiscard]] double Illuminance(const glm::dvec3& eye, const Lighting& light) const;
+  [[nodiscard]] LampPlan PlanLamps(const PictureFrame& frame) const;
+
+  [[nodiscard]] EffectSet Present(const PictureFrame& frame) const;
+  /// The same scene on as many bands; nothing where nobody knows its air there.
+  [[nodiscard]] std::unique_ptr<State> OnOtherBands(int bands) const;
+  /// The scene without its fine spectrum: itself where it has none.
+  [[nodiscard]] const State& OnFewBands() const;
+  [[nodiscard]] const State& For(EffectSet effects) const {
+    return effects.Has(Effect::kFineSpectrum) ? *this : OnFewBands();
+  }
+
+  Scene scene;
+  std::shared_ptr<const SceneGround> shared_ground;
+  const SceneGround& ground;
+  Medium medium;
+  BandColour colour;
+  LampLight lamps;
+  LocalMedia media;
+  SceneGeometry geometry, smooth_geometry;
+  std::shared_ptr<const HorizonsOnDemand> horizons;
+  GroundMaterial material;
+  AirModels models;
+  mutable std::once_flag few_bands_asked;
+  mutable std::unique_ptr<State> few_bands;
+};
+
+}  // namespace alpenglow

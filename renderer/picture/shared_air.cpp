@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/picture/shared_air.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace alpenglow {
+namespace {
+
+/// The air along a ray as the effects of a picture have it.
+class AirTo {
+ public:
+  AirTo(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
+        const SharedAir& rays, const glm::dvec3& direction)
+      : frame_(frame), kind_(rays.kind) {
+    const glm::dvec3& from = frame.camera().eye();
+    const glm::dvec3 up = geometry.UpAt(from);
+    ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up), -1.0, 1.0),
+            std::clamp(glm::dot(frame.light.to_sun, up), -1.0, 1.0),
+            std::clamp(glm::dot(direction, frame.light.to_sun), -1.0, 1.0)};
+    // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
+    if (kind_ == HitKind::kTerrain) ray_.length_m = rays.length_m();
+    if (!frame.sunlight->IsBroken()) return;
+    const RayExtent extent = ExtentOf(ray_, geometry.radius_m(), medium.atmosphere_height_m);
+    path_ = frame.sunlight->Along(from, direction, extent.end_m);
+  }
+
+  [[nodiscard]] const SunlitPath* sunlit() const {
+    return frame_.sunlight->IsBroken() ? &path_ : nullptr;
+  }
+
+  [[nodiscard]] AirAlongRay operator()(double length_m) const {
+    const AirModel& in = *frame_.model;
+    ViewRay ray = ray_;
+    ray.length_m = std::min(ray.length_m, length_m);
+    AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
+    std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
+    if (kind_ != HitKind::kSky && !frame_.Has(Effect::kAerial)) return none;
+    if (kind_ == HitKind::kSky && !frame_.Has(Effect::kSky)) {
+      return {none.inscatter, in.air.TransmittanceAlong(ray)};
+    }
+    const int nodes = frame_.settings.air_nodes;
+    const AerialPerspective::Nodes sampling{
+        .sky = frame_.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
+        .higher_orders = frame_.Has(Effect::kMultipleScattering)};
+    return frame_.sunlight->IsBroken() ? in.aerial.Along(ray, path_, sampling)
+                                       : in.aerial.Along(ray, sampling);
+  }
+
+ private:
+  const PictureFrame& frame_;
+  HitKind kind_;
+  ViewRay ray_;
+  SunlitPath path_;
+};
+
+}  // namespace
+
+bool SharedAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const {
+  constexpr double kSameDistance = 0.01;
+  if (hit.kind != kind || glm::length(direction - first_direction) > widest_rad) return false;
+  return kind == HitKind::kSky ||
+         std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
+}
+
+std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFrame& frame,
+                   std::vector<SharedAir>& airs) {
+  // All of a filter's width, and as far as the sky hardly bends where a camera turns.
+  constexpr double kSameSky_rad = 0.01;
+  const double widest_rad =
+      3.0 * frame.filter.radius() * frame.camera().PixelAngle() + kSameSky_rad;
+  auto known = std::find_if(airs.begin(), airs.end(), [&](const SharedAir& shared) {
+    return frame.settings.share_air && shared.Takes(hit, direction, widest_rad);
+  });
+  if (known == airs.end()) {
+    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, direction, glm::dvec3(0.0), 0.0, 0});
+  }
+  known->direction_sum += direction;
+  known->distance_sum_m += hit.distance_m;
+  ++known->rays;
+  return static_cast<std::size_t>(known - airs.begin());
+}
+
+void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
+            SharedAir& rays) {
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  const glm::dvec3 direction = glm::normalize(rays.direction_sum);
+  const AirTo air(frame, geometry, medium, rays, direction);
+  rays.air = air(kAll);
+  rays.media = BandLight(rays.air.inscatter.count);
+  if (!frame.media) return;
+  MarchedLight marched =
+      frame.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
+  rays.air = {DimmedByMedia(
+                  marched.pieces, [&](double m) { return air(m).inscatter; }, rays.air.inscatter,
+                  Behind::kAll),
+              rays.air.transmittance * marched.transmittance};
+  rays.media = marched.radiance;
+  rays.pieces = std::move(marched.pieces);
+}
+
+void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays) {
+  const glm::dvec3 direction = glm::normalize(rays.direction_sum);
+  rays.fog = frame.lamps->FogTransmittance(direction, frame.HasLitFog() ? 0.0 : rays.length_m());
+  rays.lamp_light = BandLight(rays.media.count);
+  if (frame.plan->tiles.empty() || !frame.Has(Effect::kBeams)) return;
+  const auto upto = [&](double length_m) {
+    return frame.lamps->InAir(*frame.plan, x, y, {direction, std::min(length_m, rays.length_m())},
+                              frame.camera().PixelAngle(), frame.settings.lamps.nodes);
+  };
+  rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(rays.length_m()), Behind::kVolumes);
+}
+
+}  // namespace alpenglow

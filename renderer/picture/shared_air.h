@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// What stands between an eye and the ends of its rays: air, fog, volumes, and light of lamps in
+// them.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "renderer/camera/moving_camera.h"
+#include "renderer/camera/pixel_samples.h"
+#include "renderer/ground/scene_geometry.h"
+#include "renderer/ground/terrain_sunlight.h"
+#include "renderer/lamp/lamp_light.h"
+#include "renderer/light/aerial_perspective.h"
+#include "renderer/media/media_light.h"
+#include "renderer/picture/air_model.h"
+#include "renderer/picture/render.h"
+
+namespace alpenglow {
+
+/// What all pixels of a picture share. Copies share what took time to prepare.
+struct PictureFrame {
+  RenderSettings settings;
+  const AirModel* model;
+  MovingCamera moving;
+  PixelFilter filter;
+  Lighting light;
+  std::shared_ptr<const TerrainSunlight> sunlight;
+  std::shared_ptr<const LampLight> lamps;
+  std::shared_ptr<const LampPlan> plan;
+  std::shared_ptr<const MediaLight> media;  // null: no volumes, and fog is lit by lamps alone
+  double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
+
+  [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
+  [[nodiscard]] const CameraRays& camera() const { return moving.middle(); }
+  [[nodiscard]] bool HasLitFog() const { return media && media->media().fog() != nullptr; }
+};
+
+/// Rays of a pixel that look through the same air, to the same place but for an edge's width.
+struct SharedAir {
+  HitKind kind;
+  double first_distance_m;     // of the ray that began it
+  glm::dvec3 first_direction;  // of that ray, unit
+  glm::dvec3 direction_sum;    // of unit vectors
+  double distance_sum_m;
+  int rays;
+  // Along the mean of their directions, to their mean distance:
+  AirAlongRay air{};
+  BandLight fog{};         // what fog leaves of light from the end, unless `air` says so
+  BandLight lamp_light{};  // of lamps in the air, W m^-2 sr^-1 nm^-1
+  BandLight media{};       // of volumes and fog in sun and sky, W m^-2 sr^-1 nm^-1
+  std::vector<MarchedPiece> pieces{};  // of media on the way
+
+  [[nodiscard]] double length_m() const {
+    return kind == HitKind::kSky ? std::numeric_limits<double>::infinity() : distance_sum_m / rays;
+  }
+
+  /// @param widest_rad  between two rays that share air.
+  [[nodiscard]] bool Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const;
+};
+
+/// Which of the airs of a pixel a ray looks through; makes a new one if none, or if airs
+/// are not shared.
+/// @param direction  CameraRay::through: air is as the middle of the lens sees it, beams in it too;
+///     LampLight::SeenBy spreads the glow about lamps.
+[[nodiscard]] std::size_t AirFor(const Hit& hit, const glm::dvec3& direction,
+                                 const PictureFrame& frame, std::vector<SharedAir>& airs);
+
+/// Light of sun and sky in air and media along the mean of the rays, and what they leave.
+void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
+            SharedAir& rays);
+
+/// Light of lamps on the way, of pixel (x, y); and what fog leaves that only lamps light. After
+/// AddAir.
+void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays);
+
+}  // namespace alpenglow

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Topic of the report: whole pictures, by samples of a pixel and nodes of the air.
+#include <fmt/format.h>
+
+#include <unistd.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <memory>
+
+#include "atmosphere/number/constants.h"
+#include "lut/program/program.h"
+#include "renderer/effect/picture_change.h"
+#include "renderer/picture/render.h"
+#include "renderer/report/report_measure.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/series/frame_times.h"
+
+namespace alpenglow {
+namespace {
+
+// Lines of the plot.
+enum Style { kSamples = 0, kNodes = 2, kWithout = 5 };
+
+constexpr std::size_t kScenes = 4;
+struct SceneText {
+  const char* key;
+  const char* name;
+  const char* time;  // of the day of the range; of the night, of the runway
+};
+constexpr std::array<SceneText, kScenes> kTexts{{{"noon", "Noon", "noon"},
+                                                 {"sunset", "Sunset", "sunset-15m"},
+                                                 {"twilight", "Twilight", "civil-dusk-10m"},
+                                                 {"night", "Night with lamps", "noon+12h"}}};
+
+/// Memory of this program that is in the machine's, now [bytes]; 0 where no one tells.
+std::uint64_t ResidentBytes() {
+  std::ifstream text("/proc/self/statm");
+  std::uint64_t all = 0, resident = 0;
+  text >> all >> resident;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// Processor time of all threads [s].
+double ProcessorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+class PicturesTopic {
+ public:
+  explicit PicturesTopic(const ReportEffort& effort)
+      : effort_(effort), width_(effort.quick ? 24 : 64), height_(effort.quick ? 14 : 36) {
+    const std::uint64_t before = ResidentBytes();
+    const auto [range, range_s] = Once([&] { return Range(effort.quick); });
+    const auto [runway, runway_s] = Once([&] { return RunwayScene(effort.quick ? 10 : 40, true); });
+    range_bytes_ = std::max(ResidentBytes(), before) - before;
+    load_s_ = std::max(range_s, runway_s);
+    for (std::size_t r = 0; r < kScenes; ++r)
+      scenes_.push_back({r + 1 < kScenes ? range : runway, InstantOf(r)});
+    for (JudgedScene& scene : scenes_) scene.frame_s = FrameSeconds(scene);
+    Judge();
+  }
+
+  void AddSamples(int samples) {
+    RenderSettings settings = Settings(samples);
+    Add({.series = "samples of a pixel",
+         .parameter = fmt::format("{}", samples),
+         .style = kSamples,
+         .in_summary = true},
+        settings);
+  }
+
+  void AddNodes(int nodes) {
+    RenderSettings settings = Settings(4);
+    settings.air_nodes = nodes;
+    Add({.series = "fewer air nodes",
+         .parameter = fmt::format("{} nodes", nodes),
+         .style = kNodes,
+         .in_summary = nodes == 4},
+        settings);
+  }
+
+  void AddWithout(Effect effect, const std::string& what) {
+    RenderSettings settings = Settings(4);
+    settings.effects = settings.effects.Without(effect);
+    Add({.series = "without " + what,
+         .parameter = "",
+         .origin = MethodOrigin::kLiterature,
+         .style = kWithout,
+         .in_summary = true},
+        settings);
+  }
+
+  [[nodiscard]] ReportTopic Finished() && {
+    topic_.key = "pictures";
+    topic_.title = "Whole pictures: what samples of a pixel and nodes of the air buy";
+    topic_.what =
+        "The built-in range at noon, a quarter of an hour before sunset and ten minutes before the "
+        "end of civil twilight from the same place, and a runway with forty lamps and an "
+        "aeroplane's landing lights in height fog; sky, air, shafts, shadows and lamps are "
+        "rendered as skyseries renders them.";
+    topic_.error_unit =
+        "parts of the pixel, as a distance of linear red, green and blue; what is darker than a "
+        "sixteenth of middle grey counts as if it were that bright, and 2 is the most (light in "
+        "one "
+        "picture and not in the other)";
+    topic_.notes =
+        "Fewer air nodes and what is left out are rendered with 4 samples. Most of the error of "
+        "few samples is at edges of terrain, which are thinner than a pixel: "
+        "a sample sees one side of them. Time is the processor time of all threads for a pixel; "
+        "build is loading the scene and what a picture prepares once (shadow heights, tree of "
+        "lamps); memory is what the program grew by when both scenes were loaded.";
+    topic_.wanted = 0.1;
+    topic_.answer = "pixel";
+    topic_.everywhere = "from noon to night";
+    topic_.scene = fmt::format("{} x {}", width_, height_);
+    topic_.regimes.clear();
+    for (std::size_t r = 0; r < kScenes; ++r)
+      topic_.regimes.push_back({kTexts[r].key, kTexts[r].name, SunOf(r)});
+    topic_.medium = scenes_.front().renderer->medium();
+    topic_.rays = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    topic_.judge.text = fmt::format(
+        "the same picture with {} samples a pixel, 16 nodes in the air and 24 for every lamp",
+        ReferenceSamples());
+    topic_.judge.noise.assign(kScenes, 0.0);
+    return std::move(topic_);
+  }
+
+ private:
+  struct JudgedScene {
+    std::shared_ptr<const SceneRenderer> renderer;
+    UtcInstant instant;
+    Image reference{};
+    double frame_s = 0.0;  // what a picture prepares once
+  };
+
+  /// The range takes seconds to grow: tests of the report see its place without it.
+  static Scene Range(bool quick) {
+    Scene scene = SceneFromOptions({});
+    if (quick) scene.terrain.kind = TerrainSource::Kind::kNone;
+    return scene;
+  }
+
+  /// A scene made ready, and the time that takes.
+  template <typename Make>
+  static std::pair<std::shared_ptr<const SceneRenderer>, double> Once(const Make& make) {
+    const double start = ProcessorSeconds();
+    auto renderer = std::make_shared<const SceneRenderer>(make());
+    return {std::move(renderer), ProcessorSeconds() - start};
+  }
+
+  [[nodiscard]] int ReferenceSamples() const { return effort_.quick ? 32 : 64; }
+
+  [[nodiscard]] static UtcInstant InstantOf(std::size_t r) {
+    const Scene range = SceneFromOptions({});
+    return InstantFromText(kTexts[r].time, {range.place, range.zone, range.time});
+  }
+
+  [[nodiscard]] SunRange SunOf(std::size_t r) const {
+    const double deg =
+        scenes_[r].renderer->ApparentSun(scenes_[r].instant).elevation_rad / kRadiansPerDegree;
+    const double rounded = std::round(10.0 * deg) / 10.0;
+    return {rounded, rounded};
+  }
+
+  [[nodiscard]] RenderSettings Settings(int samples) const {
+    RenderSettings settings;
+    settings.width = width_;
+    settings.height = height_;
+    settings.samples_per_pixel = samples;
+    return settings;
+  }
+
+  void Judge() {
+    RenderSettings settings = Settings(ReferenceSamples());
+    settings.air_nodes = 16;
+    settings.lamps = {.nodes = 24, .share_of_error = 5e-4};
+    const double start = ProcessorSeconds();
+    for (JudgedScene& scene : scenes_)
+      scene.reference = scene.renderer->Render(scene.instant, settings);
+    topic_.judge.time_s = (ProcessorSeconds() - start) / (static_cast<double>(kScenes) * Pixels());
+  }
+
+  void Add(ReportRow row, const RenderSettings& settings) {
+    row.at.resize(kScenes);
+    row.memory_bytes = range_bytes_;
+    row.build_s = load_s_;
+    for (std::size_t r = 0; r < kScenes; ++r) {
+      Measure(scenes_[r], settings, row.at[r]);
+      row.build_s = std::max(row.build_s, load_s_ + scenes_[r].frame_s);
+    }
+    topic_.rows.push_back(std::move(row));
+  }
+
+  /// Error of a picture, and its time without what is prepared once.
+  void Measure(const JudgedScene& scene, const RenderSettings& settings,
+               RegimeResult& result) const {
+    std::vector<double> seconds;
+    for (int pass = 0; pass < (effort_.quick ? 1 : 2); ++pass) {
+      const double start = ProcessorSeconds();
+      const Image image = scene.renderer->Render(scene.instant, settings);
+      seconds.push_back(ProcessorSeconds() - start);
+      result.error = StatisticsOfErrors(ChangesOf(scene.reference, image), 0.0);
+      ThrowIfInterrupted();
+    }
+    std::sort(seconds.begin(), seconds.end());
+    const bool shafts = settings.effects.Has(Effect::kShafts);
+    // Processors' clocks tick in microseconds: a small picture may take none.
+    result.time_s = std::max(seconds.front() - (shafts ? scene.frame_s : 0.0), 1e-6) / Pixels();
+    result.time_spread = seconds.back() / seconds.front() - 1.0;
+  }
+
+  [[nodiscard]] static std::vector<double> ChangesOf(const Image& reference, const Image& image) {
+    const double floor = ChangeFloor(reference);
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i)
+      changes.push_back(PixelChange(reference.rgb[i], image.rgb[i], floor));
+    return changes;
+  }
+
+  [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
+
+  /// What a picture prepares once: the time of a picture of one pixel.
+  [[nodiscard]] double FrameSeconds(const JudgedScene& scene) const {
+    RenderSettings settings = Settings(1);
+    settings.width = settings.height = 1;
+    double shortest = 0.0;
+    for (int pass = 0; pass < 2; ++pass) {
+      const double start = ProcessorSeconds();
+      (void)scene.renderer->Render(scene.instant, settings);
+      const double taken = ProcessorSeconds() - start;
+      shortest = pass == 0 ? taken : std::min(shortest, taken);
+    }
+    return shortest;
+  }
+
+  const ReportEffort& effort_;
+  int width_, height_;
+  std::vector<JudgedScene> scenes_;
+  std::uint64_t range_bytes_ = 0;
+  double load_s_ = 0.0;
+  ReportTopic topic_;
+};
+
+/// A lamp on a runway that points east: along it from its threshold, left of its middle.
+Light RunwayLamp(const GeodeticPosition& threshold, double along_m, double left_m, double height_m,
+                 double candela) {
+  constexpr double kRadius_m = 6371000.0;
+  Light light;
+  light.latitude_rad = threshold.latitude_rad + left_m / kRadius_m;
+  light.longitude_rad =
+      threshold.longitude_rad + along_m / (kRadius_m * std::cos(threshold.latitude_rad));
+  light.height = {height_m, false};
+  light.intensity_cd = candela;
+  return light;
+}
+
+}  // namespace
+
+Scene RunwayScene(int lamps, bool with_beam) {
+  constexpr double kLength_m = 1800.0, kHalfWidth_m = 23.0, kEye_m = 38.0, kApproach_m = 420.0;
+  constexpr double kVisibility_m = 900.0;
+  const GeodeticPosition threshold = PlaceFromDegrees(47.46, 8.55, 0.0);
+  Scene scene;
+  scene.place = threshold;
+  scene.medium = MediumPreset("earth");
+  scene.terrain.kind = TerrainSource::Kind::kNone;
+  scene.camera = CameraFromDegrees({kEye_m, false}, 90.0, -4.0, 0.0, 50.0);
+  scene.fog = Fog{.extinction_per_m = 3.912 / kVisibility_m,  // Koschmieder, contrast 2 %
+                  .scale_height_m = 25.0,
+                  .base_height_m = 0.0,
+                  .phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  for (int i = 0; i < lamps; ++i) {
+    const double along = kLength_m * (i / 2) / std::max(1, lamps / 2);
+    scene.lights.push_back(RunwayLamp(threshold, kApproach_m + along,
+                                      i % 2 == 0 ? kHalfWidth_m : -kHalfWidth_m, 0.35, 600.0));
+  }
+  for (const double side : {-6.0, 6.0}) {
+    if (!with_beam) break;
+    Light beam = RunwayLamp(threshold, kApproach_m + 180.0, side, 24.0, 4e5);
+    beam.type = Light::Type::kSpot;
+    beam.temperature_k = 4200.0;
+    beam.heading_rad = 0.5 * kPi;
+    beam.pitch_rad = -4.0 * kRadiansPerDegree;
+    beam.inner_rad = 2.5 * kRadiansPerDegree;
+    beam.outer_rad = 6.0 * kRadiansPerDegree;
+    scene.lights.push_back(beam);
+  }
+  return scene;
+}
+
+ReportTopic MeasurePictures(const ReportEffort& effort) {
+  PicturesTopic topic(effort);
+  for (const int samples : {1, 4, 16}) topic.AddSamples(samples);
+  if (!effort.quick) {
+    topic.AddSamples(32);
+    topic.AddNodes(2);
+  }
+  topic.AddNodes(4);
+  if (!effort.quick) {
+    topic.AddNodes(8);
+    topic.AddWithout(Effect::kShafts, "shafts");
+  }
+  topic.AddWithout(Effect::kMultipleScattering, "higher orders");
+  return std::move(topic).Finished();
+}
+
+}  // namespace alpenglow

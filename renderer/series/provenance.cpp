@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series/provenance.h"
+
+#include <fstream>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/program/program.h"
+
+namespace alpenglow {
+namespace {
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo).
+class Hash {
+ public:
+  void Add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+    }
+  }
+  [[nodiscard]] std::string Text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+std::string HashOfFile(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Hash hash;
+  std::vector<char> block(1U << 20U);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
+         stream.gcount() > 0) {
+    hash.Add({block.data(), static_cast<std::size_t>(stream.gcount())});
+  }
+  if (!stream.eof()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  return hash.Text();
+}
+
+std::string Degrees(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
+
+std::string HeightText(const Height& height) {
+  return fmt::format("{} m above the {}", height.value_m,
+                     height.above_ground ? "ground" : "ellipsoid");
+}
+
+std::string TerrainText(const TerrainSource& terrain) {
+  switch (terrain.kind) {
+    case TerrainSource::Kind::kBuiltInRange:
+      return !terrain.centre ? "built-in range"
+                             : fmt::format("built-in range around {}, {}",
+                                           Degrees(terrain.centre->latitude_rad),
+                                           Degrees(terrain.centre->longitude_rad));
+    case TerrainSource::Kind::kElevationModel:
+      return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
+                         HashOfFile(terrain.file),
+                         terrain.voids == VoidPolicy::kFill ? "filled" : "open");
+    case TerrainSource::Kind::kMesh:
+      return fmt::format("{}, hash {}", terrain.file.filename().string(), HashOfFile(terrain.file));
+    case TerrainSource::Kind::kNone:
+      return "none";
+  }
+  throw InternalError("unknown kind of terrain");
+}
+
+std::string LightText(const Light& light) {
+  std::string text =
+      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m",
+                  light.type == Light::Type::kSpot ? "spot" : "point", Degrees(light.latitude_rad),
+                  Degrees(light.longitude_rad), HeightText(light.height),
+                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+                  light.temperature_k, light.radius_m);
+  if (light.ies) {
+    text += fmt::format(", {}, hash {}", light.ies->filename().string(), HashOfFile(*light.ies));
+  } else if (light.type == Light::Type::kPoint) {
+    return text;
+  }
+  text +=
+      fmt::format(", heading {}, pitch {}", Degrees(light.heading_rad), Degrees(light.pitch_rad));
+  if (light.ies) return text;
+  return text + fmt::format(", cone {} to {}", Degrees(light.inner_rad), Degrees(light.outer_rad));
+}
+
+std::string FogText(const Fog& fog) {
+  return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {} g {}",
+                     fog.extinction_per_m,
+                     fog.base_height_m ? fmt::format("{} m", *fog.base_height_m) : "the ground",
+                     fog.scale_height_m, fog.albedo, NameOf(fog.phase.kind), fog.phase.g);
+}
+
+}  // namespace
+
+Metadata SceneMetadata(const Scene& scene) {
+  const Camera& camera = scene.camera;
+  Metadata metadata = {
+      {"Software", ProducerText()},
+      {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
+      {"alpenglow.atmosphere", scene.medium.name},
+      {"alpenglow.atmosphere_hash", fmt::format("{:016x}", MediumHash(scene.medium))},
+      {"alpenglow.latitude_deg", Degrees(scene.place.latitude_rad)},
+      {"alpenglow.longitude_deg", Degrees(scene.place.longitude_rad)},
+      {"alpenglow.camera_height", HeightText(camera.height)},
+      {"alpenglow.heading_deg", Degrees(camera.heading_rad)},
+      {"alpenglow.pitch_deg", Degrees(camera.pitch_rad)},
+      {"alpenglow.roll_deg", Degrees(camera.roll_rad)},
+      {"alpenglow.fov_deg", Degrees(camera.fov_rad)},
+      {"alpenglow.terrain", TerrainText(scene.terrain)}};
+  if (camera.lens) {
+    const ThinLens& lens = *camera.lens;
+    metadata["alpenglow.lens"] =
+        fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
+                    lens.focus_m, lens.blades, Degrees(lens.blade_rotation_rad));
+  }
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
+  }
+  if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
+  return metadata;
+}
+
+Metadata PoseMetadata(const CameraPose& pose) {
+  return {{"alpenglow.latitude_deg", Degrees(pose.place.latitude_rad)},
+          {"alpenglow.longitude_deg", Degrees(pose.place.longitude_rad)},
+          {"alpenglow.camera_height", HeightText({pose.place.height_m, false})},
+          {"alpenglow.heading_deg", Degrees(pose.heading_rad)},
+          {"alpenglow.pitch_deg", Degrees(pose.pitch_rad)},
+          {"alpenglow.roll_deg", Degrees(pose.roll_rad)},
+          {"alpenglow.fov_deg", Degrees(pose.fov_rad)}};
+}
+
+Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
+  Metadata metadata = SceneMetadata(scene);
+  metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
+  metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
+  metadata["alpenglow.filter"] = NameOf(settings.filter);
+  metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
+  metadata["alpenglow.effects"] = NameOf(settings.effects);
+  metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(settings.layers, ","));
+  return metadata;
+}
+
+std::string Fingerprint(const Metadata& metadata) {
+  Hash hash;
+  for (const auto& [name, value] : metadata) {
+    hash.Add(name);
+    hash.Add({"\0", 1});
+    hash.Add(value);
+    hash.Add({"\0", 1});
+  }
+  return hash.Text();
+}
+
+}  // namespace alpenglow

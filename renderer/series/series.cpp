@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series/series.h"
+
+#include <map>
+#include <system_error>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/text/error.h"
+#include "lut/picture/picture_text.h"
+#include "lut/program/program.h"
+#include "renderer/picture/render.h"
+#include "renderer/series/contact_sheet.h"
+#include "renderer/series/provenance.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
+constexpr char kFingerprint[] = "alpenglow.fingerprint";
+constexpr char kEv100[] = "alpenglow.ev100";
+
+std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
+  return source.zone ? FormatInZone(instant, *source.zone) : "";
+}
+
+/// Settings, instant and their fingerprint: what the pixels of a frame depend on.
+Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
+  Metadata metadata = source.settings;
+  if (source.path) {
+    for (const auto& [name, value] : PoseMetadata(source.path->PoseAt(frame.path_s))) {
+      metadata[name] = value;
+    }
+    metadata["alpenglow.path_s"] = fmt::format("{}", frame.path_s);
+  }
+  metadata["alpenglow.utc"] = FormatUtc(frame.instant, 3);
+  metadata[kRenderFingerprint] = Fingerprint(metadata);
+  return metadata;
+}
+
+/// A value of a file's header, or "" when there is no such file or value.
+std::string HeaderValue(const std::function<Metadata()>& read, const std::string& name) {
+  try {
+    const Metadata metadata = read();
+    const auto found = metadata.find(name);
+    return found == metadata.end() ? "" : found->second;
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+std::string ExrValue(const fs::path& file, const std::string& name) {
+  return HeaderValue([&] { return ReadExrMetadata(file); }, name);
+}
+
+Metadata NotesOf(const fs::path& exr) {
+  Metadata notes = ReadExrMetadata(exr);
+  std::erase_if(notes, [](const auto& entry) { return !entry.first.starts_with(kNotePrefix); });
+  return notes;
+}
+
+/// The picture, when it is whole and was made with these settings.
+std::optional<NotedPicture> KeptPicture(const fs::path& file,
+                                        const std::string& render_fingerprint) {
+  if (ExrValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
+  try {
+    return NotedPicture(ReadExr(file), NotesOf(file));
+  } catch (const InputError&) {
+    return std::nullopt;  // damaged: to be rendered again
+  }
+}
+
+bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
+  if (HeaderValue([&] { return ReadPngMetadata(file); }, kFingerprint) != fingerprint) return false;
+  try {
+    (void)ReadPng(file);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Everything that a frame's header says but its notes.
+Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
+                       double ev100) {
+  Metadata metadata = RenderMetadata(source, frame);
+  const SunPosition sun = SunAt(source.PlaceOf(frame), frame.instant);
+  metadata["alpenglow.frame"] = fmt::format("{}", frame.number);
+  metadata["alpenglow.sun_azimuth_deg"] =
+      fmt::format("{:.6f}", sun.azimuth_rad / kRadiansPerDegree);
+  metadata["alpenglow.sun_elevation_deg"] =
+      fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
+  metadata[kEv100] = fmt::format("{:.4f}", ev100);
+  metadata["alpenglow.exposure"] = NameOf(output.exposure.kind);
+  metadata["alpenglow.tone_curve"] = NameOf(output.look);
+  if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
+  metadata[kFingerprint] = Fingerprint(metadata);
+  return metadata;
+}
+
+class Series {
+ public:
+  Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
+      : source_(source), frames_(frames), output_(output) {}
+
+  /// @return whether the frame had to be rendered.
+  bool Make(const Frame& frame) {
+    const fs::path exr = output_.name.Exr(frame.number);
+    const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
+    std::optional<NotedPicture> picture;
+    if (output_.resume) picture = KeptPicture(exr, wanted);
+    const bool rendered = !picture;
+    if (rendered) picture = source_.render(frame);
+    const double ev100 = Ev100Of(frame, picture->image);
+    Write(frame, *picture, ev100, rendered);
+    if (output_.contact_sheet) AddThumbnail(frame, picture->image, ev100);
+    return rendered;
+  }
+
+  void WriteManifest() const {
+    std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100";
+    if (source_.path) text += ",t_s,latitude,longitude,height_m,heading,pitch,roll,fov";
+    text += "\n";
+    for (const Frame& frame : frames_) text += ManifestLine(frame);
+    WriteTextAtomically(output_.name.Manifest(), text);
+  }
+
+  void WriteContactSheet() const {
+    if (output_.contact_sheet) {
+      WritePng(*output_.contact_sheet, ContactSheet(thumbnails_), source_.settings);
+    }
+  }
+
+  [[nodiscard]] const SeriesSummary& summary() const { return summary_; }
+
+ private:
+  [[nodiscard]] double Ev100Of(const Frame& frame, const Image& image) const {
+    switch (output_.exposure.kind) {
+      case ExposureRule::Kind::kFixed:
+        return output_.exposure.ev100;
+      case ExposureRule::Kind::kIncident:
+        return IncidentEv100(source_.illuminance(frame));
+      case ExposureRule::Kind::kMetered:
+        break;
+    }
+    return MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2);
+  }
+
+  void Write(const Frame& frame, const NotedPicture& picture, double ev100, bool rendered) {
+    const Image& image = picture.image;
+    Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
+    metadata.insert(picture.notes.begin(), picture.notes.end());
+    const fs::path exr = output_.name.Exr(frame.number);
+    const fs::path png = output_.name.Png(frame.number);
+    const bool keep_exr = !rendered && ExrValue(exr, kFingerprint) == metadata.at(kFingerprint);
+    const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
+    if (!keep_exr) WriteExr(exr, image, metadata);
+    if (!keep_png) WritePng(png, Develop(Seen(image, output_.look), ev100, output_.look), metadata);
+    (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
+    ev100_of_[frame.number] = metadata.at(kEv100);
+  }
+
+  void AddThumbnail(const Frame& frame, const Image& image, double ev100) {
+    const std::string local = LocalTime(source_, frame.instant);
+    const std::string time = (local.empty() ? FormatUtc(frame.instant) : local).substr(11, 5);
+    const double elevation_deg =
+        SunAt(source_.PlaceOf(frame), frame.instant).elevation_rad / kRadiansPerDegree;
+    const Image small = Reduced(Seen(image, output_.look), kThumbnailWidth);
+    thumbnails_.push_back(
+        {Develop(small, ev100, output_.look), fmt::format("{} {:+.1f}", time, elevation_deg)});
+  }
+
+  /// Frames of other runs (or machines) are looked up in their files.
+  [[nodiscard]] std::string Ev100Text(const Frame& frame) const {
+    const auto found = ev100_of_.find(frame.number);
+    if (found != ev100_of_.end()) return found->second;
+    const fs::path exr = output_.name.Exr(frame.number);
+    const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
+    return ExrValue(exr, kRenderFingerprint) == wanted ? ExrValue(exr, kEv100) : "";
+  }
+
+  [[nodiscard]] std::string PoseText(const Frame& frame) const {
+    if (!source_.path) return "";
+    const CameraPose pose = source_.path->PoseAt(frame.path_s);
+    std::string text = fmt::format(
+        ",{:.6f},{:.8f},{:.8f},{:.3f}", frame.path_s, pose.place.latitude_rad / kRadiansPerDegree,
+        pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m);
+    for (const double angle : {pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad}) {
+      text += fmt::format(",{:.6f}", angle / kRadiansPerDegree);
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string ManifestLine(const Frame& frame) const {
+    const SunPosition sun = SunAt(source_.PlaceOf(frame), frame.instant);
+    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{}\n", frame.number,
+                       output_.name.Exr(frame.number).filename().string(), FormatUtc(frame.instant),
+                       LocalTime(source_, frame.instant), sun.azimuth_rad / kRadiansPerDegree,
+                       sun.elevation_rad / kRadiansPerDegree, Ev100Text(frame), PoseText(frame));
+  }
+
+  const SeriesSource& source_;
+  const std::vector<Frame>& frames_;
+  const SeriesOutput& output_;
+  SeriesSummary summary_;
+  std::map<int, std::string> ev100_of_;
+  std::vector<Thumbnail> thumbnails_;
+};
+
+void CreateFolder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw OutputError(fmt::format("{}: {}", folder.string(), error.message()));
+}
+
+}  // namespace
+
+SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
+                        const std::vector<Frame>& selected, const SeriesOutput& output) {
+  if (frames.size() > 1 && !output.name.HasNumber()) {
+    throw InputError(
+        fmt::format("--out has no frame number (%04d), but there are {} frames", frames.size()));
+  }
+  CreateFolder(output.name.Folder());
+  if (output.contact_sheet) CreateFolder(output.contact_sheet->parent_path());
+  Series series(source, frames, output);
+  series.WriteManifest();  // before the work, so that a folder that takes no files is found out
+  Progress progress("frames", selected.size(), output.progress);
+  try {
+    for (const Frame& frame : selected) {
+      ThrowIfInterrupted();
+      if (series.Make(frame)) {
+        progress.Advance();
+      } else {
+        progress.Skip();
+      }
+    }
+  } catch (...) {
+    try {
+      series.WriteManifest();
+    } catch (const OutputError&) {
+      // The first failure is the one to report.
+    }
+    throw;
+  }
+  series.WriteManifest();
+  series.WriteContactSheet();
+  return series.summary();
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// A series of pictures: rendered, exposed, written one by one, and taken up again where it stopped.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/sun/geodesy.h"
+#include "lut/picture/image.h"
+#include "lut/picture/look.h"
+#include "lut/program/progress.h"
+#include "renderer/camera/camera_path.h"
+#include "renderer/series/frame_name.h"
+#include "renderer/series/frame_times.h"
+
+namespace alpenglow {
+
+/// A picture, and what was found out about it while it was made: not part of what its pixels depend
+/// on, written into its file beside that, and kept when the picture is developed again.
+struct NotedPicture {
+  NotedPicture(Image picture, Metadata found = {})  // NOLINT: a picture without notes is one
+      : image(std::move(picture)), notes(std::move(found)) {}
+
+  Image image;
+  Metadata notes;  // names begin with kNotePrefix
+};
+inline constexpr const char* kNotePrefix = "alpenglow.note.";
+
+/// What makes the pictures of a series.
+struct SeriesSource {
+  std::function<NotedPicture(const Frame&)> render;
+  /// Of sun and sky on a horizontal plane at the eye [lux], for ExposureRule::Kind::kIncident.
+  std::function<double(const Frame&)> illuminance;
+  /// Everything that the pixels depend on but the instant and the pose (SceneMetadata, size,
+  /// samples, layers).
+  Metadata settings;
+  GeodeticPosition place;
+  std::optional<std::string> zone;
+  std::optional<CameraPath> path;  // that Frame::path_s is on
+
+  /// Of the eye of a frame.
+  [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
+    return path ? path->PoseAt(frame.path_s).place : place;
+  }
+};
+
+/// How the pictures are exposed and where they go.
+struct SeriesOutput {
+  FrameName name;
+  bool png = false;            // a developed picture beside every EXR
+  ExposureRule exposure = {};  // of every frame
+  Look look = {};
+  bool resume = false;
+  std::optional<std::filesystem::path> contact_sheet = std::nullopt;
+  ProgressStyle progress = ProgressStyle::kAuto;
+};
+
+/// What was done for the selected frames.
+struct SeriesSummary {
+  int rendered = 0;
+  int kept = 0;       // intact, with the same settings
+  int developed = 0;  // pixels kept, exposure or curve changed: written again
+};
+
+/// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
+/// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
+/// sun_elevation_deg (without refraction), ev100 (empty until the frame exists); on a path also
+/// t_s, latitude, longitude, height_m, heading, pitch, roll and fov.
+///
+/// Files are written atomically, in folders that are created when they are missing. With `resume`
+/// a frame is rendered only if its file is missing, unreadable, or made with other settings: each
+/// file carries a fingerprint of its settings. Stops between frames when a signal has come
+/// (ThrowIfInterrupted), finished frames and the manifest kept.
+///
+/// Throws OutputError; InputError for several frames under a name without a number.
+SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
+                        const std::vector<Frame>& selected, const SeriesOutput& output);
+
+}  // namespace alpenglow

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/terrain/built_in_range.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/terrain/erosion.h"
+#include "renderer/terrain/land.h"
+#include "renderer/terrain/lattice_noise.h"
+#include "renderer/terrain/range_shape.h"
+
+namespace alpenglow {
+namespace {
+
+// U / K [m^(2 m)] of a main chain: slope 1 where this area to the power 3/8 drains.
+constexpr double kUpliftOverErodibility = 98.0;
+constexpr double kUpliftPerStep_m = 250.0;
+
+// One value a sample, of its place.
+template <typename Function>
+std::vector<float> Everywhere(const Land& land, Function&& value_at) {
+  std::vector<float> values;
+  values.reserve(land.height_m.size());
+  for (int row = 0; row < land.size; ++row) {
+    for (int column = 0; column < land.size; ++column) {
+      const auto [x_km, y_km] = land.PlaceOf(row, column);
+      values.push_back(static_cast<float>(value_at(x_km, y_km)));
+    }
+  }
+  return values;
+}
+
+Rock RockOf(const Land& land) {
+  Rock rock;
+  for (int row = 0; row < land.size; ++row) {
+    for (int column = 0; column < land.size; ++column) {
+      const auto [x, y] = land.PlaceOf(row, column);
+      const double uplift = RelativeUplift(x, y);
+      rock.uplift_m_per_step.push_back(static_cast<float>(kUpliftPerStep_m * uplift));
+      rock.erodibility_per_step.push_back(static_cast<float>(
+          kUpliftPerStep_m / kUpliftOverErodibility * RelativeErodibility(x, y)));
+      rock.steepest_slope.push_back(static_cast<float>(SteepestSlope(x, y, uplift)));
+    }
+  }
+  return rock;
+}
+
+// A plain with less than a metre of roughness, to start from.
+Land Plain(int size) {
+  Land land{size, 1e3 * kRangeSpacing_km * kRangeSize / size, {}};
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      land.height_m.push_back(static_cast<float>(LatticeUniform(column, row, 7)));
+    }
+  }
+  return land;
+}
+
+void Erode(Land& land, int steps, std::uint32_t seed) {
+  const Rock rock = RockOf(land);
+  for (int step = 0; step < steps; ++step) {
+    ErodeOnce(land, rock, seed + static_cast<std::uint32_t>(step / 4));
+  }
+}
+
+// Rivers find their way on a coarse grid, where a step reaches far, and cut it finer and finer.
+Land ErodedLand() {
+  Land land = Plain(kRangeSize / 8);
+  Erode(land, 80, 1000);
+  land = Refined(land, 60.0, 11);
+  Erode(land, 40, 2000);
+  land = Refined(land, 30.0, 12);
+  Erode(land, 20, 3000);
+  land = WithRibs(Bent(Refined(land, 15.0, 13), 5.0, 1.9, 40), 160.0, 0.7, 60);
+  Erode(land, 8, 4000);
+  return land;
+}
+
+// What ice, gravel and soil do after the rivers: ribs on the faces, soft foreland, level valleys.
+Land Finished(Land land) {
+  const std::vector<float> alpine = Everywhere(land, Alpine);
+  std::vector<float> soil;
+  std::vector<float> gravel_m;
+  for (const float value : alpine) {
+    soil.push_back(1.0F - value);
+    gravel_m.push_back(130.0F * value);
+  }
+  land = WithRibs(land, 90.0, 0.5, 70);
+  for (int pass = 0; pass < 3; ++pass) land = Softened(land, soil);
+  FillValleys(land, 0.018F, gravel_m, 5);
+  land = Softened(land, std::vector<float>(soil.size(), 0.25F));
+  for (int pass = 0; pass < 3; ++pass) land = Softened(land, soil);
+  return land;
+}
+
+// The whole range with its foreland, which falls to 0 at the rim.
+Land RangeLand() {
+  Land land = Finished(ErodedLand());
+  const std::vector<float> base_m = Everywhere(land, BaseHeight);
+  for (std::size_t i = 0; i < base_m.size(); ++i) land.height_m[i] += base_m[i];
+  static_cast<void>(DrainAndFill(land, 6));  // ribs and bends have left some pits
+  return land;
+}
+
+// From here on a box of longitudes and latitudes is too much of a wedge: the grid goes around the
+// pole instead.
+constexpr double kPolarLatitude_rad = 89.3 * kRadiansPerDegree;
+
+bool IsPolar(const GeodeticPosition& centre) {
+  return std::abs(centre.latitude_rad) > kPolarLatitude_rad;
+}
+
+// Radii of curvature along the meridian and across it [m].
+double MeridianRadius(double latitude_rad) {
+  const double e2 = kWgs84.flattening * (2.0 - kWgs84.flattening);
+  const double sine = std::sin(latitude_rad);
+  const double w = 1.0 - e2 * sine * sine;
+  return kWgs84.equatorial_radius_m * (1.0 - e2) / (w * std::sqrt(w));
+}
+double ParallelRadius(double latitude_rad) {
+  const double e2 = kWgs84.flattening * (2.0 - kWgs84.flattening);
+  const double sine = std::sin(latitude_rad);
+  return kWgs84.equatorial_radius_m * std::cos(latitude_rad) / std::sqrt(1.0 - e2 * sine * sine);
+}
+
+// East and north of the centre [m] <-> latitude and longitude, away from the poles: true lengths
+// along the centre's meridian and parallel.
+class BoxMap {
+ public:
+  explicit BoxMap(const GeodeticPosition& centre)
+      : centre_(centre),
+        rad_per_east_m_(1.0 / ParallelRadius(centre.latitude_rad)),
+        rad_per_north_m_(1.0 / MeridianRadius(centre.latitude_rad)) {}
+
+  [[nodiscard]] GeodeticPosition At(double east_m, double north_m) const {
+    return {centre_.latitude_rad + north_m * rad_per_north_m_,
+            centre_.longitude_rad + east_m * rad_per_east_m_, 0.0};
+  }
+
+ private:
+  GeodeticPosition centre_;
+  double rad_per_east_m_;
+  double rad_per_north_m_;
+};
+
+// The same around a pole: azimuthal equidistant, its plane seen from above, x to longitude 90.
+class PolarMap {
+ public:
+  explicit PolarMap(const GeodeticPosition& centre)
+      : hemisphere_(centre.latitude_rad > 0.0 ? 1.0 : -1.0),
+        longitude_rad_(centre.longitude_rad),
+        radius_m_(MeridianRadius(0.5 * kPi)),
+        centre_(PlaneOf(centre)) {}
+
+  [[nodiscard]] GeodeticPosition At(double east_m, double north_m) const {
+    const glm::dvec2 plane = centre_ + east_m * East() + north_m * North();
+    const double latitude = hemisphere_ * (0.5 * kPi - glm::length(plane) / radius_m_);
+    return {latitude, std::atan2(plane.x, -hemisphere_ * plane.y), 0.0};
+  }
+  // East and north of the centre [m].
+  [[nodiscard]] glm::dvec2 From(const GeodeticPosition& place) const {
+    const glm::dvec2 step = PlaneOf(place) - centre_;
+    return {glm::dot(step, East()), glm::dot(step, North())};
+  }
+  // How much the meridians turn clockwise from the centre's to a place's.
+  [[nodiscard]] double Convergence(const GeodeticPosition& place) const {
+    return -hemisphere_ * (place.longitude_rad - longitude_rad_);
+  }
+
+ private:
+  [[nodiscard]] glm::dvec2 PlaneOf(const GeodeticPosition& place) const {
+    const double from_pole = (0.5 * kPi - hemisphere_ * place.latitude_rad) * radius_m_;
+    return {from_pole * std::sin(place.longitude_rad),
+            -hemisphere_ * from_pole * std::cos(place.longitude_rad)};
+  }
+  [[nodiscard]] glm::dvec2 East() const {
+    return {std::cos(longitude_rad_), hemisphere_ * std::sin(longitude_rad_)};
+  }
+  [[nodiscard]] glm::dvec2 North() const {
+    return {-hemisphere_ * std::sin(longitude_rad_), std::cos(longitude_rad_)};
+  }
+
+  double hemisphere_;
+  double longitude_rad_;
+  double radius_m_;
+  glm::dvec2 centre_;
+};
+
+ElevationGrid BoxGrid(Land land, const GeodeticPosition& centre) {
+  const BoxMap map(centre);
+  const double half_m = 0.5 * land.spacing_m * (land.size - 1);
+  const GeodeticPosition north_west = map.At(-half_m, half_m);
+  const GeodeticPosition south_east = map.At(half_m, -half_m);
+  ElevationGrid grid;
+  grid.west_rad = north_west.longitude_rad;
+  grid.north_rad = north_west.latitude_rad;
+  grid.step_lon_rad = (south_east.longitude_rad - north_west.longitude_rad) / (land.size - 1);
+  grid.step_lat_rad = (north_west.latitude_rad - south_east.latitude_rad) / (land.size - 1);
+  grid.columns = land.size;
+  grid.rows = land.size;
+  grid.height_m = std::move(land.height_m);
+  return grid;
+}
+
+// All longitudes from the pole to beyond the range; no ground outside it.
+ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
+  constexpr double kRowSpacing_m = 100.0;
+  constexpr int kColumns = 2048;
+  const PolarMap map(centre);
+  const double half_m = 0.5 * land.spacing_m * (land.size - 1);
+  const double radius_m = MeridianRadius(0.5 * kPi);
+  const double to_pole_m = (0.5 * kPi - std::abs(centre.latitude_rad)) * radius_m;
+  ElevationGrid grid;
+  grid.columns = kColumns;
+  grid.rows = static_cast<int>(std::ceil((to_pole_m + std::sqrt(2.0) * half_m) / kRowSpacing_m));
+  grid.step_lon_rad = 2.0 * kPi / kColumns;
+  grid.step_lat_rad = kRowSpacing_m / radius_m;
+  grid.west_rad = -kPi;
+  const double first = 0.5 * kPi - 0.5 * grid.step_lat_rad;  // half a step off the pole
+  grid.north_rad = centre.latitude_rad > 0.0 ? first : -first + (grid.rows - 1) * grid.step_lat_rad;
+  grid.height_m.reserve(static_cast<std::size_t>(grid.rows) * kColumns);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const glm::dvec2 at =
+          map.From({grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0});
+      const bool inside = std::abs(at.x) <= half_m && std::abs(at.y) <= half_m;
+      grid.height_m.push_back(inside ? CubicHeight(land, (half_m - at.y) / land.spacing_m,
+                                                   (half_m + at.x) / land.spacing_m)
+                                     : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return grid;
+}
+
+}  // namespace
+
+ElevationGrid BuiltInRange(const GeodeticPosition& centre) {
+  RequireInRange(centre.latitude_rad, -0.5 * kPi, 0.5 * kPi, "latitude_rad");
+  GeodeticPosition wrapped = centre;
+  wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
+  if (IsPolar(wrapped)) return PolarGrid(RangeLand(), wrapped);
+  return BoxGrid(RangeLand(), wrapped);
+}
+
+BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {
+  constexpr double kEast_m = 2000.0;
+  constexpr double kNorth_m = 16560.0;
+  constexpr double kAboveGround_m = 60.0;
+  BuiltInView view{{}, 161.0, 0.5, 50.0};
+  if (IsPolar(centre)) {
+    const PolarMap map(centre);
+    view.eye = map.At(kEast_m, kNorth_m);
+    const double heading = view.heading_deg - map.Convergence(view.eye) / kRadiansPerDegree;
+    view.heading_deg = heading - 360.0 * std::floor(heading / 360.0);
+  } else {
+    view.eye = BoxMap(centre).At(kEast_m, kNorth_m);
+  }
+  view.eye.height_m = kAboveGround_m;
+  return view;
+}
+
+BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {
+  BuiltInView view = BuiltInRangeViewAboveGround(centre);
+  const std::optional<double> ground =
+      range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad);
+  if (!ground)
+    throw InternalError("the built-in view lies outside the range that it was asked for");
+  view.eye.height_m += *ground;
+  return view;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// A mountain range that needs no file: alpine chains of 70 km x 70 km, generated and eroded.
+#pragma once
+
+#include "atmosphere/sun/geodesy.h"
+#include "renderer/terrain/elevation.h"
+
+namespace alpenglow {
+
+/// The range, centred on a place: foreland in the north, valleys at 500-900 m, chains that rise
+/// southwards, one peak above all. Its heights are the same bytes on every machine with IEEE
+/// arithmetic, for any number of threads and any centre; it falls to 0 m at the rim.
+[[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre);
+
+/// An eye and where it looks.
+struct BuiltInView {
+  GeodeticPosition eye;
+  double heading_deg = 0.0;  // clockwise from north
+  double pitch_deg = 0.0;    // up is positive
+  double fov_deg = 0.0;      // horizontal
+};
+
+/// The view that the range was made for: from a shoulder of the foothills to the highest peak,
+/// chain behind chain, east at the left.
+[[nodiscard]] BuiltInView BuiltInRangeView(const GeodeticPosition& centre,
+                                           const ElevationGrid& range);
+
+/// The same view without the range at hand: eye.height_m counts from the ground.
+[[nodiscard]] BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre);
+
+}  // namespace alpenglow

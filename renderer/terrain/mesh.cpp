@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/terrain/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/terrain/smooth_normals.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
+
+class MeshBuilder {
+ public:
+  MeshBuilder(const ElevationGrid& grid, const LocalFrame& frame)
+      : grid_(grid), frame_(frame), vertex_of_sample_(grid.height_m.size(), kNoVertex) {}
+
+  TriangleMesh Build() {
+    AddVertices();
+    const int last_column = grid_.ClosesAroundTheEarth() ? grid_.columns : grid_.columns - 1;
+    mesh_.triangles.reserve(2 * static_cast<std::size_t>(grid_.rows) *
+                            static_cast<std::size_t>(grid_.columns));
+    for (int row = 0; row + 1 < grid_.rows; ++row) {
+      for (int column = 0; column < last_column; ++column) AddCell(row, column);
+    }
+    if (grid_.ClosesAroundTheEarth()) {
+      AddPole(0, 0.5 * kPi);
+      AddPole(grid_.rows - 1, -0.5 * kPi);
+    }
+    mesh_.normals = SmoothNormals(position_m_, mesh_.triangles);
+    mesh_.positions.reserve(position_m_.size());
+    for (const glm::dvec3& position : position_m_) {
+      mesh_.positions.push_back({static_cast<float>(position.x), static_cast<float>(position.y),
+                                 static_cast<float>(position.z)});
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  std::uint32_t AddVertex(double latitude_rad, double longitude_rad, double height_m) {
+    const auto vertex = static_cast<std::uint32_t>(position_m_.size());
+    position_m_.push_back(frame_.EnuFromGeodetic({latitude_rad, longitude_rad, height_m}).xyz);
+    return vertex;
+  }
+
+  void AddVertices() {
+    ALPENGLOW_ENSURE(grid_.height_m.size(), <, std::size_t{kNoVertex} - 2);
+    position_m_.reserve(grid_.height_m.size());
+    for (int row = 0; row < grid_.rows; ++row) {
+      for (int column = 0; column < grid_.columns; ++column) {
+        const float height = grid_.at(row, column);
+        if (std::isnan(height)) continue;
+        vertex_of_sample_[grid_.index(row, column)] = AddVertex(
+            grid_.LatitudeOfRow(row), grid_.LongitudeOfColumn(column), static_cast<double>(height));
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint32_t VertexAt(int row, int column) const {
+    return vertex_of_sample_[grid_.index(row, column % grid_.columns)];
+  }
+
+  // Two triangles along the diagonal that fits the surface better, so that crests and gullies that
+  // run diagonally stay whole; one where a corner is a void.
+  void AddCell(int row, int column) {
+    const std::uint32_t nw = VertexAt(row, column);
+    const std::uint32_t ne = VertexAt(row, column + 1);
+    const std::uint32_t sw = VertexAt(row + 1, column);
+    const std::uint32_t se = VertexAt(row + 1, column + 1);
+    const bool void_off_falling = ne == kNoVertex || sw == kNoVertex;
+    const bool void_off_rising = nw == kNoVertex || se == kNoVertex;
+    if (void_off_falling || (!void_off_rising && FallingDiagonalFits(row, column))) {
+      AddTriangle(nw, sw, se);
+      AddTriangle(nw, se, ne);
+    } else {
+      AddTriangle(nw, sw, ne);
+      AddTriangle(ne, sw, se);
+    }
+  }
+
+  [[nodiscard]] double HeightNear(int row, int column) const {
+    const int within_row = std::clamp(row, 0, grid_.rows - 1);
+    const int within_column = grid_.ClosesAroundTheEarth()
+                                  ? (column + grid_.columns) % grid_.columns
+                                  : std::clamp(column, 0, grid_.columns - 1);
+    return static_cast<double>(grid_.at(within_row, within_column));
+  }
+
+  // Whether the middle of the diagonal from north-west to south-east is nearer than the other's to
+  // the cubic height at the cell's centre, which the 4 x 4 samples around it give.
+  [[nodiscard]] bool FallingDiagonalFits(int row, int column) const {
+    constexpr std::array<double, 4> kWeight{-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0};
+    double centre = 0.0;
+    for (int r = 0; r < 4; ++r) {
+      for (int c = 0; c < 4; ++c) {
+        centre += kWeight[static_cast<std::size_t>(r)] * kWeight[static_cast<std::size_t>(c)] *
+                  HeightNear(row + r - 1, column + c - 1);
+      }
+    }
+    const double falling = 0.5 * (HeightNear(row, column) + HeightNear(row + 1, column + 1));
+    const double rising = 0.5 * (HeightNear(row + 1, column) + HeightNear(row, column + 1));
+    return std::abs(falling - centre) < std::abs(rising - centre);  // beside a void: false
+  }
+
+  // Left out: triangles at a void, and those that a row of samples at the pole has shrunk.
+  void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    if (a == kNoVertex || b == kNoVertex || c == kNoVertex) return;
+    const glm::dvec3& corner = position_m_[a];
+    const glm::dvec3 normal = glm::cross(position_m_[b] - corner, position_m_[c] - corner);
+    constexpr double kLeastDoubleArea_m2 = 1e-6;
+    if (!(glm::length(normal) > kLeastDoubleArea_m2)) return;
+    mesh_.triangles.push_back({a, b, c});
+  }
+
+  // A fan from the ring next to a pole to a vertex at the pole, of the ring's mean height.
+  void AddPole(int row, double pole_rad) {
+    const double gap = std::abs(pole_rad - grid_.LatitudeOfRow(row));
+    if (gap > 1.001 * grid_.step_lat_rad || gap < 1e-12) return;
+    double sum = 0.0;
+    for (int column = 0; column < grid_.columns; ++column) {
+      sum += static_cast<double>(grid_.at(row, column));
+    }
+    if (std::isnan(sum)) return;
+    const std::uint32_t pole = AddVertex(pole_rad, 0.0, sum / grid_.columns);
+    for (int column = 0; column < grid_.columns; ++column) {
+      const std::uint32_t west = VertexAt(row, column);
+      const std::uint32_t east = VertexAt(row, column + 1);
+      if (pole_rad > 0.0) {
+        AddTriangle(pole, west, east);
+      } else {
+        AddTriangle(pole, east, west);
+      }
+    }
+  }
+
+  const ElevationGrid& grid_;
+  const LocalFrame& frame_;
+  std::vector<std::uint32_t> vertex_of_sample_;
+  std::vector<glm::dvec3> position_m_;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame) {
+  ALPENGLOW_ENSURE(grid.height_m.size(), ==,
+                   static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns));
+  return MeshBuilder(grid, frame).Build();
+}
+
+}  // namespace alpenglow

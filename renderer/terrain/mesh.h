@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The ground as triangles in a local frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "atmosphere/sun/geodesy.h"
+#include "renderer/terrain/elevation.h"
+
+namespace alpenglow {
+
+/// Triangles in the ENU frame of a LocalFrame [m], single precision: a position 100 km from the
+/// origin is rounded by up to 4 mm a coordinate.
+struct TriangleMesh {
+  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<float, 3>> normals;            // unit, one a position
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
+};
+
+/// Every sample becomes a vertex, placed through ECEF, so curvature and ellipsoid are right. Beside
+/// a void triangles are left out. A grid that goes once around the earth is closed, and over a
+/// pole too.
+[[nodiscard]] TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame);
+
+/// Reads a Wavefront OBJ whose coordinates are ENU metres around the place of the scene. Polygons
+/// are cut into triangles; normals are averaged from them. Throws InputError, naming file and line
+/// or triangle, for no triangles, degenerate or non-finite ones, coordinates beyond 10,000 km,
+/// indices out of range.
+[[nodiscard]] TriangleMesh ReadObj(const std::filesystem::path& file);
+
+}  // namespace alpenglow

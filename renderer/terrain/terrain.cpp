@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/terrain/terrain.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+// Half an ulp of 1 in float, and the bound of n roundings in a row (Higham 2002, section 3.1).
+constexpr double kUnitRoundoff = 0x1p-24;
+constexpr double Gamma(int n) { return n * kUnitRoundoff / (1.0 - n * kUnitRoundoff); }
+
+glm::dvec3 ToDouble(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+bool IsFinite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+struct Interval {
+  double begin;
+  double end;
+};
+
+// Where a ray is inside a box; nothing if it never is at a distance in [0, length].
+std::optional<Interval> Clip(const Box& box, const glm::dvec3& origin, const glm::dvec3& unit,
+                             double length_m) {
+  Interval inside{0.0, length_m};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (unit[axis] == 0.0) {
+      if (origin[axis] < box.low[axis] || origin[axis] > box.high[axis]) return std::nullopt;
+      continue;
+    }
+    const double a = (box.low[axis] - origin[axis]) / unit[axis];
+    const double b = (box.high[axis] - origin[axis]) / unit[axis];
+    inside.begin = std::max(inside.begin, std::min(a, b));
+    inside.end = std::min(inside.end, std::max(a, b));
+  }
+  if (!(inside.begin < inside.end)) return std::nullopt;
+  return inside;
+}
+
+// The gate in front of every ray: Embree aborts the process on what does not pass here.
+glm::dvec3 CheckedUnit(const glm::dvec3& origin, const glm::dvec3& direction) {
+  if (!IsFinite(origin)) {
+    throw InternalError(fmt::format("a ray starts at ({}, {}, {})", origin.x, origin.y, origin.z));
+  }
+  const double largest =
+      std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  if (!IsFinite(direction) || !(largest > 0.0)) {
+    throw InternalError(
+        fmt::format("a ray points along ({}, {}, {})", direction.x, direction.y, direction.z));
+  }
+  return glm::normalize(direction / largest);
+}
+
+RTCRay MakeRay(const glm::dvec3& start, const glm::dvec3& unit, double length_m) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(start.x);
+  ray.org_y = static_cast<float>(start.y);
+  ray.org_z = static_cast<float>(start.z);
+  ray.dir_x = static_cast<float>(unit.x);
+  ray.dir_y = static_cast<float>(unit.y);
+  ray.dir_z = static_cast<float>(unit.z);
+  ray.tnear = 0.0F;
+  ray.tfar = static_cast<float>(length_m);
+  ray.mask = std::numeric_limits<unsigned>::max();
+  return ray;
+}
+
+void CheckMesh(const TriangleMesh& mesh) {
+  ALPENGLOW_ENSURE(mesh.normals.size(), ==, mesh.positions.size());
+  for (const auto& position : mesh.positions) {
+    if (!IsFinite(ToDouble(position))) throw InternalError("a vertex of the terrain is not finite");
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) ALPENGLOW_ENSURE(vertex, <, mesh.positions.size());
+  }
+}
+
+double LongestEdge(const TriangleMesh& mesh) {
+  double longest2 = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 edge =
+          ToDouble(mesh.positions[triangle[(k + 1) % 3]]) - ToDouble(mesh.positions[triangle[k]]);
+      longest2 = std::max(longest2, glm::dot(edge, edge));
+    }
+  }
+  return std::sqrt(longest2);
+}
+
+// Bounds of the triangles, wide enough that a clipped ray starts off them.
+Box BoundsOf(const TriangleMesh& mesh) {
+  Box box;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      const glm::dvec3 position = ToDouble(mesh.positions[vertex]);
+      box.low = glm::min(box.low, position);
+      box.high = glm::max(box.high, position);
+    }
+  }
+  const glm::dvec3 margin = 1.0 + 1e-5 * glm::max(glm::abs(box.low), glm::abs(box.high));
+  return {box.low - margin, box.high + margin};
+}
+
+struct Corners {
+  std::array<glm::dvec3, 3> position;
+  std::array<glm::dvec3, 3> normal;
+};
+
+// Weights of the corners at the place where the ray meets the triangle's plane, moved into the
+// triangle: a ray that grazes it in double may have met its edge in float.
+glm::dvec3 WeightsAt(const Corners& corners, const glm::dvec3& origin, const glm::dvec3& unit,
+                     const RTCHit& found) {
+  const glm::dvec3 u = corners.position[1] - corners.position[0];
+  const glm::dvec3 v = corners.position[2] - corners.position[0];
+  const glm::dvec3 normal = glm::cross(u, v);
+  const double approach = glm::dot(unit, normal);
+  double b1 = static_cast<double>(found.u);
+  double b2 = static_cast<double>(found.v);
+  if (approach != 0.0) {
+    const double t = glm::dot(corners.position[0] - origin, normal) / approach;
+    const glm::dvec3 at = origin + t * unit - corners.position[0];
+    const double area2 = glm::dot(normal, normal);
+    b1 = glm::dot(glm::cross(at, v), normal) / area2;
+    b2 = glm::dot(glm::cross(u, at), normal) / area2;
+  }
+  b1 = std::clamp(b1, 0.0, 1.0);
+  b2 = std::clamp(b2, 0.0, 1.0 - b1);
+  return {1.0 - b1 - b2, b1, b2};
+}
+
+TerrainHit HitAt(const Corners& corners, const glm::dvec3& origin, const glm::dvec3& unit,
+                 const RTCHit& found) {
+  const glm::dvec3 weight = WeightsAt(corners, origin, unit, found);
+  const glm::dvec3 flat = glm::normalize(glm::cross(corners.position[1] - corners.position[0],
+                                                    corners.position[2] - corners.position[0]));
+  const double side = glm::dot(flat, unit) <= 0.0 ? 1.0 : -1.0;
+  glm::dvec3 point(0.0);
+  glm::dvec3 normal(0.0);
+  for (int k = 0; k < 3; ++k) {
+    point += weight[k] * corners.position[static_cast<std::size_t>(k)];
+    normal += side * weight[k] * corners.normal[static_cast<std::size_t>(k)];
+  }
+  // How far the point lies under the tangent plane of each corner, weighted.
+  glm::dvec3 lift(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const auto corner = static_cast<std::size_t>(k);
+    const glm::dvec3 up = side * corners.normal[corner];
+    lift -= weight[k] * std::min(0.0, glm::dot(point - corners.position[corner], up)) * up;
+  }
+  const double length = glm::length(normal);
+  return {glm::dot(point - origin, unit), length > 0.0 ? normal / length : side * flat, side * flat,
+          point + lift};
+}
+
+}  // namespace
+
+struct Terrain::Scene {
+  TriangleMesh mesh;
+  Box bounds;
+  double longest_edge_m = 0.0;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::mutex fault_mutex;
+  std::string fault;  // what Embree complained about
+
+  explicit Scene(TriangleMesh triangles) : mesh(std::move(triangles)) {
+    CheckMesh(mesh);
+    bounds = BoundsOf(mesh);
+    longest_edge_m = LongestEdge(mesh);
+    device = rtcNewDevice("");
+    if (device == nullptr) throw InternalError("Embree has no device for this processor");
+    rtcSetDeviceErrorFunction(device, &Scene::KeepFault, this);
+    try {
+      Build();
+      ThrowFault();
+    } catch (...) {
+      Release();
+      throw;
+    }
+  }
+  ~Scene() { Release(); }
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  void Build() {
+    // Beyond this many triangles Embree's own copies of their corners are too much to keep (44
+    // bytes each); rays then fetch them from the mesh.
+    constexpr std::size_t kManyTriangles = std::size_t{1} << 23;
+    const bool many = mesh.triangles.size() > kManyTriangles;
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene,
+                     many ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    ShareBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions);
+    ShareBuffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+
+  // Embree reads the mesh's own memory, by 16 bytes at a time: past the last element, too.
+  template <typename Element>
+  void ShareBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                   std::vector<Element>& elements) {
+    elements.reserve(elements.size() + 2);
+    rtcSetSharedGeometryBuffer(geometry, type, 0, format, elements.data(), 0, sizeof(Element),
+                               elements.size());
+    ThrowFault();
+  }
+
+  static void KeepFault(void* self, RTCError code, const char* text) {
+    auto* scene = static_cast<Scene*>(self);
+    const std::lock_guard<std::mutex> lock(scene->fault_mutex);
+    scene->fault = fmt::format("Embree error {}: {}", static_cast<int>(code), text);
+  }
+  void ThrowFault() {
+    const std::lock_guard<std::mutex> lock(fault_mutex);
+    if (!fault.empty()) throw InternalError(fault);
+  }
+
+  void Release() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+    scene = nullptr;
+    device = nullptr;
+  }
+
+  [[nodiscard]] Corners CornersOf(unsigned triangle) const {
+    Corners corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.triangles[triangle][k];
+      corners.position[k] = ToDouble(mesh.positions[vertex]);
+      corners.normal[k] = ToDouble(mesh.normals[vertex]);
+    }
+    return corners;
+  }
+
+  // How far a point of a triangle may seem to lie off it when Embree looks: its coordinates are
+  // rounded to float, and the distance to the plane is a dot product of differences and a cross
+  // product of edges, 16 roundings of terms no longer than the longest edge.
+  [[nodiscard]] double ErrorBound(const glm::dvec3& point) const {
+    return kUnitRoundoff * (std::abs(point.x) + std::abs(point.y) + std::abs(point.z)) +
+           Gamma(16) * longest_edge_m;
+  }
+};
+
+Terrain::Terrain(TriangleMesh mesh) : scene_(std::make_unique<Scene>(std::move(mesh))) {}
+Terrain::~Terrain() = default;
+Terrain::Terrain(Terrain&&) noexcept = default;
+Terrain& Terrain::operator=(Terrain&&) noexcept = default;
+
+std::optional<TerrainHit> Terrain::Intersect(const glm::dvec3& origin,
+                                             const glm::dvec3& direction) const {
+  const glm::dvec3 unit = CheckedUnit(origin, direction);
+  const std::optional<Interval> inside =
+      Clip(scene_->bounds, origin, unit, std::numeric_limits<double>::infinity());
+  if (!inside) return std::nullopt;
+  const glm::dvec3 start = origin + inside->begin * unit;
+  RTCRayHit query{};
+  query.ray = MakeRay(start, unit, inside->end - inside->begin);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return HitAt(scene_->CornersOf(query.hit.primID), origin, unit, query.hit);
+}
+
+bool Terrain::Occluded(const glm::dvec3& origin, const glm::dvec3& normal,
+                       const glm::dvec3& direction, double length_m) const {
+  const glm::dvec3 unit = CheckedUnit(origin, direction);
+  const glm::dvec3 away = CheckedUnit(origin, normal);
+  if (!(length_m >= 0.0)) throw InternalError(fmt::format("a ray is {} m long", length_m));
+  const glm::dvec3 lifted = origin + scene_->ErrorBound(origin) * away;
+  const std::optional<Interval> inside = Clip(scene_->bounds, lifted, unit, length_m);
+  if (!inside) return false;
+  RTCRay ray = MakeRay(lifted + inside->begin * unit, unit, inside->end - inside->begin);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene_->scene, &context, &ray);
+  return ray.tfar < 0.0F;
+}
+
+const TriangleMesh& Terrain::mesh() const { return scene_->mesh; }
+
+}  // namespace alpenglow

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/air/medium.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+using testing::HasSubstr;
+
+std::string MessageOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+double OpticalDepthOfAerosol(const Medium& medium, std::size_t band) {
+  return medium.mie_extinction_per_m[band] * medium.mie_scale_height_m;
+}
+
+TEST(Medium, EveryPresetIsValidOnItsOwnWavelengthsAndOnManyBands) {
+  for (const std::string& name : MediumPresetNames()) {
+    EXPECT_EQ(FindFault(MediumPreset(name)), std::nullopt) << name;
+    EXPECT_EQ(MediumPreset(name).name, name);
+    if (name == "bruneton2017") continue;
+    EXPECT_EQ(FindFault(MediumPreset(name, WavelengthSet(40))), std::nullopt) << name;
+  }
+}
+
+TEST(Medium, EarthHasFourBandsOverAnEllipsoid) {
+  const Medium earth = MediumPreset("earth");
+  EXPECT_EQ(earth.wavelengths_nm, WavelengthSet(4));
+  EXPECT_TRUE(earth.follows_wgs84);
+  EXPECT_DOUBLE_EQ(earth.planet_radius_m, 6371008.7714);
+  EXPECT_DOUBLE_EQ(earth.atmosphere_height_m, 120000.0);
+  EXPECT_EQ(earth.rayleigh_scattering_per_m[0], RayleighScatteringAtSeaLevel(WavelengthSet(4)[0]));
+}
+
+TEST(Medium, AerosolOfEarthHasTheOpticalDepthAndSlopeOfAngstrom) {
+  const Medium earth = MediumPreset("earth", {450.0, 550.0, 700.0});
+  EXPECT_NEAR(OpticalDepthOfAerosol(earth, 1), 0.05, 1e-15);
+  EXPECT_NEAR(OpticalDepthOfAerosol(earth, 0) / OpticalDepthOfAerosol(earth, 2),
+              std::pow(450.0 / 700.0, -1.3), 1e-12);
+  EXPECT_NEAR(earth.mie_scattering_per_m[1] / earth.mie_extinction_per_m[1], 0.9253, 1e-12)
+      << "OPAC continental average, 80 % relative humidity, 550 nm";
+}
+
+TEST(Medium, MeanCosinesOfEarthAerosolsAreThoseOfOpac) {
+  EXPECT_NEAR(MeanCosine(MediumPreset("earth").mie_phase.front()), 0.7034, 1e-4);
+  EXPECT_NEAR(MeanCosine(MediumPreset("clear-mountain").mie_phase.front()), 0.7086, 1e-4);
+  EXPECT_NEAR(MeanCosine(MediumPreset("hazy").mie_phase.front()), 0.6977, 1e-4);
+}
+
+TEST(Medium, VisibilityOfEarthIsThatOfACleanDay) {
+  const auto visibility_m = [](const char* name) {
+    const Medium medium = MediumPreset(name, {550.0});
+    return 3.912 / (medium.mie_extinction_per_m[0] + medium.rayleigh_scattering_per_m[0]);
+  };
+  EXPECT_NEAR(visibility_m("earth"), 74000.0, 1000.0) << "Koschmieder's 3.912 / extinction";
+  EXPECT_GT(visibility_m("clear-mountain"), 130000.0);
+  EXPECT_NEAR(visibility_m("hazy"), 22000.0, 1000.0);
+}
+
+TEST(Medium, OzoneColumnOfEarthIsThreeHundredDobson) {
+  const Medium earth = MediumPreset("earth", {600.0});
+  double layer_m = 0.0;  // by the midpoint rule, exact for a smooth layer of compact support
+  for (double h = 5.0; h < 66000.0; h += 10.0) {
+    layer_m += 10.0 * std::pow(6.75 * (h / 66000.0) * std::pow(1.0 - h / 66000.0, 2), 4);
+  }
+  const double column = earth.ozone_absorption_per_m[0] * layer_m / OzoneCrossSection(600.0);
+  EXPECT_NEAR(column, 300.0 * 2.6867811e20, 1e15) << "molecules per square metre";
+}
+
+TEST(Medium, DustOfMarsAbsorbsBlueAndItsGasHardlyScatters) {
+  const Medium mars = MediumPreset("mars", {450.0, 532.2, 650.0});
+  EXPECT_LT(mars.mie_scattering_per_m[0], 0.9 * mars.mie_scattering_per_m[2]);
+  EXPECT_LT(mars.rayleigh_scattering_per_m[0], 0.02 * mars.mie_extinction_per_m[0]);
+  EXPECT_NEAR(mars.solar_irradiance[1] * 1.524 * 1.524, SolarIrradiance(532.2), 1e-12);
+  const double cross_section_m2 =
+      mars.rayleigh_scattering_per_m[1] / (610.0 / (1.380649e-23 * 210.0));
+  EXPECT_NEAR(cross_section_m2, 1.24e-30, 0.08 * 1.24e-30)
+      << "Sneep and Ubachs (2005) measured 1.24e-30 m^2 at 532.2 nm";
+}
+
+TEST(Medium, Bruneton2017IsAsPublishedButAscending) {
+  const Medium medium = MediumPreset("bruneton2017");
+  EXPECT_EQ(medium.wavelengths_nm, (std::vector<double>{440.0, 550.0, 680.0}));
+  EXPECT_EQ(medium.solar_irradiance, (std::vector<double>{1.91198, 1.8504, 1.474}));
+  EXPECT_EQ(medium.rayleigh_scattering_per_m, (std::vector<double>{33.1e-6, 13.558e-6, 5.802e-6}));
+  EXPECT_EQ(medium.ozone_absorption_per_m, (std::vector<double>{0.085e-6, 1.881e-6, 0.650e-6}));
+  EXPECT_FALSE(medium.follows_wgs84);
+  EXPECT_EQ(medium.planet_radius_m, 6360000.0);
+  EXPECT_EQ(medium.atmosphere_height_m, 60000.0);
+  EXPECT_EQ(medium.mie_phase.front().g, 0.8);
+  EXPECT_THAT(MessageOf([] { (void)MediumPreset("bruneton2017", {450.0}); }), HasSubstr("440"));
+}
+
+TEST(Medium, UnknownPresetsAndWavelengthsWithoutTablesAreRefused) {
+  EXPECT_THAT(MessageOf([] { (void)MediumPreset("venus"); }), HasSubstr("clear-mountain"));
+  EXPECT_THAT(MessageOf([] { (void)MediumPreset("earth", {300.0}); }), HasSubstr("[360, 830]"));
+  EXPECT_THAT(MessageOf([] { (void)MediumPreset("earth", {600.0, 500.0}); }), HasSubstr("ordered"));
+  EXPECT_THAT(MessageOf([] { (void)MediumPreset("earth", {}); }), HasSubstr("0 values"));
+}
+
+struct Change {
+  const char* key;
+  std::function<void(Medium&)> make;
+};
+
+std::vector<Change> HashedChanges() {
+  return {
+      {"follows_wgs84", [](Medium& m) { m.follows_wgs84 = false; }},
+      {"radius", [](Medium& m) { m.planet_radius_m += 1e-9; }},
+      {"top", [](Medium& m) { m.atmosphere_height_m += 1.0; }},
+      {"wavelengths", [](Medium& m) { m.wavelengths_nm[1] += 1.0; }},
+      {"irradiance", [](Medium& m) { m.solar_irradiance[1] += 0.1; }},
+      {"albedo", [](Medium& m) { m.ground_albedo[0] += 0.1; }},
+      {"rayleigh", [](Medium& m) { m.rayleigh_scattering_per_m[0] *= 1.1; }},
+      {"rayleigh height", [](Medium& m) { m.rayleigh_scale_height_m += 1.0; }},
+      {"rayleigh deficit", [](Medium& m) { m.rayleigh_deficit.share = 0.3; }},
+      {"mie", [](Medium& m) { m.mie_scattering_per_m[0] *= 0.9; }},
+      {"mie extinction", [](Medium& m) { m.mie_extinction_per_m[0] *= 1.1; }},
+      {"mie height", [](Medium& m) { m.mie_scale_height_m += 1.0; }},
+      {"phase", [](Medium& m) { m.mie_phase.front().kind = PhaseKind::kDraine; }},
+      {"g", [](Medium& m) { m.mie_phase.front().g += 0.01; }},
+      {"g_back", [](Medium& m) { m.mie_phase.front().g_back += 0.01; }},
+      {"back_weight", [](Medium& m) { m.mie_phase.front().back_weight += 0.01; }},
+      {"alpha", [](Medium& m) { m.mie_phase.front().alpha -= 0.01; }},
+      {"ozone", [](Medium& m) { m.ozone_absorption_per_m[2] *= 1.1; }},
+      {"ozone shape", [](Medium& m) { m.ozone.shape = OzoneShape::kTent; }},
+      {"ozone bottom", [](Medium& m) { m.ozone.bottom_m += 1.0; }},
+      {"ozone peak", [](Medium& m) { m.ozone.peak_m += 1.0; }},
+      {"ozone top", [](Medium& m) { m.ozone.top_m += 1.0; }},
+  };
+}
+
+TEST(Medium, HashTellsApartEverythingButTheName) {
+  std::set<std::uint64_t> hashes{MediumHash(MediumPreset("earth"))};
+  for (const Change& change : HashedChanges()) {
+    Medium medium = MediumPreset("earth");
+    change.make(medium);
+    EXPECT_TRUE(hashes.insert(MediumHash(medium)).second) << change.key;
+  }
+  Medium renamed = MediumPreset("earth");
+  renamed.name = "home";
+  EXPECT_EQ(MediumHash(renamed), MediumHash(MediumPreset("earth")));
+}
+
+TEST(Medium, OnePhaseFunctionForAllIsTheSameAirAsItsCopies) {
+  const Medium one = MediumPreset("earth");
+  Medium copies = one;
+  copies.mie_phase.resize(one.wavelengths_nm.size(), one.mie_phase.front());
+  EXPECT_EQ(MediumHash(one), MediumHash(copies));
+  copies.mie_phase[2].g += 0.01;
+  EXPECT_NE(MediumHash(one), MediumHash(copies));
+  EXPECT_EQ(MiePhaseValues(one, 0.3), std::vector<double>(4, Phase(one.mie_phase[0], 0.3)));
+  EXPECT_EQ(MiePhaseValues(copies, 0.3)[2], Phase(copies.mie_phase[2], 0.3));
+}
+
+TEST(Medium, HashIsTheSameOnEveryMachine) {
+  // A medium of literals only, so that no library's pow can change it; the value is from a separate
+  // program.
+  EXPECT_EQ(MediumHash(MediumPreset("bruneton2017")), 3681725893479617410U)
+      << "a new value here makes every table on every disk stale";
+  Medium negative_zero = MediumPreset("bruneton2017");
+  negative_zero.mie_phase.front().g_back = -0.0;
+  EXPECT_EQ(MediumHash(negative_zero), MediumHash(MediumPreset("bruneton2017")));
+}
+
+TEST(Medium, FirstFaultNamesKeyValueAndRange) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Change faults[] = {
+      {"planet.radius_m is nan; it must lie in [1000, 1000000000]",
+       [](Medium& m) { m.planet_radius_m = kNan; }},
+      {"planet.atmosphere_top_m is 0", [](Medium& m) { m.atmosphere_height_m = 0.0; }},
+      {"planet.ground_albedo is 1.5; it must lie in [0, 1]",
+       [](Medium& m) { m.ground_albedo[2] = 1.5; }},
+      {"spectrum.wavelengths_nm is 199", [](Medium& m) { m.wavelengths_nm[0] = 199.0; }},
+      {"spectrum.wavelengths_nm has 525 after 525", [](Medium& m) { m.wavelengths_nm[0] = 525.0; }},
+      {"spectrum.solar_irradiance is -1", [](Medium& m) { m.solar_irradiance[0] = -1.0; }},
+      {"rayleigh.scattering_per_m is inf",
+       [](Medium& m) { m.rayleigh_scattering_per_m[3] = kInfinity; }},
+      {"rayleigh.scattering_per_m has 3 values; it must have 4",
+       [](Medium& m) { m.rayleigh_scattering_per_m.pop_back(); }},
+      {"rayleigh.scale_height_m is 0.5", [](Medium& m) { m.rayleigh_scale_height_m = 0.5; }},
+      {"rayleigh.deficit is -0.1", [](Medium& m) { m.rayleigh_deficit.share = -0.1; }},
+      {"rayleigh.deficit_scale_height_m is 1000",
+       [](Medium& m) {
+         m.rayleigh_deficit = {0.4, 1e3};
+       }},
+      {"rayleigh.deficit_scale_height_m is 9000",
+       [](Medium& m) {
+         m.rayleigh_deficit = {0.4, 9e3};
+       }},
+      {"mie.scale_height_m is 300000", [](Medium& m) { m.mie_scale_height_m = 3e5; }},
+      {"mie.scattering_per_m is 1 at 445 nm; it must not exceed",
+       [](Medium& m) { m.mie_scattering_per_m[0] = 1.0; }},
+      {"mie.g is 1;", [](Medium& m) { m.mie_phase.front().g = 1.0; }},
+      {"mie.phase has 2 values; it must have 1 or 4",
+       [](Medium& m) { m.mie_phase.push_back(m.mie_phase.front()); }},
+      {"mie.phase is rayleigh beside cornette-shanks",
+       [](Medium& m) {
+         m.mie_phase.resize(4, m.mie_phase.front());
+         m.mie_phase[1].kind = PhaseKind::kRayleigh;
+       }},
+      {"mie.phase is table; it needs values",
+       [](Medium& m) { m.mie_phase.front().kind = PhaseKind::kTable; }},
+      {"ozone.absorption_per_m is -1", [](Medium& m) { m.ozone_absorption_per_m[0] = -1.0; }},
+      {"ozone.peak_m is 50000; it must lie between",
+       [](Medium& m) {
+         m.ozone = {10e3, 50e3, 40e3};
+       }},
+      {"ozone.profile is smooth; its bottom is 0", [](Medium& m) { m.ozone.top_m = 5e4; }},
+  };
+  for (const Change& fault : faults) {
+    Medium medium = MediumPreset("earth");
+    fault.make(medium);
+    const std::string message = MessageOf([&] { Validate(medium); });
+    EXPECT_THAT(message, HasSubstr(fault.key));
+    ASSERT_TRUE(FindFault(medium).has_value()) << fault.key;
+    EXPECT_EQ(message.rfind(FindFault(medium)->key, 0), 0U) << message;
+  }
+}
+
+TEST(Medium, EmptyAirIsValid) {
+  Medium medium = MediumPreset("earth");
+  for (auto* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
+    std::fill(list->begin(), list->end(), 0.0);
+  }
+  EXPECT_EQ(FindFault(medium), std::nullopt);
+}
+
+}  // namespace
+}  // namespace alpenglow

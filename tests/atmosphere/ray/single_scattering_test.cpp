@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/ray/single_scattering.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/judge/judge.h"
+#include "atmosphere/ray/shell.h"
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/ray_regimes.h"
+#include "tests/fixtures/stored_cases.h"
+
+namespace alpenglow {
+namespace {
+
+template <typename Real>
+Bands<Real> Inscatter(const AirIntegrator<Real>& air, const ViewRay& ray,
+                      const Sampling& sampling) {
+  return air.Inscatter(air.Scatter(air.Sample(ray, sampling)), ray.nu);
+}
+
+// Rays that an observer near the ground looks along, sun from high to 8 degrees below the horizon.
+std::vector<ViewRay> RaysUnderSun(double sun_elevation_deg) {
+  std::vector<ViewRay> rays;
+  for (const double altitude : {2.0, 1500.0, 10000.0}) {
+    for (const double view : {5.0, 40.0, 70.0, 85.0, 89.0}) {
+      for (const double azimuth : {0.0, 60.0, 180.0}) {
+        rays.push_back(RayFromAngles(altitude, view, azimuth, 90.0 - sun_elevation_deg));
+      }
+    }
+  }
+  return rays;
+}
+
+double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const AirIntegrator<float> air(medium);
+  double largest = 0.0;
+  for (const ViewRay& ray : RaysUnderSun(sun_elevation_deg)) {
+    const auto fast = Inscatter(air, ray, sampling);
+    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      if (truth.inscatter[band] < 1e-12) continue;
+      largest = std::max(largest,
+                         std::abs(static_cast<double>(fast[band]) / truth.inscatter[band] - 1.0));
+    }
+  }
+  return largest;
+}
+
+constexpr Sampling kFine{.nodes = 16, .split_ozone = true, .dark_samples = false};
+
+TEST(SingleScattering, DayAgreesWithTheJudge) {
+  for (const double sun : {60.0, 20.0, 6.0}) {
+    EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4)
+        << "sun at " << sun << " degrees; 16 nodes a panel, tent split";
+  }
+}
+
+TEST(SingleScattering, SunsetAgreesWithTheJudge) {
+  for (const double sun : {4.0, 1.0, 0.0}) EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
+}
+
+TEST(SingleScattering, TwilightAgreesWithTheJudge) {
+  for (const double sun : {-1.0, -4.0, -6.0})
+    EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
+}
+
+TEST(SingleScattering, StoredCasesThatAreNotLimbRaysAgreeToOnePartInTenThousand) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  const auto media = stored::Media();
+  const auto results = stored::Results("single_results.csv");
+  int compared = 0;
+  for (const stored::Row& row : stored::Read("single.csv")) {
+    const ViewRay ray = stored::RayOf(row);
+    const Medium& medium = media.at(row.at("set"));
+    const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+    const bool limb = ray.mu < 0.0 && extent.end == RayEnd::kSpace;
+    if (limb) continue;
+    const AirIntegrator<float> air(medium);
+    const auto fast = Inscatter(air, ray, kFine);
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const double truth = stored::Number(expected, "inscatter");
+      EXPECT_NEAR(static_cast<double>(fast[stored::Band(medium, expected)]), truth,
+                  1e-4 * truth + 1e-13)
+          << row.at("id") << " " << row.at("tag");
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 300);
+}
+
+double ErrorOf(const Medium& medium, const tests::SunHeights& sun, tests::RayView view,
+               const Sampling& sampling) {
+  return tests::ErrorOfRegime(medium, sun, view, sampling, 200).rms;
+}
+
+TEST(SingleScattering, EightSamplesAreRightToOnePartInAThousandAndTwelveToTen) {
+  for (const char* name : {"earth", "hazy"}) {
+    const Medium medium = MediumPreset(name);
+    for (const auto& sun : tests::kSunHeights) {
+      for (const auto& view : tests::kRayViews) {
+        SCOPED_TRACE(::testing::Message() << name << ", sun " << sun.name << ", " << view.name);
+        EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 8}), 1e-3) << "rms";
+        EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 12}), 1e-4) << "rms";
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, SamplingForAnErrorKeepsIt) {
+  const Medium medium = MediumPreset("hazy");
+  for (const double error : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    const Sampling sampling = SamplingForError(error);
+    for (const auto& sun : tests::kSunHeights) {
+      for (const auto& view : tests::kRayViews) {
+        SCOPED_TRACE(::testing::Message() << "sun " << sun.name << ", " << view.name);
+        EXPECT_LT(ErrorOf(medium, sun, view.view, sampling), error) << sampling.nodes << " nodes";
+      }
+    }
+  }
+  EXPECT_THROW(static_cast<void>(SamplingForError(-1.0)), InputError);
+}
+
+// What ErrorOfRegime takes for the truth is right.
+TEST(SingleScattering, SixtyFourSamplesAreTheJudgeInEveryRegime) {
+  const Medium medium = MediumPreset("hazy");
+  const AirIntegrator<double> air(medium);
+  for (const auto& sun : tests::kSunHeights) {
+    for (const auto& view : tests::kRayViews) {
+      for (const int i : {1, 2, 3}) {
+        const ViewRay ray = tests::RayOfRegime(i, sun, view.view, medium);
+        const auto truth = judge::SingleScatteringAlong(medium, ray);
+        const auto fine = Inscatter(air, ray, {.nodes = 64});
+        for (std::size_t band = 0; band < air.bands(); ++band) {
+          EXPECT_NEAR(fine[band], truth.inscatter[band], 2e-6 * truth.inscatter[band] + 1e-14)
+              << "sun " << sun.name << ", " << view.name << ": the closed form of the columns";
+        }
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, FloatAgreesWithDouble) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> single(medium);
+  const AirIntegrator<double> twice(medium);
+  for (const double sun : {60.0, 6.0, 1.0, -3.0}) {
+    for (const ViewRay& ray : RaysUnderSun(sun)) {
+      const auto f = Inscatter(single, ray, kFine);
+      const auto d = Inscatter(twice, ray, kFine);
+      for (std::size_t band = 0; band < single.bands(); ++band) {
+        EXPECT_NEAR(static_cast<double>(f[band]), d[band], 2e-5 * d[band] + 1e-13)
+            << "float floor of the pipeline: exp of optical depths up to 30 in float";
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
+  const AirIntegrator<float> air(MediumPreset("earth"));
+  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
+  const auto scattered = air.Scatter(air.Sample(ray, {}));
+  const auto transmittance = air.TransmittanceAlong(ray);
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    EXPECT_EQ(scattered.rayleigh[band], 0.0F);
+    EXPECT_EQ(scattered.mie[band], 0.0F);
+    EXPECT_EQ(transmittance[band], 1.0F);
+  }
+}
+
+TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
+  const auto fast = Inscatter(air, ray, {});
+  const auto truth = judge::SingleScatteringAlong(medium, ray);
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    EXPECT_NEAR(static_cast<double>(fast[band]) / truth.inscatter[band], 1.0, 2e-5) << "not noise";
+  }
+}
+
+TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
+  // The difference of two closed forms would have no right digit here; the integral has.
+  const Medium medium = MediumPreset("bruneton2017");
+  const AirIntegrator<double> air(medium);
+  for (const double length : {1.0, 100.0, 10000.0}) {
+    const ViewRay ray{500.0, 0.05, 0.5, 0.3, length};
+    const auto truth = judge::OpticalDepthAlong(medium, ray);
+    const auto fast = air.TransmittanceAlong(ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(-std::log(fast[band]) / truth.tau[band], 1.0, 1e-5) << length << " m";
+    }
+  }
+}
+
+TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<double> air(medium);
+  const auto columns_between = [&](const ViewRay& ray, std::size_t steps) {
+    std::vector<RayNode> nodes;
+    for (std::size_t i = 1; i <= steps; ++i) {
+      nodes.push_back({ray.length_m * static_cast<double>(i) / static_cast<double>(steps), 0.0});
+    }
+    const RayExtent extent{0.0, ray.length_m, RayEnd::kLength};
+    const auto samples = air.SampleAt(ray, extent, {}, nodes, ViewColumns::kBetweenSamples);
+    return std::array<double, 2>{samples.view_rayleigh[steps - 1], samples.view_mie[steps - 1]};
+  };
+  for (const double mu : {-0.12, -0.02, 0.0, 0.03, 0.11}) {
+    const ViewRay ray{5000.0, mu, 0.4, 0.3, 40e3};
+    const double rise_m = std::abs(
+        shared::AltitudeAlongRay<double>(5000.0, mu, ray.length_m, medium.planet_radius_m) -
+        5000.0);
+    const auto truth = columns_between(ray, 200);
+    for (const std::size_t steps : {1U, 2U, 3U, 6U}) {
+      const auto found = columns_between(ray, steps);
+      const auto bound = [&](double scale_height_m) {
+        return 6e-10 * std::pow(rise_m / scale_height_m / static_cast<double>(steps), 8.0) + 1e-8;
+      };
+      EXPECT_NEAR(found[0] / truth[0], 1.0, bound(medium.rayleigh_scale_height_m))
+          << mu << ": 4 Gauss nodes; 1e-8: the altitude without a square root";
+      EXPECT_NEAR(found[1] / truth[1], 1.0, bound(medium.mie_scale_height_m)) << mu;
+    }
+    const auto whole = air.OpticalDepthAlong(ray);
+    const auto& per_km = air.constants();
+    const auto samples = air.SampleAt(ray, {0.0, ray.length_m, RayEnd::kLength}, {},
+                                      std::array{RayNode{20e3, 0.0}, RayNode{40e3, 0.0}},
+                                      ViewColumns::kBetweenSamples);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      const double depth = per_km.rayleigh[band] * samples.view_rayleigh[1] +
+                           per_km.mie_extinction[band] * samples.view_mie[1] +
+                           per_km.ozone[band] * samples.view_ozone[1];
+      EXPECT_NEAR(depth / whole[band], 1.0, 2e-5)
+          << mu << ": the closed form is right to 3e-6 of the column to space";
+    }
+  }
+}
+
+TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheJudgeAtEveryAngle) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  for (const double altitude : {0.0, 10.0, 3000.0, 30000.0, 80000.0}) {
+    for (double mu = -0.3; mu <= 1.0; mu += 0.01) {
+      const auto truth = judge::OpticalDepthAlong(medium, {altitude, mu, 1.0, mu});
+      const auto fast = air.TransmittanceToSpace(altitude, mu);
+      for (std::size_t band = 0; band < air.bands(); ++band) {
+        const double expected = truth.blocked ? 0.0 : std::exp(-truth.tau[band]);
+        EXPECT_NEAR(static_cast<double>(fast[band]), expected, 1e-5) << altitude << " m, mu " << mu;
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
+  const AirIntegrator<float> air(MediumPreset("earth"));
+  for (const double view : {0.0, 180.0}) {
+    const auto one = Inscatter(air, RayFromAngles(5000.0, view, 0.0, 50.0), kFine);
+    const auto other = Inscatter(air, RayFromAngles(5000.0, view, 137.0, 50.0), kFine);
+    for (std::size_t band = 0; band < air.bands(); ++band)
+      EXPECT_NEAR(one[band], other[band], 1e-6F * one[band]);
+  }
+}
+
+TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  const double top = medium.atmosphere_height_m;
+  for (const double view : {95.0, 100.0, 120.0, 180.0}) {
+    const auto below = Inscatter(air, RayFromAngles(top - 1e-6, view, 40.0, 60.0), kFine);
+    const auto above = Inscatter(air, RayFromAngles(top + 1e-6, view, 40.0, 60.0), kFine);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(below[band], above[band], 1e-4F * below[band]) << view;
+    }
+  }
+}
+
+TEST(SingleScattering, MarchOfManyStepsComesToTheSameLight) {
+  const AirIntegrator<float> air(MediumPreset("bruneton2017"));
+  for (const double sun_elevation_deg : {30.0, -3.0}) {
+    const ViewRay ray = RayFromAngles(1500.0, 80.0, 20.0, 90.0 - sun_elevation_deg);
+    const RayExtent extent = air.Sample(ray, kFine).extent;
+    constexpr int kSteps = 512;
+    const double step = (extent.end_m - extent.begin_m) / kSteps;
+    std::vector<RayNode> nodes;
+    for (int i = 0; i < kSteps; ++i) nodes.push_back({extent.begin_m + (i + 0.5) * step, step});
+    const auto march = air.Inscatter(air.Scatter(air.SampleAt(ray, nodes)), ray.nu);
+    const auto gauss = Inscatter(air, ray, kFine);
+    // The step that holds the edge of the planet's shadow is lit or not as a whole: 1 / kSteps of
+    // the ray, in thin air.
+    for (std::size_t band = 0; band < air.bands(); ++band)
+      EXPECT_NEAR(march[band], gauss[band], 2e-3F * gauss[band]) << sun_elevation_deg;
+  }
+}
+
+TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
+  Medium medium = MediumPreset("earth");
+  while (medium.wavelengths_nm.size() <= kMaxBands) {
+    medium.wavelengths_nm.push_back(medium.wavelengths_nm.back() + 1.0);
+    for (auto* list : {&medium.solar_irradiance, &medium.ground_albedo,
+                       &medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                       &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
+      list->push_back(list->back());
+    }
+  }
+  EXPECT_THROW(AirIntegrator<float>{medium}, InputError);
+}
+
+// The desert's dust: a table at every wavelength.
+Medium Dusty() { return MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"); }
+
+TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
+  const Medium medium = Dusty();
+  const AirIntegrator<float> air(medium);
+  for (const ViewRay& ray : RaysUnderSun(20.0)) {
+    const auto light = Inscatter(air, ray, kFine);
+    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 1e-4)
+          << "16 nodes a panel";
+      Medium shared = medium;
+      shared.mie_phase = {medium.mie_phase[band]};
+      EXPECT_EQ(light[band], Inscatter(AirIntegrator<float>(shared), ray, kFine)[band]);
+    }
+  }
+}
+
+TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
+  Medium medium = MediumPreset("earth");
+  medium.mie_phase.front() = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};
+  const AirIntegrator<float> air(medium);
+  for (const double nu : {1.0, -1.0}) {
+    const ViewRay ray{2.0, nu * 0.5, 0.5, nu};
+    const auto light = Inscatter(air, ray, kFine);
+    for (std::size_t band = 0; band < air.bands(); ++band) EXPECT_TRUE(std::isfinite(light[band]));
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Light of the twilight sky against the published illuminances of the U.S. Naval Observatory
+// (Brown 1952; shared/tables), average clear sky at sea level.
+//
+// Deep twilight is light scattered at 20 to 80 km, where the air is thinner than an exponential of
+// 8 km says: by a factor of 2 at 40 km in the U.S. Standard Atmosphere 1976. With the scale height
+// that the standard atmosphere has there, and the same column, illuminance is right within a
+// quarter from sunset to the end of nautical twilight; with 8 km it is twice too bright from -6
+// degrees on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "lut/sky/panorama.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kNightSky_lux = 0.0005;  // what the table adds (Janiczek, DeYoung 1987)
+
+/// Two columns of a published table as x -> y; empty where the table is absent.
+std::map<double, double> Table(const std::string& file, std::size_t x, std::size_t y) {
+  std::ifstream in(std::filesystem::path(ALPENGLOW_SHARED_DIR) / "tables" / file);
+  std::map<double, double> table;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || (line[0] != '-' && (line[0] < '0' || line[0] > '9'))) continue;
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    table[row.at(x)] = row.at(y);
+  }
+  return table;
+}
+
+std::map<double, double> PublishedLux() { return Table("illuminance_vs_sun_altitude.csv", 0, 2); }
+
+/// Relative density at 40 km of the U.S. Standard Atmosphere.
+double DensityAt40Km() { return Table("ussa76_profile.csv", 0, 6).at(40.0); }
+
+double TrueElevation(double apparent_rad) {
+  double elevation = apparent_rad;
+  for (int i = 0; i < 40; ++i) elevation = apparent_rad - Refraction(elevation);
+  return elevation;
+}
+
+/// Illuminance [lx] of a horizontal plane on the ground.
+class Daylight {
+ public:
+  explicit Daylight(const Medium& medium) : air_(medium), diffuse_(medium) {}
+
+  [[nodiscard]] double Lux(double true_elevation_rad) const {
+    PanoramaSun sun;
+    sun.elevation_rad = true_elevation_rad;
+    return HorizontalIlluminance(air_, diffuse_, 0.0, sun) + kNightSky_lux;
+  }
+
+ private:
+  AirIntegrator<float> air_;
+  DiffuseLight diffuse_;
+};
+
+/// The same column of molecules in one exponential.
+Medium WithOneExponential(Medium medium, double height_m) {
+  for (double& scattering : medium.rayleigh_scattering_per_m)
+    scattering *= MoleculeColumn_m(medium) / height_m;
+  medium.rayleigh_scale_height_m = height_m;
+  medium.rayleigh_deficit = {};
+  return medium;
+}
+
+double RatioToTable(const Daylight& daylight, double apparent_deg) {
+  return daylight.Lux(TrueElevation(apparent_deg * kRadiansPerDegree)) /
+         PublishedLux().at(apparent_deg);
+}
+
+TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
+  const std::map<double, double> standard = Table("ussa76_profile.csv", 0, 6);
+  if (standard.empty()) GTEST_SKIP() << "shared/tables is absent";
+  const Medium medium = MediumPreset("earth");
+  double column_m = 0.0, last_km = 0.0, last_density = 1.0;
+  for (const auto& [altitude_km, density] : standard) {
+    const double ratio = MoleculeDensity(medium, 1000.0 * altitude_km) / density;
+    if (altitude_km <= 55.0) {
+      EXPECT_NEAR(ratio, 1.0, altitude_km <= 25.0 ? 0.1 : 0.22) << altitude_km << " km";
+    }
+    column_m += 500.0 * (altitude_km - last_km) * (density + last_density);
+    last_km = altitude_km;
+    last_density = density;
+  }
+  EXPECT_NEAR(MoleculeColumn_m(medium), column_m, 0.002 * column_m)
+      << "trapezoids over steps of 1 and 2 km: 0.1 % too much";
+}
+
+TEST(Twilight, IsAsBrightAsPublished) {
+  if (PublishedLux().empty()) GTEST_SKIP() << "shared/tables is absent";
+  const Daylight daylight(MediumPreset("earth", WavelengthSet(8)));
+  for (const double apparent_deg : {0.0, -3.0, -6.0, -9.0, -12.0}) {
+    const double ratio = RatioToTable(daylight, apparent_deg);
+    EXPECT_NEAR(ratio, 1.0, 0.25) << "sun at " << apparent_deg << " degrees";
+    RecordProperty("ratio_at_" + std::to_string(static_cast<int>(-apparent_deg)),
+                   std::to_string(ratio));
+  }
+}
+
+TEST(Twilight, OfOneExponentialOfEightKilometresIsTooBrightForItsAirIsTooDenseHighUp) {
+  if (PublishedLux().empty()) GTEST_SKIP() << "shared/tables is absent";
+  const double height_m = 8000.0;
+  const double too_dense = std::exp(-40e3 / height_m) / DensityAt40Km();
+  EXPECT_NEAR(too_dense, 2.1, 0.1) << "the reason: molecules at 40 km, times too many";
+  const Daylight daylight(WithOneExponential(MediumPreset("earth", WavelengthSet(8)), height_m));
+  for (const double apparent_deg : {-6.0, -9.0, -12.0}) {
+    EXPECT_GT(RatioToTable(daylight, apparent_deg), 1.2) << apparent_deg;
+    EXPECT_LT(RatioToTable(daylight, apparent_deg), 1.2 * too_dense) << apparent_deg;
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

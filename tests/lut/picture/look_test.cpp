@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "lut/picture/look.h"
+
+#include <gtest/gtest.h>
+
+#include "atmosphere/text/error.h"
+#include "lut/picture/local_exposure.h"
+#include "lut/picture/night_vision.h"
+
+namespace alpenglow {
+namespace {
+
+TEST(Look, NamesAreCurvesOrLocal) {
+  EXPECT_EQ(LookFromName("aces"), (Look{ToneCurve::kAces, false, false}));
+  EXPECT_EQ(LookFromName("local"), (Look{ToneCurve::kAgx, true, false}));
+  EXPECT_THROW((void)LookFromName("dusk"), InputError);
+  EXPECT_NE(NameOf(Look{}), NameOf(LookFromName("local")));
+}
+
+TEST(Look, IncidentMeterReadsTheSunnySixteenRule) {
+  // Sunlight of 80 to 100 klx: EV 15, f/16 at 1/125 s with ISO 100.
+  EXPECT_NEAR(IncidentEv100(82000.0), 15.0, 0.01) << "log2(82000 100 / 250)";
+  EXPECT_EQ(IncidentEv100(0.0), kDarkestEv100);
+  EXPECT_EQ(IncidentEv100(1e12), kBrightestEv100);
+}
+
+TEST(Look, ExposureIsMeteredIncidentOrANumber) {
+  EXPECT_EQ(ExposureRuleFromText("auto").kind, ExposureRule::Kind::kMetered);
+  EXPECT_EQ(ExposureRuleFromText("incident").kind, ExposureRule::Kind::kIncident);
+  EXPECT_EQ(ExposureRuleFromText("12.5"), (ExposureRule{ExposureRule::Kind::kFixed, 12.5}));
+  for (const char* bad : {"", "bright", "31", "1e9", "12 EV"})
+    EXPECT_THROW((void)ExposureRuleFromText(bad), InputError) << bad;
+}
+
+TEST(Look, DevelopsTheLocallyExposedPicture) {
+  Image image(64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const float level = y < 32 ? 4000.0F : 2.0F;
+      image.at(x, y) = {level, level, level};
+    }
+  }
+  const DisplayImage local = Develop(image, 9.0, LookFromName("local"));
+  EXPECT_EQ(local.rgb, Develop(LocallyExposed(image, 9.0), 9.0, ToneCurve::kAgx).rgb);
+  EXPECT_GT(local.rgb.back(), Develop(image, 9.0, Look{}).rgb.back()) << "shadows are opened";
+}
+
+TEST(Look, NightVisionIsSeenBeforeItIsMetered) {
+  Image image(4, 4);
+  image.rgb.assign(16, {1e-3F, 1e-3F, 1e-3F});
+  image.layers.push_back({kScotopicChannel, std::vector<float>(16, 3e-3F)});
+  EXPECT_EQ(Seen(image, {}).rgb, image.rgb);
+  EXPECT_EQ(Seen(image, {.night_vision = true}).rgb, SeenByNight(image).rgb);
+}
+
+}  // namespace
+}  // namespace alpenglow

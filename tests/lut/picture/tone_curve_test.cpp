@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "lut/picture/tone_curve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "atmosphere/text/error.h"
+#include "lut/picture/picture_text.h"
+
+namespace alpenglow {
+namespace {
+
+using Color = Rgb<double>;
+
+const std::vector<ToneCurve> kCurves = {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
+                                        ToneCurve::kPbrNeutral, ToneCurve::kLinear};
+
+/// Exposed colours of all kinds: black to 2^40, grey, saturated, out of gamut.
+std::vector<Color> Colours() {
+  std::vector<Color> colours = {{0.0, 0.0, 0.0}, {-1.0, -1.0, -1.0}, {-0.2, 0.5, 1.0}};
+  for (int stop = -20; stop <= 40; ++stop) {
+    const double y = std::exp2(stop);
+    for (const Color& hue :
+         {Color{1.0, 1.0, 1.0}, Color{1.0, 0.0, 0.0}, Color{0.0, 0.0, 1.0}, Color{1.0, 0.5, 0.1},
+          Color{0.2, 0.5, 1.0}, Color{-0.1, 0.8, 0.6}, Color{1.0, -0.05, 0.3}}) {
+      colours.push_back({y * hue[0], y * hue[1], y * hue[2]});
+    }
+  }
+  return colours;
+}
+
+// Sobotka's configuration: 10 of 16.5 stops lie below 0.18, the curve's pivot is (20/33, 0.5).
+TEST(Agx, MiddleGreyIsHalfTheCodeRange) {
+  const double share = shared::AgxWhiteShare(0.18, 0.18, 0.18);
+  EXPECT_NEAR(share, 0.18, 1e-9) << "the shares of the primaries are given to 11 digits";
+  EXPECT_NEAR(shared::AgxLogCode(0.18), 20.0 / 33.0, 1e-6)
+      << "the published bounds of the encoding have 6 decimals";
+  EXPECT_NEAR(shared::AgxCode(0.18, share), 0.5, 2e-6);
+}
+
+TEST(Agx, SigmoidEndsAtBlackAndWhiteWithSlopeTwoAtItsPivot) {
+  EXPECT_NEAR(shared::AgxSigmoid(0.0), 0.0, 1e-12);
+  EXPECT_NEAR(shared::AgxSigmoid(1.0), 1.0, 1e-12);
+  const double pivot = 20.0 / 33.0;
+  const double step = 1e-4;
+  const double slope =
+      (shared::AgxSigmoid(pivot + step) - shared::AgxSigmoid(pivot - step)) / (2.0 * step);
+  EXPECT_NEAR(slope, 2.0, 1e-8) << "the curve departs from its tangent as the fourth power";
+}
+
+// Wrensch (2023) fitted the sixth-order polynomial below to the table of AgX, with a published mean
+// squared error of 3.7e-6, that is 0.00192 rms.
+TEST(Agx, SigmoidAgreesWithThePublishedPolynomialFit) {
+  constexpr int kPoints = 1000;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double x = static_cast<double>(i) / kPoints;
+    const double fit = 15.5 * std::pow(x, 6) - 40.14 * std::pow(x, 5) + 31.96 * std::pow(x, 4) -
+                       6.868 * std::pow(x, 3) + 0.4298 * x * x + 0.1191 * x - 0.00232;
+    EXPECT_NEAR(shared::AgxSigmoid(x), fit, 3.1 * 0.00192)
+        << "the extremes of a fit are some three times its rms";
+  }
+}
+
+// The matrix that is passed around has its white rounded: rows sum to 1 within 1.4e-4.
+TEST(Agx, InsetIsThePublishedMatrix) {
+  const double published[3][3] = {{0.842479062253094, 0.0784335999999992, 0.0792237451477643},
+                                  {0.0423282422610123, 0.878468636469772, 0.0791661274605434},
+                                  {0.0423756549057051, 0.0784336, 0.879142973793104}};
+  for (int column = 0; column < 3; ++column) {
+    const Color unit = {column == 0 ? 1.0 : 0.0, column == 1 ? 1.0 : 0.0, column == 2 ? 1.0 : 0.0};
+    const double share = shared::AgxWhiteShare(unit[0], unit[1], unit[2]);
+    for (std::size_t row = 0; row < 3; ++row) {
+      EXPECT_NEAR(shared::AgxInset(unit[row], share), published[row][column], 1.4e-4);
+    }
+  }
+}
+
+TEST(Agx, OutsetUndoesTheInset) {
+  const Color colour = {0.3, 0.9, 0.05};
+  const double share = shared::AgxWhiteShare(colour[0], colour[1], colour[2]);
+  Color inset = {};
+  for (std::size_t c = 0; c < 3; ++c) inset[c] = shared::AgxInset(colour[c], share);
+  const double inset_share = shared::AgxWhiteShare(inset[0], inset[1], inset[2]);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(shared::AgxOutset(inset[c], inset_share), colour[c], 1e-9)
+        << "the shares of the primaries sum to 1 within 1e-10";
+  }
+}
+
+TEST(Agx, BrightColoursGoToWhite) {
+  const Color light = DisplayLight<double>(ToneCurve::kAgx, {3e3, 3e2, 1e2}, 1.0);
+  for (const double channel : light) EXPECT_GT(channel, 0.95);
+}
+
+TEST(PbrNeutral, KeepsColoursBelowItsKneeButForTheReflection) {
+  const Color light = NeutralLight<double>({0.7, 0.4, 0.2});
+  EXPECT_NEAR(light[0], 0.66, 1e-12);
+  EXPECT_NEAR(light[1], 0.36, 1e-12);
+  EXPECT_NEAR(light[2], 0.16, 1e-12);
+}
+
+TEST(PbrNeutral, PeakFollowsTheSpecifiedHyperbola) {
+  // Grey 1.04: offset 0.04, peak 1, new peak 1 - 0.24^2 / (1 + 0.24 - 0.76) = 0.88.
+  const Color light = NeutralLight<double>({1.04, 1.04, 1.04});
+  EXPECT_NEAR(light[1], 0.88, 1e-12);
+}
+
+TEST(Aces, MiddleGreyIsATenthOfWhite) {
+  // The ACES output transform shows 0.18 at 4.8 of 48 cd/m^2; the fit is within a few per cent.
+  const Color light = AcesLight<double>({0.18, 0.18, 0.18});
+  EXPECT_NEAR(light[1], 0.10, 0.01);
+}
+
+TEST(Reinhard, WhiteIsReachedAtFour) {
+  const Color light = ReinhardLight<double>({4.0, 4.0, 4.0});
+  for (const double channel : light) EXPECT_NEAR(channel, 1.0, 1e-12);
+}
+
+TEST(Reinhard, KeepsTheMappedLuminanceOfSaturatedColours) {
+  const Color colour = {2.0, 0.1, 0.05};
+  const double y = shared::Luminance(colour[0], colour[1], colour[2]);
+  const Color light = ReinhardLight(colour);
+  EXPECT_NEAR(shared::Luminance(light[0], light[1], light[2]), shared::ReinhardLuminance(y), 1e-12);
+}
+
+TEST(ToneCurves, EveryColourIsFiniteAndInRange) {
+  std::vector<Color> colours = Colours();
+  const double huge = std::numeric_limits<double>::max();
+  colours.push_back({huge, huge, huge});
+  colours.push_back({-huge, huge, 1.0});
+  colours.push_back({-huge, -huge, -huge});
+  for (const ToneCurve curve : kCurves) {
+    for (const Color& colour : colours) {
+      for (const double channel : DisplayLight<double>(curve, colour, 1.0)) {
+        EXPECT_TRUE(channel >= 0.0 && channel <= 1.0)
+            << colour[0] << " " << colour[1] << " " << colour[2] << " gave " << channel;
+      }
+    }
+  }
+}
+
+TEST(ToneCurves, GreysAreMonotoneAndStayGrey) {
+  for (const ToneCurve curve : kCurves) {
+    double last = -1.0;
+    for (double stop = -14.0; stop < 10.0; stop += 0.01) {
+      const double y = std::exp2(stop);
+      const Color light = DisplayLight<double>(curve, {y, y, y}, 1.0);
+      EXPECT_GE(light[1], last) << "at 2^" << stop;
+      EXPECT_NEAR(light[0], light[1], 3e-4)
+          << "the fits of ACES are given to five decimals, the shares of AgX to eleven";
+      EXPECT_NEAR(light[2], light[1], 3e-4);
+      last = light[1];
+    }
+    EXPECT_GT(last, 0.98);
+  }
+}
+
+TEST(ToneCurves, FloatAgreesWithDouble) {
+  for (const ToneCurve curve : kCurves) {
+    for (const Color& colour : Colours()) {
+      const Rgb<float> single = {static_cast<float>(colour[0]), static_cast<float>(colour[1]),
+                                 static_cast<float>(colour[2])};
+      const Color light = DisplayLight<double>(
+          curve, {double{single[0]}, double{single[1]}, double{single[2]}}, 1.0);
+      const Rgb<float> light_single = DisplayLight<float>(curve, single, 1.0F);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(light_single[c], light[c], 5e-6)
+            << "a fiftieth of half a code at the slope of the darkest sRGB code";
+      }
+    }
+  }
+}
+
+TEST(Gamut, NegativeChannelsAreMixedAwayAtConstantLuminance) {
+  const Color colour = {-0.1, 0.8, 0.6};
+  const Color inside = InsideGamut(colour);
+  EXPECT_NEAR(inside[0], 0.0, 1e-12);
+  EXPECT_NEAR(shared::Luminance(inside[0], inside[1], inside[2]),
+              shared::Luminance(colour[0], colour[1], colour[2]), 1e-12);
+  EXPECT_EQ(InsideGamut(Color{-1.0, 0.1, 0.0}), (Color{0.0, 0.0, 0.0})) << "no negative light";
+  EXPECT_EQ(InsideGamut(Color{0.3, 0.2, 0.1}), (Color{0.3, 0.2, 0.1}));
+}
+
+TEST(ToneCurves, WhatTheMeterTakesForGreyIsPrintedGrey) {
+  // A uniform picture of luminance 12.5 / 100 2^EV is metered at EV.
+  const double ev100 = 13.0;
+  const double metered = 0.125 * std::exp2(ev100);
+  const Color grey = {metered, metered, metered};
+  const double scale = ExposureScale(ev100);
+  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale)[1], std::pow(0.5, 2.2), 1e-5)
+      << "half the code range of AgX, shown at exponent 2.2";
+  EXPECT_NEAR(DisplayLight(ToneCurve::kPbrNeutral, grey, scale)[1], 0.18 - 0.04, 1e-9)
+      << "0.18 but for the reflection";
+  EXPECT_NEAR(DisplayLight(ToneCurve::kLinear, grey, scale)[1], 0.125 / 1.2, 1e-9)
+      << "linear shows the share of saturation";
+}
+
+TEST(Srgb, CodeAndLightAreInverse) {
+  for (int code = 0; code <= 255; ++code) {
+    const double value = code / 255.0;
+    EXPECT_NEAR(shared::SrgbCode(shared::SrgbLight(value)), value, 2e-8)
+        << "the standard's two pieces meet within 3e-8";
+  }
+  EXPECT_NEAR(shared::SrgbLight(0.5), 0.21404, 1e-5) << "IEC 61966-2-1";
+}
+
+TEST(ToneCurves, NamesAreKnownAndOthersRefused) {
+  EXPECT_EQ(ToneCurveFromName("agx"), ToneCurve::kAgx);
+  EXPECT_EQ(ToneCurveFromName("pbr-neutral"), ToneCurve::kPbrNeutral);
+  EXPECT_THROW((void)ToneCurveFromName("filmic"), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

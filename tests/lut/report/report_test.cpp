@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// The report: what it writes, that its numbers agree with each other, and that they are physics.
+// Nothing here asks how long anything takes.
+#include "lut/report/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+#include <set>
+
+#include "atmosphere/number/constants.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "lut/report/report_baselines.h"
+#include "lut/report/report_rays.h"
+#include "tests/fixtures/report_files.h"
+#include "tests/fixtures/report_rows.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A quick report of the default air, measured once.
+const Report& QuickReport() {
+  static const Report report = MeasureReport({.mediums = {MediumPreset("earth")}, .quick = true});
+  return report;
+}
+
+const ReportTopic& TopicOf(const std::string& key) { return tests::TopicOf(QuickReport(), key); }
+
+const ReportRow& RowOf(const std::string& topic, const std::string& name) {
+  return tests::RowOf(QuickReport(), topic, name);
+}
+
+std::string UsualMoments() {
+  const DiffuseLightOptions usual;
+  return fmt::format("moments to degree {}, {} x {}", usual.degree, usual.altitudes,
+                     usual.sun_angles);
+}
+
+class ReportFiles : public TemporaryFolder {};
+
+TEST_F(ReportFiles, EveryFileIsWrittenAndNothingElse) {
+  WriteReport(QuickReport(), folder_ / "report");
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder_ / "report"))
+    names.insert(entry.path().filename());
+  EXPECT_EQ(names, (std::set<std::string>{
+                       "index.html", "summary.md", "transmittance.csv", "single_scattering.csv",
+                       "all_orders.csv", "panoramas.csv", "transmittance.earth.svg",
+                       "single_scattering.earth.svg", "single_scattering.earth.samples.svg",
+                       "all_orders.earth.svg", "panoramas.earth.svg"}));
+}
+
+TEST_F(ReportFiles, ThePageNeedsNoOtherFileAndNamesWhatMadeIt) {
+  const std::string page = PageOf(QuickReport());
+  for (const char* place : {"@findings@", "@maker@", "@topics@"})
+    EXPECT_EQ(page.find(place), std::string::npos) << place;
+  for (const char* outside : {"<link", "<script", "<img", "url(", "src="})
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  const ReportMaker& maker = QuickReport().maker;
+  for (const std::string& fact : {maker.machine, maker.program, maker.compiler, maker.date})
+    EXPECT_THAT(page, HasSubstr(XmlText(fact)));
+  EXPECT_THAT(page, HasSubstr(fmt::format("{:016x}", MediumHash(MediumPreset("earth")))));
+}
+
+TEST_F(ReportFiles, NumbersOfThePageAreThoseOfTheTables) {
+  const std::string page = PageOf(QuickReport());
+  std::vector<std::string> shown;
+  const std::regex cell("data-csv=\"([^\"]*)\"");
+  for (std::sregex_iterator at(page.begin(), page.end(), cell), end; at != end; ++at)
+    shown.push_back((*at)[1]);
+  std::vector<std::string> expected;
+  for (const ReportTopic& topic : QuickReport().topics) {
+    const std::vector<std::string> header = CellsOf(LinesOf(CsvHeader())[0]);
+    const std::vector<std::string> lines = LinesOf(CsvOfTopic(topic, QuickReport().maker));
+    for (std::size_t i = 0; i < lines.size(); i += kReportRegimes) {
+      double spread = -1.0;
+      std::string spread_text;
+      for (std::size_t r = 0; r < kReportRegimes; ++r) {
+        const std::vector<std::string> cells = CellsOf(lines[i + r]);
+        ASSERT_EQ(cells.size(), header.size());
+        auto value = ValuesByName(header, cells);
+        EXPECT_EQ(value["regime"], kRegimes[r].key);
+        if (r == 0) expected.insert(expected.end(), {value["memory_bytes"], value["build_s"]});
+        for (const char* name : {"time_s", "error_rms", "error_99", "error_max"})
+          expected.push_back(value[name]);
+        if (std::stod(value["time_spread"]) > spread) {
+          spread = std::stod(value["time_spread"]);
+          spread_text = value["time_spread"];
+        }
+      }
+      expected.push_back(spread_text);
+    }
+  }
+  EXPECT_EQ(shown, expected);
+}
+
+TEST_F(ReportFiles, AFileWhereTheFolderShouldBeIsAnOutputError) {
+  WriteText(folder_ / "taken", "");
+  EXPECT_THROW(WriteReport(QuickReport(), folder_ / "taken"), OutputError);
+}
+
+TEST(Report, EveryMethodTakesTimeAndTablesTakeMemory) {
+  for (const ReportTopic& topic : QuickReport().topics) {
+    EXPECT_GT(topic.judge.time_s, 0.0);
+    for (const ReportRow& row : topic.rows) {
+      EXPECT_EQ(row.memory_bytes > 0, row.build_s > 0.0) << row.Name();
+      EXPECT_EQ(row.memory_bytes > 0, row.series.find("table") != std::string::npos ||
+                                          row.series.find("moments") != std::string::npos ||
+                                          row.series.find("sky view") == 0)
+          << row.Name();
+      for (const RegimeResult& at : row.at) {
+        EXPECT_GT(at.time_s, 0.0) << row.Name();
+        EXPECT_GE(at.time_spread, 0.0) << row.Name();
+        EXPECT_LE(at.error.median, at.error.percentile_99) << row.Name();
+        EXPECT_LE(at.error.percentile_99, at.error.largest) << row.Name();
+        EXPECT_GT(at.error.largest, 0.0) << row.Name() << ": nothing is exact";
+      }
+    }
+  }
+}
+
+TEST(Report, MethodsOfThisLibraryKeepTheirBounds) {
+  for (const RegimeResult& at : RowOf("transmittance", "closed form, many at once, float").at)
+    EXPECT_LT(at.error.largest, 1.2e-5) << "tau e^-tau times the bound of the column, 1.2e-5";
+  for (const RegimeResult& at : RowOf("transmittance", "table, 256 x 64").at)
+    EXPECT_LT(at.error.largest, 4e-3) << "bound of TransmittanceTable::Lookup";
+  for (const RegimeResult& at : RowOf("panoramas", "sky view, in rows, size chosen").at)
+    EXPECT_LT(at.error.rms, 3e-3) << "bound of SkyView";
+  for (const double max_error : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    const int nodes = SamplingForError(max_error).nodes;
+    for (const ReportRow& row : TopicOf("single_scattering").rows) {
+      if (row.Name() != fmt::format("Gauss, {} nodes", nodes)) continue;
+      for (const RegimeResult& at : row.at)
+        EXPECT_LT(at.error.rms, max_error) << "bound of SamplingForError, " << row.Name();
+    }
+  }
+  for (const RegimeResult& at : RowOf("single_scattering", "Gauss, 20 nodes").at)
+    EXPECT_LT(at.error.rms, 1e-5) << "ten times the bound of SamplingForError";
+}
+
+TEST(Report, MoreEffortIsLessError) {
+  const auto rms = [](const char* topic, const char* name, std::size_t regime) {
+    return RowOf(topic, name).at[regime].error.rms;
+  };
+  for (std::size_t r = 0; r < kReportRegimes; ++r) {
+    EXPECT_LT(rms("single_scattering", "Gauss, 12 nodes", r),
+              rms("single_scattering", "Gauss, 4 nodes", r));
+    EXPECT_LT(rms("single_scattering", "uniform march, 512 steps", r),
+              rms("single_scattering", "uniform march, 16 steps", r));
+    EXPECT_LT(rms("single_scattering", "quadratic march, 512 steps", r),
+              rms("single_scattering", "quadratic march, 16 steps", r));
+    EXPECT_LT(rms("transmittance", "table, 256 x 64", r),
+              rms("transmittance", "table, 64 x 16", r));
+    EXPECT_LT(rms("transmittance", "midpoint march, 160 steps", r),
+              rms("transmittance", "midpoint march, 10 steps", r));
+    // First-order truth: light of higher orders is there, and it is not isotropic.
+    EXPECT_GT(rms("all_orders", "single scattering only", r), 0.1);
+    EXPECT_LT(rms("all_orders", "isotropic table (Hillaire 2020), 32 x 32, 64 directions", r),
+              rms("all_orders", "single scattering only", r));
+    EXPECT_LT(rms("all_orders", UsualMoments().c_str(), r),
+              rms("all_orders", "isotropic table (Hillaire 2020), 32 x 32, 64 directions", r));
+  }
+}
+
+TEST(Report, NoiseOfTheJudgeIsTakenFromTheErrors) {
+  std::vector<JudgedRay> rays(4);
+  for (JudgedRay& ray : rays) ray = {{}, {2.0}, {0.02}, {}};
+  const auto statistics = [&](double off) {
+    return StatisticsOf(rays, ErrorKind::kRelative, {{2.0 + off}, {2.0 - off}, {2.0 + off}, {2.0}});
+  };
+  // Errors 5, 5, 5, 0 %; noise 1 %.
+  EXPECT_NEAR(statistics(0.1).rms, std::sqrt(0.75 * 0.0025 - 0.0001), 1e-9);
+  EXPECT_FALSE(statistics(0.1).rms_is_bound);
+  EXPECT_NEAR(statistics(0.1).largest, 0.05, 1e-9);
+  EXPECT_TRUE(statistics(0.001).rms_is_bound);
+  EXPECT_NEAR(statistics(0.001).rms, 0.005, 1e-9) << "half of the noise, as a bound";
+}
+
+TEST(Report, DarkDirectionsCountAsAPartOfTheZenith) {
+  const std::vector<JudgedRay> rays{{{}, {1e-6}, {}, {1e-3}}};
+  const ErrorStatistics errors = StatisticsOf(rays, ErrorKind::kRelative, {{1.1e-5}});
+  EXPECT_NEAR(errors.largest, 0.01, 1e-9);
+}
+
+TEST(ReportRays, LieInTheirRegimeAndMeetAir) {
+  const Medium medium = MediumPreset("earth");
+  for (const ReportRegime& regime : kRegimes) {
+    int down = 0;
+    for (int i = 1; i <= 600; ++i) {
+      for (const ViewRay& ray : {ViewNumber(medium, i, regime), SunbeamNumber(medium, i, regime)}) {
+        const double elevation_deg = std::asin(ray.mu_s) / kRadiansPerDegree;
+        EXPECT_GE(elevation_deg, regime.sun->lowest_deg - 1e-6);
+        EXPECT_LE(elevation_deg, regime.sun->highest_deg + 1e-6);
+      }
+      const auto end = [&](const ViewRay& ray) {
+        return ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m).end;
+      };
+      EXPECT_EQ(end(SunbeamNumber(medium, i, regime)), RayEnd::kSpace)
+          << "beams come from the sun, not through the planet";
+      if (end(ViewNumber(medium, i, regime)) == RayEnd::kGround) ++down;
+    }
+    EXPECT_NEAR(down, 150, 15) << "a quarter looks down to the ground";
+  }
+}
+
+TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
+  // One exponential of 8 km, as the publications judge themselves; nothing but its height matters.
+  Medium medium = MediumPreset("earth");
+  medium.rayleigh_scale_height_m = 8000.0;
+  medium.rayleigh_deficit = {};
+  const AirIntegrator<double> air(medium);
+  const double radius_m = air.medium().planet_radius_m;
+  for (const double mu : {0.0, 0.02, 0.1, 0.3, 1.0}) {
+    const double column_m = air.ColumnsToSpace(0.0, mu)[0];
+    const auto x = static_cast<float>(radius_m / 8000.0);
+    const auto ratio = [&](ChapmanRule rule) {
+      return 8000.0 * double{ChapmanFunction(rule, x, static_cast<float>(mu))} / column_m;
+    };
+    // Both miss by what lies above the top, 3e-7, and by their own: 3.4e-3 and 15 % at the worst
+    // height and angle.
+    EXPECT_NEAR(ratio(ChapmanRule::kGolubev), 1.0, 4e-3) << mu;
+    EXPECT_NEAR(ratio(ChapmanRule::kSchueler), 1.0, 0.16) << mu;
+  }
+}
+
+TEST(ReportBaselines, FiveHundredTrapezoidsKnowTheSameAir) {
+  for (const char* name : {"earth", "bruneton2017"}) {
+    const AirIntegrator<float> air(MediumPreset(name));
+    for (const double mu : {0.05, 0.2, 1.0}) {
+      const Bands<float> closed = air.TransmittanceToSpace(0.0, mu);
+      const Bands<float> march =
+          MarchedTransmittance(air.medium(), {0.0, mu}, MarchRule::kTrapezoid, 500);
+      // The trapezoid's own error, (step / scale height)^2 / 12 of the aerosol's depth.
+      for (std::size_t band = 0; band < air.bands(); ++band)
+        EXPECT_NEAR(march[band], closed[band], 5e-4F) << name << " " << mu;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

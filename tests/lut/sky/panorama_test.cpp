@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky/panorama.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/sky_view_errors.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kAzimuths_deg[] = {0.0, 40.0, 90.0, 200.0, 275.0, 359.0};
+
+struct Air {
+  Medium medium = MediumPreset("earth");
+  AirIntegrator<float> air{medium};
+  DiffuseLight diffuse{medium};
+
+  static const Air& Earth() {
+    static const Air air;
+    return air;
+  }
+  [[nodiscard]] Image Panorama(const PanoramaSettings& settings) const {
+    return RenderPanorama(air, diffuse, settings);
+  }
+};
+
+PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
+  PanoramaSettings settings;
+  settings.width = 256;
+  settings.height = 128;
+  settings.sun.elevation_rad = elevation * kRadiansPerDegree;
+  settings.sun.azimuth_rad = azimuth * kRadiansPerDegree;
+  return settings;
+}
+
+double Luminance(const std::array<float, 3>& rgb) {
+  return 0.2126 * double{rgb[0]} + 0.7152 * double{rgb[1]} + 0.0722 * double{rgb[2]};
+}
+
+struct Pixel {
+  int x, y;
+};
+Pixel Brightest(const Image& image) {
+  Pixel best{0, 0};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (Luminance(image.at(x, y)) > Luminance(image.at(best.x, best.y))) best = {x, y};
+    }
+  }
+  return best;
+}
+
+// Horizontal texture coordinate at which each program looks up a direction of its own axes: their
+// published formulas, not ours.
+double LookedUpAt(PanoramaOrientation orientation, double x, double y, double z) {
+  const auto turn = [](double angle) { return angle / (2.0 * kPi); };
+  switch (orientation) {
+    case PanoramaOrientation::kNorth:  // x east, y north, z up: the middle is north, right is east
+      return 0.5 + turn(std::atan2(x, y));
+    case PanoramaOrientation::kBlender:  // Cycles, direction_to_equirectangular
+      return 0.5 - turn(std::atan2(y, x));
+    case PanoramaOrientation::kOpenExr:  // ImfEnvmap.h: longitude 0 is +z, 90 degrees +x
+      return 0.5 - turn(std::atan2(x, z));
+    case PanoramaOrientation::kThree:  // equirectUv
+      return 0.5 + turn(std::atan2(z, x));
+    case PanoramaOrientation::kUnity:  // ToRadialCoords: 0.5 - atan2(z, x) / 2 pi
+      return 0.5 - turn(std::atan2(z, x));
+    case PanoramaOrientation::kGodot:  // sky shader: atan(x, -z)
+      return turn(std::atan2(x, -z));
+  }
+  return -1.0;
+}
+
+// A direction in the axes of a program: east is +x everywhere.
+double ColumnOf(PanoramaOrientation orientation, double elevation_rad, double azimuth_rad,
+                int width) {
+  const auto enu = DirectionFromAngles(elevation_rad, azimuth_rad).xyz;
+  const double east = enu.x, north = enu.y, up = enu.z;
+  double u = 0.0;
+  switch (orientation) {
+    case PanoramaOrientation::kNorth:
+    case PanoramaOrientation::kBlender:
+      u = LookedUpAt(orientation, east, north, up);
+      break;
+    case PanoramaOrientation::kUnity:
+      u = LookedUpAt(orientation, east, up, north);
+      break;
+    default:
+      u = LookedUpAt(orientation, east, up, -north);
+  }
+  return (u - std::floor(u)) * width;
+}
+
+bool ShowsTheSunAt(const Image& image, double column, double row) {
+  const Pixel sun = Brightest(image);
+  const double across = std::remainder(sun.x + 0.5 - column, static_cast<double>(image.width));
+  return std::abs(across) <= 1.0 && std::abs(sun.y + 0.5 - row) <= 1.0;
+}
+
+class Orientation : public testing::TestWithParam<PanoramaOrientation> {};
+
+TEST_P(Orientation, TheProgramFindsTheSunWhereItStandsAndNotInAMirror) {
+  for (const double azimuth_deg : kAzimuths_deg) {
+    PanoramaSettings settings = SunAtDegrees(35.0, azimuth_deg);
+    settings.orientation = GetParam();
+    settings.sun_disk = true;
+    Image image = Air::Earth().Panorama(settings);
+    const double column =
+        ColumnOf(GetParam(), settings.sun.elevation_rad, settings.sun.azimuth_rad, settings.width);
+    const double row = (90.0 - 35.0) / 180.0 * settings.height;
+    EXPECT_TRUE(ShowsTheSunAt(image, column, row)) << NameOf(GetParam()) << " " << azimuth_deg;
+    for (int y = 0; y < image.height; ++y) {
+      std::reverse(&image.at(0, y), &image.at(image.width - 1, y) + 1);
+    }
+    const double mirrored = settings.width - column;
+    const bool symmetric =
+        std::abs(std::remainder(mirrored - column, static_cast<double>(settings.width))) < 3.0;
+    if (!symmetric) {
+      EXPECT_FALSE(ShowsTheSunAt(image, column, row)) << "a mirrored picture must not pass";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryProgram, Orientation,
+                         testing::Values(PanoramaOrientation::kNorth, PanoramaOrientation::kBlender,
+                                         PanoramaOrientation::kOpenExr, PanoramaOrientation::kThree,
+                                         PanoramaOrientation::kUnity, PanoramaOrientation::kGodot),
+                         [](const auto& tested) { return NameOf(tested.param); });
+
+TEST(Panorama, NamesOfOrientationsAreReadBack) {
+  for (const char* name : {"north", "blender", "openexr", "three", "unity", "godot"})
+    EXPECT_EQ(NameOf(PanoramaOrientationFromName(name)), name);
+  EXPECT_EQ(PanoramaOrientationFromName("geographic"), PanoramaOrientation::kNorth);
+  EXPECT_THROW((void)PanoramaOrientationFromName("maya"), InputError);
+}
+
+// Integral over the pixels of a half of the sphere, cosine-weighted: illuminance [lx].
+double IlluminanceFromAbove(const Image& image) {
+  double sum = 0.0;
+  for (int y = 0; y < image.height / 2; ++y) {
+    const double top = std::cos(kPi * y / image.height);
+    const double bottom = std::cos(kPi * (y + 1.0) / image.height);
+    for (int x = 0; x < image.width; ++x) {
+      sum += Luminance(image.at(x, y)) * kPi * (top * top - bottom * bottom) / image.width;
+    }
+  }
+  return sum;
+}
+
+double LuminanceOf(const Medium& medium, const Bands<float>& relative) {
+  std::vector<double> light;
+  for (std::size_t band = 0; band < relative.count; ++band)
+    light.push_back(double{relative[band]} * medium.solar_irradiance[band]);
+  return BandColour(medium.wavelengths_nm).Xyz(light)[1];
+}
+
+TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
+  const Air& earth = Air::Earth();
+  for (const double elevation_deg : {50.0, 10.0, 0.0, -5.0, -9.0}) {
+    const Image image = earth.Panorama(SunAtDegrees(elevation_deg, 120.0));
+    const double expected =
+        LuminanceOf(earth.medium,
+                    earth.diffuse.SkyIrradiance(2.0, std::sin(elevation_deg * kRadiansPerDegree)));
+    EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
+        << "sun at " << elevation_deg << ": the pixels of the aureole are 1.4 degrees wide, and "
+        << "the table of irradiance is interpolated between its nodes";
+  }
+}
+
+TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
+  const Air& earth = Air::Earth();
+  const DirectSky direct(earth.medium, earth.diffuse);
+  for (const double altitude_m : {2.0, 10e3, 400e3}) {
+    for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
+      PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
+      settings.altitude_m = altitude_m;
+      const Image image = earth.Panorama(settings);
+      const double mu_s = std::sin(settings.sun.elevation_rad);
+      double brightest = 0.0;
+      for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
+      double squares = 0.0;
+      constexpr int kPixels = 200;
+      for (int i = 1; i <= kPixels; ++i) {
+        const int x = static_cast<int>(Halton(i, 2) * settings.width);
+        const int y = static_cast<int>(Halton(i, 3) * settings.height);
+        const double zenith = kPi * (y + 0.5) / settings.height;
+        const double from_sun =
+            2.0 * kPi * ((x + 0.5) / settings.width - 0.5) - settings.sun.azimuth_rad;
+        const double nu = std::cos(zenith) * mu_s +
+                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(from_sun);
+        const Bands<double> bands =
+            direct.Radiance({altitude_m, std::cos(zenith), mu_s, std::clamp(nu, -1.0, 1.0)});
+        Bands<float> light(bands.count);
+        for (std::size_t band = 0; band < bands.count; ++band)
+          light[band] = static_cast<float>(bands[band]);
+        const double exact = LuminanceOf(earth.medium, light);
+        const double error =
+            (Luminance(image.at(x, y)) - exact) / std::max(exact, 1e-4 * brightest);
+        squares += error * error;
+      }
+      EXPECT_LT(std::sqrt(squares / kPixels), elevation_deg >= 10.0 ? 0.001 : 0.003)
+          << altitude_m << " m, sun at " << elevation_deg;
+    }
+  }
+}
+
+TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
+  const Air& earth = Air::Earth();
+  for (const auto& [width, height] : {std::pair{16, 8}, std::pair{256, 128}, std::pair{900, 450}}) {
+    PanoramaSettings settings = SunAtDegrees(41.0, 77.0);
+    settings.width = width;
+    settings.height = height;
+    const Image without = earth.Panorama(settings);
+    settings.sun_disk = true;
+    const Image with = earth.Panorama(settings);
+    double light = 0.0;
+    for (int y = 0; y < height; ++y) {
+      const double solid_angle =
+          2.0 * kPi / width * (std::cos(kPi * y / height) - std::cos(kPi * (y + 1.0) / height));
+      for (int x = 0; x < width; ++x) {
+        light += solid_angle * (Luminance(with.at(x, y)) - Luminance(without.at(x, y)));
+      }
+    }
+    const double expected = LuminanceOf(
+        earth.medium, earth.air.TransmittanceToSpace(2.0, std::sin(41.0 * kRadiansPerDegree)));
+    EXPECT_NEAR(light, expected, 2e-3 * expected) << "the air's transmittance over half a degree";
+  }
+}
+
+TEST(Panorama, ASunBelowTheHorizonHasNoDisk) {
+  PanoramaSettings settings = SunAtDegrees(-2.0, 30.0);
+  const Image without = Air::Earth().Panorama(settings);
+  settings.sun_disk = true;
+  EXPECT_EQ(Air::Earth().Panorama(settings).rgb, without.rgb);
+}
+
+TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
+  PanoramaSettings settings = SunAtDegrees(5.0, 45.0);
+  settings.width = 720;
+  settings.height = 360;
+  const Image plain = Air::Earth().Panorama(settings);
+  settings.compass = true;
+  const Image painted = Air::Earth().Panorama(settings);
+  // Columns in which ink stands on the horizontal row of a letter's foot or head; azimuth 0 is the
+  // middle of the picture, 2 pixels are a degree.
+  const auto ink = [&](double azimuth_deg, double across_deg, double up_deg) {
+    const int x = static_cast<int>(360.0 + 2.0 * (azimuth_deg + across_deg) + 720.0) % 720;
+    const int y = static_cast<int>(180.0 - 2.0 * up_deg);
+    return painted.at(x, y) != plain.at(x, y);
+  };
+  for (const double azimuth : {0.0, 90.0, 180.0, 270.0}) {
+    EXPECT_TRUE(ink(azimuth, 0.0, azimuth == 0.0 || azimuth == 270.0 ? 0.0 : 4.0)) << azimuth;
+    EXPECT_FALSE(ink(azimuth, 7.0, 0.0)) << azimuth;
+  }
+  // E has its stem on the left, N has stems on both sides, S none at the left foot.
+  EXPECT_TRUE(ink(90.0, -4.0, 2.0));
+  EXPECT_FALSE(ink(90.0, 4.0, 2.0));
+  EXPECT_TRUE(ink(0.0, 4.0, 2.0) && ink(0.0, -4.0, 2.0));
+  EXPECT_FALSE(ink(180.0, -4.0, -2.0));
+}
+
+TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
+  const PanoramaSettings settings = SunAtDegrees(3.0, 30.0);
+  std::vector<Image> images;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    images.push_back(Air::Earth().Panorama(settings));
+  }
+  EXPECT_EQ(images[0].rgb, images[1].rgb);
+  EXPECT_EQ(images[0].rgb, images[2].rgb);
+}
+
+TEST(Panorama, OnePixelIsAPicture) {
+  PanoramaSettings settings = SunAtDegrees(30.0, 0.0);
+  settings.width = settings.height = 1;
+  settings.sun_disk = true;
+  EXPECT_GT(Luminance(Air::Earth().Panorama(settings).at(0, 0)), 0.0);
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#include "lut/sky/sky_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/sky_view_errors.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kAltitudes_m[] = {0.0, 2.0, 1500.0, 10e3, 40e3, 400e3};
+constexpr double kElevations_deg[] = {90.0, 60.0, 10.0, 1.0, -1.0, -4.0, -10.0};
+
+/// The default atmosphere, its light of higher orders solved once.
+struct Air {
+  Medium medium = MediumPreset("earth");
+  AirIntegrator<float> air{medium};
+  DiffuseLight diffuse{medium};
+  DirectSky direct{medium, diffuse};
+
+  static const Air& Earth() {
+    static const Air air;
+    return air;
+  }
+  [[nodiscard]] SkyView View(double altitude_m, double elevation_deg) const {
+    return SkyView(air, diffuse, altitude_m, Sine(elevation_deg));
+  }
+  static double Sine(double degrees) { return std::sin(degrees * kRadiansPerDegree); }
+};
+
+double Degrees(double degrees) { return degrees * kRadiansPerDegree; }
+
+TEST(SkyViewMap, CoordinatesAndAnglesAreInverse) {
+  for (const double altitude_m : kAltitudes_m) {
+    const SkyViewMap map(MediumPreset("earth"), altitude_m, Air::Sine(-4.0));
+    for (double v = 0.0; v <= 1.0; v += 1.0 / 64.0) {
+      // At the air's upper edge the angle is quadratic in v: 1e-16 of it are 1e-8 of v.
+      EXPECT_NEAR(map.SkyCoordinate(map.SkyZenithAngle(v)), v, map.sees_upper_edge() ? 1e-7 : 1e-9)
+          << altitude_m;
+      // Next to the horizon the angle is quadratic in v: 1e-16 of it are 1e-7 of v at the least
+      // dip.
+      EXPECT_NEAR(map.GroundCoordinate(map.GroundZenithAngle(v)), v, 1e-6) << altitude_m;
+      EXPECT_NEAR(map.AzimuthCoordinate(map.Azimuth(v)), v, 1e-9) << altitude_m;
+    }
+    EXPECT_NEAR(map.GroundZenithAngle(1.0), kPi, 1e-12);
+    EXPECT_NEAR(map.SkyZenithAngle(1.0), map.upper_edge_zenith_angle_rad(), 1e-12);
+  }
+}
+
+TEST(SkyViewMap, TheHorizonIsWhereRaysBeginToMeetTheGround) {
+  const Medium medium = MediumPreset("earth");
+  for (const double altitude_m : {2.0, 10e3, 400e3}) {
+    const double horizon = SkyViewMap(medium, altitude_m, 1.0).horizon_zenith_angle_rad();
+    for (const double hair : {-1e-9, 1e-9}) {
+      const RayExtent extent = ExtentOf({altitude_m, std::cos(horizon + hair), 1.0, 0.0},
+                                        medium.planet_radius_m, medium.atmosphere_height_m);
+      EXPECT_EQ(extent.end == RayEnd::kGround, hair > 0.0) << altitude_m;
+    }
+  }
+}
+
+TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
+  const Air& earth = Air::Earth();
+  for (const double altitude_m : kAltitudes_m) {
+    for (const double elevation_deg : kElevations_deg) {
+      const SkyView view = earth.View(altitude_m, elevation_deg);
+      const SkyViewErrors errors =
+          ErrorsOf(view, earth.direct, altitude_m, Air::Sine(elevation_deg), 300);
+      EXPECT_LT(errors.Rms(), 0.003) << altitude_m << " m, sun at " << elevation_deg;
+      EXPECT_LT(errors.Percentile(95.0), 0.006) << altitude_m << " m, sun at " << elevation_deg;
+    }
+  }
+}
+
+TEST(SkyView, OfHazeIsAsRight) {
+  const Medium medium = MediumPreset("hazy");
+  const AirIntegrator<float> air(medium);
+  const DiffuseLight diffuse(medium);
+  const DirectSky direct(medium, diffuse);
+  for (const double altitude_m : {2.0, 10e3}) {
+    for (const double elevation_deg : {60.0, 1.0, -4.0}) {
+      const double mu_s = Air::Sine(elevation_deg);
+      const SkyView view(air, diffuse, altitude_m, mu_s);
+      EXPECT_LT(ErrorsOf(view, direct, altitude_m, mu_s, 300).Rms(), 0.003)
+          << altitude_m << " m, sun at " << elevation_deg;
+    }
+  }
+}
+
+TEST(SkyView, HasNoStripeAtTheHorizon) {
+  const Air& earth = Air::Earth();
+  for (const double altitude_m : {2.0, 10e3, 400e3}) {
+    for (const double elevation_deg : {10.0, 1.0, -4.0}) {
+      const SkyView view = earth.View(altitude_m, elevation_deg);
+      const double mu_s = Air::Sine(elevation_deg);
+      for (double from_horizon_deg = -0.5; from_horizon_deg < 0.5; from_horizon_deg += 0.043) {
+        const double zenith = view.map().horizon_zenith_angle_rad() + Degrees(from_horizon_deg);
+        const double nu = std::cos(zenith) * mu_s +
+                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(0.8);
+        const double exact = earth.direct.Radiance({altitude_m, std::cos(zenith), mu_s, nu})[1];
+        EXPECT_NEAR(view.Radiance(zenith, 0.8)[1], exact, 0.006 * exact)
+            << altitude_m << " m, sun at " << elevation_deg << ", " << from_horizon_deg;
+      }
+    }
+  }
+}
+
+TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
+  const Air& earth = Air::Earth();
+  for (const double altitude_m : {-400.0, 0.0, 119999.0, 120001.0, 36e6, 1e9}) {
+    for (const double elevation_deg : {90.0, 0.0, -6.0, -18.0, -60.0, -90.0}) {
+      const SkyView view = earth.View(altitude_m, elevation_deg);
+      for (int i = 1; i <= 200; ++i) {
+        const Bands<float> light = view.Radiance(kPi * Halton(i, 2), 2.0 * kPi * Halton(i, 3));
+        for (std::size_t band = 0; band < light.count; ++band) {
+          EXPECT_TRUE(std::isfinite(light[band]) && light[band] >= 0.0F)
+              << altitude_m << " m, sun at " << elevation_deg;
+        }
+      }
+    }
+  }
+}
+
+TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
+  const SkyView view = Air::Earth().View(10e3, 20.0);
+  for (const double zenith : {0.0, kPi}) {
+    const double towards = view.Radiance(zenith, 0.0)[1];
+    EXPECT_NEAR(view.Radiance(zenith, 2.0)[1], towards, 1e-5 * towards) << "float";
+    EXPECT_NEAR(view.Radiance(zenith, kPi)[1], towards, 1e-5 * towards) << "float";
+  }
+}
+
+TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
+  const SkyView view = Air::Earth().View(2.0, -3.0);
+  for (const double zenith : {0.3, 1.2, 1.55, 2.0}) {
+    EXPECT_EQ(view.Radiance(zenith, 1.0)[2], view.Radiance(zenith, -1.0)[2]);
+    EXPECT_NEAR(view.Radiance(zenith, 1.0)[2], view.Radiance(zenith, 1.0 - 4.0 * kPi)[2],
+                1e-6F * view.Radiance(zenith, 1.0)[2])
+        << "remainder of a double";
+    const double before = view.Radiance(zenith, kPi - 1e-4)[2];
+    EXPECT_NEAR(view.Radiance(zenith, kPi + 1e-4)[2], before, 1e-6 * before);
+  }
+}
+
+TEST(SkyView, BothSidesOfTheHorizonAreWhatTheyAreDirectly) {
+  const Air& earth = Air::Earth();
+  for (const double altitude_m : {2.0, 10e3, 400e3}) {
+    const SkyView view = earth.View(altitude_m, 10.0);
+    for (const double hair : {-1e-6, 1e-6}) {
+      const double zenith = view.map().horizon_zenith_angle_rad() + hair;
+      const double mu_s = Air::Sine(10.0);
+      const double nu =
+          std::cos(zenith) * mu_s + std::sin(zenith) * std::cos(Degrees(10.0)) * std::cos(1.0);
+      const Bands<double> exact = earth.direct.Radiance({altitude_m, std::cos(zenith), mu_s, nu});
+      const Bands<float> seen = view.Radiance(zenith, 1.0);
+      for (std::size_t band = 0; band < exact.count; ++band)
+        EXPECT_NEAR(seen[band], exact[band], 0.003 * exact[band]) << altitude_m << " " << hair;
+    }
+  }
+}
+
+TEST(SkyView, ARowIsItsLookUps) {
+  const SkyView view = Air::Earth().View(1500.0, 5.0);
+  std::vector<double> azimuths;
+  for (int i = 0; i < 777; ++i) azimuths.push_back(0.01 * i - 2.0);
+  const SkyAzimuths prepared(view, azimuths);
+  std::vector<float> row(azimuths.size() * view.stride());
+  view.FillRow(1.4, prepared, row);
+  for (std::size_t i = 0; i < azimuths.size(); ++i) {
+    const Bands<float> one = view.Radiance(1.4, azimuths[i]);
+    for (std::size_t band = 0; band < view.bands(); ++band)
+      EXPECT_FLOAT_EQ(row[i * view.stride() + band], one[band]);
+  }
+}
+
+TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
+  const Medium all = MediumPreset("earth", WavelengthSet(6));
+  const Medium one = MediumPreset("earth", {all.wavelengths_nm[4]});
+  constexpr DiffuseLightOptions kSmall{.altitudes = 8,
+                                       .sun_angles = 12,
+                                       .degree = 2,
+                                       .zenith_nodes = 6,
+                                       .azimuth_nodes = 4,
+                                       .ray_nodes = 6};
+  const SkyView view(AirIntegrator<float>(all), DiffuseLight(all, kSmall), 2.0, 0.5);
+  const SkyView single(AirIntegrator<float>(one), DiffuseLight(one, kSmall), 2.0, 0.5);
+  EXPECT_EQ(view.stride(), 8U);
+  const float expected = single.Radiance(1.0, 0.7)[0];
+  EXPECT_NEAR(view.Radiance(1.0, 0.7)[4], expected, 1e-3F * expected)
+      << "quadrature nodes follow the largest extinction of the bands";
+}
+
+// Largest second difference along a line of values, relative to the middle one.
+double LargestBend(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    const double bend = std::abs(values[i + 1] - 2.0 * values[i] + values[i - 1]);
+    largest = std::max(largest, bend / values[i]);
+  }
+  return largest;
+}
+
+TEST(SkyView, TwilightHasNoBlocksInAzimuth) {
+  for (const double altitude_m : {2.0, 10e3}) {
+    for (const double elevation_deg : {-4.0, -8.0, -12.0}) {
+      const SkyView view = Air::Earth().View(altitude_m, elevation_deg);
+      for (const double above_deg : {1.0, 5.0, 20.0, 60.0}) {
+        std::vector<double> along;
+        for (int i = 0; i < 2048; ++i) {
+          const double zenith = view.map().horizon_zenith_angle_rad() - Degrees(above_deg);
+          along.push_back(double{view.Radiance(zenith, 2.0 * kPi * i / 2048)[1]});
+        }
+        // Two neighbouring pixels of a smooth sky differ by 1 % at most, and their steps by much
+        // less: a bend of 5e-4 is invisible however bright the picture is developed, because
+        // exposure scales both.
+        EXPECT_LT(LargestBend(along), 5e-4)
+            << altitude_m << " m, sun at " << elevation_deg << ", " << above_deg << " above";
+      }
+    }
+  }
+}
+
+TEST(SkyView, TheTerminatorOnTheLimbHasNoBlocks) {
+  // Seen from space light dies within a few degrees of azimuth: there the bends are real.
+  const Air& earth = Air::Earth();
+  const double step = 2.0 * kPi / 2048;
+  for (const double elevation_deg : {1.0, -4.0, -10.0}) {
+    const SkyView view = earth.View(400e3, elevation_deg);
+    const double mu_s = Air::Sine(elevation_deg);
+    for (const double above_deg : {-5.0, 0.3, 1.0}) {
+      const double zenith = view.map().horizon_zenith_angle_rad() - Degrees(above_deg);
+      std::vector<double> ratio;
+      for (int i = 300; i < 800; ++i) {
+        const double nu = std::cos(zenith) * mu_s +
+                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(step * i);
+        const double exact = earth.direct.Radiance({400e3, std::cos(zenith), mu_s, nu})[1];
+        if (exact < 1e-6) break;  // some 1e-5 of the sky by day
+        ratio.push_back(double{view.Radiance(zenith, step * i)[1]} / exact);
+      }
+      EXPECT_LT(LargestBend(ratio), 0.004)
+          << "sun at " << elevation_deg << ", " << above_deg << " above the horizon";
+    }
+  }
+}
+
+TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
+  for (const double zenith_deg : {0.0, 45.0, 85.0}) {
+    std::vector<double> stops;
+    for (double elevation_deg = 3.0; elevation_deg > -8.1; elevation_deg -= 0.25) {
+      const SkyView view = Air::Earth().View(2.0, elevation_deg);
+      stops.push_back(std::log(double{view.Radiance(Degrees(zenith_deg), 0.5)[1]}));
+    }
+    for (std::size_t i = 1; i + 1 < stops.size(); ++i) {
+      EXPECT_NEAR(stops[i + 1] - stops[i], stops[i] - stops[i - 1], 0.02)
+          << "sun at " << 3.0 - 0.25 * static_cast<double>(i) << ", zenith angle " << zenith_deg
+          << ": the pace of dusk changes by less than 2 % in a minute";
+    }
+  }
+}
+
+TEST(SkyView, TooFewNodesAreRefused) {
+  const Air& earth = Air::Earth();
+  const auto refuse = [&](const SkyViewSize& size) {
+    const SkyView view(earth.air, earth.diffuse, 0.0, 1.0, size);
+  };
+  EXPECT_THROW(refuse({.sky_rows = 4}), InputError);
+  EXPECT_THROW(refuse({.ground_rows = 4}), InputError);
+  EXPECT_THROW(refuse({.azimuths = 2}), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

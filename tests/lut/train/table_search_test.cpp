@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "lut/train/table_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+using tests::kSanitized;
+constexpr const char* kTooSlow = "the finest solution takes minutes with sanitizers";
+
+const DiffuseLight& Small() {
+  static const DiffuseLight light(MediumPreset("bruneton2017"), {.altitudes = 9,
+                                                                 .sun_angles = 13,
+                                                                 .degree = 3,
+                                                                 .zenith_nodes = 6,
+                                                                 .azimuth_nodes = 4,
+                                                                 .ray_nodes = 6});
+  return light;
+}
+
+const DiffuseLight& EarthFinest() {
+  static const DiffuseLight light = FinestDiffuseLight(MediumPreset("earth"));
+  return light;
+}
+
+TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
+  const DiffuseLight half = Resampled(Small(), 5, 7, 2);
+  EXPECT_EQ(half.values().size(), 5U * 7U * 7U * 3U) << "six moments and the irradiance";
+  const double v = 4.0 / 12.0;  // the fifth of 13 nodes, the third of 7
+  const std::vector<float> before = Small().ValuesAt(0.25, v), after = half.ValuesAt(0.25, v);
+  for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(after[i], before[i], 1e-6F) << i;
+  for (std::size_t band = 0; band < 3; ++band) {
+    EXPECT_NEAR(after[18 + band], before[30 + band], 1e-6F) << "irradiance comes last";
+  }
+}
+
+TEST(TableSearch, AnErrorThatNothingReachesIsRefusedWithWhatIsBest) {
+  if (kSanitized) GTEST_SKIP() << kTooSlow;
+  try {
+    static_cast<void>(
+        ChooseTables(MediumPreset("bruneton2017"),
+                     {.max_error = 1e-5, .views_of_a_kind = 8, .path_traced_views_of_a_kind = 0}));
+    FAIL() << "tables of floats on a grid reach 0.001 %";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("max-error 0.001 %"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("nodes along a ray leave"));
+  }
+  EXPECT_THROW(static_cast<void>(ChooseTables(EarthFinest(), {.max_error = 0.0})), InputError);
+}
+
+/// The promise: other views than those that the search saw are under the bound, too, held against
+/// the judge and, few of them, against paths.
+class ChosenTables : public TemporaryFolder {
+ protected:
+  static constexpr std::size_t kUnseen = 100000;
+};
+class SmallestTables : public ChosenTables, public testing::WithParamInterface<double> {};
+
+TEST_P(SmallestTables, AreUnderTheBoundOnViewsThatTheSearchDidNotSee) {
+  if (kSanitized) GTEST_SKIP() << kTooSlow;
+  const double max_error = GetParam();
+  const Medium medium = MediumPreset("earth");
+  const TableChoice choice = ChooseTables(EarthFinest(), {.max_error = max_error});
+  WriteTables(choice, folder_);
+  const TableLookup stored(ReadTableFolder(folder_, MediumHash(medium)));
+  EXPECT_EQ(stored.tables().ray_nodes, choice.tables.ray_nodes);
+  EXPECT_FALSE(fs::exists(folder_ / kSingleScatteringFileName));
+  const JudgedViews unseen(medium, EarthFinest(), 200, kUnseen);
+  for (const TableChoice::Measured& measured : choice.measured) {
+    EXPECT_LT(measured.errors.rms, max_error);
+    EXPECT_LT(measured.paths.Unexplained(), max_error);
+    const ViewErrors errors = unseen.ErrorsOf(stored, measured.kind);
+    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), max_error)
+        << NameOf(measured.kind) << ":\n"
+        << ChoiceText(choice, max_error);
+  }
+  RecordProperty("bytes", static_cast<int>(choice.bytes));
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, SmallestTables, testing::Values(0.02, 0.005));
+
+TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViewsToo) {
+  if (kSanitized) GTEST_SKIP() << kTooSlow;
+  constexpr double kMaxError = 0.02;
+  const TableChoice choice =
+      ChooseTables(EarthFinest(), {.max_error = kMaxError, .wanted = TablesWanted::kAll});
+  WriteTables(choice, folder_);
+  const TableLookup stored(ReadTableFolder(folder_));
+  ASSERT_TRUE(stored.tables().transmittance && stored.tables().single_scattering);
+  EXPECT_EQ(stored.tables().single_scattering->texels(), choice.tables.single_scattering->texels());
+  const JudgedViews unseen(EarthFinest().medium(), EarthFinest(), 200, kUnseen);
+  for (const ViewKind kind : kViewKinds) {
+    EXPECT_LT(unseen.ErrorsOf(stored, kind).rms, kMaxError) << NameOf(kind) << ":\n"
+                                                            << ChoiceText(choice, kMaxError);
+  }
+}
+
+TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
+  if (kSanitized) GTEST_SKIP() << kTooSlow;
+  const TableSearch coarse{
+      .max_error = 0.05, .views_of_a_kind = 32, .path_traced_views_of_a_kind = 1};
+  const TableSearch fine{
+      .max_error = 0.01, .views_of_a_kind = 32, .path_traced_views_of_a_kind = 1};
+  const TableChoice small = ChooseTables(EarthFinest(), coarse),
+                    large = ChooseTables(EarthFinest(), fine);
+  EXPECT_LT(small.bytes, large.bytes);
+  EXPECT_LE(small.tables.ray_nodes, large.tables.ray_nodes);
+  EXPECT_EQ(ChooseTables(EarthFinest(), coarse).tables.multiple_scattering->values(),
+            small.tables.multiple_scattering->values())
+      << "the same search finds the same tables";
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// What the pilot says of whole pictures, held against whole pictures.
+#include "tests/fixtures/effect_scenes.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+#include "atmosphere/colour/spectrum.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr const char* kTooSlow =
+    "tens of pictures take minutes with sanitizers; those within a budget run the same code";
+
+const RenderSettings kSmall = [] {
+  RenderSettings settings;
+  settings.width = 96;
+  settings.height = 54;
+  settings.samples_per_pixel = 2;
+  return settings;
+}();
+
+class SceneEffects : public TemporaryFolder, public testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    for (const EffectScene& scene : EffectScenes(folder_.string())) {
+      if (scene.name == GetParam()) {
+        instant_ = scene.instant;
+        renderer_ = std::make_unique<SceneRenderer>(scene.scene);
+      }
+    }
+    ASSERT_TRUE(renderer_);
+  }
+
+  [[nodiscard]] Image With(EffectSet effects) const {
+    RenderSettings settings = kSmall;
+    settings.effects = effects;
+    return renderer_->Render(instant_, settings);
+  }
+  [[nodiscard]] ChosenPicture Within(double max_error, bool explain = false) const {
+    return renderer_->RenderWithin(instant_, kSmall, {.max_error = max_error, .explain = explain});
+  }
+
+  UtcInstant instant_{};
+  std::unique_ptr<SceneRenderer> renderer_;
+};
+
+TEST_P(SceneEffects, APictureOfWhatIsNeededStaysWithinTheBudget) {
+  const Image all = With(EffectSet::All());
+  for (const double budget : {0.01, 0.002}) {
+    const ChosenPicture chosen = Within(budget);
+    const PictureChange change = ChangeOf(all, chosen.image);
+    EXPECT_LE(change.rms, budget) << NameOf(chosen.choice.effects);
+    EXPECT_LE(change.at_99_percent, 4.0 * budget) << NameOf(chosen.choice.effects);
+    EXPECT_EQ(With(chosen.choice.effects).rgb, chosen.image.rgb)
+        << "the choice says what was rendered";
+  }
+}
+
+TEST_P(SceneEffects, ThePilotSeesOfEachEffectWhatThePictureShows) {
+  if (tests::kSanitized) GTEST_SKIP() << kTooSlow;
+  const Image all = With(EffectSet::All());
+  for (const EffectEstimate& estimate : Within(0.01, true).choice.estimates) {
+    if (!estimate.present) continue;
+    const double is = ChangeOf(all, With(EffectSet::All().Without(estimate.effect))).rms;
+    const char* name = TextOf(estimate.effect).name;
+    EXPECT_LE(is, estimate.change.at_most.rms + 1e-3)
+        << name << ": three standard errors, and what falls between the pilot's pixels";
+    const double seen = estimate.whole.seen.rms, at_most = estimate.whole.at_most.rms;
+    EXPECT_GE(is * is, 2.0 * seen * seen - at_most * at_most) << name << ": as many below";
+    EXPECT_LT(seen, 2.0 * is + 1e-3) << name;
+    EXPECT_LE(estimate.whole.seen.rms, estimate.change.seen.rms) << name;
+  }
+}
+
+TEST_P(SceneEffects, TheChoiceIsTheSameForAnyNumberOfThreads) {
+  std::vector<EffectSet> choices;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    choices.push_back(Within(0.005).choice.effects);
+  }
+  EXPECT_EQ(choices[0], choices[1]);
+  EXPECT_EQ(choices[0], choices[2]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SceneEffects,
+                         testing::Values("noon clear", "noon haze", "sunset", "twilight",
+                                         "from 10 km", "from space", "lamps in fog",
+                                         "lamps at noon", "valley"),
+                         [](const auto& scene) {
+                           std::string name = scene.param;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+/// What a scene does without.
+class SceneNeeds : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    if (tests::kSanitized) GTEST_SKIP() << kTooSlow;
+  }
+  [[nodiscard]] EffectChoice ChoiceFor(const std::string& name, bool explain = false) const {
+    for (const EffectScene& scene : EffectScenes(folder_.string())) {
+      if (scene.name != name) continue;
+      return SceneRenderer(scene.scene)
+          .RenderWithin(scene.instant, kSmall, {.max_error = 0.01, .explain = explain})
+          .choice;
+    }
+    throw std::logic_error("no scene " + name);
+  }
+  static double ChangeBy(Effect effect, const EffectChoice& choice) {
+    for (const EffectEstimate& estimate : choice.estimates) {
+      if (estimate.effect == effect) return estimate.whole.seen.rms;
+    }
+    throw std::logic_error("not estimated");
+  }
+};
+
+TEST_F(SceneNeeds, ShaftsAtSunsetAndNotAtNoon) {
+  EXPECT_TRUE(ChoiceFor("noon clear").LeftOut().Has(Effect::kShafts));
+  EXPECT_FALSE(ChoiceFor("sunset").LeftOut().Has(Effect::kShafts));
+}
+
+TEST_F(SceneNeeds, TheSkyByDayAndNotAtNight) {
+  EXPECT_FALSE(ChoiceFor("noon haze").LeftOut().Has(Effect::kSky));
+  const EffectChoice night = ChoiceFor("lamps in fog");
+  EXPECT_TRUE(night.LeftOut().Has(Effect::kSky));
+  EXPECT_TRUE(night.LeftOut().Has(Effect::kMultipleScattering));
+  EXPECT_FALSE(night.LeftOut().Has(Effect::kBeams));
+}
+
+TEST_F(SceneNeeds, LampsThatAreSeenByDayAndNotTheirLightInClearAir) {
+  const EffectChoice day = ChoiceFor("lamps at noon");
+  EXPECT_FALSE(day.LeftOut().Has(Effect::kLights)) << "few pixels, but those that one looks at";
+  EXPECT_TRUE(day.LeftOut().Has(Effect::kBeams));
+}
+
+TEST_F(SceneNeeds, OzoneInTwilightTenTimesAsMuchAsAtNoon) {
+  EXPECT_GT(ChangeBy(Effect::kOzone, ChoiceFor("twilight", true)),
+            10.0 * ChangeBy(Effect::kOzone, ChoiceFor("noon clear", true)))
+      << "a long way through the layer, and Chappuis' bands in a blue sky";
+}
+
+TEST_F(SceneNeeds, FourBandsByDayWhereSixteenAreNotWorthTheirChange) {
+  Scene scene = BareScene(2.0, 180.0, 10.0, 60.0);
+  scene.medium = MediumPreset("earth", WavelengthSet(16));
+  const SceneRenderer renderer(scene);
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const ChosenPicture chosen = renderer.RenderWithin(noon, kSmall, {.max_error = 0.05});
+  EXPECT_TRUE(chosen.choice.LeftOut().Has(Effect::kFineSpectrum));
+  EXPECT_LE(ChangeOf(renderer.Render(noon, kSmall), chosen.image).rms, 0.05);
+  scene.medium = MediumPreset("earth", WavelengthSet(4));
+  RenderSettings settings = kSmall;
+  settings.effects = chosen.choice.effects.With(Effect::kFineSpectrum);
+  EXPECT_EQ(SceneRenderer(scene).Render(noon, settings).rgb, chosen.image.rgb)
+      << "the picture of four bands is that of a scene of four bands";
+}
+
+TEST_F(SceneNeeds, NoSkyBetweenTheWallsOfAValley) {
+  EXPECT_TRUE(ChoiceFor("valley").LeftOut().Has(Effect::kSky));
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground/colour_drape.h"
+
+#include <gdal_priv.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/rough_land.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+using testing::HasSubstr;
+using DrapedColours = TemporaryFolder;
+
+constexpr int kSide = 64;
+
+// Red grows eastwards, green southwards.
+std::array<std::uint8_t, 3> ColourAt(int column, int row) {
+  return {static_cast<std::uint8_t>(3 * column), static_cast<std::uint8_t>(3 * row), 90};
+}
+
+void WritePicture(const std::filesystem::path& file, const std::array<double, 6>* transform) {
+  constexpr int bands = 3;
+  GDALRegister_GTiff();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  GDALDataset* dataset = driver->Create(file.c_str(), kSide, kSide, bands, GDT_Byte, nullptr);
+  for (int band = 0; band < bands; ++band) {
+    for (int row = 0; row < kSide; ++row) {
+      std::array<std::uint8_t, kSide> line;
+      for (int column = 0; column < kSide; ++column)
+        line[static_cast<std::size_t>(column)] =
+            ColourAt(column, row)[static_cast<std::size_t>(band)];
+      ASSERT_EQ(dataset->GetRasterBand(band + 1)->RasterIO(GF_Write, 0, row, kSide, 1, line.data(),
+                                                           kSide, 1, GDT_Byte, 0, 0),
+                CE_None);
+    }
+  }
+  if (transform != nullptr) {
+    std::array<double, 6> copy = *transform;
+    dataset->SetGeoTransform(copy.data());
+    OGRSpatialReference wgs84;
+    wgs84.SetWellKnownGeogCS("WGS84");
+    dataset->SetSpatialRef(&wgs84);
+  }
+  GDALClose(dataset);
+}
+
+double Linear(int code) {
+  const double encoded = code / 255.0;
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+/// 8 km x 8 km of plain at 46 N 8 E.
+SceneGround Plain() {
+  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.0, 8.0, 0.0));
+  SceneGround ground{frame, std::nullopt, 2.0, "", true};
+  ground.terrain.emplace(LandMesh([](double, double) { return 0.0; }, 33, 250.0));
+  return ground;
+}
+
+Scene DrapedWith(const std::filesystem::path& file) {
+  Scene scene;
+  scene.terrain.colour = file;
+  return scene;
+}
+
+TEST_F(DrapedColours, WithoutAPlaceOfItsOwnCoversTheTerrainFromRimToRim) {
+  const auto file = folder_ / "plain.tif";
+  WritePicture(file, nullptr);
+  const SceneGround ground = Plain();
+  const auto drape = ColourDrape::Of(DrapedWith(file), ground);
+  // The middle of pixel (16, 8): a quarter of the way east, an eighth of the way south.
+  const double pixel_m = 8000.0 / kSide;
+  const auto rgb = drape->At({-4000.0 + 16.5 * pixel_m, 4000.0 - 8.5 * pixel_m, 0.0}, 0.0, 1.0);
+  ASSERT_TRUE(rgb.has_value());
+  EXPECT_NEAR((*rgb)[0], Linear(48), 1e-4);
+  EXPECT_NEAR((*rgb)[1], Linear(24), 1e-4);
+  EXPECT_NEAR((*rgb)[2], Linear(90), 1e-4);
+}
+
+TEST_F(DrapedColours, LiesWhereItsGeoreferenceSays) {
+  const auto file = folder_ / "placed.tif";
+  constexpr double kStep = 0.001;  // degrees
+  const std::array<double, 6> transform{7.97, kStep, 0.0, 46.03, 0.0, -kStep};
+  WritePicture(file, &transform);
+  const SceneGround ground = Plain();
+  const auto drape = ColourDrape::Of(DrapedWith(file), ground);
+  for (const auto& [column, row] : {std::pair{40, 20}, {10, 50}, {25, 33}}) {
+    const GeodeticPosition place =
+        PlaceFromDegrees(46.03 - kStep * (row + 0.5), 7.97 + kStep * (column + 0.5), 800.0);
+    const glm::dvec3 point = ground.frame.EnuFromGeodetic(place).xyz;
+    const auto rgb = drape->At(point, 800.0, 1.0);
+    ASSERT_TRUE(rgb.has_value());
+    EXPECT_NEAR((*rgb)[0], Linear(3 * column), 0.01 * Linear(3 * column) + 1e-4);
+    EXPECT_NEAR((*rgb)[1], Linear(3 * row), 0.01 * Linear(3 * row) + 1e-4)
+        << "a hundredth of a pixel";
+  }
+  EXPECT_FALSE(drape->At({-3900.0, 0.0, 0.0}, 0.0, 1.0).has_value()) << "west of the picture";
+}
+
+TEST_F(DrapedColours, DistantGroundHasTheMeanColour) {
+  const auto file = folder_ / "plain.tif";
+  WritePicture(file, nullptr);
+  const SceneGround ground = Plain();
+  const auto drape = ColourDrape::Of(DrapedWith(file), ground);
+  double mean = 0.0;
+  for (int column = 0; column < kSide; ++column) mean += Linear(3 * column) / kSide;
+  const auto rgb = drape->At({500.0, 500.0, 0.0}, 0.0, 1e6);
+  ASSERT_TRUE(rgb.has_value());
+  EXPECT_NEAR((*rgb)[0], mean, 1e-3 * mean) << "rounded to 16 bits at six levels";
+}
+
+TEST_F(DrapedColours, WhatIsNoPictureIsRefused) {
+  const SceneGround ground = Plain();
+  EXPECT_EQ(ColourDrape::Of(Scene{}, ground), nullptr);
+  const auto fault = [&](const std::filesystem::path& file) -> std::string {
+    try {
+      (void)ColourDrape::Of(DrapedWith(file), ground);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no fault";
+  };
+  EXPECT_THAT(fault(folder_ / "none.png"), HasSubstr("there is no such file"));
+  const auto text = folder_ / "text.png";
+  std::ofstream(text) << "not a picture";
+  EXPECT_THAT(fault(text), HasSubstr("not a readable GeoTIFF or PNG"));
+  SceneGround bare = Plain();
+  bare.terrain.reset();
+  const auto file = folder_ / "plain.tif";
+  WritePicture(file, nullptr);
+  EXPECT_THROW((void)ColourDrape::Of(DrapedWith(file), bare), InputError);
+}
+
+TEST(BandsOfColour, AreTheAlbedosOfColours) {
+  const std::vector<double> wavelengths = WavelengthSet(4);
+  const BandsOfColour bands(wavelengths);
+  for (const std::array<double, 3>& rgb :
+       {std::array{0.2, 0.2, 0.2}, {0.1, 0.3, 0.2}, {0.5, 0.35, 0.3}}) {
+    const std::vector<double> known = AlbedoFromLinearSrgb(rgb, wavelengths);
+    const BandLight albedo = bands.Albedo(rgb);
+    for (std::size_t band = 0; band < known.size(); ++band)
+      EXPECT_NEAR(static_cast<double>(albedo[band]), known[band], 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/media/eddington_slab.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "atmosphere/air/phase.h"
+#include "atmosphere/number/constants.h"
+#include "lut/diffuse/spherical_harmonics.h"
+
+namespace alpenglow {
+namespace {
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double operator()() {
+    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15U);
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1.0p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+struct Slab {
+  double depth, albedo, ground, mu0;
+  PhaseFunction phase;
+};
+
+glm::dvec3 Turned(const glm::dvec3& axis, double cosine, double angle) {
+  const glm::dvec3 side = glm::normalize(
+      glm::cross(axis, std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return cosine * axis + sine * (std::cos(angle) * side + std::sin(angle) * glm::cross(axis, side));
+}
+
+/// Diffuse light that goes up at the top and down at the bottom, for a beam of irradiance 1 on a
+/// horizontal plane: photons, one by one. z is depth, downwards.
+struct Fluxes {
+  double up = 0.0, down = 0.0;
+};
+Fluxes TracedFluxes(const Slab& slab, int photons) {
+  Random random(17);
+  Fluxes fluxes;
+  for (int i = 0; i < photons; ++i) {
+    double z = 0.0, weight = 1.0;
+    glm::dvec3 way(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
+    bool is_beam = true;
+    for (;;) {
+      z -= std::log(1.0 - random()) * way.z;
+      if (z <= 0.0) {
+        fluxes.up += weight;
+        break;
+      }
+      if (z >= slab.depth) {
+        if (!is_beam) fluxes.down += weight;
+        weight *= slab.ground;
+        if (random() >= weight) break;
+        weight = 1.0;
+        z = slab.depth;
+        way = Turned({0.0, 0.0, -1.0}, std::sqrt(random()), 2.0 * kPi * random());
+      } else {
+        weight *= slab.albedo;
+        if (weight < 0.1) {
+          if (random() >= weight) break;
+          weight = 1.0;
+        }
+        way = Turned(way, SampleCosine(slab.phase, random()), 2.0 * kPi * random());
+      }
+      is_beam = false;
+    }
+  }
+  return {fluxes.up / photons, fluxes.down / photons};
+}
+
+/// Radiance towards a viewer outside, at the top looking down or at the bottom looking up, per unit
+/// irradiance across the beam, without the ground and the beam themselves: backward paths with the
+/// beam asked at every scattering.
+double TracedRadiance(const Slab& slab, const glm::dvec3& look, int paths) {
+  Random random(29);
+  const glm::dvec3 beam(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
+  double sum = 0.0;
+  for (int i = 0; i < paths; ++i) {
+    double z = look.z > 0.0 ? 0.0 : slab.depth, weight = 1.0;
+    glm::dvec3 way = look;
+    for (int order = 0;; ++order) {
+      // The first flight is drawn within the layer, so that no path is in vain.
+      const double to_edge = way.z > 0.0 ? (slab.depth - z) / way.z : -z / way.z;
+      if (order == 0) {
+        const double inside = -std::expm1(-to_edge);
+        weight *= inside;
+        z -= std::log(1.0 - random() * inside) * way.z;
+      } else {
+        z -= std::log(1.0 - random()) * way.z;
+      }
+      if (z <= 0.0) break;
+      glm::dvec3 next;
+      if (z >= slab.depth) {
+        weight *= slab.ground;
+        z = slab.depth;
+        sum += weight / kPi * slab.mu0 * std::exp(-z / slab.mu0);
+        next = Turned({0.0, 0.0, -1.0}, std::sqrt(random()), 2.0 * kPi * random());
+      } else {
+        weight *= slab.albedo;
+        sum += weight * Phase(slab.phase, -glm::dot(way, beam)) * std::exp(-z / slab.mu0);
+        next = Turned(way, SampleCosine(slab.phase, random()), 2.0 * kPi * random());
+      }
+      if (weight < 0.05 || order > 200) {
+        if (random() >= 0.5) break;
+        weight *= 2.0;
+      }
+      way = next;
+    }
+  }
+  return sum / paths;
+}
+
+/// The same by the fast way: sources along the ray.
+double FastRadiance(const Slab& slab, const glm::dvec3& look) {
+  const auto chi = LegendreCoefficients(slab.phase, 2);
+  const EddingtonSlab eddington({slab.albedo, chi[1], chi[2]}, slab.depth, slab.ground, slab.mu0);
+  PhaseFunction blurred;
+  blurred.kind = PhaseKind::kHenyeyGreenstein;
+  blurred.g = chi[1];
+  const glm::dvec3 beam(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
+  const double cosine = -glm::dot(look, beam);
+  constexpr int kSteps = 1000;
+  const double length = slab.depth / std::abs(look.z);
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = length * (i + 0.5) / kSteps;
+    const double z = look.z > 0.0 ? t * look.z : slab.depth + t * look.z;
+    const double left = std::exp(-z / slab.mu0);
+    const SlabField field = eddington.At(z);
+    // Light that ends in the viewer goes against `look`.
+    const double source =
+        slab.albedo * (Phase(slab.phase, cosine) * left +
+                       Phase(blurred, cosine) * (eddington.BeamLeft(z / slab.mu0) - left) +
+                       field.mean - chi[1] * field.slope * look.z);
+    sum += std::exp(-t) * source * length / kSteps;
+  }
+  return sum;
+}
+
+PhaseFunction Lobe(double g) {
+  PhaseFunction phase;
+  phase.kind = PhaseKind::kHenyeyGreenstein;
+  phase.g = g;
+  return phase;
+}
+
+TEST(EddingtonSlab, LosesNoLightWhereNothingAbsorbs) {
+  for (const double depth : {1e-3, 0.3, 3.0, 40.0, 1000.0}) {
+    for (const double mu0 : {0.02, 0.3, 1.0}) {
+      const EddingtonSlab slab({1.0, 0.85, 0.75}, depth, 0.0, mu0);
+      const double up = slab.At(0.0).UpwardFlux();
+      const double down = slab.At(depth).DownwardFlux();
+      EXPECT_NEAR((up + down + mu0 * slab.BeamLeft(depth / mu0)) / mu0, 1.0, 2e-3 + 1e-6 * depth)
+          << depth << " " << mu0 << ": an albedo of 1 counts as 1 - 1e-6";
+      EXPECT_NEAR(slab.At(0.0).DownwardFlux(), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(EddingtonSlab, GroundReflectsWhatComesDown) {
+  const EddingtonSlab slab({0.98, 0.8, 0.64}, 2.0, 0.6, 0.5);
+  const SlabField field = slab.At(2.0);
+  EXPECT_NEAR(field.UpwardFlux(), 0.6 * (field.DownwardFlux() + 0.5 * slab.BeamLeft(4.0)), 1e-9);
+}
+
+double WorstFlux(double mu0) {
+  double worst = 0.0;
+  for (const double depth : {0.3, 1.0, 4.0, 16.0}) {
+    for (const double albedo : {0.9, 1.0}) {
+      const Slab slab{depth, albedo, 0.2, mu0, FogPhase(12.0)};
+      const Fluxes traced = TracedFluxes(slab, 10000);
+      const auto chi = LegendreCoefficients(slab.phase, 2);
+      const EddingtonSlab fast({albedo, chi[1], chi[2]}, depth, 0.2, mu0);
+      const double up = fast.At(0.0).UpwardFlux() / mu0;
+      // The beam with what the peak took along, less the beam alone, is diffuse light.
+      const double down =
+          fast.At(depth).DownwardFlux() / mu0 + fast.BeamLeft(depth / mu0) - std::exp(-depth / mu0);
+      worst = std::max({worst, std::abs(up - traced.up), std::abs(down - traced.down)});
+    }
+  }
+  return worst;
+}
+
+TEST(EddingtonSlab, FluxesAreThoseOfPhotons) {
+  EXPECT_LT(WorstFlux(0.9), 0.06) << "10000 photons have a standard error of 0.005";
+  EXPECT_LT(WorstFlux(0.4), 0.06);
+  EXPECT_LT(WorstFlux(0.1), 0.16) << "Eddington's approximation is weak where the sun grazes";
+}
+
+TEST(EddingtonSlab, RadiancesAreThoseOfPaths) {
+  double squares = 0.0, least = 1.0, most = 1.0;
+  int count = 0;
+  for (const double depth : {0.5, 2.0, 8.0}) {
+    for (const double mu0 : {0.15, 0.6}) {
+      const Slab slab{depth, 1.0, 0.2, mu0, Lobe(0.8)};
+      for (const double z : {0.9, 0.2, -0.2, -0.9}) {
+        for (const double azimuth : {0.3, 1.6, 3.0}) {
+          const double sine = std::sqrt(1.0 - z * z);
+          const glm::dvec3 look(sine * std::cos(azimuth), sine * std::sin(azimuth), z);
+          const double ratio = FastRadiance(slab, look) / TracedRadiance(slab, look, 4000);
+          squares += (ratio - 1.0) * (ratio - 1.0);
+          least = std::min(least, ratio);
+          most = std::max(most, ratio);
+          ++count;
+        }
+      }
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / count), 0.35);
+  EXPECT_GT(least, 0.4);
+  EXPECT_LT(most, 2.5) << "where the sun grazes and one looks up";
+}
+
+}  // namespace
+}  // namespace alpenglow

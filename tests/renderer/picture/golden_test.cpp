@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Whole pictures are as they were when they were last looked at: tests/golden/README.md.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/picture/render.h"
+#include "renderer/series/frame_times.h"
+#include "tests/fixtures/picture_tolerance.h"
+#include "tests/fixtures/report_files.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = fs::path(ALPENGLOW_SOURCE_DIR) / "tests" / "golden";
+
+struct Golden {
+  std::string name, scene, time;
+};
+
+std::vector<Golden> Goldens() {
+  std::ifstream text(kFolder / "pictures.csv");
+  std::vector<Golden> goldens;
+  std::string line;
+  std::getline(text, line);
+  while (std::getline(text, line)) {
+    const std::vector<std::string> cells = CellsOf(line);
+    goldens.push_back({cells.at(0), cells.at(1), cells.at(2)});
+  }
+  return goldens;
+}
+
+/// Scenes are loaded once.
+const SceneRenderer& RendererOf(const std::string& file, const Scene& scene) {
+  static std::map<std::string, std::unique_ptr<SceneRenderer>> loaded;
+  std::unique_ptr<SceneRenderer>& renderer = loaded[file];
+  if (!renderer) renderer = std::make_unique<SceneRenderer>(scene);
+  return *renderer;
+}
+
+TEST(Golden, PicturesAreTheStoredOnes) {
+  const std::vector<Golden> goldens = Goldens();
+  EXPECT_EQ(goldens.size(), 5U);
+  for (const Golden& golden : goldens) {
+    const fs::path stored = kFolder / (golden.name + ".exr");
+    ASSERT_TRUE(fs::exists(stored)) << stored << ": see tests/golden/README.md";
+    EXPECT_LE(fs::file_size(stored), 20000U) << "goldens are small";
+    const Image image = ReadExr(stored);
+    const Scene scene = ReadScene(kFolder / golden.scene);
+    const UtcInstant instant = InstantFromText(golden.time, {scene.place, scene.zone, scene.time});
+    RenderSettings settings;
+    settings.width = image.width;
+    settings.height = image.height;
+    settings.samples_per_pixel = 16;
+    const Image now = RendererOf(golden.scene, scene).Render(instant, settings);
+    EXPECT_EQ(FaultOfPicture(image, now), "") << golden.name;
+  }
+}
+
+/// A smooth picture without anything in it.
+Image Gradient() {
+  Image image(48, 27);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto level = static_cast<float>(100 + 10 * y + x);
+      image.at(x, y) = {level, 1.2F * level, 1.5F * level};
+    }
+  }
+  return image;
+}
+
+void Scale(std::array<float, 3>& pixel, float by) {
+  for (float& value : pixel) value *= by;
+}
+
+TEST(GoldenTolerance, RoundingOfAnotherCompilerPasses) {
+  Image other = Gradient();
+  for (std::size_t i = 0; i < other.rgb.size(); ++i)
+    Scale(other.rgb[i], i % 2 == 0 ? 1.00005F : 0.99995F);
+  EXPECT_EQ(FaultOfPicture(Gradient(), other), "");
+}
+
+TEST(GoldenTolerance, ARayOverAnEdgeInOneOfTwoHundredPixelsPasses) {
+  Image other = Gradient();
+  for (std::size_t i = 7; i < other.rgb.size(); i += 200) Scale(other.rgb[i], 1.01F);
+  EXPECT_EQ(FaultOfPicture(Gradient(), other), "");
+}
+
+TEST(GoldenTolerance, HalfAPercentBrighterIsAnotherPicture) {
+  Image other = Gradient();
+  for (auto& pixel : other.rgb) Scale(pixel, 1.005F);
+  EXPECT_NE(FaultOfPicture(Gradient(), other), "");
+}
+
+TEST(GoldenTolerance, AShiftOfColourIsAnotherPicture) {
+  Image other = Gradient();
+  for (auto& pixel : other.rgb) pixel[2] *= 1.01F;
+  EXPECT_NE(FaultOfPicture(Gradient(), other), "");
+}
+
+TEST(GoldenTolerance, ASmallPlaceThatIsWrongIsAnotherPictureThoughTheRestHidesIt) {
+  Image other = Gradient();
+  for (std::size_t i = 0; i < 20; ++i) Scale(other.rgb[i], 1.012F);
+  EXPECT_LT(ChangeOf(Gradient(), other).rms, PictureTolerance{}.rms);
+  EXPECT_NE(FaultOfPicture(Gradient(), other), "") << "20 of 1296 pixels, by 1.2 %";
+}
+
+TEST(GoldenTolerance, OtherSizesAndBrokenPixelsAreNamed) {
+  EXPECT_EQ(FaultOfPicture(Gradient(), Image(27, 48)), "is 27 x 48; the golden picture is 48 x 27");
+  Image broken = Gradient();
+  broken.at(3, 3)[1] = std::nanf("");
+  EXPECT_EQ(FaultOfPicture(Gradient(), broken), "has a pixel that is not finite");
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Pictures of the air over terrain.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "atmosphere/number/constants.h"
+#include "renderer/camera/camera_rays.h"
+#include "renderer/picture/render.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+double Luminance(const std::array<float, 3>& rgb) {
+  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+         0.0722 * static_cast<double>(rgb[2]);
+}
+
+double InscatterAt(const Image& image, int x, int y) {
+  const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                            static_cast<std::size_t>(x);
+  return Luminance({image.layers[0].values[pixel], image.layers[1].values[pixel],
+                    image.layers[2].values[pixel]});
+}
+
+// The built-in range from above a hill in it, past the morning sun; pixels of a tenth of a degree.
+const SceneRenderer& RangeRenderer() {
+  static const SceneRenderer kRenderer([] {
+    Scene scene = BareScene(0.0, 0.0, 0.0, 60.0);
+    scene.camera = CameraFromDegrees({300.0, true}, 72.0, 0.0, 0.0, 6.4);
+    scene.terrain = {};
+    return scene;
+  }());
+  return kRenderer;
+}
+
+class RenderAirFiles : public TemporaryFolder {};
+
+const UtcInstant kMorning = ParseInstant("2026-06-21T04:20:00Z");
+
+TEST(RenderAir, ShaftsAreTheSameBytesForAnyNumberOfThreads) {
+  const SceneRenderer& renderer = RangeRenderer();
+  const RenderSettings settings{
+      .width = 32, .height = 18, .samples_per_pixel = 4, .air_nodes = 12, .layers = {}};
+  std::vector<Image> images;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    images.push_back(renderer.Render(kMorning, settings));
+  }
+  EXPECT_EQ(images[0].rgb, images[1].rgb);
+  EXPECT_EQ(images[0].rgb, images[2].rgb);
+}
+
+TEST(RenderAir, SharingTheAirOfAPixelIsRightToATenthOfAPercentOfTheLight) {
+  const SceneRenderer& renderer = RangeRenderer();
+  RenderSettings settings{
+      .width = 64, .height = 36, .samples_per_pixel = 16, .air_nodes = 12, .layers = {}};
+  settings.layers = {"inscatter"};
+  const Image shared = renderer.Render(kMorning, settings);
+  settings.share_air = false;
+  const Image alone = renderer.Render(kMorning, settings);
+  double square = 0.0;
+  double mean = 0.0;
+  for (int y = 0; y < shared.height; ++y) {
+    for (int x = 0; x < shared.width; ++x) {
+      const double truth = InscatterAt(alone, x, y);
+      const double error = InscatterAt(shared, x, y) - truth;
+      square += error * error;
+      mean += truth;
+    }
+  }
+  const double pixels = 64.0 * 36.0;
+  EXPECT_LT(std::sqrt(square / pixels) / (mean / pixels), 1e-3)
+      << "one ray along the mean of those that meet the same surface, through the middle where all "
+         "do; pixels of a tenth of a degree";
+}
+
+TEST_F(RenderAirFiles, AMountainBeforeTheSunHasNoGlowInItsShadedAir) {
+  // A ridge across the view, 1500 m high and 4 km off; the sun stands behind it, low.
+  const std::filesystem::path file = folder_ / "ridge.obj";
+  WriteText(file,
+            "v 3000 -60000 0\nv 3000 60000 0\nv 4000 -60000 1500\nv 4000 60000 1500\n"
+            "v 9000 -60000 0\nv 9000 60000 0\nf 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\n");
+  Scene scene = BareScene(0.0, 62.0, 4.0, 10.0);
+  scene.camera = CameraFromDegrees({50.0, false}, 62.0, 4.0, 0.0, 10.0);
+  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+  const SceneRenderer renderer(scene);
+  RenderSettings settings{
+      .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}};
+  settings.layers = {"inscatter"};
+  const Image shaded = renderer.Render(kMorning, settings);
+  settings.effects = settings.effects.Without(Effect::kShafts);
+  const Image glowing = renderer.Render(kMorning, settings);
+  EXPECT_LT(InscatterAt(shaded, 8, 4), 0.35 * InscatterAt(glowing, 8, 4))
+      << "what is left was scattered before it came";
+  EXPECT_GT(InscatterAt(shaded, 8, 4), 0.0);
+  // Evenly lit by the sky alone: no brighter below the sun than beside it.
+  EXPECT_NEAR(InscatterAt(shaded, 8, 4) / InscatterAt(shaded, 0, 4), 1.0, 0.1);
+}
+
+TEST(RenderAir, TheSeaHidesTheFootOfMountainsBehindItsHorizon) {
+  Scene scene = BareScene(10.0, 180.0, 0.5, 0.1);
+  scene.terrain = {};
+  scene.terrain.centre = PlaceFromDegrees(45.5, 8.0, 0.0);  // 111 km to the south
+  const SceneRenderer renderer(scene);
+  RenderSettings settings{
+      .width = 5, .height = 200, .samples_per_pixel = 1, .air_nodes = 8, .layers = {}};
+  settings.layers = {"depth"};
+  const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
+  const CameraRays camera(scene.camera, 5, 200);
+  const double dip = std::sqrt(2.0 * 10.0 / renderer.medium().planet_radius_m);
+  int mountains = 0;
+  for (int y = 0; y < 200; ++y) {
+    const double depth_m =
+        static_cast<double>(image.layers[0].values[static_cast<std::size_t>(y) * 5 + 2]);
+    if (camera.Direction(2.5, y + 0.5).z < -1.02 * dip) {
+      EXPECT_LT(depth_m, 11.5e3) << "row " << y << ": the sea, before its horizon at 11.3 km";
+    } else if (std::isfinite(depth_m)) {
+      ++mountains;
+      EXPECT_GT(depth_m, 70e3) << "row " << y;
+    }
+  }
+  EXPECT_GT(mountains, 20) << "the peaks stand out of the sea";
+}
+
+}  // namespace
+}  // namespace alpenglow

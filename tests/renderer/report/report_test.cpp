@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// The report of pictures: what it writes, and that its numbers are physics. Nothing here asks how
+// long anything takes.
+#include "renderer/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "renderer/lamp/lamp_works.h"
+#include "tests/fixtures/report_files.h"
+#include "tests/fixtures/report_rows.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A quick report of the default air, measured once.
+const Report& QuickReport() {
+  static const Report report =
+      MeasurePictureReport({.mediums = {MediumPreset("earth")}, .quick = true});
+  return report;
+}
+
+const ReportRow& RowOf(const std::string& topic, const std::string& name) {
+  return tests::RowOf(QuickReport(), topic, name);
+}
+
+void ExpectLessErrorEverywhere(const char* topic, const char* better, const char* worse) {
+  const ReportRow& good = RowOf(topic, better);
+  const ReportRow& bad = RowOf(topic, worse);
+  for (std::size_t r = 0; r < good.at.size(); ++r) {
+    if (!good.at[r].IsMeasured() || !bad.at[r].IsMeasured()) continue;
+    EXPECT_LT(good.at[r].error.rms, bad.at[r].error.rms)
+        << topic << ": " << better << " against " << worse << ", column " << r;
+  }
+}
+
+class PictureReportFiles : public TemporaryFolder {};
+
+TEST_F(PictureReportFiles, EveryTopicHasATableAndAPlot) {
+  WriteReport(QuickReport(), folder_ / "report");
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder_ / "report"))
+    names.insert(entry.path().filename());
+  for (const char* file : {"index.html", "summary.md"}) EXPECT_EQ(names.count(file), 1U) << file;
+  for (const char* key : {"aerial_perspective", "terrain_transmittance", "shafts", "airlight",
+                          "many_lamps", "pictures"}) {
+    EXPECT_EQ(names.count(std::string(key) + ".csv"), 1U) << key;
+    EXPECT_EQ(std::count_if(names.begin(), names.end(),
+                            [&](const std::string& name) {
+                              return name.rfind(std::string(key) + ".", 0) == 0 &&
+                                     name.size() > 4 && name.substr(name.size() - 4) == ".svg" &&
+                                     name.find(".samples.") == std::string::npos;
+                            }),
+              1)
+        << key;
+  }
+}
+
+TEST_F(PictureReportFiles, LinesHaveAllColumnsAndEveryNumberIsOne) {
+  const std::vector<std::string> header = CellsOf(LinesOf(CsvHeader())[0]);
+  for (const ReportTopic& topic : QuickReport().topics) {
+    const std::vector<std::string> lines = LinesOf(CsvOfTopic(topic, QuickReport().maker));
+    EXPECT_FALSE(lines.empty()) << topic.key;
+    for (const std::string& line : lines) {
+      const std::vector<std::string> cells = CellsOf(line);
+      ASSERT_EQ(cells.size(), header.size()) << line;
+      auto value = ValuesByName(header, cells);
+      for (const char* name :
+           {"memory_bytes", "build_s", "rays", "samples", "time_s", "time_spread", "error_median",
+            "error_rms", "error_99", "error_max", "judge_noise"}) {
+        const double number = std::stod(value[name]);
+        EXPECT_TRUE(std::isfinite(number) && number >= 0.0) << name << " in " << line;
+      }
+    }
+  }
+}
+
+TEST_F(PictureReportFiles, ThePageHoldsEverySectionAndNoOtherFile) {
+  const std::string page = PageOf(QuickReport());
+  for (const ReportTopic& topic : QuickReport().topics)
+    EXPECT_NE(page.find(XmlText(topic.title)), std::string::npos) << topic.title;
+  for (const char* outside : {"<link", "<script", "<img", "src=", ">nan", ">inf", "@reading@"})
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+}
+
+TEST(PictureReport, MoreEffortIsLessError) {
+  ExpectLessErrorEverywhere("aerial_perspective", "Gauss panels, automatic",
+                            "Gauss panels, at most 2");
+  ExpectLessErrorEverywhere("aerial_perspective", "uniform march, 128 steps",
+                            "uniform march, 8 steps");
+  ExpectLessErrorEverywhere("aerial_perspective", "quadratic march, 128 steps",
+                            "quadratic march, 8 steps");
+  ExpectLessErrorEverywhere("terrain_transmittance", "uniform march, 128 steps",
+                            "uniform march, 8 steps");
+  ExpectLessErrorEverywhere("shafts", "occlusion rays, 256 rays", "occlusion rays, 16 rays");
+  ExpectLessErrorEverywhere("shafts", "shadow heights, automatic nodes", "no shafts");
+  ExpectLessErrorEverywhere("airlight", "panels around the light, 32 nodes",
+                            "panels around the light, 8 nodes");
+  ExpectLessErrorEverywhere("airlight", "uniform march, 256 points", "uniform march, 16 points");
+  ExpectLessErrorEverywhere("pictures", "samples of a pixel, 4", "without higher orders");
+}
+
+TEST(PictureReport, AirBeforeMountainsKeepsItsErrorAtEverySun) {
+  for (const RegimeResult& at : RowOf("aerial_perspective", "Gauss panels, automatic").at) {
+    EXPECT_LT(at.error.rms, 1e-3) << "to 100 km in clear air";
+    EXPECT_LT(at.error.percentile_99, 5e-3);
+  }
+}
+
+TEST(PictureReport, OneGreyTransmittanceIsWrongByPercents) {
+  for (const RegimeResult& at : RowOf("terrain_transmittance", "closed form, one grey value").at)
+    EXPECT_GT(at.error.rms, 0.01) << "the air of 100 km is not grey";
+  for (const RegimeResult& at : RowOf("terrain_transmittance", "closed form, float").at)
+    EXPECT_LT(at.error.rms, 1e-5);
+}
+
+TEST(PictureReport, SunsClosedFormIsOnlyForIsotropicFogOfOneDensity) {
+  const ReportRow& row = RowOf("airlight", "Sun et al. (2005)");
+  EXPECT_TRUE(row.at[0].IsMeasured());
+  EXPECT_LT(row.at[0].error.rms, 1e-6);
+  for (std::size_t r = 1; r < row.at.size(); ++r) EXPECT_FALSE(row.at[r].IsMeasured());
+}
+
+TEST(PictureReport, SamplesOfAirlightCountThoseThatOnlyLook) {
+  const ReportRow& row = RowOf("airlight", "panels around the light, 16 nodes");
+  for (const RegimeResult& at : row.at) EXPECT_GT(at.samples, 16.0);
+}
+
+TEST(LampWorks, RulesAgreeWithTheJudgeWhenTheyTakeManyPoints) {
+  for (int i = 1; i <= 40; ++i) {
+    const LampWork work = LampWorkNumber(i, {.g = 0.5});
+    EXPECT_NEAR(AirlightByRule(LampRule::kEquiAngular, work, 20000) / work.truth, 1.0, 1e-4);
+    EXPECT_NEAR(AirlightByRule(LampRule::kHalfAngle, work, 64) / work.truth, 1.0, 1e-3);
+    EXPECT_NEAR(AirlightByRule(LampRule::kAsinh, work, 64) / work.truth, 1.0, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

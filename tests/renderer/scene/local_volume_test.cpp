@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/local_volume.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/colour/black_body.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/media/fog_layer.h"
+#include "renderer/media/local_media.h"
+#include "renderer/terrain/lattice_noise.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+VolumePlacement Turned(VolumePlacement::Shape shape, double heading_deg) {
+  const double a = heading_deg * kRadiansPerDegree;
+  VolumePlacement placement;
+  placement.shape = shape;
+  placement.bottom = {100.0, -50.0, 20.0};
+  placement.ahead = {std::sin(a), std::cos(a), 0.0};
+  placement.across = {std::cos(a), -std::sin(a), 0.0};
+  placement.size_m = {60.0, 90.0, 40.0};
+  return placement;
+}
+
+/// Turbulent, with empty parts, from the built-in noise.
+VolumeGrid NoiseGrid(const std::array<int, 3>& size) {
+  std::vector<float> values;
+  for (int z = 0; z < size[2]; ++z) {
+    for (int y = 0; y < size[1]; ++y) {
+      for (int x = 0; x < size[0]; ++x) {
+        const double n = GradientNoise(0.31 * x + 0.17 * z, 0.29 * y, 3U) +
+                         GradientNoise(0.11 * x, 0.23 * y + 0.19 * z, 5U);
+        values.push_back(static_cast<float>(std::max(n, 0.0)));
+      }
+    }
+  }
+  return {size, std::move(values)};
+}
+
+double MidpointColumn(const LocalVolume& volume, const glm::dvec3& origin,
+                      const glm::dvec3& direction, double length_m, int steps) {
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    sum += volume.DensityAt(origin + length_m * (i + 0.5) / steps * direction);
+  }
+  return sum * length_m / steps;
+}
+
+std::vector<glm::dvec3> Directions() {
+  std::vector<glm::dvec3> directions;
+  for (int i = 0; i < 40; ++i) {
+    const double z = 2.0 * (i + 0.5) / 40 - 1.0, phi = 2.4 * i;
+    directions.push_back(
+        {std::sqrt(1.0 - z * z) * std::cos(phi), std::sqrt(1.0 - z * z) * std::sin(phi), z});
+  }
+  return directions;
+}
+
+TEST(VolumeGrid, ColumnIsTheIntegralOfItsDensity) {
+  const LocalVolume volume(Turned(VolumePlacement::Shape::kBox, 30.0), std::nullopt,
+                           std::make_shared<VolumeGrid>(NoiseGrid({21, 17, 34})));
+  for (const glm::dvec3& direction : Directions()) {
+    const glm::dvec3 from = volume.Middle() - 60.0 * direction;
+    const double column = volume.Column(from, direction, 130.0);
+    EXPECT_NEAR(column, MidpointColumn(volume, from, direction, 130.0, 40000), 2e-3)
+        << "midpoint sums miss the ends of the box by half a step of 3 mm, density up to 1.3";
+  }
+}
+
+TEST(VolumeGrid, ColumnAddsUpFromItsParts) {
+  const VolumeGrid grid = NoiseGrid({16, 16, 16});
+  for (const glm::dvec3& direction : Directions()) {
+    const glm::dvec3 origin = glm::dvec3(0.5) - 0.2 * direction;
+    const double whole = grid.Column(origin, direction, 0.0, 0.4);
+    const double parts =
+        grid.Column(origin, direction, 0.0, 0.137) + grid.Column(origin, direction, 0.137, 0.4);
+    EXPECT_NEAR(parts, whole, 1e-12 * (whole + 1e-3)) << "two Gauss points are exact for a cubic";
+  }
+}
+
+TEST(VolumeGrid, OfConstantDensityIsAHomogeneousVolume) {
+  const auto grid =
+      std::make_shared<VolumeGrid>(std::array<int, 3>{5, 9, 30}, std::vector<float>(1350, 0.75F));
+  for (const auto shape : {VolumePlacement::Shape::kBox, VolumePlacement::Shape::kEllipsoid}) {
+    const LocalVolume with_grid(Turned(shape, 50.0), std::nullopt, grid);
+    const LocalVolume without(Turned(shape, 50.0), std::nullopt, nullptr);
+    for (const glm::dvec3& direction : Directions()) {
+      const glm::dvec3 from = with_grid.Middle() - 80.0 * direction + glm::dvec3(3.0, 5.0, 2.0);
+      const double homogeneous = without.Column(from, direction, 200.0);
+      EXPECT_NEAR(with_grid.Column(from, direction, 200.0), 0.75 * homogeneous,
+                  1e-10 * homogeneous);
+    }
+  }
+}
+
+TEST(VolumeGrid, PiecesHoldAllDensityAndBoundIt) {
+  const LocalVolume volume(Turned(VolumePlacement::Shape::kBox, 10.0), std::nullopt,
+                           std::make_shared<VolumeGrid>(NoiseGrid({40, 33, 20})));
+  for (const glm::dvec3& direction : Directions()) {
+    const glm::dvec3 from = volume.Middle() - 70.0 * direction;
+    const auto pieces = volume.PiecesAlong(from, direction, 140.0);
+    for (int i = 0; i < 2000; ++i) {
+      const double t = 140.0 * (i + 0.5) / 2000;
+      double bound = 0.0;
+      for (const DensePiece& piece : pieces) {
+        if (piece.begin_m <= t && t <= piece.end_m) bound = std::max(bound, piece.largest);
+      }
+      EXPECT_LE(volume.DensityAt(from + t * direction), bound + 1e-12);
+    }
+  }
+}
+
+TEST(LocalVolume, ChordsOfASphereAreThoseOfGeometry) {
+  VolumePlacement placement;
+  placement.shape = VolumePlacement::Shape::kEllipsoid;
+  placement.bottom = {0.0, 0.0, -50.0};
+  placement.size_m = glm::dvec3(100.0);
+  const LocalVolume sphere(placement, std::nullopt, nullptr);
+  for (const double off : {0.0, 10.0, 30.0, 49.0, 49.999}) {
+    EXPECT_NEAR(sphere.Column({-1e4, off, 0.0}, {1.0, 0.0, 0.0}, 1e6),
+                2.0 * std::sqrt(2500.0 - off * off), 1e-7);
+  }
+  EXPECT_EQ(sphere.Column({-1e4, 50.001, 0.0}, {1.0, 0.0, 0.0}, 1e6), 0.0);
+  EXPECT_NEAR(sphere.Column({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 1e6), 50.0, 1e-9) << "from inside";
+  EXPECT_NEAR(sphere.Column({-100.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 75.0), 25.0, 1e-9)
+      << "a ray that ends inside";
+}
+
+TEST(LocalVolume, ExponentialColumnIsTheIntegralOfItsDensity) {
+  const LocalVolume volume(Turned(VolumePlacement::Shape::kEllipsoid, 75.0), 12.0, nullptr);
+  for (const glm::dvec3& direction : Directions()) {
+    const glm::dvec3 from = volume.Middle() - 60.0 * direction + glm::dvec3(4.0, -7.0, 3.0);
+    EXPECT_NEAR(volume.Column(from, direction, 130.0),
+                MidpointColumn(volume, from, direction, 130.0, 100000), 2e-3)
+        << "midpoint sums miss the ends by half a step of 1.3 mm";
+  }
+}
+
+TEST(LocalVolume, UnitsAndFrameAreInverse) {
+  const LocalVolume volume(Turned(VolumePlacement::Shape::kBox, 33.0), std::nullopt, nullptr);
+  for (const glm::dvec3& unit : Directions()) {
+    EXPECT_LT(glm::length(volume.UnitFromFrame(volume.FrameFromUnit(unit)) - unit), 1e-12);
+  }
+}
+
+TEST(FogLayer, ColumnToSpaceIsTheIntegralOfItsDensity) {
+  for (const double scale_height : {25.0, 400.0}) {
+    const FogLayer fog(300.0, scale_height, 6371e3, 120e3);
+    for (const double mu : {1.0, 0.3, 0.02, 0.0, -0.002}) {
+      const glm::dvec3 from(0.0, 0.0, 330.0), direction(std::sqrt(1.0 - mu * mu), 0.0, mu);
+      double sum = 0.0;
+      constexpr int kSteps = 300000;
+      const double reach = std::min(600e3, 24.0 * scale_height / std::max(mu, 1e-9));
+      for (int i = 0; i < kSteps; ++i) {
+        sum += fog.DensityAt(from + reach * (i + 0.5) / kSteps * direction) * reach / kSteps;
+      }
+      EXPECT_NEAR(fog.ColumnToSpace(from, direction) / sum, 1.0, 1e-6) << scale_height << " " << mu;
+    }
+  }
+}
+
+TEST(FogLayer, WithoutScaleHeightReachesTheTopOfTheAir) {
+  const FogLayer fog(0.0, std::numeric_limits<double>::infinity(), 6371e3, 100e3);
+  EXPECT_NEAR(fog.ColumnToSpace({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}), 100e3, 1e-3);
+  EXPECT_NEAR(fog.ColumnToSpace({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}),
+              std::sqrt(100e3 * (2.0 * 6371e3 + 100e3)), 1e-3);
+}
+
+TEST(BlackBody, RadiatesAsStefanAndBoltzmannSay) {
+  double sum = 0.0;
+  for (double nm = 100.0; nm < 200000.0; nm *= 1.001) sum += BlackBodyRadiance(nm, 3000.0) * nm;
+  EXPECT_NEAR(sum * std::log(1.001) * kPi / (5.670374419e-8 * std::pow(3000.0, 4.0)), 1.0, 1e-3)
+      << "the tail beyond 0.2 mm is 1e-5, the sum's own error below it";
+}
+
+std::string MessageOf(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(VolumeGrid, RefusesWhatIsNoDensity) {
+  using Size = std::array<int, 3>;
+  const auto grid = [](const Size& size, std::vector<float> values) {
+    return MessageOf([&] { VolumeGrid(size, std::move(values)); });
+  };
+  EXPECT_EQ(grid({2, 2, 2}, std::vector<float>(7)), "7 values for a grid of 2 x 2 x 2 samples");
+  EXPECT_EQ(grid({1, 2, 2}, std::vector<float>(4)),
+            "a grid of 1 x 2 x 2 samples; each side must have 2 to 1024");
+  for (const float wrong : {-1.0F, std::nanf(""), INFINITY}) {
+    std::vector<float> values(8, 1.0F);
+    values[5] = wrong;
+    EXPECT_NE(grid({2, 2, 2}, values).find("value 5 of the grid"), std::string::npos);
+  }
+}
+
+class Nrrd : public TemporaryFolder {};
+class RawGrid : public TemporaryFolder {};
+
+std::string LittleEndian(const std::vector<float>& values) {
+  std::string bytes;
+  for (const float value : values) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+      bytes.push_back(static_cast<char>(bits >> shift & 0xFFU));
+    }
+  }
+  return bytes;
+}
+
+TEST_F(Nrrd, ReadsFloatsAndBytes) {
+  const std::vector<float> values{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
+  WriteText(folder_ / "a.nrrd",
+            "NRRD0004\n# made by hand\ntype: float\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\n"
+            "encoding: raw\nendian: little\nauthor:=nobody\n\n" +
+                LittleEndian(values));
+  EXPECT_EQ(ReadNrrd(folder_ / "a.nrrd").values(), values);
+  WriteText(folder_ / "b.nrrd",
+            std::string("NRRD0001\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n") +
+                std::string(7, '\0') + '\xFF');
+  EXPECT_EQ(ReadNrrd(folder_ / "b.nrrd").largest(), 1.0);
+}
+
+TEST_F(Nrrd, RefusesEveryTruncationOfAValidFile) {
+  const std::string whole =
+      "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nendian: little\n\n" +
+      LittleEndian(std::vector<float>(8, 1.0F));
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    WriteText(folder_ / "cut.nrrd", whole.substr(0, length));
+    EXPECT_THROW((void)ReadNrrd(folder_ / "cut.nrrd"), InputError) << length;
+  }
+}
+
+TEST_F(Nrrd, SaysWhatItDoesNotRead) {
+  const auto file = folder_ / "x.nrrd";
+  const auto read = [&](const std::string& header) {
+    WriteText(file, "NRRD0004\n" + header + "\n\n");
+    return MessageOf([&] { (void)ReadNrrd(file); });
+  };
+  EXPECT_EQ(read("type: double"),
+            file.string() + ":2: type is \"double\"; it must be \"float\" or \"uint8\"");
+  EXPECT_EQ(read("encoding: gzip"), file.string() + ":2: encoding is \"gzip\"; it must be \"raw\"");
+  EXPECT_EQ(read("dimension: 4"), file.string() + ":2: dimension is 4; it must be 3");
+  EXPECT_EQ(MessageOf([&] { (void)ReadNrrd(folder_ / "none.nrrd"); }),
+            (folder_ / "none.nrrd").string() + ": cannot be read");
+}
+
+TEST_F(RawGrid, RefusesAFileOfAnotherLength) {
+  const auto file = folder_ / "g.raw";
+  WriteText(file, LittleEndian(std::vector<float>(12, 0.5F)));
+  EXPECT_EQ(ReadRawGrid(file, {2, 3, 2}).largest(), 0.5);
+  EXPECT_EQ(MessageOf([&] {
+              (void)ReadRawGrid(file, {2, 3, 3});
+            }),
+            file.string() + ": 48 bytes of data; 2 x 3 x 3 floats are 72");
+}
+
+}  // namespace
+}  // namespace alpenglow

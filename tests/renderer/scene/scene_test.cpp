@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "atmosphere/text/toml_table.h"
+#include "lut/picture/picture_text.h"
+#include "renderer/scene/scene_options.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kPlace = "[place]\nlatitude = 35.3606\nlongitude = 138.7274\n";
+
+Scene Read(const std::string& text) { return SceneFromToml(text, "s.toml", "folder"); }
+
+std::string FaultOf(const std::string& text) {
+  try {
+    (void)Read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no fault";
+}
+
+TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
+  const auto fov = [](const std::string& camera) {
+    return Read(kPlace + "[camera]\n" + camera).camera.fov_rad;
+  };
+  const std::string sensor = "sensor_width_mm = 36\nfocal_length_mm = 50\n";
+  EXPECT_NEAR(fov(sensor), 2.0 * std::atan(18.0 / 50.0), 1e-12);
+  EXPECT_NEAR(fov(sensor + "f_number = 2\nfocus_m = 1\n"), 2.0 * std::atan(18.0 * 0.95 / 50.0),
+              1e-12)
+      << "in focus at 1 m the sensor stands at 50 / 0.95 mm";
+  EXPECT_NEAR(fov(sensor + "fov = 39.6\n"), 39.6 * kRadiansPerDegree, 1e-12)
+      << "said twice, and rounded";
+  const Camera bladed = Read(kPlace +
+                             "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 1\n"
+                             "blades = 7\nblade_rotation = 10\n")
+                            .camera;
+  EXPECT_EQ(bladed.lens->blades, 7);
+  EXPECT_NEAR(bladed.lens->blade_rotation_rad, 10.0 * kRadiansPerDegree, 1e-12);
+}
+
+/// The block of TOML in the manual of scene.toml.
+std::string Manual() {
+  const std::string all =
+      ReadTextFile(std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "renderer" / "README.md");
+  const std::size_t begin = all.find("```toml\n") + 8;
+  return all.substr(begin, all.find("```", begin) - begin);
+}
+
+TEST(Scene, OfTheManualIsReadAndItsDefaultsAreThose) {
+  const Scene manual = Read(Manual());
+  const Scene bare = Read("[place]\nlatitude = 46.5\nlongitude = 8.0\n");
+  EXPECT_EQ(manual.camera.height, bare.camera.height);
+  EXPECT_EQ(manual.camera.fov_rad, bare.camera.fov_rad);
+  EXPECT_EQ(manual.camera.lens.has_value(), bare.camera.lens.has_value());
+  EXPECT_EQ(manual.medium, bare.medium);
+  EXPECT_EQ(manual.terrain.voids, bare.terrain.voids);
+  EXPECT_EQ(manual.ground.kind, bare.ground.kind);
+  EXPECT_EQ(manual.ground.wind_m_per_s, bare.ground.wind_m_per_s);
+  EXPECT_EQ(manual.lights.size() + manual.volumes.size(), 2U);
+  EXPECT_EQ(manual.lights.at(0).temperature_k, Light{}.temperature_k);
+  EXPECT_EQ(manual.lights.at(0).radius_m, Light{}.radius_m);
+  EXPECT_EQ(manual.volumes.at(0).albedo, Volume{}.albedo);
+}
+
+TEST(Scene, EverythingThatTheFileSaysArrives) {
+  const Scene scene = Read(R"(
+[place]
+latitude = 35.3606
+longitude = 138.7274
+zone = "Asia/Tokyo"
+[time]
+utc = "2026-06-21T04:00:00Z"
+[camera]
+height_m = 2500.0
+heading = 270.0
+pitch = -2.0
+roll = 1.5
+fov = 45.0
+f_number = 2.8
+focal_length_mm = 50.0
+focus_m = 1000.0
+[atmosphere]
+preset = "hazy"
+[terrain]
+dem = "N35E138.hgt"
+voids = "open"
+[[light]]
+type = "spot"
+latitude = 35.36
+longitude = 138.73
+above_ground_m = 20.0
+intensity_cd = 20000.0
+temperature_k = 2700.0
+heading = 90.0
+pitch = -5.0
+cone = [10.0, 25.0]
+[[light]]
+latitude = 35.37
+longitude = 138.73
+height_m = 700.0
+intensity_cd = 0
+)");
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 35.3606 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.place.longitude_rad, 138.7274 * kRadiansPerDegree);
+  EXPECT_EQ(scene.zone, "Asia/Tokyo");
+  EXPECT_EQ(FormatUtc(scene.time.value()), "2026-06-21T04:00:00Z");
+  EXPECT_EQ(scene.camera.height, (Height{2500.0, false}));
+  EXPECT_DOUBLE_EQ(scene.camera.heading_rad, 1.5 * kPi);
+  EXPECT_DOUBLE_EQ(scene.camera.pitch_rad, -2.0 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.camera.roll_rad, 1.5 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.camera.fov_rad, 0.25 * kPi);
+  ASSERT_TRUE(scene.camera.lens.has_value());
+  EXPECT_DOUBLE_EQ(scene.camera.lens->focal_length_m, 0.05);
+  EXPECT_EQ(scene.medium.name, "hazy");
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kElevationModel);
+  EXPECT_EQ(scene.terrain.file, "folder/N35E138.hgt");
+  EXPECT_EQ(scene.terrain.voids, VoidPolicy::kLeaveOpen);
+  ASSERT_EQ(scene.lights.size(), 2U);
+  EXPECT_EQ(scene.lights[0].type, Light::Type::kSpot);
+  EXPECT_DOUBLE_EQ(scene.lights[0].outer_rad, 25.0 * kRadiansPerDegree);
+  EXPECT_EQ(scene.lights[1].type, Light::Type::kPoint);
+  EXPECT_EQ(scene.lights[1].height, (Height{700.0, false}));
+}
+
+TEST(Scene, LampsMayBeMeasuredAndFogMayLie) {
+  const Scene scene = Read(kPlace + R"(
+[fog]
+visibility_m = 391.2
+scale_height_m = 30.0
+base_height_m = 100.0
+droplet_diameter_um = 10.0
+[[light]]
+latitude = 35.37
+longitude = 138.73
+ies = "lamp.ies"
+heading = 10.0
+radius_m = 0.2
+)");
+  ASSERT_TRUE(scene.fog.has_value());
+  EXPECT_DOUBLE_EQ(scene.fog->extinction_per_m, 0.01) << "3.912 optical depths are the visibility";
+  EXPECT_DOUBLE_EQ(scene.fog->scale_height_m, 30.0);
+  EXPECT_EQ(scene.fog->phase, FogPhase(10.0));
+  ASSERT_EQ(scene.lights.size(), 1U);
+  EXPECT_EQ(scene.lights[0].ies, "folder/lamp.ies");
+  EXPECT_EQ(scene.lights[0].intensity_cd, std::nullopt) << "the file says it";
+  EXPECT_DOUBLE_EQ(scene.lights[0].pitch_rad, -0.5 * kPi) << "down, as lamps are measured";
+  EXPECT_EQ(scene.lights[0].radius_m, 0.2);
+}
+
+TEST(Scene, FogAndLampsThatMakeNoSenseAreRefusedByKey) {
+  const std::string light = "[[light]]\nlatitude = 35\nlongitude = 138\n";
+  EXPECT_THAT(FaultOf(kPlace + "[fog]\nscale_height_m = 30\n"), HasSubstr("fog.visibility_m"));
+  EXPECT_THAT(FaultOf(kPlace + "[fog]\nvisibility_m = 300\nextinction_per_m = 0.1\n"),
+              HasSubstr("give one of"));
+  EXPECT_THAT(FaultOf(kPlace + "[fog]\nvisibility_m = 300\ng = 0.5\ndroplet_diameter_um = 9\n"),
+              HasSubstr("give one"));
+  EXPECT_THAT(FaultOf(kPlace + light), HasSubstr("intensity_cd is missing"));
+  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = -1\n"), HasSubstr("intensity_cd is -1"));
+  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = inf\n"), HasSubstr("intensity_cd"));
+  EXPECT_THAT(FaultOf(kPlace + light + "ies = \"a\"\ncone = [1, 2]\n"), HasSubstr("cone is for"));
+  EXPECT_THAT(FaultOf(kPlace + light + "type = \"spot\"\nies = \"a\"\n"), HasSubstr("ies is for"));
+}
+
+TEST(Scene, VolumesOfAirArrive) {
+  const Scene scene = Read(kPlace + R"(
+[[volume]]
+shape = "ellipsoid"
+latitude = 35.37
+longitude = 138.73
+above_ground_m = 4.0
+size_m = [400, 900, 60]
+heading = 90
+scale_height_m = 25
+visibility_m = 391.2
+[[volume]]
+latitude = 35.37
+longitude = 138.73
+height_m = 1200
+size_m = [50, 60, 200]
+grid = "smoke.raw"
+grid_size = [32, 48, 64]
+extinction_per_m = [0.1, 0.2, 0.3, 0.4]
+albedo = 0.6
+emission_per_m = 2.5
+temperature_k = 900
+g = 0.3
+[[volume]]
+latitude = 35.37
+longitude = 138.73
+size_m = [50, 60, 200]
+grid = "smoke.nrrd"
+extinction_per_m = 0.1
+)");
+  ASSERT_EQ(scene.volumes.size(), 3U);
+  const Volume& bank = scene.volumes[0];
+  EXPECT_EQ(bank.shape, VolumePlacement::Shape::kEllipsoid);
+  EXPECT_EQ(bank.height, (Height{4.0, true}));
+  EXPECT_DOUBLE_EQ(bank.scale_height_m.value(), 25.0);
+  EXPECT_NEAR(bank.extinction_per_m.at(0), 0.01, 1e-12) << "3.912 optical depths";
+  EXPECT_EQ(bank.phase, FogPhase(15.0)) << "drops when nothing is said";
+  const Volume& plume = scene.volumes[1];
+  EXPECT_EQ(plume.height, (Height{1200.0, false}));
+  EXPECT_EQ(plume.grid, std::filesystem::path("folder/smoke.raw"));
+  EXPECT_EQ(plume.grid_size.value(), (std::array<int, 3>{32, 48, 64}));
+  EXPECT_EQ(plume.extinction_per_m, (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
+  EXPECT_EQ(plume.temperature_k.value(), 900.0);
+  EXPECT_EQ(plume.phase.g, 0.3);
+  EXPECT_FALSE(scene.volumes[2].grid_size.has_value());
+  EXPECT_EQ(scene.volumes[2].height, (Height{0.0, true})) << "it stands on the ground";
+}
+
+TEST(Scene, VolumesThatMakeNoSenseAreRefusedByKey) {
+  const std::string start = kPlace + "[[volume]]\nlatitude = 35\nlongitude = 138\n";
+  const std::string whole = start + "size_m = [9, 9, 9]\nvisibility_m = 50\n";
+  EXPECT_EQ(FaultOf(whole), "no fault");
+  const std::vector<std::pair<std::string, std::string>> faults{
+      {start + "visibility_m = 50\n", "volume[0].size_m is missing"},
+      {start + "size_m = [9, 9]\nvisibility_m = 50\n", "volume[0].size_m has 2 values"},
+      {start + "size_m = [9, 0, 9]\nvisibility_m = 50\n", "s.toml:7: volume[0].size_m[1] is 0"},
+      {start + "size_m = [9, nan, 9]\nvisibility_m = 50\n", "volume[0].size_m"},
+      {start + "size_m = [9, 9, 9]\n", "give one of volume[0].visibility_m and"},
+      {whole + "extinction_per_m = 0.1\n", "give one of volume[0].visibility_m and"},
+      {whole + "albedo = 1.5\n", "volume[0].albedo is 1.5"},
+      {whole + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
+      {whole + "emission_per_m = -1\n", "volume[0].emission_per_m is -1"},
+      {whole + "temperature_k = 5\n", "volume[0].temperature_k is 5"},
+      {whole + "shape = \"sphere\"\n", "it must be \"box\" or \"ellipsoid\""},
+      {whole + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
+      {whole + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
+      {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
+      {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 1]\n", "volume[0].grid_size[2] is 1"},
+      {whole + "grid = \"a.nrrd\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
+      {whole + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
+      {whole + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
+      {whole + "extinctoin = 1\n", "volume[0].extinctoin"}};
+  for (const auto& [text, fault] : faults) {
+    EXPECT_THAT(FaultOf(text), HasSubstr(fault)) << text;
+  }
+}
+
+TEST(Scene, GroundIsWhatTheFileSays) {
+  const Scene water = Read(kPlace + "[ground]\ncover = \"water\"\nwind_m_per_s = 8\n");
+  EXPECT_EQ(water.ground.kind, GroundCover::Kind::kWater);
+  EXPECT_EQ(water.ground.wind_m_per_s, 8.0);
+  const Scene lake = Read(kPlace + "[ground]\nsea_level_m = 1.5\nwind_m_per_s = 2\n");
+  EXPECT_EQ(lake.ground.kind, GroundCover::Kind::kMountain);
+  EXPECT_EQ(lake.ground.sea_level_m, 1.5);
+  const Scene gloss = Read(kPlace +
+                           "[ground]\ncover = \"blinn-phong\"\nalbedo = [0.1, 0.2, 0.3]\n"
+                           "roughness = 0.3\nreflectance = 0.05\n");
+  EXPECT_EQ(gloss.ground.albedo, (std::array<double, 3>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(gloss.ground.roughness, 0.3);
+  EXPECT_EQ(gloss.ground.reflectance, 0.05);
+  EXPECT_EQ(Read(kPlace + "[ground]\ncover = \"lambert\"\nalbedo = 0.4\n").ground.albedo[2], 0.4);
+  const Scene snow = Read(kPlace + "[ground]\ncover = \"snow\"\ngrain_diameter_mm = 0.2\n");
+  EXPECT_NEAR(snow.ground.grain_diameter_m, 2e-4, 1e-18);
+  const Scene draped = Read(kPlace + "[terrain]\ncolour = \"photo.tif\"\n");
+  EXPECT_EQ(draped.terrain.colour, std::filesystem::path("folder") / "photo.tif");
+  EXPECT_TRUE(Read(kPlace).terrain.colour.empty());
+}
+
+TEST(Scene, GroundThatCannotBeIsRefused) {
+  const auto fault = [](const std::string& ground) {
+    return FaultOf(kPlace + "[ground]\n" + ground);
+  };
+  EXPECT_THAT(fault("cover = \"lava\"\n"), HasSubstr("ground.cover is \"lava\""));
+  EXPECT_THAT(fault("colour = 1\n"), HasSubstr("ground.colour"));
+  EXPECT_THAT(fault("albedo = 0.5\n"), HasSubstr("ground.albedo is for lambert"));
+  EXPECT_THAT(fault("wind_m_per_s = 5\n"), HasSubstr("ground.wind_m_per_s is for water"));
+  EXPECT_THAT(fault("cover = \"lambert\"\nalbedo = 1.5\n"), HasSubstr("ground.albedo"));
+  EXPECT_THAT(fault("cover = \"lambert\"\nalbedo = [0.1, 0.2]\n"), HasSubstr("ground.albedo"));
+  EXPECT_THAT(fault("cover = \"lambert\"\nroughness = 0.5\n"),
+              HasSubstr("ground.roughness is for"));
+  EXPECT_THAT(fault("cover = \"blinn-phong\"\nroughness = 0.05\n"), HasSubstr("[0.1, 1]"));
+  EXPECT_THAT(fault("cover = \"snow\"\ngrain_diameter_mm = 50\n"), HasSubstr("[0.05, 5]"));
+  EXPECT_THAT(FaultOf(kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n"),
+              HasSubstr("terrain.colour"));
+}
+
+TEST(Scene, APlaceIsEnough) {
+  const Scene scene = Read(kPlace);
+  EXPECT_EQ(scene.medium.name, "earth");
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  EXPECT_EQ(scene.time, std::nullopt);
+  EXPECT_EQ(scene.camera.height, (Height{2.0, true})) << "eye level";
+  EXPECT_FALSE(scene.camera.lens.has_value());
+  EXPECT_TRUE(scene.lights.empty());
+}
+
+TEST(Scene, LocalTimeIsReadInThePlacesZone) {
+  const std::string seconds =
+      kPlace + "zone = \"Asia/Tokyo\"\n[time]\nlocal = \"2026-06-21T13:00:00\"\n";
+  EXPECT_EQ(FormatUtc(Read(seconds).time.value()), "2026-06-21T04:00:00Z");
+  EXPECT_THAT(FaultOf(kPlace + "[time]\nlocal = \"2026-06-21T13:00:00\"\n"),
+              HasSubstr("time.local needs place.zone"));
+}
+
+TEST(Scene, PanoramasAndSteepRollsAreCameras) {
+  EXPECT_TRUE(Read(kPlace + "[camera]\nfov = 360\nroll = 90\n").camera.IsPanorama());
+  EXPECT_FALSE(Read(kPlace + "[camera]\nfov = 179\n").camera.IsPanorama());
+  EXPECT_NO_THROW((void)Read(kPlace + "[camera]\nfov = 1\nheading = -90\n"));
+}
+
+TEST(Scene, LatitudeNinetyAndLongitudes180ArePlacesOnEarth) {
+  for (const char* place : {"latitude = 90\nlongitude = 0\n", "latitude = -90\nlongitude = -180\n",
+                            "latitude = 0\nlongitude = 180\n"}) {
+    EXPECT_EQ(FaultOf(std::string("[place]\n") + place), "no fault");
+  }
+}
+
+struct Bad {
+  std::string text, message;
+};
+
+TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
+  const std::vector<Bad> cases = {
+      {"", "s.toml:1: [place] with latitude and longitude is missing"},
+      {"[place]\nlatitude = 3\n", "place.longitude is missing"},
+      {"[place]\nlatitude = 90.0000001\nlongitude = 0\n", "s.toml:2: place.latitude is 90.0000001"},
+      {"[place]\nlatitude = 0\nlongitude = 540\n", "s.toml:3: place.longitude is 540"},
+      {"[place]\nlatitude = 138.7\nlongitude = 35.4\n", "place.latitude is 138.7"},
+      {"[place]\nlatitude = \"46d33N\"\nlongitude = 0\n", "place.latitude is the text \"46d33N\""},
+      {"[place]\nlatitude = nan\nlongitude = 0\n", "place.latitude is nan"},
+      {"[place]\nlatitud = 3\n", "unknown key place.latitud; did you mean latitude?"},
+      {kPlace + "zone = \"Asia/Tokio\"\n", "s.toml:4: place.zone"},
+      {kPlace + "[camer]\n", "unknown key camer; did you mean camera?"},
+      {kPlace + "[camera]\nfov = 0\n", "s.toml:5: camera.fov is 0"},
+      {kPlace + "[camera]\nfov = 200\n", "[0.1, 179] or be 360"},
+      {kPlace + "[camera]\nfov = inf\n", "camera.fov is inf"},
+      {kPlace + "[camera]\nheight_m = 1e999\n", "s.toml:5"},
+      {kPlace + "[camera]\nheight_m = -20000\n", "camera.height_m is -20000"},
+      {kPlace + "[camera]\nheight_m = 1\nabove_ground_m = 1\n", "both given"},
+      {kPlace + "[camera]\nabove_ground_m = -1\n", "camera.above_ground_m is -1"},
+      {kPlace + "[camera]\nf_number = 2\n", "camera.focal_length_mm is missing"},
+      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 0.05\n", "beyond the"},
+      {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
+      {kPlace + "[camera]\nblades = 2\n", "camera.blades is 2"},
+      {kPlace + "[camera]\nblades = 5.5\n", "camera.blades is 5.5"},
+      {kPlace + "[camera]\nsensor_width_mm = 36\n", "camera.focal_length_mm is missing"},
+      {kPlace + "[camera]\nfov = 60\nsensor_width_mm = 36\nfocal_length_mm = 50\n",
+       "camera.fov is 60, but focal length and sensor make it 39.6; give one"},
+      {kPlace + "[camera]\nfov = 360\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 5\n",
+       "a panorama has no lens"},
+      {kPlace + "[camera]\nfov = 3\nfov = 4\n", "s.toml:6: not valid TOML"},
+      {kPlace + "[time]\nutc = \"2024-02-30T00:00:00Z\"\n", "s.toml:5: time.utc"},
+      {kPlace + "[time]\nutc = \"2026-06-21T04:00:00\"\n", "s.toml:5: time.utc"},
+      {kPlace + "[time]\nutc = 2026-06-21T04:00:00Z\n", "must be text in quotes"},
+      {kPlace + "[time]\n", "time.utc is missing"},
+      {kPlace + "[terrain]\ndem = 5\n", "terrain.dem is 5; it must be text"},
+      {kPlace + "[terrain]\ndem = \"a\"\nmesh = \"b\"\n", "give one of"},
+      {kPlace + "[terrain]\ndem = \"a\"\nvoids = \"sometimes\"\n", "\"fill\" or \"open\""},
+      {kPlace + "[terrain]\nvoids = \"fill\"\n", "terrain.voids needs terrain.dem"},
+      {kPlace + "[atmosphere]\npreset = \"venus\"\n", "s.toml:5: atmosphere.preset"},
+      {kPlace + "[atmosphere]\nfile = \"none.toml\"\n", "folder/none.toml"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\n", "light[0].intensity_cd is missing"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = -1\n",
+       "s.toml:7: light[0].intensity_cd is -1"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = inf\n", "is inf"},
+      {kPlace + "[[light]]\ntype = \"tube\"\n", "\"point\" or \"spot\""},
+      {kPlace + "[[light]]\ntype = \"spot\"\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\n",
+       "light[0].cone must be two half angles"},
+      {kPlace + "[[light]]\ntype = \"spot\"\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\n"
+                "cone = [25, 10]\n",
+       "s.toml:9: light[0].cone"},
+      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\ncone = [1, 2]\n",
+       "is for a spot"},
+      {kPlace + "light = 3\n", "unknown key place.light"},
+      {"light = 3\n" + kPlace, "must be a list of tables"},
+      {"place = 3\n", "place is 3; it must be a table"},
+      {"not a scene", "s.toml:1: not valid TOML"},
+  };
+  for (const Bad& bad : cases) {
+    const std::string fault = FaultOf(bad.text);
+    EXPECT_THAT(fault, HasSubstr(bad.message)) << bad.text;
+    EXPECT_EQ(fault.find('\n'), std::string::npos) << "one line: " << fault;
+  }
+}
+
+TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
+  const Scene scene = SceneFromOptions({});
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  ASSERT_TRUE(scene.terrain.centre.has_value());
+  EXPECT_DOUBLE_EQ(scene.terrain.centre->latitude_rad, 46.5 * kRadiansPerDegree);
+  EXPECT_NE(scene.place.latitude_rad, scene.terrain.centre->latitude_rad);
+  EXPECT_TRUE(scene.camera.height.above_ground);
+  SceneOptions turned;
+  turned.heading = 90.0;
+  turned.height_m = 4000.0;
+  EXPECT_DOUBLE_EQ(SceneFromOptions(turned).camera.heading_rad, 0.5 * kPi);
+  EXPECT_EQ(SceneFromOptions(turned).camera.height, (Height{4000.0, false}));
+  EXPECT_EQ(SceneFromOptions(turned).place.latitude_rad, scene.place.latitude_rad);
+}
+
+TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {
+  SceneOptions options;
+  options.dem = "N35E138.hgt";
+  options.latitude = 35.5;
+  options.longitude = 138.76;
+  options.atmosphere = "hazy";
+  const Scene scene = SceneFromOptions(options);
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 35.5 * kRadiansPerDegree);
+  EXPECT_EQ(scene.terrain.file, "N35E138.hgt");
+  EXPECT_EQ(scene.medium.name, "hazy");
+  EXPECT_EQ(scene.camera.height, (Height{2.0, true}));
+}
+
+TEST(SceneOptions, SizesAndExposuresAreReadWhole) {
+  EXPECT_EQ(ImageSizeFromText("1x16384").height, 16384);
+  for (const char* bad :
+       {"", "5", "5x", "x5", "0x5", "5x16385", "5x5x5", "5.5x5", " 5x5", "-5x5"}) {
+    EXPECT_THROW((void)ImageSizeFromText(bad), InputError) << bad;
+  }
+  EXPECT_EQ(Ev100FromText("auto"), std::nullopt);
+  EXPECT_EQ(Ev100FromText("-3.5"), -3.5);
+  for (const char* bad : {"", "bright", "nan", "inf", "1e3", "12,5", "5 "}) {
+    EXPECT_THROW((void)Ev100FromText(bad), InputError) << bad;
+  }
+}
+
+using SceneFile = TemporaryFolder;
+
+TEST_F(SceneFile, NamesOfFilesAreRelativeToTheScene) {
+  WriteText(folder_ / "air.toml", "preset = \"mars\"\n");
+  WriteText(folder_ / "scene.toml",
+            kPlace + "[atmosphere]\nfile = \"air.toml\"\n[terrain]\nmesh = \"x.obj\"\n");
+  const Scene scene = ReadScene(folder_ / "scene.toml");
+  EXPECT_EQ(scene.medium.name, "mars");
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kMesh);
+  EXPECT_EQ(scene.terrain.file, folder_ / "x.obj");
+  EXPECT_THROW((void)ReadScene(folder_ / "missing.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

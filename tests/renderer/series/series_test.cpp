@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series/series.h"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <sstream>
+
+#include "atmosphere/text/error.h"
+#include "lut/picture/night_vision.h"
+#include "lut/program/program.h"
+#include "renderer/series/contact_sheet.h"
+#include "renderer/series/provenance.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string FaultOfName(const std::string& pattern) {
+  try {
+    FrameName name(pattern);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no fault";
+}
+
+TEST(FrameName, NumbersAreFilledIn) {
+  EXPECT_EQ(FrameName("d/frame.%04d.exr").Exr(7), "d/frame.0007.exr");
+  EXPECT_EQ(FrameName("d/frame.%04d.exr").Exr(123456), "d/frame.123456.exr");
+  EXPECT_EQ(FrameName("f%d.exr").Exr(7), "f7.exr");
+  EXPECT_EQ(FrameName("f%3d.exr").Exr(7), "f  7.exr");
+  EXPECT_EQ(FrameName("100%%-%02d.exr").Exr(7), "100%-07.exr");
+  EXPECT_EQ(FrameName("d/frame.%04d.exr").Png(7), "d/frame.0007.png");
+  EXPECT_EQ(FrameName("still.exr").Exr(7), "still.exr");
+  EXPECT_FALSE(FrameName("still.exr").HasNumber());
+}
+
+TEST(FrameName, ManifestStandsBesideTheFrames) {
+  EXPECT_EQ(FrameName("d/frame.%04d.exr").Manifest(), "d/frame.manifest.csv");
+  EXPECT_EQ(FrameName("d/%04d.exr").Manifest(), "d/manifest.csv");
+  EXPECT_EQ(FrameName("still.exr").Manifest(), "still.manifest.csv");
+}
+
+TEST(FrameName, OtherConversionsAreRefused) {
+  for (const char* pattern : {"%s.exr", "%04x.exr", "%n.exr", "%", "a%.exr", "%d%d.exr", "%*d.exr",
+                              "%99999d.exr", "%ld.exr", "%d/a.exr", "a.%04d.png", "a.%04d", ""}) {
+    EXPECT_NE(FaultOfName(pattern), "no fault") << pattern;
+  }
+}
+
+class SeriesRun : public TemporaryFolder {
+ protected:
+  SeriesSource Source() {
+    SeriesSource source;
+    source.render = [this](const Frame& frame) {
+      ++renderings_;
+      if (on_render_) on_render_();
+      Image image(16, 9);
+      for (auto& pixel : image.rgb) pixel.fill(static_cast<float>(frame.instant.second_of_day));
+      return image;
+    };
+    source.settings = {{"alpenglow.fov_deg", "60"}};
+    source.place = PlaceFromDegrees(46.5, 8.0, 0.0);
+    source.zone = "Europe/Zurich";
+    return source;
+  }
+  SeriesOutput Output() const {
+    SeriesOutput output{FrameName((folder_ / "frame.%04d.exr").string())};
+    output.progress = ProgressStyle::kQuiet;
+    return output;
+  }
+  static std::vector<Frame> Frames(int count) {
+    std::vector<Frame> frames;
+    for (int i = 1; i <= count; ++i) frames.push_back({i, UtcInstant{61212, 3600.0 * (i + 3)}});
+    return frames;
+  }
+  SeriesSummary Run(const SeriesSource& source, const SeriesOutput& output, int count = 3) {
+    const std::vector<Frame> frames = Frames(count);
+    return RunSeries(source, frames, frames, output);
+  }
+
+  int renderings_ = 0;
+  std::function<void()> on_render_;
+};
+
+TEST_F(SeriesRun, WritesEveryFrameAndTheManifest) {
+  SeriesOutput output = Output();
+  output.png = true;
+  const SeriesSummary summary = Run(Source(), output);
+  EXPECT_EQ(summary.rendered, 3);
+  EXPECT_EQ(FileCount(), 7U) << "three EXR, three PNG, one manifest";
+  EXPECT_EQ(ReadExr(folder_ / "frame.0002.exr").at(0, 0)[0], 18000.0F);
+  const std::string manifest = ContentOf(folder_ / "frame.manifest.csv");
+  EXPECT_THAT(manifest, testing::StartsWith("frame,file,utc,local_time,sun_azimuth_deg,"));
+  EXPECT_THAT(manifest, HasSubstr("\n2,frame.0002.exr,2026-06-21T05:00:00Z,"
+                                  "2026-06-21T07:00:00+02:00,"));
+}
+
+TEST_F(SeriesRun, EveryFileSaysWhatMadeIt) {
+  SeriesOutput output = Output();
+  output.png = true;
+  output.exposure = {ExposureRule::Kind::kFixed, 12.5};
+  Run(Source(), output);
+  for (const Metadata& metadata :
+       {ReadExrMetadata(folder_ / "frame.0001.exr"), ReadPngMetadata(folder_ / "frame.0001.png")}) {
+    EXPECT_EQ(metadata.at("alpenglow.utc"), "2026-06-21T04:00:00.000Z");
+    EXPECT_EQ(metadata.at("alpenglow.ev100"), "12.5000");
+    EXPECT_EQ(metadata.at("alpenglow.fov_deg"), "60");
+    EXPECT_EQ(metadata.at("alpenglow.frame"), "1");
+    EXPECT_EQ(metadata.at("alpenglow.fingerprint").size(), 16U);
+  }
+}
+
+TEST_F(SeriesRun, AnIncidentExposureFollowsTheLightOnThePlaceNotThePicture) {
+  SeriesSource source = Source();
+  source.illuminance = [](const Frame& frame) { return frame.instant.second_of_day; };
+  SeriesOutput output = Output();
+  output.exposure.kind = ExposureRule::Kind::kIncident;
+  Run(source, output);
+  const Metadata metadata = ReadExrMetadata(folder_ / "frame.0002.exr");
+  EXPECT_EQ(metadata.at("alpenglow.ev100"), fmt::format("{:.4f}", IncidentEv100(18000.0)));
+  EXPECT_EQ(metadata.at("alpenglow.exposure"), "incident");
+}
+
+TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
+  SeriesSource source = Source();
+  source.render = [](const Frame&) {
+    Image image(16, 9);
+    image.rgb.assign(image.rgb.size(), {2e-3F, 1e-4F, 1e-4F});
+    image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1e-3F)});
+    return image;
+  };
+  SeriesOutput output = Output();
+  output.png = true;
+  output.look.night_vision = true;
+  Run(source, output, 1);
+  EXPECT_EQ(ReadExr(folder_ / "frame.0001.exr").at(0, 0)[0], 2e-3F);
+  const DisplayImage seen = ReadPng(folder_ / "frame.0001.png");
+  EXPECT_GT(seen.rgb[2], seen.rgb[0]) << "red light has turned a bluish grey";
+}
+
+TEST_F(SeriesRun, AFixedExposureIsNotMetered) {
+  SeriesOutput output = Output();
+  Run(Source(), output);
+  const std::string metered = ReadExrMetadata(folder_ / "frame.0001.exr").at("alpenglow.ev100");
+  // 14400 cd/m^2 everywhere: log2(8 * 14400) = 16.81.
+  EXPECT_NEAR(std::stod(metered), 16.81, 0.04) << "half a bin of the meter's histogram";
+}
+
+TEST_F(SeriesRun, ResumeKeepsFinishedFrames) {
+  SeriesOutput output = Output();
+  output.png = true;
+  Run(Source(), output);
+  fs::remove(folder_ / "frame.0002.exr");
+  const fs::file_time_type before = fs::last_write_time(folder_ / "frame.0001.exr");
+  output.resume = true;
+  const SeriesSummary summary = Run(Source(), output);
+  EXPECT_EQ(summary.rendered, 1);
+  EXPECT_EQ(summary.kept, 2);
+  EXPECT_EQ(renderings_, 4);
+  EXPECT_EQ(fs::last_write_time(folder_ / "frame.0001.exr"), before);
+}
+
+TEST_F(SeriesRun, WithoutResumeEverythingIsRenderedAgain) {
+  Run(Source(), Output());
+  Run(Source(), Output());
+  EXPECT_EQ(renderings_, 6);
+}
+
+TEST_F(SeriesRun, ResumeRendersStaleFramesAgain) {
+  SeriesOutput output = Output();
+  Run(Source(), output);
+  output.resume = true;
+  SeriesSource changed = Source();
+  changed.settings["alpenglow.fov_deg"] = "45";
+  EXPECT_EQ(Run(changed, output).rendered, 3);
+  EXPECT_EQ(ReadExrMetadata(folder_ / "frame.0003.exr").at("alpenglow.fov_deg"), "45");
+
+  std::vector<Frame> later = Frames(3);
+  later[1].instant.second_of_day += 60.0;
+  EXPECT_EQ(RunSeries(changed, later, later, output).rendered, 1) << "frame 2 shows another time";
+}
+
+TEST_F(SeriesRun, ResumeRendersDamagedFramesAgain) {
+  SeriesOutput output = Output();
+  Run(Source(), output);
+  const std::string whole = ContentOf(folder_ / "frame.0001.exr");
+  WriteText(folder_ / "frame.0001.exr", whole.substr(0, whole.size() - 20));
+  WriteText(folder_ / "frame.0002.exr", "no picture");
+  output.resume = true;
+  const SeriesSummary summary = Run(Source(), output);
+  EXPECT_EQ(summary.rendered, 2);
+  EXPECT_EQ(summary.kept, 1);
+  EXPECT_EQ(ContentOf(folder_ / "frame.0001.exr"), whole);
+}
+
+TEST_F(SeriesRun, AnotherExposureOrCurveIsDevelopedWithoutRendering) {
+  SeriesOutput output = Output();
+  output.png = true;
+  Run(Source(), output);
+  const DisplayImage metered = ReadPng(folder_ / "frame.0001.png");
+  output.resume = true;
+  output.exposure = {ExposureRule::Kind::kFixed, 18.0};
+  const SeriesSummary summary = Run(Source(), output);
+  EXPECT_EQ(summary.developed, 3);
+  EXPECT_EQ(renderings_, 3);
+  EXPECT_EQ(ReadExrMetadata(folder_ / "frame.0001.exr").at("alpenglow.ev100"), "18.0000");
+  EXPECT_LT(ReadPng(folder_ / "frame.0001.png").rgb[0], metered.rgb[0]) << "a higher EV is darker";
+}
+
+TEST_F(SeriesRun, AMissingPngIsDevelopedWithoutRendering) {
+  SeriesOutput output = Output();
+  Run(Source(), output);
+  output.png = true;
+  output.resume = true;
+  EXPECT_EQ(Run(Source(), output).developed, 3);
+  EXPECT_EQ(renderings_, 3);
+  EXPECT_TRUE(fs::exists(folder_ / "frame.0003.png"));
+}
+
+TEST_F(SeriesRun, OnlySelectedFramesAreRenderedAndTheManifestHasAll) {
+  const std::vector<Frame> frames = Frames(5);
+  RunSeries(Source(), frames, SelectFrames(frames, "1-2"), Output());
+  EXPECT_EQ(renderings_, 2);
+  RunSeries(Source(), frames, SelectFrames(frames, "4"), Output());
+  const std::string manifest = ContentOf(folder_ / "frame.manifest.csv");
+  std::istringstream lines(manifest);
+  std::string line;
+  std::vector<bool> has_ev;
+  while (std::getline(lines, line)) has_ev.push_back(line.back() != ',');
+  EXPECT_EQ(has_ev, (std::vector<bool>{true, true, true, false, true, false}))
+      << "title, then frames 1 to 5: those of the earlier run are remembered\n"
+      << manifest;
+}
+
+TEST_F(SeriesRun, ASignalKeepsFinishedFramesAndLeavesNoPart) {
+  on_render_ = [this] {
+    if (renderings_ == 2) std::raise(SIGINT);
+  };
+  testing::internal::CaptureStderr();
+  const int status = RunProgram("skytest", [&] {
+    Run(Source(), Output());
+    return 0;
+  });
+  testing::internal::GetCapturedStderr();
+  EXPECT_EQ(status, 130);
+  EXPECT_EQ(renderings_, 2);
+  EXPECT_EQ(FileCount(), 3U) << "two frames and the manifest, no temporary";
+  EXPECT_NO_THROW((void)ReadExr(folder_ / "frame.0002.exr"));
+  EXPECT_EQ(RunProgram("skytest", [] { return 0; }), 0) << "forgets the signal";
+}
+
+TEST_F(SeriesRun, AFolderRemovedWhileRunningIsAnOutputErrorThatNamesTheFrame) {
+  SeriesOutput output{FrameName((folder_ / "sub" / "frame.%04d.exr").string())};
+  output.progress = ProgressStyle::kQuiet;
+  on_render_ = [this] {
+    if (renderings_ == 2) fs::remove_all(folder_ / "sub");
+  };
+  try {
+    Run(Source(), output);
+    FAIL() << "the folder came back";
+  } catch (const OutputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("frame.0002.exr"));
+  }
+}
+
+TEST_F(SeriesRun, AFolderThatCannotBeIsFoundOutBeforeTheFirstFrame) {
+  WriteText(folder_ / "file", "in the way");
+  SeriesOutput output{FrameName((folder_ / "file" / "frame.%04d.exr").string())};
+  EXPECT_THROW(Run(Source(), output), OutputError);
+  EXPECT_EQ(renderings_, 0);
+}
+
+TEST_F(SeriesRun, SeveralFramesNeedANumberInTheName) {
+  SeriesOutput output{FrameName((folder_ / "still.exr").string())};
+  output.progress = ProgressStyle::kQuiet;
+  EXPECT_THROW(Run(Source(), output, 2), InputError);
+  EXPECT_EQ(Run(Source(), output, 1).rendered, 1);
+  EXPECT_TRUE(fs::exists(folder_ / "still.exr"));
+}
+
+TEST_F(SeriesRun, TheContactSheetShowsEveryFrame) {
+  SeriesOutput output = Output();
+  output.contact_sheet = folder_ / "sheet.png";
+  Run(Source(), output, 5);
+  const DisplayImage sheet = ReadPng(folder_ / "sheet.png");
+  EXPECT_EQ(sheet.width, 3 * (16 + 8) + 8) << "three columns of 16 pixels";
+  EXPECT_GT(sheet.height, 2 * 9);
+}
+
+TEST(ContactSheet, ReducingKeepsTheMean) {
+  Image image(640, 360);
+  for (int i = 0; i < 360; ++i) image.at(i, i).fill(640.0F);
+  const Image reduced = Reduced(image, 320);
+  EXPECT_EQ(reduced.width, 320);
+  EXPECT_EQ(reduced.height, 180);
+  EXPECT_FLOAT_EQ(reduced.at(5, 5)[0], 320.0F) << "two of four pixels are lit";
+  EXPECT_EQ(Reduced(image, 1000).width, 640);
+  EXPECT_EQ(Reduced(Image(5000, 1), 100).height, 1);
+}
+
+using Provenance = TemporaryFolder;
+
+TEST_F(Provenance, FingerprintFollowsEverySettingAndTheTerrainsContent) {
+  WriteText(folder_ / "dem.tif", "one");
+  Scene scene;
+  scene.medium = MediumPreset("earth");
+  scene.terrain = {TerrainSource::Kind::kElevationModel, folder_ / "dem.tif", VoidPolicy::kFill};
+  const std::string first = Fingerprint(SceneMetadata(scene));
+  EXPECT_EQ(Fingerprint(SceneMetadata(scene)), first);
+
+  Scene turned = scene;
+  turned.camera.heading_rad += 1e-12;
+  EXPECT_NE(Fingerprint(SceneMetadata(turned)), first);
+  Scene hazier = scene;
+  hazier.medium.mie_scattering_per_m[0] *= 1.0000001;
+  EXPECT_NE(Fingerprint(SceneMetadata(hazier)), first);
+  Scene lit = scene;
+  lit.lights.push_back(Light{});
+  EXPECT_NE(Fingerprint(SceneMetadata(lit)), first);
+  WriteText(folder_ / "dem.tif", "two");
+  EXPECT_NE(Fingerprint(SceneMetadata(scene)), first);
+  fs::remove(folder_ / "dem.tif");
+  EXPECT_THROW((void)SceneMetadata(scene), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

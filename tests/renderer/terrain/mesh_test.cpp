@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/terrain/mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+glm::dvec3 ToDouble(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+GeodeticPosition Degrees(double latitude, double longitude, double height_m = 0.0) {
+  return {latitude * kRadiansPerDegree, longitude * kRadiansPerDegree, height_m};
+}
+
+ElevationGrid Grid(double north_deg, double west_deg, double step_deg, int rows, int columns,
+                   const std::function<double(int, int)>& height) {
+  ElevationGrid grid;
+  grid.north_rad = north_deg * kRadiansPerDegree;
+  grid.west_rad = west_deg * kRadiansPerDegree;
+  grid.step_lat_rad = step_deg * kRadiansPerDegree;
+  grid.step_lon_rad = step_deg * kRadiansPerDegree;
+  grid.rows = rows;
+  grid.columns = columns;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      grid.height_m.push_back(static_cast<float>(height(row, column)));
+    }
+  }
+  return grid;
+}
+
+// How many triangles have each edge; an edge of one triangle is a border.
+std::size_t BorderEdges(const TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+      ++uses[{low, high}];
+    }
+  }
+  std::size_t border = 0;
+  for (const auto& [edge, count] : uses) {
+    EXPECT_LE(count, 2);
+    if (count == 1) ++border;
+  }
+  return border;
+}
+
+double LongestEdge(const TriangleMesh& mesh) {
+  double longest = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      longest = std::max(longest, glm::length(ToDouble(mesh.positions[triangle[k]]) -
+                                              ToDouble(mesh.positions[triangle[(k + 1) % 3]])));
+    }
+  }
+  return longest;
+}
+
+TEST(MeshFromElevation, VerticesLieAtTheirHeightOverTheEllipsoid) {
+  const ElevationGrid grid =
+      Grid(47.0, 7.5, 0.01, 101, 101, [](int row, int column) { return 10.0 * row + column; });
+  const LocalFrame frame(kWgs84, Degrees(46.5, 8.0));
+  const TriangleMesh mesh = MeshFromElevation(grid, frame);
+  ASSERT_EQ(mesh.positions.size(), 101U * 101U);
+  ASSERT_EQ(mesh.triangles.size(), 2U * 100U * 100U);
+  for (int row = 0; row < 101; row += 10) {
+    for (int column = 0; column < 101; column += 10) {
+      const GeodeticPosition place =
+          frame.GeodeticFromEnu({ToDouble(mesh.positions[grid.index(row, column)])});
+      EXPECT_NEAR(place.height_m, 10.0 * row + column, 4e-3) << "float rounds 67 km by 4 mm";
+      EXPECT_NEAR(place.latitude_rad, grid.LatitudeOfRow(row), 1e-9);
+      EXPECT_NEAR(place.longitude_rad, grid.LongitudeOfColumn(column), 1e-9);
+    }
+  }
+}
+
+TEST(MeshFromElevation, APeak150KilometresAwaySinksAsTheEllipsoidSaysItMust) {
+  // Due north, in the meridian's plane: an independent formula in long double.
+  const long double a = 6378137.0L;
+  const long double f = 1.0L / 298.257223563L;
+  const long double e2 = f * (2.0L - f);
+  const double latitude = 45.0;
+  const double peak_latitude = 46.35;
+  const double peak_m = 3000.0;
+  const auto axis_and_equator = [&](long double latitude_rad, long double height) {
+    const long double n =
+        a / std::sqrt(1.0L - e2 * std::sin(latitude_rad) * std::sin(latitude_rad));
+    return std::pair((n + height) * std::cos(latitude_rad),
+                     (n * (1.0L - e2) + height) * std::sin(latitude_rad));
+  };
+  const long double phi0 = static_cast<long double>(latitude * kRadiansPerDegree);
+  const long double phi1 = static_cast<long double>(peak_latitude * kRadiansPerDegree);
+  const auto [x0, z0] = axis_and_equator(phi0, 0.0L);
+  const auto [x1, z1] = axis_and_equator(phi1, static_cast<long double>(peak_m));
+  const long double up = (x1 - x0) * std::cos(phi0) + (z1 - z0) * std::sin(phi0);
+  const ElevationGrid grid = Grid(peak_latitude, 8.0, 0.01, 3, 3, [&](int row, int column) {
+    return row == 0 && column == 0 ? peak_m : 0.0;
+  });
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(latitude, 8.0)));
+  EXPECT_NEAR(static_cast<double>(mesh.positions[0][2]), static_cast<double>(up), 1e-3)
+      << "float at 1.2 km";
+  EXPECT_NEAR(static_cast<double>(up), peak_m - 150.0e3 * 150.0e3 / (2.0 * 6.367e6), 3.0)
+      << "and a sphere says about the same: 150 km away the ground is 1767 m down";
+}
+
+TEST(MeshFromElevation, TheGroundIsOnePieceOverThe180thMeridian) {
+  const auto height = [](int row, int column) { return 20.0 * ((row * 7 + column * 3) % 11); };
+  const ElevationGrid over = Grid(-17.0, 179.9, 0.01, 21, 21, height);
+  const ElevationGrid away = Grid(-17.0, 19.9, 0.01, 21, 21, height);
+  const TriangleMesh mesh = MeshFromElevation(over, LocalFrame(kWgs84, Degrees(-17.1, 180.0)));
+  const TriangleMesh same = MeshFromElevation(away, LocalFrame(kWgs84, Degrees(-17.1, 20.0)));
+  ASSERT_EQ(mesh.triangles, same.triangles);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    EXPECT_LT(glm::length(ToDouble(mesh.positions[i]) - ToDouble(same.positions[i])), 2e-3)
+        << "the earth is the same at every meridian; float rounds 16 km by 1 mm";
+  }
+  EXPECT_EQ(BorderEdges(mesh), 4U * 20U);
+}
+
+TEST(MeshFromElevation, ARingAroundThePoleIsClosedThereAndAtItsSeam) {
+  for (const bool north : {true, false}) {
+    ElevationGrid grid = Grid(90.0, -180.0, 0.01, 8, 36, [](int row, int) { return 5.0 * row; });
+    grid.step_lon_rad = 10.0 * kRadiansPerDegree;
+    grid.north_rad = north ? 89.995 * kRadiansPerDegree : (-89.995 + 0.07) * kRadiansPerDegree;
+    const LocalFrame frame(kWgs84, Degrees(north ? 90.0 : -90.0, 0.0));
+    const TriangleMesh mesh = MeshFromElevation(grid, frame);
+    EXPECT_EQ(mesh.positions.size(), 8U * 36U + 1U);
+    EXPECT_EQ(mesh.triangles.size(), 2U * 7U * 36U + 36U);
+    EXPECT_EQ(BorderEdges(mesh), 36U) << "only the outer ring is a border";
+    EXPECT_LT(LongestEdge(mesh), 2500.0) << "no triangle reaches across";
+    for (const auto& normal : mesh.normals) EXPECT_GT(normal[2], 0.99F);
+  }
+}
+
+TEST(MeshFromElevation, BesideAVoidTrianglesAreLeftOut) {
+  const ElevationGrid grid = Grid(46.0, 8.0, 0.001, 5, 5, [](int row, int column) {
+    return row == 2 && column == 2 ? std::numeric_limits<double>::quiet_NaN() : 100.0;
+  });
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(46.0, 8.0)));
+  EXPECT_EQ(mesh.positions.size(), 24U);
+  EXPECT_EQ(mesh.triangles.size(), 12U * 2U + 4U) << "four cells lose the half at the void";
+  for (const auto& position : mesh.positions) {
+    for (const float coordinate : position) EXPECT_TRUE(std::isfinite(coordinate));
+  }
+}
+
+TEST(MeshFromElevation, NormalsOfASlopeAreItsOwn) {
+  // 30 m a step north: the step in metres is the meridian's radius times the angle.
+  const double step_m = 6.3671e6 * 0.001 * kRadiansPerDegree;
+  const ElevationGrid grid = Grid(45.0 + 0.01, 8.0 - 0.01, 0.001, 21, 21,
+                                  [](int row, int) { return 1000.0 - 30.0 * row; });
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(45.0, 8.0)));
+  const auto& normal = mesh.normals[grid.index(10, 10)];
+  EXPECT_NEAR(normal[0], 0.0, 1e-4);
+  EXPECT_NEAR(normal[1] / normal[2], -30.0 / step_m, 1e-4);
+}
+
+TEST(MeshFromElevation, ACrestAlongADiagonalStaysWhole) {
+  const ElevationGrid grid = Grid(
+      46.0, 8.0, 0.001, 9, 9, [](int row, int column) { return row + column == 8 ? 100.0 : 0.0; });
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(46.0, 8.0)));
+  int crest_edges = 0;
+  for (const auto& triangle : mesh.triangles) {
+    int high = 0;
+    for (const std::uint32_t vertex : triangle) high += mesh.positions[vertex][2] > 50.0F ? 1 : 0;
+    crest_edges += high == 2 ? 1 : 0;
+  }
+  EXPECT_EQ(crest_edges, 16) << "each of 8 pieces of the crest is an edge of two triangles";
+}
+
+// ---- OBJ ----
+
+class ObjFile : public ::testing::Test {
+ protected:
+  ~ObjFile() override { fs::remove(file_); }
+
+  TriangleMesh Read(const std::string& text) const {
+    std::ofstream(file_, std::ios::binary) << text;
+    return ReadObj(file_);
+  }
+  void ExpectRefused(const std::string& text, const std::string& fault) const {
+    try {
+      static_cast<void>(Read(text));
+      ADD_FAILURE() << "was read: " << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(file_.string()));
+      EXPECT_THAT(error.what(), HasSubstr(fault));
+      EXPECT_THAT(error.what(), Not(HasSubstr("\n"))) << "a message is one line";
+    }
+  }
+
+  fs::path file_ =
+      fs::path(::testing::TempDir()) /
+      (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".obj");
+};
+
+const std::string kCorners = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 5\n";
+
+TEST_F(ObjFile, TrianglesAndPolygonsAreRead) {
+  const TriangleMesh mesh = Read(kCorners + "f 1 2 3\nf 2/1/1 4//2 3/3\n");
+  ASSERT_EQ(mesh.positions.size(), 4U);
+  ASSERT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
+  EXPECT_GT(mesh.normals[0][2], 0.99F) << "counter-clockwise seen from above faces the sky";
+  EXPECT_EQ(Read(kCorners + "f 1 2 4 3\n").triangles.size(), 2U);
+}
+
+TEST_F(ObjFile, LineEndsCommentsAndRelativeIndicesAreAsUsual) {
+  EXPECT_EQ(Read("# hill\r\nv 0 0 0\r\nv 10 0 0\r\nv 0 10 0\r\nf 1 2 3\r\n").triangles.size(), 1U);
+  EXPECT_EQ(Read(kCorners + "f 1 2 3").triangles.size(), 1U) << "no final newline";
+  EXPECT_EQ(Read(kCorners + "f -4 -3 -2\n").triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
+  EXPECT_EQ(Read("v 1e2 -1.5e+1 .5\n" + kCorners + "f 2 3 4\n").positions[0],
+            (std::array<float, 3>{100.0F, -15.0F, 0.5F}));
+}
+
+TEST_F(ObjFile, BadOnesAreRefusedByLine) {
+  ExpectRefused("", "no triangles");
+  ExpectRefused(kCorners, "no triangles");
+  ExpectRefused("v 0 0 nan\n" + kCorners + "f 1 2 3\n", ":1: coordinate 'nan'");
+  ExpectRefused(kCorners + "v inf 0 0\nf 1 2 3\n", ":5: coordinate 'inf'");
+  ExpectRefused("v 0 0 1e30\n" + kCorners + "f 1 2 3\n", ":1: coordinate '1e30'");
+  ExpectRefused("v 0 0 1e999\n" + kCorners + "f 1 2 3\n", ":1: coordinate '1e999'");
+  ExpectRefused("v 0 0 x\n" + kCorners + "f 1 2 3\n", ":1: coordinate 'x'");
+  ExpectRefused("v 0 0\n" + kCorners + "f 1 2 3\n", ":1: a vertex of fewer");
+  ExpectRefused(kCorners + "f 1 2 9\n", ":5: vertex 9; there are 4");
+  ExpectRefused(kCorners + "f 0 1 2\n", ":5: vertex 0");
+  ExpectRefused(kCorners + "f -9 1 2\n", ":5: vertex -9");
+  ExpectRefused(kCorners + "f 1 2 99999999999999999999\n", ":5: corner");
+  ExpectRefused(kCorners + "f 1 2\n", ":5: a face of fewer");
+  ExpectRefused(kCorners + "f a b c\n", ":5: corner 'a'");
+  ExpectRefused(kCorners + "f 1 2 2\n", "triangle 1 of 1 (vertices 1, 2, 2) is degenerate");
+  ExpectRefused("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "degenerate");
+}
+
+TEST_F(ObjFile, AMissingFileIsNamed) {
+  EXPECT_THROW(static_cast<void>(ReadObj(file_)), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/flight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "viewer/flythrough.h"
+
+namespace alpenglow {
+namespace {
+
+Eye EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
+          double pitch_deg = 0.0) {
+  return {PlaceFromDegrees(latitude, longitude, height_m), heading_deg * kRadiansPerDegree,
+          pitch_deg * kRadiansPerDegree};
+}
+
+TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
+  const ViewAxes north = AxesOf(EyeAt(46.0, 8.0, 0.0));
+  EXPECT_NEAR(glm::length(north.forward - glm::dvec3(0.0, 1.0, 0.0)), 0.0, 1e-15);
+  EXPECT_NEAR(glm::length(north.right - glm::dvec3(1.0, 0.0, 0.0)), 0.0, 1e-15);
+  const ViewAxes east = AxesOf(EyeAt(46.0, 8.0, 0.0, 90.0, 30.0));
+  EXPECT_NEAR(east.forward.x, std::cos(30.0 * kRadiansPerDegree), 1e-15);
+  EXPECT_NEAR(east.forward.z, 0.5, 1e-15);
+  EXPECT_NEAR(glm::dot(east.forward, east.up), 0.0, 1e-15);
+}
+
+TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
+  const Eye eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
+  const Eye north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
+  EXPECT_NEAR(north.place.latitude_rad, 47.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_NEAR(north.place.longitude_rad, 8.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_EQ(north.place.height_m, 500.0);
+  EXPECT_NEAR(north.heading_rad, 0.5 * kPi, 1e-15);
+  EXPECT_EQ(north.pitch_rad, eye.pitch_rad);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.latitude_deg = 90.1})), InputError);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.height_m = -20000.0})), InputError);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.heading_deg = 361.0})), InputError);
+  EXPECT_THROW(static_cast<void>(Placed(eye, {.pitch_deg = 91.0})), InputError);
+}
+
+TEST(Flight, SpeedIsAWalkOnTheGroundAndKilometresASecondInOrbit) {
+  EXPECT_NEAR(SpeedAt(0.0), 2.0, 1.0);
+  EXPECT_GT(SpeedAt(400e3), 10e3);
+  EXPECT_LE(SpeedAt(1e9), 200e3);
+  for (double h = 1.0; h < 1e6; h *= 2.0) EXPECT_GE(SpeedAt(2.0 * h), SpeedAt(h));
+}
+
+TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
+  Eye eye = EyeAt(46.0, 8.0, 1000.0, 90.0);
+  const Point<Ecef> start = EcefFromGeodetic(kWgs84, eye.place);
+  for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
+  const double flown = glm::length((EcefFromGeodetic(kWgs84, eye.place) - start).xyz);
+  EXPECT_NEAR(flown, 10.0 * SpeedAt(1000.0), 0.1) << "ten seconds on a path bent by the earth";
+}
+
+TEST(Flight, AcrossTheDateLineAndOverThePoleTheDirectionIsKept) {
+  Eye eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
+  for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
+  EXPECT_LT(eye.place.longitude_rad, 0.0) << "beyond the date line";
+  EXPECT_NEAR(eye.heading_rad, 0.5 * kPi, 1e-6);
+
+  Eye north = EyeAt(89.999, 20.0, 1000.0, 0.0);
+  for (int i = 0; i < 100; ++i) north = Steer(north, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
+  EXPECT_NEAR(std::abs(north.heading_rad), kPi, 1e-3) << "over the pole, southwards";
+  EXPECT_NEAR(north.place.longitude_rad, (20.0 - 180.0) * kRadiansPerDegree, 1e-3);
+}
+
+TEST(Flight, PitchStopsAtTheVertical) {
+  const Eye up = Turned(EyeAt(46.0, 8.0, 0.0), 0.0, 10.0);
+  EXPECT_EQ(up.pitch_rad, 0.5 * kPi);
+  EXPECT_TRUE(std::isfinite(AxesOf(up).right.x));
+}
+
+TEST(Flight, TheFieldOfViewStaysBetweenOneAndAHundredAndTwentyDegrees) {
+  EXPECT_NEAR(Zoomed(EyeAt(0.0, 0.0, 0.0), 1e-9).fov_rad, 1.0 * kRadiansPerDegree, 1e-15);
+  EXPECT_NEAR(Zoomed(EyeAt(0.0, 0.0, 0.0), 1e9).fov_rad, 120.0 * kRadiansPerDegree, 1e-15);
+}
+
+TEST(Flight, TheEyeStaysOverTheGround) {
+  EXPECT_EQ(KeptAbove(EyeAt(0.0, 0.0, 100.0), 500.0, 2.0).place.height_m, 502.0);
+  EXPECT_EQ(KeptAbove(EyeAt(0.0, 0.0, 900.0), 500.0, 2.0).place.height_m, 900.0);
+}
+
+TEST(Flight, TimeRatesStepThroughRealTimeAndStandstill) {
+  EXPECT_EQ(SteppedTimeRate(1.0, 1), 10.0);
+  EXPECT_EQ(SteppedTimeRate(1.0, -1), 0.0);
+  EXPECT_EQ(SteppedTimeRate(0.0, -1), -1.0);
+  EXPECT_EQ(SteppedTimeRate(3600.0, 1), 3600.0);
+  EXPECT_EQ(SteppedTimeRate(-3600.0, -1), -3600.0);
+}
+
+TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
+  EXPECT_EQ(AdaptedEv100(std::nullopt, 12.0, 0.0), 12.0);
+  EXPECT_NEAR(AdaptedEv100(10.0, 12.0, 0.3), 11.0, 1e-12);
+  EXPECT_EQ(AdaptedEv100(10.0, 12.0, 0.0), 10.0);
+  EXPECT_NEAR(AdaptedEv100(10.0, 12.0, 60.0), 12.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// C++ and the driver agree on where every member of a uniform block lies.
+#include "viewer/paint/uniform_blocks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "lut/embedded_text.h"
+#include "tests/viewer/shaders/gpu_values.h"
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/embedded_text.h"
+#include "viewer/paint/sky_painter.h"
+
+namespace alpenglow {
+namespace {
+
+using UniformBlocks = tests::Headless;
+
+constexpr int kDegree = 4;
+
+struct Member {
+  const char* name;
+  std::size_t offset;
+};
+
+void ExpectOffsets(const ShaderProgram& program, const std::vector<Member>& members) {
+  for (const Member& member : members) {
+    GLuint index = GL_INVALID_INDEX;
+    glGetUniformIndices(program.id(), 1, &member.name, &index);
+    ASSERT_NE(index, GL_INVALID_INDEX) << member.name;
+    GLint offset = -1;
+    glGetActiveUniformsiv(program.id(), 1, &index, GL_UNIFORM_OFFSET, &offset);
+    EXPECT_EQ(offset, static_cast<GLint>(member.offset)) << member.name;
+  }
+}
+
+GLint SizeOf(const ShaderProgram& program, const char* block) {
+  const GLuint index = glGetUniformBlockIndex(program.id(), block);
+  GLint size = -1;
+  if (index != GL_INVALID_INDEX) {
+    glGetActiveUniformBlockiv(program.id(), index, GL_UNIFORM_BLOCK_DATA_SIZE, &size);
+  }
+  return size;
+}
+
+// A program that reads all blocks of the picture.
+ShaderProgram PictureBlocks() {
+  std::vector<ShaderPiece> pieces = LightTexts(kDegree);
+  pieces.push_back({"main",
+                    "void main() { gl_Position = shell + eye + forest + moment_factor[0] + "
+                    "moment_mie[0] + sun_axis; }\n"});
+  return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
+}
+
+TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
+  const ShaderProgram program = PictureBlocks();
+  EXPECT_EQ(SizeOf(program, "Air"), static_cast<GLint>(sizeof(AirBlock)));
+  ExpectOffsets(program, {{"rayleigh_scattering", offsetof(AirBlock, rayleigh_scattering)},
+                          {"mie_scattering", offsetof(AirBlock, mie_scattering)},
+                          {"mie_extinction", offsetof(AirBlock, mie_extinction)},
+                          {"ozone_absorption", offsetof(AirBlock, ozone_absorption)},
+                          {"ground_albedo", offsetof(AirBlock, ground_albedo)},
+                          {"red_from_bands", offsetof(AirBlock, red_from_bands)},
+                          {"green_from_bands", offsetof(AirBlock, green_from_bands)},
+                          {"blue_from_bands", offsetof(AirBlock, blue_from_bands)},
+                          {"shell", offsetof(AirBlock, shell)},
+                          {"ozone_layer", offsetof(AirBlock, ozone_layer)},
+                          {"mie_options", offsetof(AirBlock, mie_options)},
+                          {"mie_phase[0]", offsetof(AirBlock, mie_phase)}});
+}
+
+TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
+  const ShaderProgram program = PictureBlocks();
+  EXPECT_EQ(SizeOf(program, "View"), static_cast<GLint>(sizeof(ViewBlock)));
+  ExpectOffsets(program, {{"view_right", offsetof(ViewBlock, view_right)},
+                          {"view_up", offsetof(ViewBlock, view_up)},
+                          {"view_forward", offsetof(ViewBlock, view_forward)},
+                          {"sun", offsetof(ViewBlock, sun)},
+                          {"sun_irradiance", offsetof(ViewBlock, sun_irradiance)},
+                          {"eye", offsetof(ViewBlock, eye)}});
+}
+
+TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
+  const ShaderProgram program = PictureBlocks();
+  EXPECT_EQ(SizeOf(program, "Ground"), static_cast<GLint>(sizeof(GroundBlock)));
+  ExpectOffsets(program, {{"forest", offsetof(GroundBlock, forest)},
+                          {"meadow", offsetof(GroundBlock, meadow)},
+                          {"rock", offsetof(GroundBlock, rock)},
+                          {"snow", offsetof(GroundBlock, snow)},
+                          {"cover_lines", offsetof(GroundBlock, cover_lines)},
+                          {"noise_cell[0]", offsetof(GroundBlock, noise_cell)},
+                          {"noise_place[0]", offsetof(GroundBlock, noise_place)},
+                          {"mesh_east", offsetof(GroundBlock, mesh_east)},
+                          {"mesh_north", offsetof(GroundBlock, mesh_north)},
+                          {"mesh_up", offsetof(GroundBlock, mesh_up)}});
+}
+
+TEST_F(UniformBlocks, MomentsLieWhereTheDriverLooks) {
+  const ShaderProgram program = PictureBlocks();
+  const MomentBlock block = MomentBlockOf(MediumPreset("earth"), kDegree);
+  EXPECT_EQ(SizeOf(program, "Moments"), static_cast<GLint>(block.size() * sizeof(block[0])));
+  ExpectOffsets(program, {{"moment_factor[0]", 0},
+                          {"moment_mie[0]", MomentCount(kDegree) * sizeof(block[0])},
+                          {"sun_axis", (block.size() - 1) * sizeof(block[0])}});
+}
+
+TEST_F(UniformBlocks, MeshLiesWhereTheDriverLooks) {
+  const ShaderProgram program = ShaderProgram::ForTransformFeedback(
+      {{"view", std::string(viewer::EmbeddedText("viewer/shaders/view_block.glsl"))},
+       {"terrain", std::string(viewer::EmbeddedText("viewer/shaders/terrain.vert.glsl"))}},
+      {"gl_Position"});
+  EXPECT_EQ(SizeOf(program, "Mesh"), static_cast<GLint>(sizeof(MeshBlock)));
+  ExpectOffsets(program, {{"eye_high", offsetof(MeshBlock, eye_high)},
+                          {"eye_low", offsetof(MeshBlock, eye_low)},
+                          {"east", offsetof(MeshBlock, east)},
+                          {"north", offsetof(MeshBlock, north)},
+                          {"up", offsetof(MeshBlock, up)}});
+}
+
+// --- the aerosol's phase function ---
+
+using MiePhaseOnGpu = tests::Headless;
+
+void ExpectPhaseOfCpu(const Medium& medium, double tolerance, const char* why) {
+  std::vector<tests::Arguments<float>> cosines;
+  for (int i = 0; i <= 2000; ++i) {
+    cosines.push_back({static_cast<float>(std::cos(kPi * std::pow(i / 2000.0, 3.0)))});
+  }
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  pieces.push_back({"air", std::string(viewer::EmbeddedText("viewer/shaders/air_block.glsl"))});
+  const AirBlock air = AirBlockOf(medium);
+  const PhaseBlock phase = PhaseBlockOf(medium);
+  const GlBuffer air_buffer, phase_buffer;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    const std::vector<float> on_gpu = tests::EvaluateOnGpu(
+        pieces, fmt::format("PhaseMie(a[0])[{}]", band), cosines,
+        [&](const ShaderProgram& program) {
+          glBindBufferBase(GL_UNIFORM_BUFFER, 0, air_buffer.id());
+          glBufferData(GL_UNIFORM_BUFFER, sizeof(air), &air, GL_STATIC_DRAW);
+          glBindBufferBase(GL_UNIFORM_BUFFER, 4, phase_buffer.id());
+          glBufferData(GL_UNIFORM_BUFFER, sizeof(phase), phase.data(), GL_STATIC_DRAW);
+          program.BindBlock("Air", 0);
+          program.BindBlock("PhaseTable", 4);
+        });
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      const double cosine = static_cast<double>(cosines[i][0]);
+      EXPECT_NEAR(static_cast<double>(on_gpu[i]) / Phase(MiePhase(medium, band), cosine), 1.0,
+                  tolerance)
+          << NameOf(medium.mie_phase.front().kind) << ", band " << band << ", cosine " << cosine
+          << ": " << why;
+    }
+  }
+}
+
+TEST_F(MiePhaseOnGpu, OfEveryKindIsThatOfTheRenderer) {
+  Medium medium = MediumPreset("earth");
+  for (int kind = 0; kind < static_cast<int>(PhaseKind::kTable); ++kind) {
+    medium.mie_phase.clear();
+    for (const double g : {0.5, 0.6, 0.7, 0.8}) {
+      medium.mie_phase.push_back({.kind = static_cast<PhaseKind>(kind),
+                                  .g = g,
+                                  .g_back = 0.3 * g,
+                                  .back_weight = 0.2 + 0.1 * g,
+                                  .alpha = 2.0 * g});
+    }
+    ExpectPhaseOfCpu(medium, 1e-5, "a few roundings of float");
+    medium.mie_phase.resize(1);
+    ExpectPhaseOfCpu(medium, 1e-5, "a few roundings of float");
+  }
+}
+
+TEST_F(MiePhaseOnGpu, OfATableIsThatOfTheRenderer) {
+  ExpectPhaseOfCpu(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"), 1e-3,
+                   "drivers raise to the third part of a power to 1e-5, and peaks are steep");
+}
+
+TEST(AirBlock, AMediumOfFiveWavelengthsIsRefused) {
+  EXPECT_THROW(static_cast<void>(AirBlockOf(MediumPreset("earth", WavelengthSet(8)))), InputError);
+}
+
+TEST(AirBlock, AMediumOfThreeWavelengthsHasADarkFourthBand) {
+  const AirBlock block = AirBlockOf(MediumPreset("bruneton2017"));
+  EXPECT_GT(block.rayleigh_scattering.z, 0.0F);
+  EXPECT_EQ(block.rayleigh_scattering.w, 0.0F);
+  EXPECT_EQ(block.red_from_bands.w, 0.0F);
+}
+
+// --- the ground's materials and relief, far from the origin of their pattern ---
+
+using GroundCover = tests::Headless;
+
+constexpr double kEast_m = 612345.678, kNorth_m = 5191234.567;  // of the eye
+
+/// (east, north) from the eye, altitude, vertical component of the normal, footprint.
+std::vector<tests::Arguments<float>> GroundPoints() {
+  std::vector<tests::Arguments<float>> points;
+  for (int i = 0; i < 400; ++i) {
+    const auto t = static_cast<float>(i);
+    points.push_back({std::fmod(t * 317.3F, 4000.0F) - 2000.0F,
+                      std::fmod(t * 173.9F, 3000.0F) - 1500.0F, std::fmod(t * 91.7F, 3600.0F),
+                      0.5F + 0.5F * std::fmod(t * 0.0317F, 1.0F),
+                      0.2F + std::fmod(t * 0.7F, 30.0F)});
+  }
+  return points;
+}
+
+GroundPoint PointOf(const tests::Arguments<float>& a) {
+  return {kEast_m + static_cast<double>(a[0]), kNorth_m + static_cast<double>(a[1]),
+          static_cast<double>(a[2]), static_cast<double>(a[4])};
+}
+
+std::vector<float> GroundValues(const MountainSurface& surface, const std::string& expression) {
+  GroundBlock block = GroundBlockOf(surface, kEast_m, kNorth_m, true);
+  block.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
+  block.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
+  block.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
+  const GlBuffer buffer;
+  return tests::EvaluateOnGpu(
+      {{"ground", std::string(viewer::EmbeddedText("viewer/shaders/ground_cover.glsl"))}},
+      expression, GroundPoints(), [&](const ShaderProgram& program) {
+        glBindBufferBase(GL_UNIFORM_BUFFER, 3, buffer.id());
+        glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
+        program.BindBlock("Ground", 3);
+      });
+}
+
+TEST_F(GroundCover, AlbedoIsThatOfTheRenderer) {
+  const std::vector<double> wavelengths = WavelengthSet(4);
+  const MountainSurface surface(wavelengths, CoverInSeason(46.5 * kRadiansPerDegree, 61212));
+  const std::vector<float> on_gpu =
+      GroundValues(surface, "GroundAlbedo(vec2(a[0], a[1]), a[2], a[3], a[4]).y");
+  const auto points = GroundPoints();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Bands<float> albedo =
+        surface.Albedo(PointOf(points[i]), static_cast<double>(points[i][3]));
+    EXPECT_NEAR(on_gpu[i], albedo[1], 2e-3)
+        << "float places the pattern to 1e-4 of its shortest wave, and its edges are steep";
+  }
+}
+
+TEST_F(GroundCover, ReliefIsThatOfTheRenderer) {
+  const MountainSurface surface(WavelengthSet(4), CoverInSeason(0.8, 61212));
+  const std::vector<float> east = GroundValues(
+      surface,
+      "DetailedNormal(vec2(a[0], a[1]), vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).x");
+  const std::vector<float> north = GroundValues(
+      surface,
+      "DetailedNormal(vec2(a[0], a[1]), vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).y");
+  const auto points = GroundPoints();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto up = static_cast<double>(points[i][3]);
+    const glm::dvec3 normal = MountainSurface::DetailedNormal(
+        PointOf(points[i]), glm::dvec3(std::sqrt(1.0 - up * up), 0.0, up));
+    EXPECT_NEAR(east[i], normal.x, 2e-3) << "slope over 1 m of heights that float holds to 1 mm";
+    EXPECT_NEAR(north[i], normal.y, 2e-3);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

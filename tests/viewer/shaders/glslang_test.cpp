@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// The shaders, read by a second compiler: Khronos' reference front end is stricter than Mesa, and
+// drivers are as strict as it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "tests/fixtures/temporary_folder.h"
+#include "viewer/embedded_text.h"
+#include "viewer/paint/sky_painter.h"
+
+namespace alpenglow {
+namespace {
+
+class Glslang : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    if (std::system("glslangValidator --version >/dev/null 2>&1") != 0) {
+      GTEST_SKIP() << "glslangValidator (glslang-tools) is not installed";
+    }
+  }
+  /// Checks `stage`, a file of the viewer named "....vert.glsl" or "....frag.glsl", after `texts`.
+  void ExpectAccepted(std::vector<ShaderPiece> texts, const std::string& stage) const {
+    texts.push_back({stage, std::string(viewer::EmbeddedText("viewer/shaders/" + stage))});
+    const std::filesystem::path file =
+        folder_ / stage.substr(0, stage.size() - std::string(".glsl").size());
+    WriteText(file, ComposeShader(texts));
+    const std::filesystem::path log = folder_ / "log";
+    const int status =
+        std::system(("glslangValidator " + file.string() + " >" + log.string()).c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 0) << NamePieces(ContentOf(log), texts);
+  }
+};
+
+TEST_F(Glslang, AcceptsEveryShaderOfTheViewer) {
+  const ShaderPiece view{"viewer/shaders/view_block.glsl",
+                         std::string(viewer::EmbeddedText("viewer/shaders/view_block.glsl"))};
+  ExpectAccepted(LightTexts(4), "picture.frag.glsl");
+  ExpectAccepted(LightTexts(2), "diffuse_sky.frag.glsl");
+  ExpectAccepted(SharedTexts(), "develop.frag.glsl");
+  ExpectAccepted({view}, "terrain.vert.glsl");
+  for (const char* stage : {"average.frag.glsl", "empty.frag.glsl", "full_screen.vert.glsl",
+                            "shadow.vert.glsl", "terrain.frag.glsl"}) {
+    ExpectAccepted({}, stage);
+  }
+}
+
+TEST_F(Glslang, RefusesABrokenShader) {
+  WriteText(folder_ / "broken.frag", "#version 330 core\nvoid main() { nonsense; }\n");
+  const std::string command =
+      "glslangValidator " + (folder_ / "broken.frag").string() + " >/dev/null";
+  EXPECT_NE(WEXITSTATUS(std::system(command.c_str())), 0);
+}
+
+}  // namespace
+}  // namespace alpenglow

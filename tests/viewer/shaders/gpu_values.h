@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Values of GLSL expressions, for tests.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/fixtures/shared_text_cases.h"
+#include "viewer/window/gl_context.h"
+#include "viewer/window/gl_objects.h"
+#include "viewer/window/shader.h"
+
+namespace alpenglow::tests {
+
+/// A picture of one pixel to draw into: without a window there is none, and OpenGL wants one even
+/// for draws that stop before the rasteriser.
+class OnePixel {
+ public:
+  OnePixel() {
+    glBindTexture(GL_TEXTURE_2D, pixel_.id());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixel_.id(), 0);
+  }
+
+ private:
+  GlTexture pixel_;
+  GlFramebuffer target_;
+};
+
+/// Values of an expression in a[0] ... a[7], one a point, recorded by transform feedback.
+/// @param prepare  gives the program what its texts read besides the arguments.
+inline std::vector<float> EvaluateOnGpu(
+    std::vector<ShaderPiece> pieces, const std::string& expression,
+    const std::vector<Arguments<float>>& points,
+    const std::function<void(const ShaderProgram&)>& prepare = [](const ShaderProgram&) {}) {
+  pieces.push_back({"expression",
+                    "in vec4 first;\nin vec4 second;\nout float value;\nvoid main() {\n"
+                    "  float a[8] = float[8](first.x, first.y, first.z, first.w, second.x, "
+                    "second.y, second.z, second.w);\n  value = " +
+                        expression + ";\n}\n"});
+  const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"value"});
+  const OnePixel target;
+  const GlVertexArray layout;
+  glBindVertexArray(layout.id());
+  const GlBuffer arguments;
+  glBindBuffer(GL_ARRAY_BUFFER, arguments.id());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof(points[0])),
+               points.data(), GL_STATIC_DRAW);
+  for (const auto& [name, offset] : {std::pair{"first", 0UL}, std::pair{"second", 16UL}}) {
+    const GLint at = glGetAttribLocation(program.id(), name);
+    if (at < 0) continue;  // the expression does not read it
+    glEnableVertexAttribArray(static_cast<GLuint>(at));
+    glVertexAttribPointer(static_cast<GLuint>(at), 4, GL_FLOAT, GL_FALSE, sizeof(points[0]),
+                          reinterpret_cast<const void*>(offset));
+  }
+  std::vector<float> values(points.size());
+  const auto bytes = static_cast<GLsizeiptr>(values.size() * sizeof(float));
+  const GlBuffer recorded;
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, recorded.id());
+  glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
+  program.Use();
+  prepare(program);
+  glEnable(GL_RASTERIZER_DISCARD);
+  glBeginTransformFeedback(GL_POINTS);
+  glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(points.size()));
+  glEndTransformFeedback();
+  glDisable(GL_RASTERIZER_DISCARD);
+  glGetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, bytes, values.data());
+  CheckGl("EvaluateOnGpu");
+  return values;
+}
+
+}  // namespace alpenglow::tests

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kTurnRate_rad_per_s = 45.0 * kRadiansPerDegree;
+
+}  // namespace
+
+Eye Placed(const Eye& eye, const EyePlacement& placement) {
+  const auto degrees = [](double radians) { return radians / kRadiansPerDegree; };
+  Eye placed = eye;
+  if (placement.latitude_deg || placement.longitude_deg || placement.height_m) {
+    placed.place = PlaceFromDegrees(
+        placement.latitude_deg.value_or(degrees(eye.place.latitude_rad)),
+        placement.longitude_deg.value_or(degrees(eye.place.longitude_rad)),
+        placement.height_m ? RequireInRange(*placement.height_m, -12000.0, 1e9, "--altitude")
+                           : eye.place.height_m);
+  }
+  if (placement.heading_deg) {
+    placed.heading_rad =
+        RequireInRange(*placement.heading_deg, -360.0, 360.0, "--heading") * kRadiansPerDegree;
+  }
+  if (placement.pitch_deg) {
+    placed.pitch_rad =
+        RequireInRange(*placement.pitch_deg, -90.0, 90.0, "--pitch") * kRadiansPerDegree;
+  }
+  return placed;
+}
+
+ViewAxes AxesOf(const Eye& eye) {
+  const double heading = eye.heading_rad, pitch = eye.pitch_rad, roll = eye.roll_rad;
+  const glm::dvec3 forward{std::cos(pitch) * std::sin(heading), std::cos(pitch) * std::cos(heading),
+                           std::sin(pitch)};
+  const glm::dvec3 level_right{std::cos(heading), -std::sin(heading), 0.0};
+  const glm::dvec3 level_up = glm::cross(level_right, forward);
+  return {std::cos(roll) * level_right - std::sin(roll) * level_up,
+          std::cos(roll) * level_up + std::sin(roll) * level_right, forward};
+}
+
+double SpeedAt(double above_ground_m) {
+  constexpr double kSlowest_m_per_s = 2.0;
+  constexpr double kHeightsPerSecond = 0.3;
+  constexpr double kFastest_m_per_s = 200e3;
+  return std::clamp(kSlowest_m_per_s + kHeightsPerSecond * above_ground_m, kSlowest_m_per_s,
+                    kFastest_m_per_s);
+}
+
+Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
+          double above_ground_m, double seconds) {
+  Eye moved = Turned(eye, steering.turn_right * kTurnRate_rad_per_s * seconds,
+                     steering.pitch_up * kTurnRate_rad_per_s * seconds);
+  const ViewAxes axes = AxesOf(moved);
+  const double step_m = SpeedAt(above_ground_m) * seconds;
+  const glm::dvec3 step = step_m * (steering.forward * axes.forward + steering.right * axes.right +
+                                    glm::dvec3(0.0, 0.0, steering.up));
+  if (glm::length(step) == 0.0) return moved;
+  const LocalFrame here(ellipsoid, moved.place);
+  const GeodeticPosition there = here.GeodeticFromEnu(Point<Enu>{step});
+  // North turns under a moving eye; the direction of flight does not.
+  const Vector<Ecef> ahead = here.EcefFromEnu(
+      Vector<Enu>{{std::sin(moved.heading_rad), std::cos(moved.heading_rad), 0.0}});
+  moved.place = there;
+  const Vector<Enu> ahead_there = LocalFrame(ellipsoid, there).EnuFromEcef(ahead);
+  moved.heading_rad = std::atan2(ahead_there.xyz.x, ahead_there.xyz.y);
+  return moved;
+}
+
+Eye Turned(const Eye& eye, double right_rad, double up_rad) {
+  Eye turned = eye;
+  turned.heading_rad = std::remainder(eye.heading_rad + right_rad, 2.0 * kPi);
+  turned.pitch_rad = std::clamp(eye.pitch_rad + up_rad, -0.5 * kPi, 0.5 * kPi);
+  return turned;
+}
+
+Eye Zoomed(const Eye& eye, double factor) {
+  Eye zoomed = eye;
+  zoomed.fov_rad =
+      std::clamp(eye.fov_rad * factor, 1.0 * kRadiansPerDegree, 120.0 * kRadiansPerDegree);
+  return zoomed;
+}
+
+Eye KeptAbove(const Eye& eye, double ground_m, double clearance_m) {
+  Eye kept = eye;
+  kept.place.height_m = std::max(eye.place.height_m, ground_m + clearance_m);
+  return kept;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/uniform_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMetresPerKilometre = 1000.0;
+
+float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
+
+glm::vec4 PerKilometre(const std::vector<double>& per_m) {
+  std::vector<double> per_km(per_m);
+  for (double& value : per_km) value *= kMetresPerKilometre;
+  return GpuBandsOf(per_km);
+}
+
+// Norm of the real harmonic of degree l and order m.
+double HarmonicNorm(int l, int m) {
+  double ratio = 1.0;  // (l - m)! / (l + m)!
+  for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
+  return std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio);
+}
+
+}  // namespace
+
+glm::vec4 GpuBandsOf(const std::vector<double>& per_band) {
+  ALPENGLOW_ENSURE(per_band.size(), <=, kGpuBands);
+  std::array<float, kGpuBands> value{};
+  for (std::size_t band = 0; band < per_band.size(); ++band) {
+    value[band] = static_cast<float>(per_band[band]);
+  }
+  return {value[0], value[1], value[2], value[3]};
+}
+
+AirBlock AirBlockOf(const Medium& medium) {
+  if (medium.wavelengths_nm.size() > kGpuBands) {
+    throw InputError(fmt::format("spectrum: {} wavelengths; the viewer draws with at most {}",
+                                 medium.wavelengths_nm.size(), kGpuBands));
+  }
+  const BandColour colour(medium.wavelengths_nm);
+  const auto row = [&](std::size_t channel) {
+    const auto all = colour.linear_srgb_from_bands();
+    const std::size_t bands = medium.wavelengths_nm.size();
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(channel * bands);
+    return GpuBandsOf({first, first + static_cast<std::ptrdiff_t>(bands)});
+  };
+  double extinction = 0.0;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    extinction = std::max(
+        extinction, medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
+  }
+  AirBlock block{};
+  block.rayleigh_scattering = PerKilometre(medium.rayleigh_scattering_per_m);
+  block.mie_scattering = PerKilometre(medium.mie_scattering_per_m);
+  block.mie_extinction = PerKilometre(medium.mie_extinction_per_m);
+  block.ozone_absorption = PerKilometre(medium.ozone_absorption_per_m);
+  block.ground_albedo = GpuBandsOf(medium.ground_albedo);
+  block.red_from_bands = row(0);
+  block.green_from_bands = row(1);
+  block.blue_from_bands = row(2);
+  block.shell = {Kilometres(medium.planet_radius_m), Kilometres(medium.atmosphere_height_m),
+                 Kilometres(medium.rayleigh_scale_height_m), Kilometres(medium.mie_scale_height_m)};
+  block.ozone_layer = {Kilometres(medium.ozone.bottom_m), Kilometres(medium.ozone.peak_m),
+                       Kilometres(medium.ozone.top_m),
+                       medium.ozone.shape == OzoneShape::kSmooth ? 1.0F : 0.0F};
+  block.mie_options = {static_cast<float>(medium.mie_phase.front().kind),
+                       extinction * kMetresPerKilometre,
+                       static_cast<float>(medium.mie_phase.size()), 0.0F};
+  block.deficit = {static_cast<float>(medium.rayleigh_deficit.share),
+                   Kilometres(medium.rayleigh_deficit.scale_height_m), 0.0F, 0.0F};
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    const PhaseFunction& phase = MiePhase(medium, band);
+    block.mie_phase[band] = {phase.g, phase.g_back, phase.back_weight, phase.alpha};
+  }
+  return block;
+}
+
+PhaseBlock PhaseBlockOf(const Medium& medium) {
+  PhaseBlock block{};
+  if (medium.mie_phase.front().kind != PhaseKind::kTable) return block;
+  for (std::size_t node = 0; node < block.size(); ++node) {
+    std::vector<double> values;
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      values.push_back(MiePhase(medium, band).table->nodes()[node]);
+    }
+    block[node] = GpuBandsOf(values);
+  }
+  return block;
+}
+
+MomentBlock MomentBlockOf(const Medium& medium, int degree) {
+  // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients
+  // (Ramamoorthi, Hanrahan 2001).
+  constexpr std::array<double, kMaxDegree + 1> kCosine{
+      kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
+  constexpr std::array<double, kMaxDegree + 1> kRayleigh{1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
+  MomentBlock block;
+  for (int l = 0; l <= degree; ++l) {
+    const auto at = static_cast<std::size_t>(l);
+    for (int m = 0; m <= l; ++m) {
+      block.emplace_back(HarmonicNorm(l, m), kRayleigh[at], kCosine[at], 0.0);
+    }
+  }
+  const std::vector<double> mie = MieLegendreCoefficients(medium, degree);
+  const auto bands = static_cast<std::ptrdiff_t>(medium.wavelengths_nm.size());
+  for (int l = 0; l <= degree; ++l) {
+    const auto row = mie.begin() + l * bands;
+    block.insert(block.end(), static_cast<std::size_t>(l) + 1, GpuBandsOf({row, row + bands}));
+  }
+  const double centre = DiffuseLight::kSunCentre;
+  const double width = DiffuseLight::kSunWidth;
+  block.emplace_back(centre, width, std::asinh((DiffuseLight::kLowestMuS - centre) / width),
+                     std::asinh((1.0 - centre) / width));
+  return block;
+}
+
+GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double north_m,
+                          bool relief) {
+  const auto bands = [](const Bands<float>& albedo) {
+    return GpuBandsOf(
+        {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
+  };
+  constexpr std::array<double, 3> kLongest_m{900.0, 70.0, 220.0};
+  GroundBlock block{};
+  block.forest = bands(surface.materials().forest);
+  block.meadow = bands(surface.materials().meadow);
+  block.rock = bands(surface.materials().rock);
+  block.snow = bands(surface.materials().snow);
+  block.cover_lines = {surface.cover().tree_line_m, surface.cover().snow_line_m,
+                       relief ? 1.0F : 0.0F, 0.0F};
+  for (std::size_t family = 0; family < kLongest_m.size(); ++family) {
+    const double east = east_m / kLongest_m[family];
+    const double north = north_m / kLongest_m[family];
+    block.noise_cell[family] = {std::floor(east), std::floor(north), kLongest_m[family], 0.0};
+    block.noise_place[family] = {east - std::floor(east), north - std::floor(north), 0.0, 0.0};
+  }
+  return block;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// What shaders read of C++, byte for byte: uniform blocks in std140 layout made of vec4 alone, so
+// that both sides agree on every offset (asserted here and asked of the driver by a test).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/air/phase_table.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "renderer/ground/surface.h"
+
+namespace alpenglow {
+
+/// The viewer's bands: one component of a vec4 each. A medium may have fewer; the rest is dark.
+inline constexpr std::size_t kGpuBands = 4;
+
+/// `block Air` of air_block.glsl. Lengths in km.
+struct AirBlock {
+  glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
+  glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
+  glm::vec4 shell, ozone_layer, mie_options, deficit;
+  std::array<glm::vec4, kGpuBands> mie_phase;
+};
+static_assert(sizeof(AirBlock) == 16 * sizeof(glm::vec4));
+static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
+static_assert(offsetof(AirBlock, mie_phase) == 12 * sizeof(glm::vec4));
+
+/// `block PhaseTable` of air_block.glsl: the aerosol's tabulated phase function in the bands.
+using PhaseBlock = std::array<glm::vec4, PhaseTable::kNodes>;
+static_assert(sizeof(PhaseBlock) == 1024 * sizeof(glm::vec4));
+
+/// `block View` of view_block.glsl.
+struct ViewBlock {
+  glm::vec4 view_right, view_up, view_forward;
+  glm::vec4 sun, sun_irradiance, eye;
+};
+static_assert(sizeof(ViewBlock) == 6 * sizeof(glm::vec4));
+static_assert(offsetof(ViewBlock, eye) == 5 * sizeof(glm::vec4));
+
+/// `block Mesh` of terrain.vert.glsl.
+struct MeshBlock {
+  glm::vec4 eye_high, eye_low;
+  glm::vec4 east, north, up;
+};
+static_assert(sizeof(MeshBlock) == 5 * sizeof(glm::vec4));
+static_assert(offsetof(MeshBlock, up) == 4 * sizeof(glm::vec4));
+
+/// `block Ground` of ground_cover.glsl.
+struct GroundBlock {
+  glm::vec4 forest, meadow, rock, snow;
+  glm::vec4 cover_lines;
+  std::array<glm::vec4, 3> noise_cell, noise_place;
+  glm::vec4 mesh_east, mesh_north, mesh_up;
+};
+static_assert(sizeof(GroundBlock) == 14 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, noise_place) == 8 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, mesh_up) == 13 * sizeof(glm::vec4));
+
+/// `block Moments` of diffuse_light.glsl for one degree: the factors of every moment, the
+/// aerosol's coefficients of every moment, the axis of the sun. Its length is the shader's (a
+/// block's array has the length that its text says).
+using MomentBlock = std::vector<glm::vec4>;
+
+/// Throws InputError when the medium has more than kGpuBands wavelengths.
+[[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
+/// Zeros when the aerosol's phase function is not tabulated.
+[[nodiscard]] PhaseBlock PhaseBlockOf(const Medium& medium);
+[[nodiscard]] MomentBlock MomentBlockOf(const Medium& medium, int degree);
+
+/// Materials and noise around the eye, which stands at (east_m, north_m) on the pattern's plane;
+/// see GroundPoint. The axes of the mesh are left to the caller.
+[[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m,
+                                        double north_m, bool relief);
+
+/// One value a band, the rest 0.
+[[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);
+
+}  // namespace alpenglow

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/window/gl_context.h"
+
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <optional>
+#include <vector>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+// libepoxy ends the process when it finds no libEGL; a missing library is the machine's condition.
+void RequireEglLibrary() {
+  void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr) {
+    throw DisplayError("no OpenGL without a display here: libEGL.so.1 is not installed");
+  }
+  // Kept open: the drivers behind it do not survive being unloaded.
+}
+
+// Graphics cards come first, in EGL's order; then Mesa's surfaceless platform; then the default.
+std::vector<EGLDisplay> CandidateDisplays() {
+  std::vector<EGLDisplay> displays;
+  if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
+      epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query") &&
+      epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
+    std::array<EGLDeviceEXT, 16> devices{};
+    EGLint count = 0;
+    eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count);
+    for (EGLint i = 0; i < count; ++i) {
+      const EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
+      const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+      const bool software = extensions != nullptr &&
+                            epoxy_extension_in_string(extensions, "EGL_MESA_device_software");
+      if (software) continue;
+      displays.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
+    }
+  }
+  if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
+    displays.push_back(
+        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+  }
+  displays.push_back(eglGetDisplay(EGL_DEFAULT_DISPLAY));
+  return displays;
+}
+
+std::optional<EGLConfig> AnyConfig(EGLDisplay display) {
+  const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  if (!eglChooseConfig(display, wanted, &config, 1, &count) || count < 1) return std::nullopt;
+  return config;
+}
+
+EGLContext NewestContext(EGLDisplay display, EGLConfig config) {
+  for (const GlVersion& version : kGlVersions) {
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 version.major,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 version.minor,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_NONE};
+    EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+    if (context != EGL_NO_CONTEXT) return context;
+  }
+  return EGL_NO_CONTEXT;
+}
+
+}  // namespace
+
+struct HeadlessContext::State {
+  EGLDisplay display;
+  EGLContext context;
+
+  State(EGLDisplay on, EGLContext made) : display(on), context(made) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  // The display stays open: it is one for the whole process, and other contexts may be on it.
+  ~State() {
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+  }
+};
+
+HeadlessContext::HeadlessContext() {
+  RequireEglLibrary();
+  bool any_initialised = false;
+  for (EGLDisplay display : CandidateDisplays()) {
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) continue;
+    any_initialised = true;
+    const std::optional<EGLConfig> config =
+        eglBindAPI(EGL_OPENGL_API) ? AnyConfig(display) : std::nullopt;
+    const EGLContext context = config ? NewestContext(display, *config) : EGL_NO_CONTEXT;
+    if (context != EGL_NO_CONTEXT &&
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+      state_ = std::make_unique<State>(display, context);
+      return;
+    }
+    if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
+    eglTerminate(display);
+  }
+  throw DisplayError(any_initialised
+                         ? "the OpenGL that EGL gives without a display is older than 3.3"
+                         : "EGL opens no device here, so there is no OpenGL without a display");
+}
+
+HeadlessContext::~HeadlessContext() = default;
+
+std::string GlDescription() {
+  const auto text = [](GLenum name) {
+    const auto* bytes = glGetString(name);
+    return bytes == nullptr ? std::string("unknown") : reinterpret_cast<const char*>(bytes);
+  };
+  return fmt::format("OpenGL {} on {}", text(GL_VERSION), text(GL_RENDERER));
+}
+
+void CheckGl(const char* where) {
+  const GLenum error = glGetError();
+  if (error != GL_NO_ERROR) {
+    throw InternalError(fmt::format("{}: OpenGL error 0x{:04x}", where, error));
+  }
+}
+
+}  // namespace alpenglow

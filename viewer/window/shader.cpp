@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/window/shader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "atmosphere/embedded_text.h"
+#include "atmosphere/text/error.h"
+#include "lut/embedded_text.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kLinesOfAPiece = 100000;  // more than any piece has
+
+std::string LogOfShader(GLuint shader) {
+  GLint length = 0;
+  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetShaderInfoLog(shader, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+std::string LogOfProgram(GLuint program) {
+  GLint length = 0;
+  glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetProgramInfoLog(program, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+// Takes `prefix` off the text, if it starts with it.
+bool Take(std::string_view& text, std::string_view prefix) {
+  if (text.substr(0, prefix.size()) != prefix) return false;
+  text.remove_prefix(prefix.size());
+  return true;
+}
+
+// Takes a number off the text; nothing if it starts with none.
+std::optional<std::size_t> TakeNumber(std::string_view& text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return number;
+}
+
+// One line of a driver's log, with name and line of our file where it starts with a place.
+std::string NamedLine(std::string_view line, std::span<const ShaderPiece> pieces) {
+  std::string_view rest = line;
+  std::string_view kind;
+  for (const std::string_view word : {"ERROR: ", "WARNING: "}) {
+    if (Take(rest, word)) kind = word;
+  }
+  const bool has_place = Take(rest, "0:") || Take(rest, "0(");
+  const std::optional<std::size_t> place = has_place ? TakeNumber(rest) : std::nullopt;
+  if (!place || *place / kLinesOfAPiece >= pieces.size()) return std::string(line);
+  Take(rest, ")");
+  std::string_view column = rest;  // "(5)": left out
+  if (Take(column, "(") && TakeNumber(column) && Take(column, ")")) rest = column;
+  return fmt::format("{}{}:{}{}", kind, pieces[*place / kLinesOfAPiece].name,
+                     *place % kLinesOfAPiece, rest);
+}
+
+/// A compiled stage; the program keeps it alive once it is attached.
+class Stage {
+ public:
+  Stage(GLenum kind, const std::vector<ShaderPiece>& pieces) : id_(glCreateShader(kind)) {
+    const std::string text = ComposeShader(pieces);
+    const char* source = text.c_str();
+    glShaderSource(id_, 1, &source, nullptr);
+    glCompileShader(id_);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(id_, GL_COMPILE_STATUS, &compiled);
+    if (compiled == GL_TRUE) return;
+    const std::string log = NamePieces(LogOfShader(id_), pieces);
+    glDeleteShader(id_);
+    throw InternalError(fmt::format("a shader did not compile:\n{}", log));
+  }
+  ~Stage() { glDeleteShader(id_); }
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  [[nodiscard]] GLuint id() const { return id_; }
+
+ private:
+  GLuint id_;
+};
+
+}  // namespace
+
+std::vector<ShaderPiece> SharedTexts() {
+  std::vector<ShaderPiece> pieces;
+  for (const char* name : {"atmosphere/dialect/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
+                           "atmosphere/ray/optical_depth.glsl", "atmosphere/air/phase.glsl"}) {
+    pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
+  }
+  for (const char* name : {"lut/table/transmittance_map.glsl", "lut/table/scattering_map.glsl",
+                           "lut/picture/tone_curve.glsl"}) {
+    pieces.push_back({name, std::string(lut::EmbeddedText(name))});
+  }
+  return pieces;
+}
+
+std::string ComposeShader(std::span<const ShaderPiece> pieces) {
+  std::string text = "#version 330 core\n";
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    text += fmt::format("#line {}\n{}\n", i * kLinesOfAPiece + 1, pieces[i].text);
+  }
+  return text;
+}
+
+std::string NamePieces(std::string_view log, std::span<const ShaderPiece> pieces) {
+  std::string named;
+  while (!log.empty()) {
+    const std::size_t end = std::min(log.find('\n'), log.size() - 1) + 1;
+    named += NamedLine(log.substr(0, end), pieces);
+    log.remove_prefix(end);
+  }
+  return named;
+}
+
+ShaderProgram::ShaderProgram(const std::vector<ShaderPiece>& vertex,
+                             const std::vector<ShaderPiece>& fragment,
+                             const std::vector<VertexAttribute>& attributes) {
+  Attach(GL_VERTEX_SHADER, vertex);
+  Attach(GL_FRAGMENT_SHADER, fragment);
+  for (const VertexAttribute& attribute : attributes) {
+    glBindAttribLocation(program_.id(), attribute.location, attribute.name);
+  }
+  Link();
+}
+
+ShaderProgram ShaderProgram::ForTransformFeedback(const std::vector<ShaderPiece>& vertex,
+                                                  const std::vector<std::string>& outputs) {
+  ShaderProgram made;
+  made.Attach(GL_VERTEX_SHADER, vertex);
+  std::vector<const char*> names;
+  for (const std::string& output : outputs) names.push_back(output.c_str());
+  glTransformFeedbackVaryings(made.program_.id(), static_cast<GLsizei>(names.size()), names.data(),
+                              GL_INTERLEAVED_ATTRIBS);
+  made.Link();
+  return made;
+}
+
+void ShaderProgram::Attach(GLenum kind, const std::vector<ShaderPiece>& pieces) {
+  const Stage stage(kind, pieces);
+  glAttachShader(program_.id(), stage.id());
+}
+
+void ShaderProgram::Link() {
+  glLinkProgram(program_.id());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program_.id(), GL_LINK_STATUS, &linked);
+  if (linked != GL_TRUE) {
+    throw InternalError(fmt::format("shaders did not link:\n{}", LogOfProgram(program_.id())));
+  }
+}
+
+GLint ShaderProgram::Uniform(const char* name) const {
+  return glGetUniformLocation(program_.id(), name);
+}
+
+void ShaderProgram::BindBlock(const char* block, GLuint binding) const {
+  const GLuint index = glGetUniformBlockIndex(program_.id(), block);
+  if (index != GL_INVALID_INDEX) glUniformBlockBinding(program_.id(), index, binding);
+}
+
+void ShaderProgram::BindSampler(const char* sampler, int unit) const {
+  Use();
+  glUniform1i(Uniform(sampler), unit);
+}
+
+}  // namespace alpenglow
