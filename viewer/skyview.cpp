@@ -8,9 +8,9 @@
 #include "renderer/series/frame_times.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/skyview_options.h"
-#include "viewer/window/gl_context.h"
-#include "viewer/window/window.h"
+#include "viewer/window.h"
 
 namespace alpenglow {
 namespace {

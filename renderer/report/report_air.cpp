@@ -13,6 +13,7 @@
 #include "lut/table/scattering_table.h"
 #include "lut/table/transmittance_table.h"
 #include "renderer/light/aerial_perspective.h"
+#include "renderer/report/froxel_baseline.h"
 #include "renderer/report/report_measure.h"
 
 namespace alpenglow {
@@ -79,55 +80,6 @@ JudgedRays JudgedTransmittances(const Medium& medium, int count) {
       "depth below 1e-10";
   return judged;
 }
-
-/// The slices of a volume of froxels (Hillaire 2020, section 5.4) that one ray goes through: what
-/// the air does up to each, linear between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched
-/// to from the eye in 2 k steps.
-class FroxelColumn {
- public:
-  static constexpr int kSlices = 32;
-  static constexpr double kFarthest_m = 128e3;
-  static constexpr int kSide = 32;  // of the volume, across the picture
-
-  FroxelColumn(const AirIntegrator<float>& air, const ViewRay& ray) : slices_(kSlices + 1) {
-    slices_[0] = {Bands<float>(air.bands()), Bands<float>(air.bands())};
-    for (std::size_t band = 0; band < air.bands(); ++band) slices_[0].transmittance[band] = 1.0F;
-    const Medium& medium = air.medium();
-    for (int k = 1; k <= kSlices; ++k) {
-      ViewRay part = ray;
-      part.length_m = kFarthest_m * k * k / (kSlices * kSlices);
-      const RayExtent extent = ExtentOf(part, medium.planet_radius_m, medium.atmosphere_height_m);
-      const auto once =
-          air.Scatter(air.SampleAt(part, MarchNodes(MarchRule::kMidpoint, 2 * k, extent)));
-      slices_[static_cast<std::size_t>(k)] = {
-          air.Inscatter(once, ray.nu),
-          MarchedTransmittance(medium, part, MarchRule::kMidpoint, 2 * k)};
-    }
-  }
-
-  [[nodiscard]] Bands<float> Inscatter(double distance_m) const {
-    return Between(distance_m, &AirAlongRay::inscatter);
-  }
-  [[nodiscard]] Bands<float> Transmittance(double distance_m) const {
-    return Between(distance_m, &AirAlongRay::transmittance);
-  }
-
- private:
-  [[nodiscard]] Bands<float> Between(double distance_m, Bands<float> AirAlongRay::*part) const {
-    const double slice =
-        std::min(std::sqrt(distance_m / kFarthest_m) * kSlices, static_cast<double>(kSlices));
-    const auto low = std::min(static_cast<std::size_t>(slice), std::size_t{kSlices} - 1);
-    const auto share = static_cast<float>(slice - static_cast<double>(low));
-    const Bands<float>& from = slices_[low].*part;
-    const Bands<float>& to = slices_[low + 1].*part;
-    Bands<float> mixed(from.count);
-    for (std::size_t band = 0; band < mixed.count; ++band)
-      mixed[band] = (1.0F - share) * from[band] + share * to[band];
-    return mixed;
-  }
-
-  std::vector<AirAlongRay> slices_;
-};
 
 /// The same value for all bands: their mean.
 Bands<float> Grey(const Bands<float>& bands) {

@@ -14,7 +14,7 @@
 #include "renderer/ground/surface.h"
 #include "renderer/picture/render.h"
 #include "viewer/embedded_text.h"
-#include "viewer/window/gl_context.h"
+#include "viewer/gl/gl_context.h"
 
 namespace alpenglow {
 namespace {

@@ -15,9 +15,9 @@
 #include "lut/picture/image.h"
 #include "renderer/terrain/mesh.h"
 #include "viewer/flight/flight.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/gl/shader.h"
 #include "viewer/paint/terrain_surface.h"
-#include "viewer/window/render_target.h"
-#include "viewer/window/shader.h"
 
 namespace alpenglow {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "viewer/embedded_text.h"
-#include "viewer/window/render_target.h"
+#include "viewer/gl/render_target.h"
 
 namespace alpenglow {
 namespace {

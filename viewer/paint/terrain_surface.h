@@ -6,9 +6,9 @@
 
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/terrain/mesh.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
 #include "viewer/paint/uniform_blocks.h"
-#include "viewer/window/gl_objects.h"
-#include "viewer/window/shader.h"
 
 namespace alpenglow {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "tests/fixtures/shared_text_cases.h"
-#include "viewer/window/gl_context.h"
-#include "viewer/window/gl_objects.h"
-#include "viewer/window/shader.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
 
 namespace alpenglow::tests {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "atmosphere/text/error.h"
-#include "viewer/window/gl_context.h"
+#include "viewer/gl/gl_context.h"
 
 namespace alpenglow::tests {
 

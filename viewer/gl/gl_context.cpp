@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/window/gl_context.h"
+#include "viewer/gl/gl_context.h"
 
 #include <dlfcn.h>
 #include <epoxy/egl.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lut/picture/image.h"
-#include "viewer/window/gl_objects.h"
+#include "viewer/gl/gl_objects.h"
 
 namespace alpenglow {
 

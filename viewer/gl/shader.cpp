@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/window/shader.h"
+#include "viewer/gl/shader.h"
 
 #include <fmt/format.h>
 

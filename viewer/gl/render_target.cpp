@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/window/render_target.h"
+#include "viewer/gl/render_target.h"
 
 #include <algorithm>
 

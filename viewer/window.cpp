@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/window/window.h"
+#include "viewer/window.h"
 
 // libepoxy has the functions of OpenGL; GLFW must not declare them again.
 #define GLFW_INCLUDE_NONE
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "atmosphere/text/error.h"
-#include "viewer/window/gl_context.h"
+#include "viewer/gl/gl_context.h"
 
 namespace alpenglow {
 namespace {
