@@ -99,8 +99,8 @@ int Run(const SkyseriesOptions& options) {
   settings.samples_per_pixel = options.samples;
   settings.effects = EffectsOf(options);
   settings.filter = PixelFilterFromName(options.filter);
-  settings.layers = options.layers;
-  if (options.night_vision) settings.layers.emplace_back(kScotopicLayer);
+  settings.layers = LayersFromNames(options.layers);
+  if (options.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
   std::unique_ptr<SceneRenderer> loaded;
   const auto renderer = [&]() -> const SceneRenderer& {  // built for the first frame that needs it
     if (!loaded) loaded = Load(scene);

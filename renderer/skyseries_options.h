@@ -137,7 +137,7 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_option("--aov", options.layers, "More layers in the EXR, separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember(KnownLayers()));
+      ->check(CLI::IsMember(LayerNames()));
   app.add_option("--exposure", options.exposure,
                  "auto (each frame's picture is metered), incident (each frame's light on the "
                  "ground is metered: smooth from day to night) or EV at ISO 100, -30 to 30")

@@ -22,7 +22,8 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "renderer/light/ground_light.h"
+#include "renderer/lamp/lamp_light.h"
+#include "renderer/light/lighting.h"
 #include "renderer/media/local_media.h"
 #include "renderer/media/media_march.h"
 #include "renderer/shadow/sunlit_path.h"

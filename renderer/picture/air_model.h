@@ -10,7 +10,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "renderer/effect/effects.h"
 #include "renderer/light/aerial_perspective.h"
-#include "renderer/light/ground_light.h"
+#include "renderer/picture/ground_light.h"
 
 namespace alpenglow {
 

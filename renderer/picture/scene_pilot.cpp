@@ -3,19 +3,20 @@
 #include <optional>
 
 #include "atmosphere/air/medium_bands.h"
+#include "renderer/picture/render.h"
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow {
 
-std::unique_ptr<SceneRenderer::State> SceneRenderer::State::OnOtherBands(int bands) const {
+std::unique_ptr<SceneState> SceneState::OnOtherBands(int bands) const {
   const std::optional<Medium> other = OnBands(scene.medium, bands);
   if (!other) return nullptr;
   Scene same = scene;
   same.medium = *other;
-  return std::make_unique<State>(same, shared_ground, horizons);
+  return std::make_unique<SceneState>(same, shared_ground, horizons);
 }
 
-const SceneRenderer::State& SceneRenderer::State::OnFewBands() const {
+const SceneState& SceneState::OnFewBands() const {
   constexpr int kFew = 4;
   std::call_once(few_bands_asked, [&] {
     if (medium.wavelengths_nm.size() > kFew) few_bands = OnOtherBands(kFew);
@@ -24,7 +25,7 @@ const SceneRenderer::State& SceneRenderer::State::OnFewBands() const {
 }
 
 // Effects that have something to do.
-EffectSet SceneRenderer::State::Present(const PictureFrame& frame) const {
+EffectSet SceneState::Present(const PictureFrame& frame) const {
   const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
     if (is_there) return effects;
     for (const Effect effect : those.List()) effects = effects.Without(effect);
@@ -44,11 +45,11 @@ EffectSet SceneRenderer::State::Present(const PictureFrame& frame) const {
 ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
-  const State& whole = state_->For(settings.effects);
+  const SceneState& whole = state_->For(settings.effects);
   const PictureFrame frame = whole.FrameAt(shot, settings);
   std::optional<PictureFrame> on_few_bands;
   const auto with = [&](EffectSet effects) {
-    const State& state = state_->For(effects);
+    const SceneState& state = state_->For(effects);
     if (&state == &whole) return whole.Reduced(frame, effects);
     if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings, frame.sunlight));
     return state.Reduced(*on_few_bands, effects);
@@ -58,7 +59,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
                              frame.lamps->Directions());
   std::vector<PixelPlace> places;
   for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
-  const auto timed = [&](const State& state, const PictureFrame& of) {
+  const auto timed = [&](const SceneState& state, const PictureFrame& of) {
     const Stopwatch watch;
     Image image = state.Pixels(of, places);
     return PilotPicture{std::move(image), watch.seconds()};
@@ -81,7 +82,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   };
   refine("16 air nodes", [](RenderSettings& finer) { finer.air_nodes = 16; });
   refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
-  const std::unique_ptr<State> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
+  const std::unique_ptr<SceneState> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
   if (more_bands && frame.model->air.bands() < 16) {
     pilot.refinements.push_back(
         {"16 bands",

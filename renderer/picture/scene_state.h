@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a SceneRenderer is made of. For its own translation units.
+// What a SceneRenderer is made of: its parts, and what becomes of them in one picture.
 #pragma once
 
 #include <array>
@@ -8,27 +8,26 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
+#include "renderer/effect/effect_choice.h"
 #include "renderer/ground/camera_stand.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/lamp/lamp_light.h"
-#include "renderer/light/ground_light.h"
+#include "renderer/light/lighting.h"
 #include "renderer/picture/air_model.h"
-#include "renderer/picture/pixel_writer.h"
-#include "renderer/picture/render.h"
+#include "renderer/picture/ground_light.h"
+#include "renderer/picture/picture_layers.h"
+#include "renderer/picture/render_settings.h"
 #include "renderer/picture/shared_air.h"
 
 namespace alpenglow {
 
-/// Throws InputError for what is out of range.
-void ValidateSettings(const RenderSettings& settings);
-
-struct SceneRenderer::State {
-  explicit State(const Scene& of)
-      : State(of, std::make_shared<SceneGround>(LoadGround(of)), nullptr) {}
+struct SceneState {
+  explicit SceneState(const Scene& of)
+      : SceneState(of, std::make_shared<SceneGround>(LoadGround(of)), nullptr) {}
   /// @param known  the horizons of that ground, or null.
-  State(const Scene& of, std::shared_ptr<const SceneGround> on,
-        std::shared_ptr<const HorizonsOnDemand> known)
+  SceneState(const Scene& of, std::shared_ptr<const SceneGround> on,
+             std::shared_ptr<const HorizonsOnDemand> known)
       : scene(of),
         shared_ground(std::move(on)),
         ground(*shared_ground),
@@ -72,10 +71,10 @@ struct SceneRenderer::State {
 
   [[nodiscard]] EffectSet Present(const PictureFrame& frame) const;
   /// The same scene on as many bands; nothing where nobody knows its air there.
-  [[nodiscard]] std::unique_ptr<State> OnOtherBands(int bands) const;
+  [[nodiscard]] std::unique_ptr<SceneState> OnOtherBands(int bands) const;
   /// The scene without its fine spectrum: itself where it has none.
-  [[nodiscard]] const State& OnFewBands() const;
-  [[nodiscard]] const State& For(EffectSet effects) const {
+  [[nodiscard]] const SceneState& OnFewBands() const;
+  [[nodiscard]] const SceneState& For(EffectSet effects) const {
     return effects.Has(Effect::kFineSpectrum) ? *this : OnFewBands();
   }
 
@@ -91,7 +90,7 @@ struct SceneRenderer::State {
   GroundMaterial material;
   AirModels models;
   mutable std::once_flag few_bands_asked;
-  mutable std::unique_ptr<State> few_bands;
+  mutable std::unique_ptr<SceneState> few_bands;
 };
 
 }  // namespace alpenglow

@@ -16,7 +16,7 @@
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/media/media_light.h"
 #include "renderer/picture/air_model.h"
-#include "renderer/picture/render.h"
+#include "renderer/picture/render_settings.h"
 
 namespace alpenglow {
 
@@ -35,6 +35,7 @@ struct PictureFrame {
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
   [[nodiscard]] const CameraRays& camera() const { return moving.middle(); }
+  [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
   [[nodiscard]] bool HasLitFog() const { return media && media->media().fog() != nullptr; }
 };
 

@@ -135,7 +135,9 @@ Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
   metadata["alpenglow.filter"] = NameOf(settings.filter);
   metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
   metadata["alpenglow.effects"] = NameOf(settings.effects);
-  metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(settings.layers, ","));
+  std::vector<std::string> layers;
+  for (const PictureLayer layer : settings.layers) layers.push_back(NameOf(layer));
+  metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
   return metadata;
 }
 

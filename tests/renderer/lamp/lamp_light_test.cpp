@@ -412,8 +412,11 @@ TEST(LampLight, FogDimsWhatIsBehindIt) {
 TEST(LampLight, PicturesHaveALayerOfLampLight) {
   Scene scene = RunwayScene();
   const SceneRenderer renderer(scene);
-  const RenderSettings settings{
-      .width = 32, .height = 18, .samples_per_pixel = 1, .air_nodes = 4, .layers = {"lamps"}};
+  const RenderSettings settings{.width = 32,
+                                .height = 18,
+                                .samples_per_pixel = 1,
+                                .air_nodes = 4,
+                                .layers = {PictureLayer::kLamps}};
   const Image night = renderer.Render(ParseInstant("2026-01-15T23:00:00Z"), settings);
   ASSERT_EQ(night.layers.size(), 3U);
   EXPECT_EQ(night.layers[0].name, "lamps.R");

@@ -353,7 +353,8 @@ TEST(RenderMedia, BytesAreTheSameForAnyNumberOfThreads) {
 
 TEST(RenderMedia, OpaqueBlackVolumeLeavesOnlyTheAirInFrontOfIt) {
   RenderSettings settings = kSmall;
-  settings.layers = {"transmittance", "volumes", "inscatter"};
+  settings.layers = {PictureLayer::kTransmittance, PictureLayer::kVolumes,
+                     PictureLayer::kInscatter};
   const SceneRenderer renderer(WithVolume(10.0, 0.0));
   const Image image = renderer.Render(ParseInstant(kNoon), settings);
   Scene clear = WithVolume(10.0, 0.0);

@@ -59,7 +59,7 @@ TEST(RenderAir, SharingTheAirOfAPixelIsRightToATenthOfAPercentOfTheLight) {
   const SceneRenderer& renderer = RangeRenderer();
   RenderSettings settings{
       .width = 64, .height = 36, .samples_per_pixel = 16, .air_nodes = 12, .layers = {}};
-  settings.layers = {"inscatter"};
+  settings.layers = {PictureLayer::kInscatter};
   const Image shared = renderer.Render(kMorning, settings);
   settings.share_air = false;
   const Image alone = renderer.Render(kMorning, settings);
@@ -91,7 +91,7 @@ TEST_F(RenderAirFiles, AMountainBeforeTheSunHasNoGlowInItsShadedAir) {
   const SceneRenderer renderer(scene);
   RenderSettings settings{
       .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}};
-  settings.layers = {"inscatter"};
+  settings.layers = {PictureLayer::kInscatter};
   const Image shaded = renderer.Render(kMorning, settings);
   settings.effects = settings.effects.Without(Effect::kShafts);
   const Image glowing = renderer.Render(kMorning, settings);
@@ -109,7 +109,7 @@ TEST(RenderAir, TheSeaHidesTheFootOfMountainsBehindItsHorizon) {
   const SceneRenderer renderer(scene);
   RenderSettings settings{
       .width = 5, .height = 200, .samples_per_pixel = 1, .air_nodes = 8, .layers = {}};
-  settings.layers = {"depth"};
+  settings.layers = {PictureLayer::kDepth};
   const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
   const CameraRays camera(scene.camera, 5, 200);
   const double dip = std::sqrt(2.0 * 10.0 / renderer.medium().planet_radius_m);

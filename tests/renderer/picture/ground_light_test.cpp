@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/light/ground_light.h"
+#include "renderer/picture/ground_light.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -8,49 +8,16 @@
 #include <memory>
 #include <optional>
 
-#include "atmosphere/sun/sun.h"
-#include "atmosphere/sun/time.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "renderer/effect/effects.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/ground_material.h"
 #include "renderer/ground/scene_geometry.h"
-#include "renderer/ground/surface.h"
 #include "renderer/lamp/lamp_light.h"
+#include "renderer/light/lighting.h"
 #include "renderer/light/terrain_light.h"
+#include "renderer/media/media_light.h"
 
 namespace alpenglow {
-
-class MediaLight;
-
-/// Light in the air and on surfaces for one position of the sun.
-struct Lighting {
-  glm::dvec3 to_sun;  // unit
-  double sun_radius_rad;
-  BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
-  MountainSurface surface;  // as the season covers it
-  EffectSet effects = EffectSet::All();
-  const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: none
-  /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
-  std::shared_ptr<const TerrainLight> on_terrain = nullptr;
-};
-
-/// The sun as it stands, the ground as the season covers it at that latitude.
-[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
-                                  double latitude_rad, const Medium& medium);
-
-/// The sun over a point, terrain aside.
-struct LocalSun {
-  double altitude_m;
-  glm::dvec3 up;
-  double mu_s;
-  double visible_fraction;  // of the disk over the planet's horizon
-  double mu_s_effective;    // of that part
-};
-
-/// @param to_sun  unit, towards the disk's centre.
-[[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
-                                  const glm::dvec3& to_sun, double sun_radius_rad);
 
 /// Light that leaves the ground towards the eye.
 struct GroundRadiance {
@@ -69,22 +36,28 @@ struct GroundParts {
   const GroundMaterial& material;
 };
 
+/// What shines on the ground.
+struct GroundSources {
+  const Lighting& light;
+  const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: none
+};
+
 /// Immutable, safe to share between threads. Refers to what it was made from.
 class GroundLight {
  public:
   GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
               const DiffuseLight& diffuse);
 
-  /// What terrain makes of the light of sky and sun, as far as the effects of `light` say; null
+  /// What terrain makes of the light of sky and sun, as far as the effects of the light say; null
   /// where it makes nothing of it.
-  [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const Lighting& light) const;
+  [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const GroundSources& from) const;
 
   /// @param hit  of terrain or planet; to_eye: unit.
   /// @param near  lamps that may light it.
   /// @param disk_sample  a point of the sun's disk, uniform in the unit square: penumbrae average
   ///     over samples.
   [[nodiscard]] GroundRadiance Towards(const Hit& hit, const glm::dvec3& to_eye,
-                                       const Lighting& light, const LampNodes& near,
+                                       const GroundSources& from, const LampNodes& near,
                                        std::array<double, 2> disk_sample) const;
 
   [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
@@ -95,13 +68,13 @@ class GroundLight {
   [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
                                  std::array<double, 2> disk_sample) const;
   /// Of the sun through the air, per unit solar irradiance [1]; nothing in the shade.
-  [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const Lighting& light,
+  [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const GroundSources& from,
                                                        const LocalSun& sun,
                                                        std::array<double, 2> disk_sample) const;
-  [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const Lighting& light,
+  [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const GroundSources& from,
                                         const LocalSun& sun) const;
   /// What a slope sends to others, per unit solar irradiance [1/sr].
-  [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const Lighting& light,
+  [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const GroundSources& from,
                                        const TerrainLight& sky) const;
   [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light,
                                     const glm::dvec3& up) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/light/ground_light.h"
+#include "renderer/picture/ground_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,6 @@
 #include <limits>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/sun_disk.h"
-#include "renderer/media/media_light.h"
 
 namespace alpenglow {
 namespace {
@@ -29,24 +27,12 @@ bool SeesTerrain(const Hit& hit, const Lighting& light) {
 
 }  // namespace
 
-Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double latitude_rad,
-                    const Medium& medium) {
-  const MountainCover cover = CoverInSeason(latitude_rad, instant.modified_julian_day);
-  Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-                 sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
-                 MountainSurface(medium.wavelengths_nm, cover)};
-  for (std::size_t band = 0; band < light.irradiance.count; ++band) {
-    light.irradiance[band] =
-        static_cast<float>(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));
-  }
-  return light;
-}
-
 GroundLight::GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
                          const DiffuseLight& diffuse)
     : parts_(parts), air_(air), diffuse_(diffuse) {}
 
-std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const Lighting& light) const {
+std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& from) const {
+  const Lighting& light = from.light;
   if (!light.effects.Has(Effect::kSkylight)) return nullptr;
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
@@ -55,14 +41,15 @@ std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const Lighting& light
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
-        [&](const SlopePlace& place) { return SentToSlopes(place, light, *on_terrain); },
+        [&](const SlopePlace& place) { return SentToSlopes(place, from, *on_terrain); },
         light.to_sun.z);
   }
   return on_terrain;
 }
 
-BandLight GroundLight::SentToSlopes(const SlopePlace& place, const Lighting& light,
+BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources& from,
                                     const TerrainLight& sky) const {
+  const Lighting& light = from.light;
   const double cell_m = sky.horizons()->views().heights().cell_m;
   Hit hit;
   hit.kind = HitKind::kTerrain;
@@ -71,21 +58,10 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const Lighting& lig
   hit.footprint_m = cell_m;
   const LocalSun sun = LocalSunAt(hit.point, light);
   BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
-  if (const auto direct = SunIrradiance(hit, light, sun, {0.0, 0.0}))
+  if (const auto direct = SunIrradiance(hit, from, sun, {0.0, 0.0}))
     irradiance = irradiance + *direct;
   // Seen at 60 degrees, which stands for the mean over directions.
   return static_cast<float>(1.0 / kPi) * (PatchAt(hit, light, sun.up).BodyAlbedo(0.5) * irradiance);
-}
-
-LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
-                    const glm::dvec3& to_sun, double sun_radius_rad) {
-  const double altitude = std::max(geometry.AltitudeOf(point), 0.0);
-  const double r = geometry.radius_m();
-  const glm::dvec3 up = geometry.UpAt(point);
-  const double mu_s = std::clamp(glm::dot(up, to_sun), -1.0, 1.0);
-  const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
-  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun_radius_rad);
-  return {altitude, up, mu_s, disk.fraction, disk.mu_s_effective};
 }
 
 LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
@@ -104,8 +80,9 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
   return faces && !occluded ? cosine : 0.0;
 }
 
-BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
+BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
                                      const LocalSun& sun) const {
+  const Lighting& light = from.light;
   const glm::dvec3 flat_sun = light.to_sun - sun.mu_s * sun.up;
   const double normal_mu = std::clamp(glm::dot(hit.normal, sun.up), -1.0, 1.0);
   const glm::dvec3 flat_normal = hit.normal - normal_mu * sun.up;
@@ -116,8 +93,8 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const Lighting& light,
       SeesTerrain(hit, light)
           ? light.on_terrain->Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s})
           : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
-  if (light.media == nullptr) return clear;
-  const SkyThroughFog fog = light.media->SkyOnSurface(sun.altitude_m, normal_mu);
+  if (from.media == nullptr) return clear;
+  const SkyThroughFog fog = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return fog.left * clear + fog.added;
 }
 
@@ -147,20 +124,22 @@ BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const 
   return sum;
 }
 
-std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Lighting& light,
+std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
                                                     const LocalSun& sun,
                                                     std::array<double, 2> disk_sample) const {
+  const Lighting& light = from.light;
   const double cosine = LitCosine(hit, light, sun, disk_sample);
   if (cosine <= 0.0) return std::nullopt;
   const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
                           air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
-  if (light.media == nullptr) return clear;
-  return clear * light.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
+  if (from.media == nullptr) return clear;
+  return clear * from.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
 }
 
 GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
-                                    const Lighting& light, const LampNodes& near,
+                                    const GroundSources& from, const LampNodes& near,
                                     std::array<double, 2> disk_sample) const {
+  const Lighting& light = from.light;
   const LocalSun sun = LocalSunAt(seen.point, light);
   const GroundPatch patch = PatchAt(seen, light, sun.up);
   Hit hit = seen;
@@ -169,13 +148,13 @@ GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
   const BandLight body = patch.BodyAlbedo(mu_eye);
   BandLight radiance(air_.bands());
   GroundRadiance sent;
-  if (const auto direct = SunIrradiance(hit, light, sun, disk_sample)) {
+  if (const auto direct = SunIrradiance(hit, from, sun, disk_sample)) {
     sent.sun_visibility = static_cast<float>(sun.visible_fraction);
     const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
     radiance = patch.Brdf(AnglesBetween(hit.normal, to_disk, to_eye)) * *direct;
   }
   if (light.effects.Has(Effect::kSkylight)) {
-    radiance = radiance + static_cast<float>(1.0 / kPi) * (body * SkyIrradiance(hit, light, sun));
+    radiance = radiance + static_cast<float>(1.0 / kPi) * (body * SkyIrradiance(hit, from, sun));
     if (patch.IsGlossy() && light.on_terrain)
       radiance = radiance + Mirrored(patch, hit, to_eye, light, sun);
   }

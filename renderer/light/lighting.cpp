@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/light/lighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/sun/sun_disk.h"
+
+namespace alpenglow {
+
+Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double latitude_rad,
+                    const Medium& medium) {
+  const MountainCover cover = CoverInSeason(latitude_rad, instant.modified_julian_day);
+  Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+                 sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
+                 MountainSurface(medium.wavelengths_nm, cover)};
+  for (std::size_t band = 0; band < light.irradiance.count; ++band) {
+    light.irradiance[band] =
+        static_cast<float>(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));
+  }
+  return light;
+}
+
+LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
+                    const glm::dvec3& to_sun, double sun_radius_rad) {
+  const double altitude = std::max(geometry.AltitudeOf(point), 0.0);
+  const double r = geometry.radius_m();
+  const glm::dvec3 up = geometry.UpAt(point);
+  const double mu_s = std::clamp(glm::dot(up, to_sun), -1.0, 1.0);
+  const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
+  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun_radius_rad);
+  return {altitude, up, mu_s, disk.fraction, disk.mu_s_effective};
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The sun over a scene at one time: where it stands, what it sends above the air, what of its disk
+// a point sees over the planet's horizon, and what the season makes of the ground.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/sun/time.h"
+#include "renderer/effect/effects.h"
+#include "renderer/ground/band_light.h"
+#include "renderer/ground/scene_geometry.h"
+#include "renderer/ground/surface.h"
+#include "renderer/light/terrain_light.h"
+
+namespace alpenglow {
+
+/// Light in the air and on surfaces for one position of the sun.
+struct Lighting {
+  glm::dvec3 to_sun;  // unit
+  double sun_radius_rad;
+  BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
+  MountainSurface surface;  // as the season covers it
+  EffectSet effects = EffectSet::All();
+  /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
+  std::shared_ptr<const TerrainLight> on_terrain = nullptr;
+};
+
+/// The sun as it stands, the ground as the season covers it at that latitude.
+[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
+                                  double latitude_rad, const Medium& medium);
+
+/// The sun over a point, terrain aside.
+struct LocalSun {
+  double altitude_m;
+  glm::dvec3 up;
+  double mu_s;
+  double visible_fraction;  // of the disk over the planet's horizon
+  double mu_s_effective;    // of that part
+};
+
+/// @param to_sun  unit, towards the disk's centre.
+[[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
+                                  const glm::dvec3& to_sun, double sun_radius_rad);
+
+}  // namespace alpenglow

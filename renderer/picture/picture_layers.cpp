@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/picture/picture_layers.h"
+
+#include <algorithm>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/text/error.h"
+#include "lut/picture/night_vision.h"
+#include "renderer/ground/scene_geometry.h"
+
+namespace alpenglow {
+namespace {
+
+using Rays = std::span<const Shaded>;
+
+BandLight MeanOf(BandLight Shaded::*part, Rays rays) {
+  const auto share = 1.0F / static_cast<float>(rays.size());
+  BandLight mean((rays.front().*part).count);
+  for (const Shaded& ray : rays) mean = mean + share * (ray.*part);
+  return mean;
+}
+
+LayerValues Rgb(const BandColour& colour, const BandLight& light) {
+  const auto rgb = colour.LinearSrgb(InDouble(light));
+  return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
+}
+
+template <BandLight Shaded::*kPart>
+LayerValues LightOf(const BandColour& colour, Rays rays) {
+  return Rgb(colour, MeanOf(kPart, rays));
+}
+
+// Colour of a factor (albedo, transmittance) as it looks under the sun above the air.
+template <BandLight Shaded::*kPart>
+LayerValues FactorOf(const BandColour& colour, Rays rays) {
+  const BandLight factor = MeanOf(kPart, rays);
+  BandLight sun(factor.count);
+  for (std::size_t band = 0; band < factor.count; ++band) {
+    sun[band] = static_cast<float>(SolarIrradiance(colour.wavelengths_nm()[band]));
+  }
+  const LayerValues white = Rgb(colour, sun);
+  const LayerValues seen = Rgb(colour, sun * factor);
+  return {seen[0] / white[0], seen[1] / white[1], seen[2] / white[2]};
+}
+
+LayerValues SunVisibility(const BandColour&, Rays rays) {
+  const auto share = 1.0F / static_cast<float>(rays.size());
+  float visible = 0.0F;
+  for (const Shaded& ray : rays) visible += share * ray.sun_visibility;
+  return {visible};
+}
+
+LayerValues Scotopic(const BandColour& colour, Rays rays) {
+  return {static_cast<float>(colour.ScotopicLuminance(InDouble(MeanOf(&Shaded::radiance, rays))))};
+}
+
+LayerValues Depth(const Hit& hit) { return {static_cast<float>(hit.distance_m)}; }
+
+LayerValues Normal(const Hit& hit) {
+  if (hit.kind == HitKind::kSky) return {};
+  return {static_cast<float>(hit.normal.x), static_cast<float>(hit.normal.y),
+          static_cast<float>(hit.normal.z)};
+}
+
+LayerKind InColour(PictureLayer layer, const std::string& name,
+                   LayerValues (*of_rays)(const BandColour&, Rays)) {
+  return {layer, name, {name + ".R", name + ".G", name + ".B"}, nullptr, of_rays};
+}
+
+// In the order of the enumeration.
+const std::vector<LayerKind>& LayerKinds() {
+  using enum PictureLayer;
+  static const std::vector<LayerKind> kKinds{
+      {kDepth, "depth", {"depth.Z"}, Depth, nullptr},
+      {kNormal, "normal", {"normal.X", "normal.Y", "normal.Z"}, Normal, nullptr},
+      InColour(kAlbedo, "albedo", FactorOf<&Shaded::albedo>),
+      InColour(kInscatter, "inscatter", LightOf<&Shaded::inscatter>),
+      InColour(kTransmittance, "transmittance", FactorOf<&Shaded::transmittance>),
+      {kSunVisibility, "sun_visibility", {"sun_visibility.Y"}, nullptr, SunVisibility},
+      InColour(kLamps, "lamps", LightOf<&Shaded::lamps>),
+      InColour(kVolumes, "volumes", LightOf<&Shaded::volumes>),
+      {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic}};
+  return kKinds;
+}
+
+}  // namespace
+
+const std::vector<std::string>& LayerNames() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const LayerKind& kind : LayerKinds()) names.push_back(kind.name);
+    return names;
+  }();
+  return kNames;
+}
+
+const LayerKind& KindOf(PictureLayer layer) {
+  return LayerKinds().at(static_cast<std::size_t>(layer));
+}
+
+std::string NameOf(PictureLayer layer) { return KindOf(layer).name; }
+
+PictureLayer LayerFromName(const std::string& name) {
+  const auto& kinds = LayerKinds();
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const LayerKind& kind) { return kind.name == name; });
+  if (found != kinds.end()) return found->layer;
+  throw InputError(
+      fmt::format("layer \"{}\" is not one of {}", name, fmt::join(LayerNames(), ", ")));
+}
+
+std::vector<PictureLayer> LayersFromNames(const std::vector<std::string>& names) {
+  std::vector<PictureLayer> layers;
+  for (const std::string& name : names) layers.push_back(LayerFromName(name));
+  return layers;
+}
+
+}  // namespace alpenglow

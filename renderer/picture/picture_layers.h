@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The layers that a picture may have besides its colours: one table of their names, channels and
+// values.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "renderer/ground/band_light.h"
+
+namespace alpenglow {
+
+class BandColour;
+struct Hit;
+
+enum class PictureLayer {
+  kDepth,          // [m], infinite in the sky
+  kNormal,         // ENU, unit, with relief; zero in the sky
+  kAlbedo,         // 0 to 1, as a colour under the sun above the air
+  kInscatter,      // of sun and sky in air [cd/m^2]
+  kTransmittance,  // of air, fog and volumes, 0 to 1, as a colour under the sun above the air
+  kSunVisibility,  // 0 to 1
+  kLamps,          // all that comes from lamps [cd/m^2]
+  kVolumes,        // in fog and volumes, and what these emit [cd/m^2]
+  kScotopic,       // what rods see [scotopic cd/m^2]
+};
+
+/// Names of all layers, in their order.
+[[nodiscard]] const std::vector<std::string>& LayerNames();
+[[nodiscard]] std::string NameOf(PictureLayer layer);
+/// Throws InputError for a name that is not of LayerNames().
+[[nodiscard]] PictureLayer LayerFromName(const std::string& name);
+[[nodiscard]] std::vector<PictureLayer> LayersFromNames(const std::vector<std::string>& names);
+
+/// One ray's contribution to a pixel.
+struct Shaded {
+  BandLight radiance;  // W m^-2 sr^-1 nm^-1
+  BandLight inscatter, transmittance, albedo;
+  BandLight lamps;    // of radiance, what comes from lamps
+  BandLight volumes;  // of radiance, what volumes and fog send of sun, sky and their own
+  float sun_visibility = 0.0F;
+};
+
+/// Values of a layer's channels in one pixel, as many as it has.
+using LayerValues = std::array<float, 3>;
+
+/// How a layer gets its values. Of what stands in the middle of a pixel (a mean of two surfaces is
+/// the depth of neither), or the mean of its rays: one of the two is null.
+struct LayerKind {
+  PictureLayer layer;
+  std::string name;
+  std::vector<std::string> channels;
+  LayerValues (*of_middle)(const Hit& hit);
+  LayerValues (*of_rays)(const BandColour& colour, std::span<const Shaded> rays);
+};
+
+[[nodiscard]] const LayerKind& KindOf(PictureLayer layer);
+
+}  // namespace alpenglow

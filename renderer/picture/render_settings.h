@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// What is asked of a picture: its size and care, when and from where it is taken.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "atmosphere/sun/time.h"
+#include "renderer/camera/camera_path.h"
+#include "renderer/camera/pixel_filter.h"
+#include "renderer/effect/effects.h"
+#include "renderer/lamp/lamp_light.h"
+#include "renderer/picture/picture_layers.h"
+
+namespace alpenglow {
+
+struct RenderSettings {
+  int width = 1280;
+  int height = 720;
+  int samples_per_pixel = 4;  // rays, in [1, 1024]; a power of two is spread best
+  PixelFilter::Kind filter = PixelFilter::Kind::kBlackmanHarris;
+  int air_nodes = 12;  // Gauss nodes along a ray to the sky
+  EffectSet effects = EffectSet::All();
+  bool share_air = true;  // between rays of a pixel; false for comparison
+  std::vector<PictureLayer> layers;
+  LampSettings lamps = {};
+};
+
+/// When a picture is taken, and from where.
+struct Shot {
+  Shot(const UtcInstant& at) : instant(at) {}  // NOLINT: by the scene's camera
+
+  UtcInstant instant;
+  /// Another camera with the scene's lens: of one pose, or of several that it takes at even steps
+  /// of time while its shutter is open. Terrain stays where it is; light and air are as at the
+  /// middle pose. The air stays on the sphere that osculates the ellipsoid at the scene's place,
+  /// which the ellipsoid leaves by 3 m at 100 km and by 70 m at 500 km, the farthest that an eye
+  /// may be.
+  std::vector<CameraPose> poses;
+
+  [[nodiscard]] std::optional<CameraPose> middle() const {
+    if (poses.empty()) return std::nullopt;
+    return poses[poses.size() / 2];
+  }
+};
+
+/// Throws InputError for what is out of range.
+void ValidateSettings(const RenderSettings& settings);
+
+}  // namespace alpenglow
