@@ -195,7 +195,7 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
   result.ground.assign(bands, 0.0);
   const OpticalDepth depth = OpticalDepthAlong(medium, ray);
   for (const double tau : depth.tau) result.transmittance.push_back(std::exp(-tau));
-  if (extent.end != RayEnd::kGround) return result;
+  if (!BringsLightOfGround(ray, extent)) return result;
   const Extended mu_s_ground =
       (line.r * ray.mu_s + static_cast<Extended>(extent.end_m) * ray.nu) / radius;
   const std::vector<double> irradiance =

@@ -34,7 +34,7 @@ struct SingleScattering {
 
 /// Relative error below 1e-8 by its own estimate; stored cases agree to 1e-7. The sun is a point,
 /// the planet's shadow is sharp and split exactly, the ground is lit where mu_s >= 0 at its point.
-/// Ground light is 0 when the ray ends at ray.length_m.
+/// Ground light is 0 where BringsLightOfGround says so.
 [[nodiscard]] SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray);
 
 /// Direct solar irradiance on a horizontal plane at an altitude, per unit irradiance: mu_s T(mu_s),

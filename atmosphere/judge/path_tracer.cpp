@@ -714,7 +714,7 @@ Piece ViewPiece(const Medium& medium, const ViewRay& ray, const RayExtent& exten
   piece.perigee_m = radius * std::sqrt(std::max((1.0 - ray.mu) * (1.0 + ray.mu), 0.0));
   piece.s0_m = radius * ray.mu + extent.begin_m;
   piece.length_m = extent.end_m - extent.begin_m;
-  piece.ends_on_ground = extent.end == RayEnd::kGround;
+  piece.ends_on_ground = BringsLightOfGround(ray, extent);
   return piece;
 }
 

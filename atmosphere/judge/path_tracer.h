@@ -48,7 +48,7 @@ struct PathTracedRadiance {
 };
 
 /// The same result for any number of threads (oneTBB's, as the caller limits them). Light reflected
-/// by the ground at the ray's end is left out when the ray ends at ray.length_m. Throws InputError
+/// by the ground at the ray's end is left out where BringsLightOfGround says so. Throws InputError
 /// for a ray or a medium that is not valid, max_order < 1 or relative_error < 0.
 [[nodiscard]] PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
                                                const PathOptions& options = {});

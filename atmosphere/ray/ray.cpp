@@ -97,6 +97,10 @@ RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere
   return extent;
 }
 
+bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent) {
+  return extent.end == RayEnd::kGround && std::isinf(ray.length_m);
+}
+
 ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
   // The sun is above the plane through the planet's centre at both ends: no shadow between.
   const double height_m = (planet_radius_m + std::max(ray.altitude_m, 0.0)) * ray.mu_s;

@@ -35,6 +35,11 @@ struct RayExtent {
 [[nodiscard]] RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m,
                                  double atmosphere_height_m);
 
+/// Whether what the ground reflects is part of what a ray brings: of rays that end where they meet
+/// it. A ray whose length is given is a segment of air: it ends at the ground when that is nearer,
+/// but what lies behind its end, be it the ground, is left to whoever asked for the segment.
+[[nodiscard]] bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent);
+
 /// The piece of a ray that lies in the shadow of the planet (a half-cylinder behind it), clipped to
 /// [begin_m, end_m]. Empty when dark_begin_m == dark_end_m.
 struct ShadowSpan {

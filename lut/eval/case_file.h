@@ -3,8 +3,10 @@
 //
 //   id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m
 //
-// as CsvReader reads them; distance_m may be empty (to the ground or out of the top). Cases of
-// lamps have columns of their own: lamp_cases.h.
+// as CsvReader reads them. distance_m empty: the ray goes to the ground, whose light it brings, or
+// out of the top. Given: the segment stops there, or at the ground or the top if nearer, and light
+// that the ground reflects is left out even where the segment reaches it. Cases of lamps have
+// columns of their own: lamp_cases.h.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +25,7 @@ enum class Quantity {
   kOpticalDepth,     // of the ray [1]
   kSingle,           // scattered once, and sunlight from the ground at the end of the ray [1/sr]
   kInscatterSingle,  // scattered once [1/sr]
-  kTotal,            // all orders, and light from the ground [1/sr]
+  kTotal,            // all orders, and light from the ground at the end of the ray [1/sr]
   kIrradianceSun,    // of the direct sun on a horizontal plane [1]
   kIrradianceSky,    // of the sky on a horizontal plane [1]
 };

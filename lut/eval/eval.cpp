@@ -23,7 +23,7 @@ std::string Lines(const Case& work, const Medium& medium, const Estimates& estim
 
 std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray) {
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
-  if (extent.end != RayEnd::kGround) return std::nullopt;
+  if (!BringsLightOfGround(ray, extent)) return std::nullopt;
   const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
   return std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
 }

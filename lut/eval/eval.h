@@ -72,7 +72,8 @@ inline constexpr double kClosedFormError = 2e-5;
   return quantity == Quantity::kTotal || quantity == Quantity::kIrradianceSky;
 }
 
-/// The sun's zenith cosine where a ray meets the ground; nothing when it does not.
+/// The sun's zenith cosine where a ray meets the ground; nothing when it does not, and for rays of
+/// a given length, which bring no light of the ground (BringsLightOfGround).
 [[nodiscard]] std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray);
 
 /// Thread-safe once prepared.

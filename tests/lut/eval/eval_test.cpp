@@ -303,6 +303,43 @@ TableFolder SmallTables(const Medium& medium) {
 
 constexpr DiffuseLightOptions kSmallLight{.altitudes = 12, .sun_angles = 24, .degree = 2};
 
+TEST_F(Eval, ADistanceThatReachesTheGroundAndBeyondLeavesItsLightOut) {
+  const Medium medium = MediumPreset("bruneton2017");
+  std::string text = kHeader;
+  for (const char* quantity : {"single", "inscatter_single", "total"}) {
+    for (const char* distance : {"", "999.999", "1000", "1001", "1e9"}) {
+      text += fmt::format("{}-{},{},1000,180,0,40,{}\n", quantity, distance, quantity, distance);
+    }
+  }
+  const auto expect = [&](Evaluator& evaluator, double tolerance) {
+    const Results results = Evaluate(text, evaluator);
+    for (const std::string quantity : {"single", "inscatter_single", "total"}) {
+      const double air = results.at({quantity + "-999.999", 550.0}).value;
+      for (const char* distance : {"-1000", "-1001", "-1e9"}) {
+        EXPECT_NEAR(results.at({quantity + distance, 550.0}).value, air, tolerance * air)
+            << quantity << distance;
+      }
+      if (quantity == "inscatter_single") continue;
+      EXPECT_GT(results.at({quantity + "-", 550.0}).value, 2.0 * air)
+          << quantity << ": without a distance, the ground's light (0.02) is most of it";
+    }
+  };
+  const auto integral = MakeIntegralEvaluator(medium);
+  // A millimetre of the kilometre: a relative 1e-6, and ten times that for the nodes' rounding.
+  expect(*integral, 1e-5);
+  const auto judged = MakeIntegralEvaluator(medium, WithMaxError(1e-7));
+  expect(*judged, 1e-5);
+  // A look-up in stored tables takes the difference of two whole rays: some percent of the first
+  // kilometre; the ground's light would be several times the value.
+  TableFolder folder = SmallTables(medium);
+  folder.multiple_scattering.emplace(medium, kSmallLight);
+  const auto tables = MakeTableEvaluator(std::move(folder));
+  expect(*tables, 0.05);
+  // Four standard errors of 0.3 %, of two values.
+  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.003});
+  expect(*paths, 4.0 * 0.003 * std::sqrt(2.0));
+}
+
 TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
   const Medium medium = MediumPreset("bruneton2017");
   TableFolder folder = SmallTables(medium);
