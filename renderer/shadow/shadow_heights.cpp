@@ -90,9 +90,13 @@ ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun,
   const double depth = bounds.v_high - bounds.v_low;
   // A few large triangles have sharp edges, too.
   constexpr double kFewestLines = 2048.0;
-  const double own = std::min(SpacingOf(mesh) / 1.5, std::max(width, depth) / kFewestLines);
+  const double extent = std::max(width, depth);
+  const double spacing = SpacingOf(mesh);  // 0 where all of it is upright
+  const double own = std::min(spacing > 0.0 ? spacing / 1.5 : extent, extent / kFewestLines);
   const double wanted = options.cell_m > 0.0 ? options.cell_m : own;
-  cell_m_ = std::max(wanted, std::sqrt(width * depth / static_cast<double>(options.most_cells)));
+  // Seen along a sheet the extents have no area, and still no more cells than that.
+  const auto most = static_cast<double>(options.most_cells);
+  cell_m_ = std::max({wanted, std::sqrt(width * depth / most), 4.0 * extent / most});
   // A free line on every side.
   first_u_m_ = bounds.u_low - cell_m_;
   first_v_m_ = bounds.v_low - cell_m_;

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
@@ -111,6 +113,51 @@ TEST(PlanetShadow, LookingAlongTheShadowAxisIsDarkToTheEnd) {
   const ShadowSpan shadow = PlanetShadow(ray, extent, kRadius_m);
   EXPECT_EQ(shadow.dark_begin_m, 0.0) << "behind the planet, away from the sun";
   EXPECT_EQ(shadow.dark_end_m, 1e6);
+}
+
+// Points of a ray that the planet hides from the sun, from the positions themselves.
+bool IsDark(const ViewRay& ray, double distance_m) {
+  const double along = std::sqrt((1.0 - ray.mu) * (1.0 + ray.mu));
+  const double sun_x = (ray.nu - ray.mu * ray.mu_s) / along;
+  const long double x = static_cast<long double>(along) * distance_m;
+  const long double z = static_cast<long double>(ray.mu) * distance_m + kRadius_m + ray.altitude_m;
+  const long double towards_sun = sun_x * x + ray.mu_s * z;
+  const long double off_axis2 = x * x + z * z - towards_sun * towards_sun;
+  return towards_sun < 0.0L && off_axis2 < static_cast<long double>(kRadius_m) * kRadius_m;
+}
+
+// Hard case 15.
+TEST(PlanetShadow, OfASegmentOfAThousandKilometresIsTheOneStretchThatAScanFinds) {
+  // The shadow is convex: a ray that has left it stays in the light, whatever its direction.
+  std::mt19937 random(15);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  constexpr int kSteps = 4000;
+  constexpr double kLength_m = 1e6, kStep_m = kLength_m / kSteps;
+  int lit_dark_lit = 0;
+  for (int i = 0; i < 1000; ++i) {
+    // Lowest in its middle, across the azimuth of a sun that stands 5 to 11 degrees below the
+    // horizon there, more or less.
+    ViewRay ray{60e3 + 60e3 * uniform(random), -0.09 + 0.03 * uniform(random),
+                -std::sin((5.0 + 6.0 * uniform(random)) * kRadiansPerDegree), 0.0, kLength_m};
+    ray.nu =
+        ray.mu * ray.mu_s + 0.2 * (uniform(random) - 0.5) *
+                                std::sqrt((1.0 - ray.mu * ray.mu) * (1.0 - ray.mu_s * ray.mu_s));
+    const ShadowSpan shadow = PlanetShadow(ray, {0.0, kLength_m, RayEnd::kLength}, kRadius_m);
+    int changes = 0;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double t = k * kStep_m;
+      const bool dark = IsDark(ray, t);
+      changes += k > 0 && dark != IsDark(ray, t - kStep_m) ? 1 : 0;
+      const double inside =
+          std::min(t - shadow.dark_begin_m, shadow.dark_end_m - t);  // by how much
+      if (std::abs(inside) <= 1e-3) continue;
+      ASSERT_EQ(dark, inside > 0.0) << "ray " << i << " at " << t;
+    }
+    EXPECT_LE(changes, 2) << "ray " << i;
+    lit_dark_lit +=
+        shadow.dark_begin_m > 0.0 && shadow.dark_end_m < kLength_m && changes == 2 ? 1 : 0;
+  }
+  EXPECT_GT(lit_dark_lit, 100) << "of the rays go in and out again";
 }
 
 }  // namespace

@@ -339,5 +339,111 @@ TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   }
 }
 
+// A level segment of 1000 km, 60 km up in its middle, across the azimuth of a sun so far below the
+// horizon that the axis of the planet's shadow passes `depth_m` further than its edge: for depths
+// over 0 the segment goes from light into shadow and into light again.
+ViewRay ThroughTheShadow(const Medium& medium, double depth_m) {
+  constexpr double kHalf_m = 500e3, kMiddle_m = 60e3;
+  const double middle_r = medium.planet_radius_m + kMiddle_m;
+  const double sine =
+      std::sqrt((kMiddle_m + depth_m) * (2.0 * medium.planet_radius_m + kMiddle_m - depth_m)) /
+      middle_r;  // of the sun's depression
+  const double r = std::hypot(middle_r, kHalf_m);
+  const double altitude_m = kMiddle_m + kHalf_m * kHalf_m / (r + middle_r);
+  return {altitude_m, -kHalf_m / r, -sine * middle_r / r, 0.0, 2.0 * kHalf_m};
+}
+
+// Hard case 15.
+TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheJudgeWithoutASeam) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  for (const double depth_m : {-20e3, -100.0, -1.0, 1.0, 100.0, 3e3, 10e3, 18e3}) {
+    const ViewRay ray = ThroughTheShadow(medium, depth_m);
+    const ShadowSpan shadow =
+        PlanetShadow(ray, {0.0, ray.length_m, RayEnd::kLength}, medium.planet_radius_m);
+    const double dark_m = shadow.dark_end_m - shadow.dark_begin_m;
+    EXPECT_NEAR(dark_m,
+                2.0 * std::sqrt(std::max(depth_m, 0.0) * (2.0 * medium.planet_radius_m - depth_m)),
+                1.0)
+        << "the chord through a cylinder";
+    const auto light = Inscatter(air, ray, kFine);
+    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 2e-4)
+          << depth_m << " m: 16 nodes a panel";
+    }
+  }
+}
+
+// Hard case 15.
+TEST(SingleScattering, WhereTheShadowOpensInASegmentItsLightDoesNotJump) {
+  const Medium medium = MediumPreset("earth");
+  const AirIntegrator<float> air(medium);
+  // A millimetre of depth is 226 m of shadow; air there is lit through 38 optical depths and more.
+  const auto before = Inscatter(air, ThroughTheShadow(medium, -1e-3), kFine);
+  const auto after = Inscatter(air, ThroughTheShadow(medium, 1e-3), kFine);
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    EXPECT_NEAR(after[band] / before[band], 1.0F, 1e-4F) << "panels begin and end elsewhere";
+  }
+  // Cut in two anywhere, in the light, on the edges of the shadow and in it, it is the same.
+  const AirIntegrator<double> fine(medium);
+  const ViewRay whole = ThroughTheShadow(medium, 3e3);
+  const ShadowSpan shadow =
+      PlanetShadow(whole, {0.0, whole.length_m, RayEnd::kLength}, medium.planet_radius_m);
+  const auto all = Inscatter(fine, whole, kFine);
+  for (const double cut_m :
+       {0.5 * shadow.dark_begin_m, std::nextafter(shadow.dark_begin_m, 0.0), shadow.dark_begin_m,
+        500e3, shadow.dark_end_m, std::nextafter(shadow.dark_end_m, 1e6), 990e3}) {
+    ViewRay first = whole;
+    first.length_m = cut_m;
+    const double r = medium.planet_radius_m + whole.altitude_m;
+    const double r_cut = std::sqrt(r * r + 2.0 * r * whole.mu * cut_m + cut_m * cut_m);
+    const ViewRay second{r_cut - medium.planet_radius_m, (r * whole.mu + cut_m) / r_cut,
+                         (r * whole.mu_s + whole.nu * cut_m) / r_cut, whole.nu,
+                         whole.length_m - cut_m};
+    const auto near = Inscatter(fine, first, kFine);
+    const auto far = Inscatter(fine, second, kFine);
+    const auto through = fine.TransmittanceAlong(first);
+    for (std::size_t band = 0; band < fine.bands(); ++band) {
+      EXPECT_NEAR((near[band] + through[band] * far[band]) / all[band], 1.0, 3e-4)
+          << "cut at " << cut_m << " m: 16 nodes a panel";
+    }
+  }
+}
+
+// Hard case 29.
+TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
+  const ViewRay level{2.0, 0.0, 0.5, 0.3};
+  std::vector<std::size_t> nodes;
+  for (const double depth : {0.05, 5.0, 50.0, 5000.0}) {
+    Medium medium = MediumPreset("earth");
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      medium.mie_extinction_per_m[band] = depth / medium.mie_scale_height_m;
+      medium.mie_scattering_per_m[band] = 0.9 * medium.mie_extinction_per_m[band];
+    }
+    const AirIntegrator<float> air(medium);
+    for (const double mu : {1.0, 0.0}) {
+      const double truth = judge::OpticalDepthAlong(medium, {2.0, mu, 1.0, mu}).tau[0];
+      const double found = static_cast<double>(air.TransmittanceToSpace(2.0, mu)[0]);
+      EXPECT_NEAR(found, std::exp(-truth), 2e-5 * std::max(truth, 1.0) * std::exp(-truth) + 1e-37)
+          << depth << ", mu " << mu;
+      EXPECT_NE(std::fpclassify(static_cast<float>(found)), FP_SUBNORMAL)
+          << "numbers that processors are slow with";
+    }
+    for (const double mu_s : {0.5, 0.01}) {
+      ViewRay ray = level;
+      ray.mu_s = mu_s;
+      const auto light = Inscatter(air, ray, kFine);
+      for (std::size_t band = 0; band < air.bands(); ++band) {
+        EXPECT_TRUE(std::isfinite(light[band])) << depth;
+        EXPECT_GE(light[band], 0.0F) << depth;
+        EXPECT_NE(std::fpclassify(light[band]), FP_SUBNORMAL) << depth;
+      }
+    }
+    nodes.push_back(air.Sample(level, kFine).count);
+  }
+  EXPECT_EQ(nodes, std::vector<std::size_t>(nodes.size(), nodes.front()));
+}
+
 }  // namespace
 }  // namespace alpenglow

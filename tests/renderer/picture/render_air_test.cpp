@@ -127,5 +127,36 @@ TEST(RenderAir, TheSeaHidesTheFootOfMountainsBehindItsHorizon) {
   EXPECT_GT(mountains, 20) << "the peaks stand out of the sea";
 }
 
+// Hard case 41.
+TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSideAndDarkAirBeforeIt) {
+  // A sheet across the view, 1500 m high and 4 km off, the sun low behind it, both windings.
+  const std::filesystem::path file = folder_ / "sheet.obj";
+  for (const char* faces : {"f 1 3 2\nf 2 3 4\n", "f 1 2 3\nf 2 4 3\n"}) {
+    WriteText(file,
+              "v 4000 -60000 -300\nv 4000 60000 -300\nv 4000 -60000 1500\nv 4000 60000 1500\n" +
+                  std::string(faces));
+    Scene scene = BareScene(50.0, 72.0, 4.0, 10.0);
+    scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+    const SceneRenderer renderer(scene);
+    RenderSettings settings{
+        .width = 16, .height = 9, .samples_per_pixel = 4, .air_nodes = 12, .layers = {}};
+    settings.layers = {"inscatter", "sun_visibility", "depth"};
+    // What light there is comes straight from the sun.
+    settings.effects = settings.effects.Without(Effect::kMultipleScattering)
+                           .Without(Effect::kSkylight)
+                           .Without(Effect::kBounce);
+    const Image image = renderer.Render(kMorning, settings);
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        const std::size_t pixel = static_cast<std::size_t>(y * image.width + x);
+        EXPECT_EQ(InscatterAt(image, x, y), 0.0) << faces << x << ", " << y;
+        EXPECT_EQ(image.layers[3].values[pixel], 0.0F) << faces << x << ", " << y;
+        EXPECT_NEAR(image.layers[4].values[pixel], 4200.0F, 500.0F) << "the sheet, or its foot";
+        EXPECT_EQ(Luminance(image.rgb[pixel]), 0.0) << faces << x << ", " << y;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace alpenglow

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
 
 #include "atmosphere/number/constants.h"
 #include "renderer/shadow/shadow_heights.h"
@@ -95,6 +98,43 @@ TEST(SunProbes, OverOneSurfaceTheyAgreeWithShadowHeights) {
   for (double t = 50.0; t < 7000.0; t += 100.0) {
     EXPECT_NEAR(SunlightAt(a, t), SunlightAt(b, t), 0.05)
         << "at " << t << " m; the edge is halved to a 64th of the distance of probes";
+  }
+}
+
+// Hard case 41.
+TEST(SunProbes, ARidgeOfNoThicknessLetsNoLightThrough) {
+  // A sheet 1000 m high on x = 0, two triangles, from north to south; its two windings.
+  for (const bool facing_sun : {false, true}) {
+    TriangleMesh wall;
+    for (const float y : {-20000.0F, 20000.0F}) {
+      for (const float z : {0.0F, 1000.0F}) wall.positions.push_back({0.0F, y, z});
+    }
+    wall.normals.assign(4, {facing_sun ? 1.0F : -1.0F, 0.0F, 0.0F});
+    wall.triangles = facing_sun ? std::vector<std::array<std::uint32_t, 3>>{{0, 2, 1}, {2, 3, 1}}
+                                : std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {2, 1, 3}};
+    const Terrain terrain(wall);
+    const glm::dvec3 to_sun = SunInTheEast(8.0);
+    const SunProbes probes(terrain, to_sun, kSunRadius);
+    const ShadowHeights heights(wall, to_sun, kSunRadius);
+    // Rays that stay where the whole disk is hidden, up to the sheet itself, and along it.
+    const double slope = std::tan(8.0 * kRadiansPerDegree + 2.0 * kSunRadius);
+    std::mt19937 random(41);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const auto in_shade = [&](double x) {
+      return glm::dvec3(x, 16000.0 * (uniform(random) - 0.5),
+                        (1000.0 + slope * x) * uniform(random));
+    };
+    for (int i = 0; i < 2000; ++i) {
+      const glm::dvec3 from = in_shade(-6000.0 * uniform(random));
+      const glm::dvec3 to = in_shade(i % 3 == 0 ? -1e-3 : -6000.0 * uniform(random));
+      const double length_m = glm::length(to - from);
+      const glm::dvec3 unit = (to - from) / length_m;
+      EXPECT_TRUE(probes.Along(from, unit, length_m).empty()) << "ray " << i;
+      EXPECT_TRUE(
+          terrain.Occluded(from, {0.0, 0.0, 1.0}, to_sun, std::numeric_limits<double>::infinity()));
+      if (std::max(to.x, from.x) > -heights.cell_m()) continue;
+      EXPECT_TRUE(heights.Along(from, unit, length_m).empty()) << "ray " << i;
+    }
   }
 }
 

@@ -186,6 +186,20 @@ TEST_F(ElevationFile, AMapAroundThePoleClosesAroundThePole) {
   }
 }
 
+// Hard case 17.
+TEST_F(ElevationFile, ARasterOverTheMeridianOfGreenwichStaysWholeHoweverLongitudesAreCounted) {
+  for (const double west : {-0.005, 359.995}) {
+    Recipe recipe;
+    recipe.geotransform = {west, 0.001, 0.0, 51.5, 0.0, -0.001};
+    const ElevationGrid grid = ReadElevation(Write(recipe), VoidPolicy::kFill).grid;
+    EXPECT_EQ(grid.columns, 16);
+    for (const double turn : {0.0, 360.0}) {
+      EXPECT_NEAR(*grid.HeightAt(51.4995 * kDegree, (turn - 0.0005) * kDegree), 1004.0, 1e-6);
+      EXPECT_NEAR(*grid.HeightAt(51.4995 * kDegree, (turn + 0.0005) * kDegree), 1005.0, 1e-6);
+    }
+  }
+}
+
 TEST_F(ElevationFile, ARasterOverThe180thMeridianStaysWhole) {
   Recipe recipe;
   recipe.geotransform = {179.995, 0.001, 0.0, -17.0, 0.0, -0.001};

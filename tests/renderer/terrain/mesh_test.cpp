@@ -189,6 +189,26 @@ TEST(MeshFromElevation, ACrestAlongADiagonalStaysWhole) {
   EXPECT_EQ(crest_edges, 16) << "each of 8 pieces of the crest is an edge of two triangles";
 }
 
+// Hard case 17.
+TEST(MeshFromElevation, TheGroundIsOnePieceOverTheMeridianOfGreenwich) {
+  const auto height = [](int row, int column) { return 20.0 * ((row * 7 + column * 3) % 11); };
+  const TriangleMesh same = MeshFromElevation(Grid(51.6, 19.9, 0.01, 21, 21, height),
+                                              LocalFrame(kWgs84, Degrees(51.5, 20.0)));
+  // Rasters count longitudes from -180 or from 0 degrees.
+  for (const double west : {-0.1, 359.9}) {
+    for (const double eye : {0.0, 360.0}) {
+      const TriangleMesh mesh = MeshFromElevation(Grid(51.6, west, 0.01, 21, 21, height),
+                                                  LocalFrame(kWgs84, Degrees(51.5, eye)));
+      ASSERT_EQ(mesh.triangles, same.triangles) << west;
+      for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        EXPECT_LT(glm::length(ToDouble(mesh.positions[i]) - ToDouble(same.positions[i])), 2e-3)
+            << "the earth is the same at every meridian; float rounds 16 km by 1 mm";
+      }
+      EXPECT_EQ(BorderEdges(mesh), 4U * 20U);
+    }
+  }
+}
+
 // ---- OBJ ----
 
 class ObjFile : public ::testing::Test {

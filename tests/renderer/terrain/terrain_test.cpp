@@ -323,5 +323,43 @@ TEST(Terrain, TheSeaHidesAMountain150KilometresAwayUpToTheRightHeight) {
   EXPECT_TRUE(is_visible(1660.0));
 }
 
+// Hard case 16.
+TEST(Terrain, TheGroundAHundredKilometresAwayIsWhereItIsToAMillimetre) {
+  // Ground on one smooth slope of 3 in 100 towards the south-west, which the ellipsoid bends down
+  // by 785 m; samples 300 m apart. The truth is in doubles, through ECEF.
+  const GeodeticPosition here{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree, 0.0};
+  const LocalFrame frame(kWgs84, here);
+  ElevationGrid grid;
+  grid.rows = grid.columns = 41;
+  grid.step_lat_rad = 4.7e-5;
+  grid.step_lon_rad = 6.8e-5;
+  grid.north_rad = here.latitude_rad + 0.0112;  // 71 km north and, below, as much east
+  grid.west_rad = here.longitude_rad + 0.0162;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column)
+      grid.height_m.push_back(static_cast<float>(500.0 + 6.5 * (column - row)));
+  }
+  const Terrain terrain(MeshFromElevation(grid, frame));
+  double largest_m = 0.0;
+  for (int row = 1; row + 1 < grid.rows; ++row) {
+    for (int column = 1; column + 1 < grid.columns; ++column) {
+      const GeodeticPosition sample{grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column),
+                                    static_cast<double>(grid.height_m[grid.index(row, column)])};
+      const glm::dvec3 truth = frame.EnuFromGeodetic(sample).xyz;
+      for (const glm::dvec3& eye : {glm::dvec3(0.0, 0.0, 9000.0), truth + glm::dvec3(0, 0, 900.0),
+                                    glm::dvec3(30e3, 90e3, 4e5)}) {
+        const auto hit = terrain.Intersect(eye, truth - eye);
+        ASSERT_TRUE(hit.has_value());
+        // Off the ground, as along a ray the miss is divided by the sine of its slope.
+        const glm::dvec3 found = eye + hit->distance_m * glm::normalize(truth - eye) - truth;
+        largest_m = std::max(largest_m, std::abs(glm::dot(found, hit->geometric_normal)));
+      }
+    }
+  }
+  EXPECT_LT(largest_m, 1e-3) << "float rounds a position there by up to 4 mm along the ground and "
+                                "0.06 mm up; ECEF in float would be 250 mm";
+  EXPECT_GT(largest_m, 1e-6) << "the ground is in floats";
+}
+
 }  // namespace
 }  // namespace alpenglow

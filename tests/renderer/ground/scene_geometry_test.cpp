@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/ground/scene_geometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "atmosphere/number/constants.h"
+#include "renderer/picture/render.h"
+#include "renderer/terrain/mesh.h"
+
+namespace alpenglow {
+namespace {
+
+// Between neighbouring pixels of a picture that nobody has asked for a size or a view.
+const double kPixel_rad = Camera{}.fov_rad / RenderSettings{}.width;
+
+// Sea level from an eye's foot to beyond its horizon, a hundred steps each way. Facets sink below
+// the ellipsoid by at most the 200,000th part of their distance, a hundredth of a pixel.
+ElevationGrid SeaLevelAround(double latitude_deg, double height_m) {
+  constexpr double kRadius_m = 6.37e6;
+  const double reach_deg = 1.15 * std::acos(kRadius_m / (kRadius_m + height_m)) / kRadiansPerDegree;
+  constexpr int kSteps = 100;
+  const double lat_step_deg = reach_deg / kSteps;
+  ElevationGrid grid;
+  grid.step_lat_rad = lat_step_deg * kRadiansPerDegree;
+  if (latitude_deg == 90.0) {
+    grid.rows = kSteps;
+    grid.columns = 360;
+    grid.north_rad = (90.0 - 0.5 * lat_step_deg) * kRadiansPerDegree;
+    grid.west_rad = -kPi;
+    grid.step_lon_rad = kRadiansPerDegree;
+  } else {
+    const double poleward_deg = std::abs(latitude_deg) + reach_deg;
+    grid.rows = grid.columns = 2 * kSteps + 1;
+    grid.step_lon_rad = grid.step_lat_rad / std::cos(poleward_deg * kRadiansPerDegree);
+    grid.north_rad = latitude_deg * kRadiansPerDegree + kSteps * grid.step_lat_rad;
+    grid.west_rad = -kSteps * grid.step_lon_rad;
+  }
+  grid.height_m.assign(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns),
+                       0.0F);
+  return grid;
+}
+
+// The highest elevation [rad] that is still seen to be ground, by halving.
+double HorizonOf(const std::function<bool(double elevation_rad)>& is_ground) {
+  double low = -1.0, high = 0.1;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_ground(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+// Hard case 20.
+TEST(SceneGeometry, TheHorizonOfTheEllipsoidsGroundIsThatOfTheSphericalSkyWithinAPixel) {
+  for (const double latitude_deg : {0.0, 45.0, 90.0}) {
+    for (const double height_m : {2.0, 10e3, 400e3}) {
+      const LocalFrame frame(kWgs84, {latitude_deg * kRadiansPerDegree, 0.0, 0.0});
+      const SceneGround ground{
+          frame, Terrain(MeshFromElevation(SeaLevelAround(latitude_deg, height_m), frame)),
+          height_m, "", true};
+      const SceneGround bare{frame, std::nullopt, height_m, "", true};
+      const Medium medium =
+          OnOsculatingSphere(MediumPreset("earth"), latitude_deg * kRadiansPerDegree);
+      const SceneGeometry with_ground(ground, medium, false), sky(bare, medium, false);
+      const glm::dvec3 eye(0.0, 0.0, height_m);
+      for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 45) {
+        SCOPED_TRACE(::testing::Message() << "latitude " << latitude_deg << ", " << height_m
+                                          << " m, azimuth " << azimuth_deg);
+        const auto towards = [&](double elevation_rad) {
+          return DirectionFromAngles(elevation_rad, azimuth_deg * kRadiansPerDegree).xyz;
+        };
+        const double of_ground = HorizonOf([&](double elevation_rad) {
+          return ground.terrain->Intersect(eye, towards(elevation_rad)).has_value();
+        });
+        const double of_sky = HorizonOf([&](double elevation_rad) {
+          return sky.Trace(eye, towards(elevation_rad), kPixel_rad).kind == HitKind::kPlanet;
+        });
+        EXPECT_NEAR(of_ground, of_sky, kPixel_rad)
+            << "seen from space the ellipsoid's horizon lies up to 0.032 degrees beside that of "
+               "the sphere that osculates it";
+        // And in the picture there is neither a gap nor a second horizon.
+        int changes = 0;
+        bool was_sky = false;
+        for (double step = -5.0; step <= 5.0; step += 0.125) {
+          const HitKind kind =
+              with_ground.Trace(eye, towards(of_sky + step * kPixel_rad), kPixel_rad).kind;
+          changes += (kind == HitKind::kSky) != was_sky ? 1 : 0;
+          was_sky = kind == HitKind::kSky;
+          if (std::abs(step) < 1.0) continue;
+          EXPECT_EQ(was_sky, step > 0.0) << step << " pixels up";
+        }
+        EXPECT_EQ(changes, 1);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
