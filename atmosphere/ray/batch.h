@@ -56,17 +56,7 @@ using BatchOf = PlainNumber<Real>;
 
 /// shared_math.h and shell.h again, with the linkage that a kernel needs.
 namespace shared {
-using std::abs;
-using std::exp;
-using std::log;
-using std::sqrt;
-
-inline double max(double a, double b) { return a < b ? b : a; }
-inline float max(float a, float b) { return a < b ? b : a; }
-inline double min(double a, double b) { return b < a ? b : a; }
-inline float min(float a, float b) { return b < a ? b : a; }
-inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
+#include "atmosphere/dialect/shared_builtins.h"
 
 // clang-format off
 #include "atmosphere/dialect/shared_begin.h"

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The builtins of GLSL as C++, for float, double and, where a metre counts at 1e8 m, long double.
+// No include guard and no includes: shared_math.h reads it into alpenglow::shared, and batch.h again
+// into the unnamed namespace that the functions of a kernel need.
+
+using std::abs;
+using std::cos;
+using std::exp;
+using std::log;
+using std::pow;
+using std::sin;
+using std::sqrt;
+using std::tan;
+
+inline long double max(long double a, long double b) { return a < b ? b : a; }
+inline double max(double a, double b) { return a < b ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline long double min(long double a, long double b) { return b < a ? b : a; }
+inline double min(double a, double b) { return b < a ? b : a; }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline long double select(bool condition, long double yes, long double no) {
+  return condition ? yes : no;
+}
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
