@@ -54,7 +54,7 @@ template <typename Real>
 using BatchOf = PlainNumber<Real>;
 #endif
 
-/// shared_math.h and shell.h again, with the linkage that a kernel needs.
+/// shared_math.h, shell.h and ray_map.h again, with the linkage that a kernel needs.
 namespace shared {
 #include "atmosphere/dialect/shared_builtins.h"
 
@@ -62,6 +62,7 @@ namespace shared {
 #include "atmosphere/dialect/shared_begin.h"
 #include "atmosphere/ray/shell.glsl"
 #include "atmosphere/ray/optical_depth.glsl"
+#include "atmosphere/ray/ray_map.glsl"
 #include "atmosphere/dialect/shared_end.h"
 // clang-format on
 }  // namespace shared

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
@@ -105,38 +106,14 @@ ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double plan
   // The sun is above the plane through the planet's centre at both ends: no shadow between.
   const double height_m = (planet_radius_m + std::max(ray.altitude_m, 0.0)) * ray.mu_s;
   if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
-  const Extended radius = planet_radius_m;
-  const Extended h = std::max(ray.altitude_m, 0.0);
-  const Extended r = radius + h;
-  const Extended sun = r * ray.mu_s;  // height of the observer over the terminator plane
-  const Extended nu = ray.nu;
-  // Squared distance from the shadow's axis minus R^2: a t^2 + 2 b t + c.
+  const Extended h = std::max(ray.altitude_m, 0.0), mu = ray.mu, mu_s = ray.mu_s, nu = ray.nu;
   const Extended a = (1 - nu) * (1 + nu);
-  const Extended b = r * (ray.mu - ray.mu_s * nu);
-  const Extended horizon = std::sqrt(h * (2 * radius + h));
-  const Extended c = (horizon - sun) * (horizon + sun);
-  Extended begin = extent.begin_m;
-  Extended end = extent.end_m;
-  if (a > 1e-14L) {
-    const Extended discriminant = b * b - a * c;
-    if (discriminant <= 0) return {};
-    const Extended root = std::sqrt(discriminant);
-    const Extended q = b > 0 ? -b - root : -b + root;
-    const Extended first = q / a;
-    const Extended second = q != 0 ? c / q : 0;
-    begin = std::max(begin, std::min(first, second));
-    end = std::min(end, std::max(first, second));
-  } else if (c >= 0) {
-    return {};
-  }
-  // Only the half behind the terminator plane: sun + t nu < 0.
-  if (nu > 0) {
-    end = std::min(end, -sun / nu);
-  } else if (nu < 0) {
-    begin = std::max(begin, -sun / nu);
-  } else if (sun >= 0) {
-    return {};
-  }
+  const Extended radius = planet_radius_m;
+  if (shared::MeetsShadow(h, mu, mu_s, nu, a, radius) == 0) return {};
+  const Extended begin =
+      std::max<Extended>(extent.begin_m, shared::ShadowBegin(h, mu, mu_s, nu, a, radius));
+  const Extended end =
+      std::min<Extended>(extent.end_m, shared::ShadowEnd(h, mu, mu_s, nu, a, radius));
   if (!(begin < end)) return {};
   return {static_cast<double>(begin), static_cast<double>(end)};
 }

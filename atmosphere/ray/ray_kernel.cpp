@@ -96,16 +96,15 @@ void Place(const PanelRule<Real>& panel, RaySamples<Real>& samples) {
   using T = typename Lanes::Type;
   const T length(panel.end - panel.begin), begin(panel.begin), end(panel.end);
   const T lit(panel.lit ? Real(1) : Real(0));
-  const T b(panel.stretch), half(Real(0.5));
-  const T grown = exp(b);
-  const T scale = length / (half * (grown - T(Real(1)) / grown));
+  const T b(panel.stretch);
+  const T scale = StretchedScale<T>(length, T(exp(b)));
   for (std::size_t i = 0; i < panel.count; i += Lanes::kLanes) {
     const T v = Lanes::Load(panel.node + i), weight = Lanes::Load(panel.weight + i);
     T t = length * v, derivative = length;
     if (panel.stretch > Real(0)) {
-      const T e = exp(b * v), inverse = T(Real(1)) / e;
-      t = scale * half * (e - inverse);
-      derivative = scale * b * half * (e + inverse);
+      const T growth = exp(b * v);
+      t = StretchedDistance<T>(scale, growth);
+      derivative = StretchedSlope<T>(scale, b, growth);
     }
     const std::size_t at = samples.count + i;
     Lanes::StoreAnywhere(&samples.distance[at], T(panel.rises ? begin + t : end - t));

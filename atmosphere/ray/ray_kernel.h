@@ -39,7 +39,7 @@ struct ColumnSet {
 template <typename Real>
 struct PanelRule {
   Real begin, end;
-  Real stretch;  // b of t = length sinh(b v) / sinh(b); 0: t = length v
+  Real stretch;  // b of ray_map.glsl; 0: t = length v
   bool rises, lit;
   std::size_t count;
   const Real* node;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "atmosphere/number/quadrature.h"
+#include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
@@ -100,22 +101,11 @@ double LargestExtinctionPerKm(const Medium& medium) {
 /// What the lower end of a panel is to the light along it.
 struct LowerEnd {
   double altitude_km, cosine;
-  bool at_shadow;   // where the planet's shadow begins
   bool grazed;      // by sunbeams from below the horizontal, or at the shadow
   bool at_perigee;  // of the ray
   bool ahead;       // the ray comes down to it
   bool from_above;  // and began in air too thin to hide anything
 };
-
-double StretchOf(const LowerEnd& low, double length, double radius, double extinction_per_km) {
-  // Behind the edge of the shadow sunlight comes back slowly: the start wants fewer nodes.
-  const double rise_km = low.at_shadow ? 12.0 : 10.0;
-  const double strength = low.at_shadow ? 1.1 : 1.3;
-  double half =
-      shared::DistanceUpTo<double>(low.altitude_km, low.cosine, low.altitude_km + rise_km, radius);
-  if (extinction_per_km > 0.0) half = std::min(half, 10.0 / extinction_per_km);
-  return strength * std::log(std::max(2.0 * length / half, 1.0));
-}
 
 // Extra nodes in halves of the ordinary ones. A long way down through the air hides its lower end,
 // where the nodes are; above 50 km the air is too thin for that.
@@ -184,7 +174,6 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
     const LowerEnd low{altitude,
                        std::abs(shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu,
                                                                      at, altitude, radius)),
-                       at_shadow,
                        lit && (at_shadow || sun < 0.0),
                        at == perigee,
                        !rises,
@@ -194,7 +183,8 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
         end,
         lit,
         rises,
-        StretchOf(low, end - begin, radius, extinction * std::exp(-altitude / 8.0)),
+        shared::PanelStretch<double>(altitude, low.cosine, end - begin, extinction,
+                                     at_shadow ? 1.0 : 0.0, radius),
         NodesOf(low, sampling.nodes)};
   }
   return panels;

@@ -3,13 +3,8 @@
 // with a map that is dense where the air is.
 //
 // A ray is cut at the planet's shadow and at its perigee (and, for a tent of ozone, on request
-// where it bends the light). In a panel the distance from its lower end is
-//
-//   t = length sinh(b v) / sinh(b),   b = 1.2 ln(2 length / half),   v in [0, 1] of Gauss-Legendre
-//
-// where `half` is the distance to 10 km above the lower end, or 10 optical depths if less: beyond
-// it nodes thin out exponentially, as the air does. Beside a rational map with as many nodes the
-// error is 3 to 20 times less.
+// where it bends the light). The map of distance in a panel is that of ray_map.glsl. Beside a rational
+// map with as many nodes the error is 3 to 20 times less.
 #pragma once
 
 #include <array>
@@ -26,7 +21,7 @@ struct RayPanel {
   double begin, end;
   bool lit;        // outside the shadow of the planet
   bool rises;      // its lower end is its beginning
-  double stretch;  // b
+  double stretch;  // b of ray_map.glsl
   int nodes;
 };
 

@@ -116,9 +116,6 @@ class RuleRows {
   }
 };
 
-// Below this stretch sinh(b v) / sinh(b) would cancel in float, and differs from v by 1 %.
-constexpr double kLeastStretch = 0.25;
-
 // Places Gauss nodes in every panel, in the order of the panels.
 template <typename Real>
 void PlaceSamples(const RayPanels& panels, RaySamples<Real>& samples) {
@@ -130,7 +127,7 @@ void PlaceSamples(const RayPanels& panels, RaySamples<Real>& samples) {
     const auto& rule = RuleRows<Real>::Of(panel.nodes);
     kernel.place({.begin = static_cast<Real>(panel.begin),
                   .end = static_cast<Real>(panel.end),
-                  .stretch = static_cast<Real>(panel.stretch < kLeastStretch ? 0.0 : panel.stretch),
+                  .stretch = static_cast<Real>(panel.stretch),
                   .rises = panel.rises,
                   .lit = panel.lit,
                   .count = count,

@@ -97,7 +97,8 @@ class Stage {
 std::vector<ShaderPiece> SharedTexts() {
   std::vector<ShaderPiece> pieces;
   for (const char* name : {"atmosphere/dialect/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
-                           "atmosphere/ray/optical_depth.glsl", "atmosphere/air/phase.glsl"}) {
+                           "atmosphere/ray/optical_depth.glsl", "atmosphere/ray/ray_map.glsl",
+                           "atmosphere/air/phase.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
   for (const char* name : {"lut/table/transmittance_map.glsl", "lut/table/scattering_map.glsl",

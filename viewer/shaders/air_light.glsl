@@ -4,16 +4,6 @@
 
 uniform vec2 gauss[32];  // nodes in [0, 1] and weights of the rules
 
-// Stretch b of the map t = length sinh(b v) / sinh(b) of a panel whose lower end has altitude z and zenith
-// cosine c > 0 upwards, dense within 10 km and 10 optical depths of it, and less so behind the edge of the
-// planet's shadow: see ray_panels.h.
-float MapStretch(float z, float c, float panel, bool at_shadow) {
-  float near = DistanceUpTo(z, c, z + (at_shadow ? 12.0 : 10.0), RADIUS);
-  float extinction = mie_options.y * exp(-z / 8.0);
-  near = min(near, 10.0 / max(extinction, 1e-20));
-  return (at_shadow ? 1.1 : 1.3) * log(max(2.0 * panel / near, 1.0));
-}
-
 void Order(inout float a, inout float b) {
   float low = min(a, b);
   b = max(a, b);
@@ -62,14 +52,16 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
     float at = up ? begin : begin + span;
     float cosine = abs(ZenithCosineAlongRay(ray.h, ray.mu, at, low, RADIUS));
     bool at_shadow = lit && shadow.x < shadow.y && (at == shadow.x || at == shadow.y);
-    float b = MapStretch(low, cosine, span, at_shadow);
+    float b = PanelStretch(low, cosine, span, mie_options.y, at_shadow ? 1.0 : 0.0, RADIUS);
+    float scale = b > 0.0 ? StretchedScale(span, exp(b)) : 0.0;
     for (int i = 0; i < count; ++i) {
       vec2 node = gauss[first + i];
       float t = span * node.x;
       float slope = span;
-      if (b >= 0.25) {
-        t = span * sinh(b * node.x) / sinh(b);
-        slope = span * b * cosh(b * node.x) / sinh(b);
+      if (b > 0.0) {
+        float growth = exp(b * node.x);
+        t = StretchedDistance(scale, growth);
+        slope = StretchedSlope(scale, b, growth);
       }
       AirPoint point = PointAt(ray, up ? begin + t : begin + span - t, node.y * slope);
       vec3 view =

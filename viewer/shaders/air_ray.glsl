@@ -45,32 +45,11 @@ AirRay RayOf(vec3 direction, float limit) {
 
 // The piece of a ray in the shadow of the planet, within [0, length]; empty when x >= y.
 vec2 ShadowOf(AirRay ray) {
-  float r = RADIUS + ray.h;
-  float height = r * ray.mu_s;  // over the terminator's plane
   float a = ray.sine_squared;
-  float b = r * (ray.mu - ray.mu_s * ray.nu);
-  float horizon = HorizonDistance(ray.h, RADIUS);
-  float c = (horizon - height) * (horizon + height);
-  vec2 span = vec2(0.0, ray.reach);
-  if (a > 1e-12) {
-    float discriminant = b * b - a * c;
-    if (discriminant <= 0.0) return vec2(0.0);
-    float root = sqrt(discriminant);
-    float q = b > 0.0 ? -b - root : -b + root;
-    float first = q / a;
-    float second = q != 0.0 ? c / q : 0.0;
-    span = vec2(max(0.0, min(first, second)), min(ray.reach, max(first, second)));
-  } else if (c >= 0.0) {
-    return vec2(0.0);
-  }
-  if (ray.nu > 0.0) {
-    span.y = min(span.y, -height / ray.nu);
-  } else if (ray.nu < 0.0) {
-    span.x = max(span.x, -height / ray.nu);
-  } else if (height >= 0.0) {
-    return vec2(0.0);
-  }
-  return span.x < span.y ? span : vec2(0.0);
+  if (MeetsShadow(ray.h, ray.mu, ray.mu_s, ray.nu, a, RADIUS) == 0.0) return vec2(0.0);
+  float begin = max(0.0, ShadowBegin(ray.h, ray.mu, ray.mu_s, ray.nu, a, RADIUS));
+  float end = min(ray.reach, ShadowEnd(ray.h, ray.mu, ray.mu_s, ray.nu, a, RADIUS));
+  return begin < end ? vec2(begin, end) : vec2(0.0);
 }
 
 // A point along a ray.

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// C++ reading of ray_map.glsl: the panels of a ray and the planet's shadow on it.
+#pragma once
+
+#include "atmosphere/ray/shell.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/ray/ray_map.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
