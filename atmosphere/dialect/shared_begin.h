@@ -11,7 +11,9 @@
 //  4. Altitude, not radius; differences of squares factored; the conjugate form of a quadratic
 //  root.
 //  5. Capital = ours, lower case = builtin of both languages.
-//  6. Kilometres inside the text (the range of float), metres in every public C++ signature.
+//  6. Whole numbers of 32 bits that wrap are Bits; a function of Bits alone is SHARED_BITS. A constant
+//  with a name is SHARED_CONSTANT, and a whole number.
+//  7. Kilometres inside the text (the range of float), metres in every public C++ signature.
 
 // Number(0.1) rounds a literal to the type that is being read: that is its purpose.
 #pragma GCC diagnostic push
@@ -20,5 +22,8 @@
 #define SHARED             \
   template <typename Real> \
   [[nodiscard]] inline
+#define SHARED_BITS [[nodiscard]] inline
+#define SHARED_CONSTANT inline constexpr
 #define Number Real
 #define Length Real
+#define Bits std::uint32_t

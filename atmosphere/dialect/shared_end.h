@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Closes what shared_begin.h opened.
 #undef SHARED
+#undef SHARED_BITS
+#undef SHARED_CONSTANT
 #undef Number
 #undef Length
+#undef Bits
 #pragma GCC diagnostic pop

@@ -1,5 +1,8 @@
 // Opens shared texts for GLSL; the C++ twin is shared_begin.h.
 #define SHARED
+#define SHARED_BITS
+#define SHARED_CONSTANT const
 #define Number float
 #define Length float
+#define Bits uint
 #define select(condition, yes, no) ((condition) ? (yes) : (no))

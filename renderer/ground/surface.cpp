@@ -8,6 +8,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
+#include "renderer/ground/ground_cover.h"
 #include "renderer/terrain/lattice_noise.h"
 
 namespace alpenglow {
@@ -21,37 +22,30 @@ Bands<float> AlbedoBands(const std::array<double, 3>& rgb, std::span<const doubl
   return bands;
 }
 
-float SmoothStep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return static_cast<float>(t * t * (3.0 - 2.0 * t));
-}
+/// A family of noise of ground_cover.glsl.
+struct Noise {
+  int longest_m, octaves;
+  std::uint32_t seed;
+};
+constexpr Noise kBroad{shared::kBroadWave_m, shared::kBroadOctaves, shared::kBroadSeed};
+constexpr Noise kFine{shared::kFineWave_m, shared::kFineOctaves, shared::kFineSeed};
+constexpr Noise kRelief{shared::kReliefWave_m, shared::kReliefOctaves, shared::kReliefSeed};
 
-Bands<float> Mix(const Bands<float>& a, const Bands<float>& b, float share_of_b) {
-  Bands<float> mixed(a.count);
-  for (std::size_t band = 0; band < a.count; ++band) {
-    mixed[band] = a[band] + share_of_b * (b[band] - a[band]);
-  }
-  return mixed;
-}
-
-// Sum of octaves of noise from `longest_m` down, half as high with each; octaves shorter than two
-// footprints fade out, so that distant ground does not glitter. Calls visit(octave, amplitude,
-// wavelength).
+// Calls visit(seed, amplitude, wavelength) for the octaves that a footprint keeps.
 template <typename Visit>
-void VisitOctaves(const GroundPoint& point, double longest_m, int octaves, const Visit& visit) {
-  double amplitude = 1.0, wavelength = longest_m;
-  for (int octave = 0; octave < octaves; ++octave, amplitude *= 0.5, wavelength *= 0.5) {
-    const double kept = std::clamp(wavelength / (2.0 * point.footprint_m) - 1.0, 0.0, 1.0);
+void VisitOctaves(const GroundPoint& point, const Noise& noise, const Visit& visit) {
+  double amplitude = 1.0, wavelength = noise.longest_m;
+  for (int octave = 0; octave < noise.octaves; ++octave, amplitude *= 0.5, wavelength *= 0.5) {
+    const double kept = shared::OctaveShare(wavelength, point.footprint_m);
     if (kept == 0.0) break;
-    visit(octave, kept * amplitude, wavelength);
+    visit(noise.seed + static_cast<std::uint32_t>(octave), kept * amplitude, wavelength);
   }
 }
 
-double DetailNoise(const GroundPoint& point, double longest_m, int octaves, std::uint32_t seed) {
+double DetailNoise(const GroundPoint& point, const Noise& noise) {
   double sum = 0.0;
-  VisitOctaves(point, longest_m, octaves, [&](int octave, double amplitude, double wavelength) {
-    sum += amplitude * GradientNoise(point.east_m / wavelength, point.north_m / wavelength,
-                                     seed + static_cast<std::uint32_t>(octave));
+  VisitOctaves(point, noise, [&](std::uint32_t seed, double amplitude, double wavelength) {
+    sum += amplitude * GradientNoise(point.east_m / wavelength, point.north_m / wavelength, seed);
   });
   return sum;
 }
@@ -69,39 +63,35 @@ MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const M
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
 Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up) const {
-  const double broad = DetailNoise(point, 900.0, 5, 11U);
-  const double fine = DetailNoise(point, 70.0, 4, 29U);
-  const double altitude = point.altitude_m + 260.0 * broad + 60.0 * fine;
-  const double level = normal_up + 0.05 * broad + 0.05 * fine;
-  const float bare = SmoothStep(cover_.tree_line_m - 50.0, cover_.tree_line_m + 450.0, altitude);
-  const float steep = 1.0F - SmoothStep(0.66, 0.78, level);
-  const float wooded =
-      1.0F - SmoothStep(cover_.tree_line_m - 250.0, cover_.tree_line_m - 50.0, altitude);
-  const float sloping = 1.0F - SmoothStep(0.95, 0.985, level);
-  const Bands<float> green =
-      Mix(materials_.meadow, materials_.forest, wooded * (0.35F + 0.65F * sloping));
-  const Bands<float> ground = Mix(green, materials_.rock, std::max(bare, steep));
-  // Gentle ground keeps snow 200 m below the line; faces over about 45 degrees shed it.
-  const float cold = SmoothStep(cover_.snow_line_m - 200.0, cover_.snow_line_m + 350.0, altitude);
-  const float holds = SmoothStep(0.60, 0.76, level);
-  Bands<float> albedo = Mix(ground, materials_.snow, cold * holds);
-  const float bare_share = 1.0F - cold * holds;  // fresh snow is even, ground is not
-  const auto tone = static_cast<float>(std::clamp(0.3 * fine + 0.15 * broad, -0.5, 0.5));
+  const double broad = DetailNoise(point, kBroad);
+  const double fine = DetailNoise(point, kFine);
+  const double altitude = shared::WaveringAltitude(point.altitude_m, broad, fine);
+  const double level = shared::WaveringLevel(normal_up, broad, fine);
+  const auto rise = [](double value) { return static_cast<float>(value); };
+  const float forest = shared::ForestShare(rise(shared::TreelessRise(altitude, cover_.tree_line_m)),
+                                           rise(shared::FlatRise(level)));
+  const float rock = shared::RockShare(rise(shared::BareRise(altitude, cover_.tree_line_m)),
+                                       rise(shared::SoilRise(level)));
+  const float snow =
+      rise(shared::ColdRise(altitude, cover_.snow_line_m)) * rise(shared::SnowHoldRise(level));
+  const auto tone = static_cast<float>(shared::GroundTone(broad, fine));
+  Bands<float> albedo(materials_.rock.count);
   for (std::size_t band = 0; band < albedo.count; ++band) {
-    albedo[band] = std::min(albedo[band] * (1.0F + bare_share * tone), 1.0F);
+    const float green =
+        shared::PartlyCovered(materials_.meadow[band], materials_.forest[band], forest);
+    albedo[band] =
+        shared::CoverAlbedo(green, materials_.rock[band], materials_.snow[band], rock, snow, tone);
   }
   return albedo;
 }
 
 glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::dvec3& normal) {
-  constexpr double kLongest_m = 220.0;
-  constexpr double kHeight_m = 14.0;  // of the longest octave
   glm::dvec3 tilt(0.0);
-  VisitOctaves(point, kLongest_m, 5, [&](int octave, double amplitude, double wavelength) {
+  VisitOctaves(point, kRelief, [&](std::uint32_t seed, double amplitude, double wavelength) {
     const NoiseSlope noise =
-        GradientNoiseSlope(point.east_m / wavelength, point.north_m / wavelength,
-                           47U + static_cast<std::uint32_t>(octave));
-    tilt -= kHeight_m * amplitude / wavelength * glm::dvec3(noise.by_x, noise.by_y, 0.0);
+        GradientNoiseSlope(point.east_m / wavelength, point.north_m / wavelength, seed);
+    tilt -=
+        shared::kReliefHeight_m * amplitude / wavelength * glm::dvec3(noise.by_x, noise.by_y, 0.0);
   });
   return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
 }

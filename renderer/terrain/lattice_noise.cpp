@@ -4,40 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/terrain/lattice_text.h"
+
 namespace alpenglow {
 namespace {
 
-// Finaliser of MurmurHash3 (Appleby, public domain): every input bit moves every output bit.
-std::uint32_t Mixed(std::uint32_t bits) {
-  bits ^= bits >> 16;
-  bits *= 0x85ebca6bU;
-  bits ^= bits >> 13;
-  bits *= 0xc2b2ae35U;
-  bits ^= bits >> 16;
-  return bits;
-}
-
-double Fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
-
-double FadeSlope(double t) { return 30.0 * t * t * (t - 1.0) * (t - 1.0); }
-
-// The lattice point's gradient: components uniform in [-1, 1).
-struct Gradient {
-  double x, y;
-
-  [[nodiscard]] double At(double dx, double dy) const { return x * dx + y * dy; }
-};
-
-Gradient GradientOf(std::uint32_t hash) {
-  constexpr double kUnit = 1.0 / 32768.0;
-  return {static_cast<double>(hash & 0xffffU) * kUnit - 1.0,
-          static_cast<double>(hash >> 16) * kUnit - 1.0};
-}
-
-/// A place in its cell of the lattice, and the gradients at the cell's corners.
+/// A place in its cell of the lattice, and the hashes of the cell's corners.
 struct Cell {
   double dx, dy;
-  Gradient south_west, south_east, north_west, north_east;
+  std::uint32_t south_west, south_east, north_west, north_east;
 
   Cell(double x, double y, std::uint32_t seed) {
     // A conversion and a comparison: without SSE4 the library's floor is a call.
@@ -49,22 +24,25 @@ struct Cell {
     const std::int32_t iy = floor_of(y);
     dx = x - static_cast<double>(ix);
     dy = y - static_cast<double>(iy);
-    const std::uint32_t of_seed = Mixed(seed + 0x9e3779b9U);
     const auto west = static_cast<std::uint32_t>(ix);
-    const std::uint32_t south = Mixed(static_cast<std::uint32_t>(iy) + of_seed);
-    const std::uint32_t north = Mixed(static_cast<std::uint32_t>(iy) + 1U + of_seed);
-    south_west = GradientOf(Mixed(west + south));
-    south_east = GradientOf(Mixed(west + 1U + south));
-    north_west = GradientOf(Mixed(west + north));
-    north_east = GradientOf(Mixed(west + 1U + north));
+    const auto south = static_cast<std::uint32_t>(iy);
+    south_west = shared::LatticePoint(west, south, seed);
+    south_east = shared::LatticePoint(west + 1U, south, seed);
+    north_west = shared::LatticePoint(west, south + 1U, seed);
+    north_east = shared::LatticePoint(west + 1U, south + 1U, seed);
+  }
+
+  /// A function of lattice_noise.glsl here.
+  template <typename Function>
+  [[nodiscard]] double At(const Function& function) const {
+    return function(south_west, south_east, north_west, north_east, dx, dy);
   }
 };
 
 }  // namespace
 
 std::uint32_t LatticeHash(std::int32_t x, std::int32_t y, std::uint32_t seed) {
-  return Mixed(static_cast<std::uint32_t>(x) +
-               Mixed(static_cast<std::uint32_t>(y) + Mixed(seed + 0x9e3779b9U)));
+  return shared::LatticePoint(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed);
 }
 
 double LatticeUniform(std::int32_t x, std::int32_t y, std::uint32_t seed) {
@@ -72,39 +50,13 @@ double LatticeUniform(std::int32_t x, std::int32_t y, std::uint32_t seed) {
 }
 
 double GradientNoise(double x, double y, std::uint32_t seed) {
-  const Cell cell(x, y, seed);
-  const double dx = cell.dx;
-  const double dy = cell.dy;
-  const double u = Fade(dx);
-  const double v = Fade(dy);
-  const double south =
-      (1.0 - u) * cell.south_west.At(dx, dy) + u * cell.south_east.At(dx - 1.0, dy);
-  const double north =
-      (1.0 - u) * cell.north_west.At(dx, dy - 1.0) + u * cell.north_east.At(dx - 1.0, dy - 1.0);
-  return (1.0 - v) * south + v * north;
+  return Cell(x, y, seed).At(shared::NoiseInCell<double>);
 }
 
 NoiseSlope GradientNoiseSlope(double x, double y, std::uint32_t seed) {
   const Cell cell(x, y, seed);
-  const double dx = cell.dx;
-  const double dy = cell.dy;
-  const double u = Fade(dx);
-  const double v = Fade(dy);
-  const double south_west = cell.south_west.At(dx, dy);
-  const double south_east = cell.south_east.At(dx - 1.0, dy);
-  const double north_west = cell.north_west.At(dx, dy - 1.0);
-  const double north_east = cell.north_east.At(dx - 1.0, dy - 1.0);
-  const double south = (1.0 - u) * south_west + u * south_east;
-  const double north = (1.0 - u) * north_west + u * north_east;
-  const auto mixed = [&](double sw, double se, double nw, double ne) {
-    return (1.0 - v) * ((1.0 - u) * sw + u * se) + v * ((1.0 - u) * nw + u * ne);
-  };
-  return {
-      (1.0 - v) * south + v * north,
-      mixed(cell.south_west.x, cell.south_east.x, cell.north_west.x, cell.north_east.x) +
-          FadeSlope(dx) * ((1.0 - v) * (south_east - south_west) + v * (north_east - north_west)),
-      mixed(cell.south_west.y, cell.south_east.y, cell.north_west.y, cell.north_east.y) +
-          FadeSlope(dy) * (north - south)};
+  return {cell.At(shared::NoiseInCell<double>), cell.At(shared::NoiseSlopeEast<double>),
+          cell.At(shared::NoiseSlopeNorth<double>)};
 }
 
 double FractalNoise(double x, double y, int octaves, std::uint32_t seed) {

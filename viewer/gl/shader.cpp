@@ -10,6 +10,7 @@
 #include "atmosphere/embedded_text.h"
 #include "atmosphere/text/error.h"
 #include "lut/embedded_text.h"
+#include "renderer/embedded_text.h"
 
 namespace alpenglow {
 namespace {
@@ -104,6 +105,10 @@ std::vector<ShaderPiece> SharedTexts() {
   for (const char* name : {"lut/table/transmittance_map.glsl", "lut/table/scattering_map.glsl",
                            "lut/picture/tone_curve.glsl"}) {
     pieces.push_back({name, std::string(lut::EmbeddedText(name))});
+  }
+  for (const char* name :
+       {"renderer/terrain/lattice_noise.glsl", "renderer/ground/ground_cover.glsl"}) {
+    pieces.push_back({name, std::string(renderer::EmbeddedText(name))});
   }
   return pieces;
 }

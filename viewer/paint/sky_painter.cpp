@@ -129,7 +129,7 @@ std::vector<ShaderPiece> LightTexts(int degree) {
   for (const char* name : {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
                            "viewer/shaders/air_ray.glsl", "viewer/shaders/diffuse_light.glsl",
                            "viewer/shaders/air_light.glsl", "viewer/shaders/diffuse_sky_map.glsl",
-                           "viewer/shaders/sun_light.glsl", "viewer/shaders/ground_cover.glsl"}) {
+                           "viewer/shaders/sun_light.glsl", "viewer/shaders/ground.glsl"}) {
     pieces.push_back(Piece(name));
   }
   return pieces;

@@ -7,6 +7,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/ground_cover.h"
 
 namespace alpenglow {
 namespace {
@@ -127,7 +128,8 @@ GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double 
     return GpuBandsOf(
         {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
   };
-  constexpr std::array<double, 3> kLongest_m{900.0, 70.0, 220.0};
+  constexpr std::array<double, 3> kLongest_m{shared::kBroadWave_m, shared::kFineWave_m,
+                                             shared::kReliefWave_m};
   GroundBlock block{};
   block.forest = bands(surface.materials().forest);
   block.meadow = bands(surface.materials().meadow);
@@ -138,7 +140,7 @@ GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double 
   for (std::size_t family = 0; family < kLongest_m.size(); ++family) {
     const double east = east_m / kLongest_m[family];
     const double north = north_m / kLongest_m[family];
-    block.noise_cell[family] = {std::floor(east), std::floor(north), kLongest_m[family], 0.0};
+    block.noise_cell[family] = {std::floor(east), std::floor(north), 0.0, 0.0};
     block.noise_place[family] = {east - std::floor(east), north - std::floor(north), 0.0, 0.0};
   }
   return block;

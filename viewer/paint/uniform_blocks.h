@@ -50,7 +50,7 @@ struct MeshBlock {
 static_assert(sizeof(MeshBlock) == 5 * sizeof(glm::vec4));
 static_assert(offsetof(MeshBlock, up) == 4 * sizeof(glm::vec4));
 
-/// `block Ground` of ground_cover.glsl.
+/// `block Ground` of ground.glsl.
 struct GroundBlock {
   glm::vec4 forest, meadow, rock, snow;
   glm::vec4 cover_lines;

@@ -219,13 +219,13 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   block.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
   block.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
   const GlBuffer buffer;
-  return tests::EvaluateOnGpu(
-      {{"ground", std::string(viewer::EmbeddedText("viewer/shaders/ground_cover.glsl"))}},
-      expression, GroundPoints(), [&](const ShaderProgram& program) {
-        glBindBufferBase(GL_UNIFORM_BUFFER, 3, buffer.id());
-        glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
-        program.BindBlock("Ground", 3);
-      });
+  std::vector<ShaderPiece> texts = SharedTexts();
+  texts.push_back({"ground", std::string(viewer::EmbeddedText("viewer/shaders/ground.glsl"))});
+  return tests::EvaluateOnGpu(texts, expression, GroundPoints(), [&](const ShaderProgram& program) {
+    glBindBufferBase(GL_UNIFORM_BUFFER, 3, buffer.id());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
+    program.BindBlock("Ground", 3);
+  });
 }
 
 TEST_F(GroundCover, AlbedoIsThatOfTheRenderer) {

@@ -1,0 +1,72 @@
+// Gradient noise on a lattice of points with hashed gradients (lattice_noise.h). Whole numbers are 32 bits
+// that wrap; places within a cell are in cells.
+
+// Finaliser of MurmurHash3 (Appleby, public domain): every input bit moves every output bit.
+SHARED_BITS Bits MixedBits(Bits bits) {
+  bits ^= bits >> 16;
+  bits *= 0x85ebca6bu;
+  bits ^= bits >> 13;
+  bits *= 0xc2b2ae35u;
+  bits ^= bits >> 16;
+  return bits;
+}
+
+// The hash of a lattice point.
+SHARED_BITS Bits LatticePoint(Bits east, Bits north, Bits seed) {
+  return MixedBits(east + MixedBits(north + MixedBits(seed + 0x9e3779b9u)));
+}
+
+// A component of its gradient, uniform in [-1, 1), from half of the hash: 2^-15 a step.
+SHARED Number GradientOfHalf(Number half_hash) {
+  return half_hash * Number(3.0517578125e-5) - Number(1.0);
+}
+
+// What the gradient of a corner gives (dx, dy) away from it.
+SHARED Number CornerNoise(Bits corner, Number dx, Number dy) {
+  return GradientOfHalf(Number(corner & 0xffffu)) * dx + GradientOfHalf(Number(corner >> 16)) * dy;
+}
+
+SHARED Number NoiseFade(Number t) {
+  return t * t * t * (t * (t * Number(6.0) - Number(15.0)) + Number(10.0));
+}
+
+SHARED Number NoiseFadeSlope(Number t) {
+  return Number(30.0) * t * t * (t - Number(1.0)) * (t - Number(1.0));
+}
+
+// Values at the corners, weighted by u to the east and v to the north.
+SHARED Number NoiseBlend(Number u, Number v, Number sw, Number se, Number nw, Number ne) {
+  return (Number(1.0) - v) * ((Number(1.0) - u) * sw + u * se) +
+         v * ((Number(1.0) - u) * nw + u * ne);
+}
+
+// Noise at (dx, dy) in a cell, from the hashes of its corners.
+SHARED Number NoiseInCell(Bits sw, Bits se, Bits nw, Bits ne, Number dx, Number dy) {
+  return NoiseBlend(NoiseFade(dx), NoiseFade(dy), CornerNoise(sw, dx, dy),
+                    CornerNoise(se, dx - Number(1.0), dy), CornerNoise(nw, dx, dy - Number(1.0)),
+                    CornerNoise(ne, dx - Number(1.0), dy - Number(1.0)));
+}
+
+// Its derivatives to the east and to the north, per cell.
+SHARED Number NoiseSlopeEast(Bits sw, Bits se, Bits nw, Bits ne, Number dx, Number dy) {
+  Number v = NoiseFade(dy);
+  Number south = CornerNoise(se, dx - Number(1.0), dy) - CornerNoise(sw, dx, dy);
+  Number north =
+      CornerNoise(ne, dx - Number(1.0), dy - Number(1.0)) - CornerNoise(nw, dx, dy - Number(1.0));
+  return NoiseBlend(NoiseFade(dx), v, GradientOfHalf(Number(sw & 0xffffu)),
+                    GradientOfHalf(Number(se & 0xffffu)), GradientOfHalf(Number(nw & 0xffffu)),
+                    GradientOfHalf(Number(ne & 0xffffu))) +
+         NoiseFadeSlope(dx) * ((Number(1.0) - v) * south + v * north);
+}
+
+SHARED Number NoiseSlopeNorth(Bits sw, Bits se, Bits nw, Bits ne, Number dx, Number dy) {
+  Number u = NoiseFade(dx);
+  Number south =
+      (Number(1.0) - u) * CornerNoise(sw, dx, dy) + u * CornerNoise(se, dx - Number(1.0), dy);
+  Number north = (Number(1.0) - u) * CornerNoise(nw, dx, dy - Number(1.0)) +
+                 u * CornerNoise(ne, dx - Number(1.0), dy - Number(1.0));
+  return NoiseBlend(u, NoiseFade(dy), GradientOfHalf(Number(sw >> 16)),
+                    GradientOfHalf(Number(se >> 16)), GradientOfHalf(Number(nw >> 16)),
+                    GradientOfHalf(Number(ne >> 16))) +
+         NoiseFadeSlope(dy) * (north - south);
+}
