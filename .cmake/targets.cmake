@@ -201,7 +201,8 @@ function(alpenglow_tests program)
     list(JOIN suites ":" filter)
     string(APPEND whole ":${filter}")
     add_test(NAME ${arg_FOLDER}.${name} COMMAND ${program} --gtest_filter=${filter})
-    set_tests_properties(${arg_FOLDER}.${name} PROPERTIES TIMEOUT 900)
+    # Long ones start first, so that no processor waits for them in the end.
+    set_tests_properties(${arg_FOLDER}.${name} PROPERTIES TIMEOUT 900 COST 100)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
   endforeach()
   gtest_discover_tests(${program} TEST_PREFIX "${arg_FOLDER}." TEST_FILTER "-${whole}"

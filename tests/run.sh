@@ -9,10 +9,15 @@ presets=("$@")
 [ "${#presets[@]}" -gt 0 ] || presets=(ci sanitize scalar)
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1}
 export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$PWD/tests/leaks_of_drivers.txt:print_suppressions=0}
+times=()
 for preset in "${presets[@]}"; do
   echo "== $preset: build"
+  start=$SECONDS
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
+  built=$SECONDS
   echo "== $preset: test"
   ctest --preset "$preset" --parallel "$(nproc)"
+  times+=("$preset: built in $((built - start)) s, tested in $((SECONDS - built)) s")
 done
+printf '%s\n' "${times[@]}"
