@@ -11,8 +11,7 @@
 #include <cstdlib>
 
 #include "lut/picture/image.h"
-#include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/temporary_folder.h"
+#include "tests/fixtures/bare_scene_folder.h"
 
 namespace alpenglow {
 namespace {
@@ -21,15 +20,8 @@ namespace fs = std::filesystem;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
-class Skyseries : public TemporaryFolder {
+class Skyseries : public BareSceneFolder {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    WriteText(folder_ / "s.toml", kBareSceneText);
-  }
-  [[nodiscard]] std::string InFolder(const std::string& name) const {
-    return (folder_ / name).string();
-  }
   [[nodiscard]] std::string SmallStill() const {
     return InFolder("s.toml") + " --size 16x9 --samples 1 --out " + InFolder("still.exr");
   }

@@ -8,8 +8,7 @@
 
 #include "lut/picture/image.h"
 #include "renderer/camera/camera_path.h"
-#include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/temporary_folder.h"
+#include "tests/fixtures/bare_scene_folder.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow {
@@ -18,15 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class Skyview : public TemporaryFolder {
+class Skyview : public BareSceneFolder {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    WriteText(folder_ / "s.toml", kBareSceneText);
-  }
-  [[nodiscard]] std::string InFolder(const std::string& name) const {
-    return (folder_ / name).string();
-  }
   /// @param arguments as typed into a shell; no display is named in the environment.
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
     return RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW "' " + arguments);

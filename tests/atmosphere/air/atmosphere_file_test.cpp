@@ -11,6 +11,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
@@ -21,12 +22,7 @@ using testing::StartsWith;
 Medium Read(const std::string& text) { return MediumFromToml(text, "a.toml"); }
 
 std::string FaultOf(const std::string& text) {
-  try {
-    (void)Read(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
+  return tests::FaultOf([&] { return Read(text); });
 }
 
 // The example of the manual: everything given, wavelengths from red to blue.

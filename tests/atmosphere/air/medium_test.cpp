@@ -11,21 +11,14 @@
 #include <set>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
 
 using testing::HasSubstr;
 
-std::string MessageOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+using tests::FaultOf;
 
 double OpticalDepthOfAerosol(const Medium& medium, std::size_t band) {
   return medium.mie_extinction_per_m[band] * medium.mie_scale_height_m;
@@ -105,14 +98,14 @@ TEST(Medium, Bruneton2017IsAsPublishedButAscending) {
   EXPECT_EQ(medium.planet_radius_m, 6360000.0);
   EXPECT_EQ(medium.atmosphere_height_m, 60000.0);
   EXPECT_EQ(medium.mie_phase.front().g, 0.8);
-  EXPECT_THAT(MessageOf([] { (void)MediumPreset("bruneton2017", {450.0}); }), HasSubstr("440"));
+  EXPECT_THAT(FaultOf([] { (void)MediumPreset("bruneton2017", {450.0}); }), HasSubstr("440"));
 }
 
 TEST(Medium, UnknownPresetsAndWavelengthsWithoutTablesAreRefused) {
-  EXPECT_THAT(MessageOf([] { (void)MediumPreset("venus"); }), HasSubstr("clear-mountain"));
-  EXPECT_THAT(MessageOf([] { (void)MediumPreset("earth", {300.0}); }), HasSubstr("[360, 830]"));
-  EXPECT_THAT(MessageOf([] { (void)MediumPreset("earth", {600.0, 500.0}); }), HasSubstr("ordered"));
-  EXPECT_THAT(MessageOf([] { (void)MediumPreset("earth", {}); }), HasSubstr("0 values"));
+  EXPECT_THAT(FaultOf([] { (void)MediumPreset("venus"); }), HasSubstr("clear-mountain"));
+  EXPECT_THAT(FaultOf([] { (void)MediumPreset("earth", {300.0}); }), HasSubstr("[360, 830]"));
+  EXPECT_THAT(FaultOf([] { (void)MediumPreset("earth", {600.0, 500.0}); }), HasSubstr("ordered"));
+  EXPECT_THAT(FaultOf([] { (void)MediumPreset("earth", {}); }), HasSubstr("0 values"));
 }
 
 struct Change {
@@ -229,7 +222,7 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
   for (const Change& fault : faults) {
     Medium medium = MediumPreset("earth");
     fault.make(medium);
-    const std::string message = MessageOf([&] { Validate(medium); });
+    const std::string message = FaultOf([&] { Validate(medium); });
     EXPECT_THAT(message, HasSubstr(fault.key));
     ASSERT_TRUE(FindFault(medium).has_value()) << fault.key;
     EXPECT_EQ(message.rfind(FindFault(medium)->key, 0), 0U) << message;

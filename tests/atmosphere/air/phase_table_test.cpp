@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "atmosphere/air/phase.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -36,14 +35,7 @@ std::vector<double> ValuesAt(const std::vector<double>& angles, const PhaseFunct
 
 PhaseFunction Lobe(double g) { return {.kind = PhaseKind::kHenyeyGreenstein, .g = g}; }
 
-std::string FaultOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
-}
+using tests::FaultOf;
 
 TEST(PhaseTable, FollowsALobeThroughTheAnglesOfOpac) {
   const struct { double g, bound; } lobes[] = {{0.7, 3e-4}, {0.9, 1e-3}, {0.97, 4e-3}};

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
@@ -128,13 +128,8 @@ TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
 TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto message = [](const ViewRay& ray) -> std::string {
-    try {
-      static_cast<void>(ExtentOf(ray, kRadius_m, kTop_m));
-      return "";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+  const auto message = [](const ViewRay& ray) {
+    return tests::FaultOf([&] { return ExtentOf(ray, kRadius_m, kTop_m); });
   };
   for (const double altitude_m : {kNan, kInfinity, -kRadius_m, -2.0 * kRadius_m}) {
     EXPECT_NE(message({altitude_m, 1.0}).find("altitude_m"), std::string::npos) << altitude_m;

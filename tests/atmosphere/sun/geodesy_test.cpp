@@ -11,6 +11,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
@@ -176,25 +177,21 @@ TEST(Geodesy, OsculatingRadiusIsTheGaussianMean) {
       << "the chord of 6 km sees the change of curvature along it, 5e-6 of the radius";
 }
 
-std::string MessageFor(double latitude, double longitude, double height_m) {
-  try {
-    (void)PlaceFromDegrees(latitude, longitude, height_m);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+std::string FaultOfPlace(double latitude, double longitude, double height_m) {
+  return tests::FaultOf([&] { return PlaceFromDegrees(latitude, longitude, height_m); });
 }
 
 TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
-  EXPECT_EQ(MessageFor(90, 360, -12000), "accepted");
-  EXPECT_EQ(MessageFor(90.0000001, 0, 0), "latitude is 90.0000001; it must lie in [-90, 90]");
-  EXPECT_EQ(MessageFor(-91, 0, 0), "latitude is -91; it must lie in [-90, 90]");
-  EXPECT_EQ(MessageFor(0, 540, 0), "longitude is 540; it must lie in [-180, 360]");
-  EXPECT_THAT(MessageFor(0, kNan, 0), testing::StartsWith("longitude is nan"));
-  EXPECT_THAT(MessageFor(kNan, 0, 0), testing::StartsWith("latitude is nan"));
-  EXPECT_EQ(MessageFor(0, 0, -12001), "height_m is -12001; it must be finite and at least -12000");
-  EXPECT_THAT(MessageFor(0, 0, kInfinity), testing::StartsWith("height_m is inf"));
-  EXPECT_THAT(MessageFor(0, 0, kNan), testing::StartsWith("height_m is nan"));
+  EXPECT_EQ(FaultOfPlace(90, 360, -12000), "no fault");
+  EXPECT_EQ(FaultOfPlace(90.0000001, 0, 0), "latitude is 90.0000001; it must lie in [-90, 90]");
+  EXPECT_EQ(FaultOfPlace(-91, 0, 0), "latitude is -91; it must lie in [-90, 90]");
+  EXPECT_EQ(FaultOfPlace(0, 540, 0), "longitude is 540; it must lie in [-180, 360]");
+  EXPECT_THAT(FaultOfPlace(0, kNan, 0), testing::StartsWith("longitude is nan"));
+  EXPECT_THAT(FaultOfPlace(kNan, 0, 0), testing::StartsWith("latitude is nan"));
+  EXPECT_EQ(FaultOfPlace(0, 0, -12001),
+            "height_m is -12001; it must be finite and at least -12000");
+  EXPECT_THAT(FaultOfPlace(0, 0, kInfinity), testing::StartsWith("height_m is inf"));
+  EXPECT_THAT(FaultOfPlace(0, 0, kNan), testing::StartsWith("height_m is nan"));
 }
 
 TEST(Geodesy, NonsenseIsNeverAnsweredWithAPlace) {

@@ -4,21 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
 
-std::string FaultOf(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
-}
+using tests::FaultOf;
 
 TomlTable Camera(const std::string& line) {
   return *TomlTable("[camera]\n" + line + "\n", "s.toml").Table("camera");

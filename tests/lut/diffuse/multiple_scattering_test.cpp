@@ -12,17 +12,11 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"
 
 namespace alpenglow {
 namespace {
-
-constexpr DiffuseLightOptions kSmall{.altitudes = 8,
-                                     .sun_angles = 12,
-                                     .degree = 2,
-                                     .zenith_nodes = 6,
-                                     .azimuth_nodes = 4,
-                                     .ray_nodes = 6};
 
 TEST(LegendreCoefficients, OfMoleculesAreOneZeroOneTenth) {
   const auto chi = LegendreCoefficients({.kind = PhaseKind::kRayleigh}, 4);
@@ -75,21 +69,22 @@ TEST(DiffuseLight, EmptyAirOverABlackPlanetIsDark) {
     medium.mie_extinction_per_m[band] = medium.ozone_absorption_per_m[band] =
         medium.ground_albedo[band] = 0.0;
   }
-  const DiffuseLight light(medium, kSmall);
+  const DiffuseLight light(medium, tests::kSmallLight);
   EXPECT_TRUE(light.converged());
   for (const float value : light.values()) EXPECT_EQ(value, 0.0F);
 }
 
 TEST(DiffuseLight, ComesBackFromItsValues) {
   const Medium air = MediumPreset("bruneton2017");
-  const DiffuseLight light(air, kSmall);
-  const DiffuseLight back(air, kSmall, {light.values(), light.orders(), light.converged()});
+  const DiffuseLight light(air, tests::kSmallLight);
+  const DiffuseLight back(air, tests::kSmallLight,
+                          {light.values(), light.orders(), light.converged()});
   EXPECT_EQ(back.orders(), light.orders());
   EXPECT_EQ(back.SkyIrradiance(500.0, 0.3), light.SkyIrradiance(500.0, 0.3));
   EXPECT_THROW(DiffuseLight(air, {}, {light.values(), 1, true}), InputError) << "of other options";
   std::vector<float> broken = light.values();
   broken[7] = std::nanf("");
-  EXPECT_THROW(DiffuseLight(air, kSmall, {broken, 1, true}), InputError);
+  EXPECT_THROW(DiffuseLight(air, tests::kSmallLight, {broken, 1, true}), InputError);
 }
 
 TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {
@@ -98,12 +93,12 @@ TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {
   for (const double g : {0.5, 0.6, 0.7, 0.8}) {
     medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
   }
-  const DiffuseLightOptions few_orders{.altitudes = kSmall.altitudes,
-                                       .sun_angles = kSmall.sun_angles,
-                                       .degree = kSmall.degree,
-                                       .zenith_nodes = kSmall.zenith_nodes,
-                                       .azimuth_nodes = kSmall.azimuth_nodes,
-                                       .ray_nodes = kSmall.ray_nodes,
+  const DiffuseLightOptions few_orders{.altitudes = tests::kSmallLight.altitudes,
+                                       .sun_angles = tests::kSmallLight.sun_angles,
+                                       .degree = tests::kSmallLight.degree,
+                                       .zenith_nodes = tests::kSmallLight.zenith_nodes,
+                                       .azimuth_nodes = tests::kSmallLight.azimuth_nodes,
+                                       .ray_nodes = tests::kSmallLight.ray_nodes,
                                        .max_orders = 4,
                                        .tolerance = 1e-9};
   const DiffuseLight light(medium, few_orders);
@@ -143,7 +138,7 @@ TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<float>> values;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    values.push_back(DiffuseLight(medium, kSmall).values());
+    values.push_back(DiffuseLight(medium, tests::kSmallLight).values());
   }
   EXPECT_EQ(values[0], values[1]);
   EXPECT_EQ(values[0], values[2]);
@@ -177,10 +172,10 @@ TEST(DiffuseLight, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
     medium.ground_albedo[band] = 1.0;
     medium.ozone_absorption_per_m[band] = 0.0;
   }
-  DiffuseLightOptions few = kSmall;
+  DiffuseLightOptions few = tests::kSmallLight;
   few.max_orders = 5;
   EXPECT_FALSE(DiffuseLight(medium, few).converged());
-  DiffuseLightOptions many = kSmall;
+  DiffuseLightOptions many = tests::kSmallLight;
   many.max_orders = 2000;
   const DiffuseLight light(medium, many);
   EXPECT_TRUE(light.converged());
@@ -289,7 +284,7 @@ TEST(DiffuseLight, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
 TEST(DiffuseLight, IsNeverNegative) {
   for (const char* name : {"hazy", "clear-mountain"}) {
     const Medium medium = MediumPreset(name);
-    const DiffuseLight light(medium, kSmall);
+    const DiffuseLight light(medium, tests::kSmallLight);
     const AirIntegrator<float> air(medium);
     for (const double altitude_m : {0.0, 9000.0, 70000.0}) {
       for (double sun_deg = -20.0; sun_deg <= 90.0; sun_deg += 11.0) {
@@ -313,7 +308,7 @@ TEST(DiffuseLight, IsNeverNegative) {
 // Ramamoorthi and Hanrahan's sum, written out; what the series misses follows P_8.
 TEST(DiffuseLight, SlopesAreLitByTheClampedCosineOfTheMoments) {
   const Medium medium = MediumPreset("earth");
-  DiffuseLightOptions options = kSmall;
+  DiffuseLightOptions options = tests::kSmallLight;
   options.degree = 6;
   const DiffuseLight light(medium, options);
   const std::array<double, 7> cosine{kPi, 2 * kPi / 3, kPi / 4, 0.0, -kPi / 24, 0.0, kPi / 64};
@@ -353,7 +348,7 @@ TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
   const Medium medium = MediumPreset("hazy");
   const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, 88.0);
   const auto both = [&] {
-    const DiffuseLight light(medium, kSmall);
+    const DiffuseLight light(medium, tests::kSmallLight);
     const auto samples =
         AirIntegrator<float>(medium).Sample(ray, {.nodes = 12, .dark_samples = true});
     return std::tuple(light.values(), light.InscatterAlong(samples, ray.nu),

@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/stored_cases.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -42,12 +42,7 @@ class LampCases : public TemporaryFolder {
   }
 
   [[nodiscard]] std::string FaultOf(const std::string& cases) const {
-    try {
-      (void)Evaluate(cases, {});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no fault";
+    return tests::FaultOf([&] { return Evaluate(cases, {}); });
   }
 };
 

@@ -11,6 +11,8 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/sky_view_errors.h"
 
 namespace alpenglow {
@@ -18,19 +20,12 @@ namespace {
 
 constexpr double kAzimuths_deg[] = {0.0, 40.0, 90.0, 200.0, 275.0, 359.0};
 
-struct Air {
-  Medium medium = MediumPreset("earth");
-  AirIntegrator<float> air{medium};
-  DiffuseLight diffuse{medium};
+using tests::Earth;
+using tests::Luminance;
 
-  static const Air& Earth() {
-    static const Air air;
-    return air;
-  }
-  [[nodiscard]] Image Panorama(const PanoramaSettings& settings) const {
-    return RenderPanorama(air, diffuse, settings);
-  }
-};
+Image Panorama(const PanoramaSettings& settings) {
+  return RenderPanorama(Earth().air, Earth().diffuse, settings);
+}
 
 PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
   PanoramaSettings settings;
@@ -39,10 +34,6 @@ PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
   settings.sun.elevation_rad = elevation * kRadiansPerDegree;
   settings.sun.azimuth_rad = azimuth * kRadiansPerDegree;
   return settings;
-}
-
-double Luminance(const std::array<float, 3>& rgb) {
-  return 0.2126 * double{rgb[0]} + 0.7152 * double{rgb[1]} + 0.0722 * double{rgb[2]};
 }
 
 struct Pixel {
@@ -112,7 +103,7 @@ TEST_P(Orientation, TheProgramFindsTheSunWhereItStandsAndNotInAMirror) {
     PanoramaSettings settings = SunAtDegrees(35.0, azimuth_deg);
     settings.orientation = GetParam();
     settings.sun_disk = true;
-    Image image = Air::Earth().Panorama(settings);
+    Image image = Panorama(settings);
     const double column =
         ColumnOf(GetParam(), settings.sun.elevation_rad, settings.sun.azimuth_rad, settings.width);
     const double row = (90.0 - 35.0) / 180.0 * settings.height;
@@ -163,12 +154,11 @@ double LuminanceOf(const Medium& medium, const Bands<float>& relative) {
 }
 
 TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
-  const Air& earth = Air::Earth();
   for (const double elevation_deg : {50.0, 10.0, 0.0, -5.0, -9.0}) {
-    const Image image = earth.Panorama(SunAtDegrees(elevation_deg, 120.0));
-    const double expected =
-        LuminanceOf(earth.medium,
-                    earth.diffuse.SkyIrradiance(2.0, std::sin(elevation_deg * kRadiansPerDegree)));
+    const Image image = Panorama(SunAtDegrees(elevation_deg, 120.0));
+    const double expected = LuminanceOf(
+        Earth().medium,
+        Earth().diffuse.SkyIrradiance(2.0, std::sin(elevation_deg * kRadiansPerDegree)));
     EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
         << "sun at " << elevation_deg << ": the pixels of the aureole are 1.4 degrees wide, and "
         << "the table of irradiance is interpolated between its nodes";
@@ -176,13 +166,12 @@ TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
 }
 
 TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
-  const Air& earth = Air::Earth();
-  const DirectSky direct(earth.medium, earth.diffuse);
+  const DirectSky direct(Earth().medium, Earth().diffuse);
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
       PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
       settings.altitude_m = altitude_m;
-      const Image image = earth.Panorama(settings);
+      const Image image = Panorama(settings);
       const double mu_s = std::sin(settings.sun.elevation_rad);
       double brightest = 0.0;
       for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
@@ -201,7 +190,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
         Bands<float> light(bands.count);
         for (std::size_t band = 0; band < bands.count; ++band)
           light[band] = static_cast<float>(bands[band]);
-        const double exact = LuminanceOf(earth.medium, light);
+        const double exact = LuminanceOf(Earth().medium, light);
         const double error =
             (Luminance(image.at(x, y)) - exact) / std::max(exact, 1e-4 * brightest);
         squares += error * error;
@@ -213,14 +202,13 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
 }
 
 TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
-  const Air& earth = Air::Earth();
   for (const auto& [width, height] : {std::pair{16, 8}, std::pair{256, 128}, std::pair{900, 450}}) {
     PanoramaSettings settings = SunAtDegrees(41.0, 77.0);
     settings.width = width;
     settings.height = height;
-    const Image without = earth.Panorama(settings);
+    const Image without = Panorama(settings);
     settings.sun_disk = true;
-    const Image with = earth.Panorama(settings);
+    const Image with = Panorama(settings);
     double light = 0.0;
     for (int y = 0; y < height; ++y) {
       const double solid_angle =
@@ -230,25 +218,25 @@ TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
       }
     }
     const double expected = LuminanceOf(
-        earth.medium, earth.air.TransmittanceToSpace(2.0, std::sin(41.0 * kRadiansPerDegree)));
+        Earth().medium, Earth().air.TransmittanceToSpace(2.0, std::sin(41.0 * kRadiansPerDegree)));
     EXPECT_NEAR(light, expected, 2e-3 * expected) << "the air's transmittance over half a degree";
   }
 }
 
 TEST(Panorama, ASunBelowTheHorizonHasNoDisk) {
   PanoramaSettings settings = SunAtDegrees(-2.0, 30.0);
-  const Image without = Air::Earth().Panorama(settings);
+  const Image without = Panorama(settings);
   settings.sun_disk = true;
-  EXPECT_EQ(Air::Earth().Panorama(settings).rgb, without.rgb);
+  EXPECT_EQ(Panorama(settings).rgb, without.rgb);
 }
 
 TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
   PanoramaSettings settings = SunAtDegrees(5.0, 45.0);
   settings.width = 720;
   settings.height = 360;
-  const Image plain = Air::Earth().Panorama(settings);
+  const Image plain = Panorama(settings);
   settings.compass = true;
-  const Image painted = Air::Earth().Panorama(settings);
+  const Image painted = Panorama(settings);
   // Columns in which ink stands on the horizontal row of a letter's foot or head; azimuth 0 is the
   // middle of the picture, 2 pixels are a degree.
   const auto ink = [&](double azimuth_deg, double across_deg, double up_deg) {
@@ -272,7 +260,7 @@ TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
   std::vector<Image> images;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    images.push_back(Air::Earth().Panorama(settings));
+    images.push_back(Panorama(settings));
   }
   EXPECT_EQ(images[0].rgb, images[1].rgb);
   EXPECT_EQ(images[0].rgb, images[2].rgb);
@@ -282,7 +270,7 @@ TEST(Panorama, OnePixelIsAPicture) {
   PanoramaSettings settings = SunAtDegrees(30.0, 0.0);
   settings.width = settings.height = 1;
   settings.sun_disk = true;
-  EXPECT_GT(Luminance(Air::Earth().Panorama(settings).at(0, 0)), 0.0);
+  EXPECT_GT(Luminance(Panorama(settings).at(0, 0)), 0.0);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/sky_view_errors.h"
+#include "tests/fixtures/small_light.h"
 
 namespace alpenglow {
 namespace {
@@ -181,14 +182,8 @@ TEST(SkyView, ARowIsItsLookUps) {
 TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
   const Medium all = MediumPreset("earth", WavelengthSet(6));
   const Medium one = MediumPreset("earth", {all.wavelengths_nm[4]});
-  constexpr DiffuseLightOptions kSmall{.altitudes = 8,
-                                       .sun_angles = 12,
-                                       .degree = 2,
-                                       .zenith_nodes = 6,
-                                       .azimuth_nodes = 4,
-                                       .ray_nodes = 6};
-  const SkyView view(AirIntegrator<float>(all), DiffuseLight(all, kSmall), 2.0, 0.5);
-  const SkyView single(AirIntegrator<float>(one), DiffuseLight(one, kSmall), 2.0, 0.5);
+  const SkyView view(AirIntegrator<float>(all), DiffuseLight(all, tests::kSmallLight), 2.0, 0.5);
+  const SkyView single(AirIntegrator<float>(one), DiffuseLight(one, tests::kSmallLight), 2.0, 0.5);
   EXPECT_EQ(view.stride(), 8U);
   const float expected = single.Radiance(1.0, 0.7)[0];
   EXPECT_NEAR(view.Radiance(1.0, 0.7)[4], expected, 1e-3F * expected)

@@ -10,6 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "renderer/series/path_frames.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -138,13 +139,8 @@ class CameraPathFiles : public TemporaryFolder {
     WriteText(folder_ / "p.csv", text);
     return ReadCameraPath(folder_ / "p.csv", otherwise);
   }
-  [[nodiscard]] std::string Refusal(const std::string& text) const {
-    try {
-      (void)Read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  [[nodiscard]] std::string FaultOf(const std::string& text) const {
+    return tests::FaultOf([&] { return Read(text); });
   }
 };
 
@@ -183,18 +179,18 @@ TEST_F(CameraPathFiles, ColumnsComeInAnyOrderAndSomeMayBeLeftOut) {
 
 TEST_F(CameraPathFiles, AFaultIsNamedWithItsLine) {
   const std::string header = "t_s,latitude,longitude,height_m,heading\n";
-  EXPECT_THAT(Refusal("t_s,latitude,longitude\n0,1,2\n"),
+  EXPECT_THAT(FaultOf("t_s,latitude,longitude\n0,1,2\n"),
               HasSubstr("p.csv:1: column height_m is missing"));
-  EXPECT_THAT(Refusal("t_s,latitude,longitude,height_m,yaw\n"),
+  EXPECT_THAT(FaultOf("t_s,latitude,longitude,height_m,yaw\n"),
               HasSubstr("p.csv:1: column \"yaw\" is unknown"));
-  EXPECT_THAT(Refusal(header + "0,46,8,100,0\n0,46,8,100,0\n"), HasSubstr("p.csv:3: t_s is 0"));
-  EXPECT_THAT(Refusal(header + "# a\n0,91,8,100,0\n"), HasSubstr("p.csv:3: latitude is 91"));
-  EXPECT_THAT(Refusal(header + "0,46,8,100\n"), HasSubstr("p.csv:2: has 4 fields"));
-  EXPECT_THAT(Refusal(header + "0,46,8,100,nan\n"), HasSubstr("p.csv:2: heading is nan"));
-  EXPECT_THAT(Refusal(header), HasSubstr("no lines"));
-  EXPECT_THAT(Refusal("t_s,latitude,longitude,height_m,fov\n0,46,8,100,200\n"),
+  EXPECT_THAT(FaultOf(header + "0,46,8,100,0\n0,46,8,100,0\n"), HasSubstr("p.csv:3: t_s is 0"));
+  EXPECT_THAT(FaultOf(header + "# a\n0,91,8,100,0\n"), HasSubstr("p.csv:3: latitude is 91"));
+  EXPECT_THAT(FaultOf(header + "0,46,8,100\n"), HasSubstr("p.csv:2: has 4 fields"));
+  EXPECT_THAT(FaultOf(header + "0,46,8,100,nan\n"), HasSubstr("p.csv:2: heading is nan"));
+  EXPECT_THAT(FaultOf(header), HasSubstr("no lines"));
+  EXPECT_THAT(FaultOf("t_s,latitude,longitude,height_m,fov\n0,46,8,100,200\n"),
               HasSubstr("p.csv:2: fov is 200"));
-  EXPECT_THAT(Refusal("t_s,latitude,longitude,height_m,utc\n0,46,8,100,soon\n"),
+  EXPECT_THAT(FaultOf("t_s,latitude,longitude,height_m,utc\n0,46,8,100,soon\n"),
               HasSubstr("p.csv:2: "));
 }
 

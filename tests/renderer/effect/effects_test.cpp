@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
@@ -12,12 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string FaultOf(const std::string& text) {
-  try {
-    (void)EffectsFromText(text);
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return tests::FaultOf([&] { return EffectsFromText(text); });
 }
 
 TEST(Effects, AListSwitchesOnExactlyTheseInWholeAir) {

@@ -12,6 +12,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -122,13 +123,8 @@ TEST_F(DrapedColours, DistantGroundHasTheMeanColour) {
 TEST_F(DrapedColours, WhatIsNoPictureIsRefused) {
   const SceneGround ground = Plain();
   EXPECT_EQ(ColourDrape::Of(Scene{}, ground), nullptr);
-  const auto fault = [&](const std::filesystem::path& file) -> std::string {
-    try {
-      (void)ColourDrape::Of(DrapedWith(file), ground);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no fault";
+  const auto fault = [&](const std::filesystem::path& file) {
+    return tests::FaultOf([&] { return ColourDrape::Of(DrapedWith(file), ground); });
   };
   EXPECT_THAT(fault(folder_ / "none.png"), HasSubstr("there is no such file"));
   const auto text = folder_ / "text.png";

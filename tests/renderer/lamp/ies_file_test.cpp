@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
@@ -15,12 +15,7 @@ using testing::HasSubstr;
 const std::string kHead = "IESNA:LM-63-2002\n[TEST] 1\n[MANUFAC] none\nTILT=NONE\n";
 
 std::string FaultOf(const std::string& text) {
-  try {
-    (void)IesFromText(text, "l.ies");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
+  return tests::FaultOf([&] { return IesFromText(text, "l.ies"); });
 }
 
 double At(const IesLamp& lamp, double gamma_deg, double c_deg) {

@@ -15,19 +15,14 @@
 #include "lut/sky/sky_view.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/terrain/terrain.h"
+#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/rough_land.h"
 
 namespace alpenglow {
 namespace {
 
-struct Air {
-  Medium medium = MediumPreset("bruneton2017");
-  AirIntegrator<float> air{medium};
-  DiffuseLight diffuse{medium};
-};
-
-const Air& TheAir() {
-  static const Air air;
+const tests::LitAir& TheAir() {
+  static const tests::LitAir air(MediumPreset("bruneton2017"));
   return air;
 }
 

@@ -15,8 +15,8 @@
 #include "lut/diffuse/spherical_harmonics.h"
 #include "renderer/light/sky_moments.h"
 #include "renderer/picture/render.h"
-#include "renderer/terrain/lattice_noise.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/noise_grid.h"
 
 namespace alpenglow {
 namespace {
@@ -84,20 +84,6 @@ LocalMedium Box(const glm::dvec3& bottom, const glm::dvec3& size, const MediumOp
   return {LocalVolume(placement, std::nullopt, std::move(grid)), optics};
 }
 
-std::shared_ptr<const VolumeGrid> Puffs(int n) {
-  std::vector<float> values;
-  for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y) {
-      for (int x = 0; x < n; ++x) {
-        const double s = 6.0 / n;
-        const double body = 0.3 + FractalNoise(s * (x + 0.7 * z), s * (y - 0.4 * z), 2, 7U);
-        values.push_back(static_cast<float>(std::max(body, 0.0)));
-      }
-    }
-  }
-  return std::make_shared<VolumeGrid>(std::array<int, 3>{n, n, n}, std::move(values));
-}
-
 const glm::dvec3 kEye(0.0, 0.0, 50.0);
 
 TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
@@ -161,8 +147,8 @@ double ExactSun(const LocalMedium& medium, const glm::dvec3& look, std::size_t b
 TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
   const Stage& stage = TheStage();
   for (const double extinction : {0.01, 0.04}) {
-    const LocalMedium cloud =
-        Box({0.0, 300.0, 0.0}, {120.0, 120.0, 100.0}, Optics(extinction, 0.9), Puffs(40));
+    const LocalMedium cloud = Box({0.0, 300.0, 0.0}, {120.0, 120.0, 100.0}, Optics(extinction, 0.9),
+                                  tests::NoiseGrid(40, 6.0, 0.3, 2));
     const MediaLight lit = stage.Lit({cloud});
     double worst = 0.0;
     for (int i = 0; i < 6; ++i) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "renderer/terrain/lattice_noise.h"
+#include "tests/fixtures/noise_grid.h"
 
 namespace alpenglow {
 namespace {
@@ -30,20 +30,6 @@ LocalMedium FogBody(double base, double scale_height, double extinction) {
   MediumOptics optics{Bands<double>(1), Bands<double>(1), Bands<double>(1), PhaseFunction{}};
   optics.extinction_per_m[0] = extinction;
   return {FogLayer(base, scale_height, 6371e3, 120e3), optics};
-}
-
-std::shared_ptr<const VolumeGrid> Turbulence(int n) {
-  std::vector<float> values;
-  for (int z = 0; z < n; ++z) {
-    for (int y = 0; y < n; ++y) {
-      for (int x = 0; x < n; ++x) {
-        const double s = 10.0 / n;
-        const double density = 0.1 + FractalNoise(s * (x + 0.7 * z), s * (y - 0.4 * z), 3, 7U);
-        values.push_back(static_cast<float>(std::max(density, 0.0)));
-      }
-    }
-  }
-  return std::make_shared<VolumeGrid>(std::array<int, 3>{n, n, n}, std::move(values));
 }
 
 /// The source that makes L = B (1 - T): extinction times B.
@@ -134,7 +120,7 @@ double Striped(const glm::dvec3& point) {
 }
 
 TEST(MarchMedia, KeepsItsToleranceAgainstFineMidpointSums) {
-  const auto grid = Turbulence(48);
+  const auto grid = tests::NoiseGrid(48, 10.0, 0.1, 3);
   double worst = 0.0, worst_estimate = 0.0;
   for (const double extinction : {0.005, 0.05, 0.5}) {
     const LocalMedia media(
@@ -168,7 +154,7 @@ TEST(MarchMedia, KeepsItsToleranceAgainstFineMidpointSums) {
 
 TEST(MarchMedia, SmallerToleranceCostsMoreAndErrsLess) {
   const LocalMedia media({Body(Shape::kBox, {0.0, 100.0, -30.0}, {60.0, 60.0, 60.0}, 0.1,
-                               std::nullopt, Turbulence(32))},
+                               std::nullopt, tests::NoiseGrid(32, 10.0, 0.1, 3))},
                          1);
   const MediaSource source = Glowing(media, 1.0);
   const glm::dvec3 way = glm::normalize(glm::dvec3(0.05, 1.0, 0.07));

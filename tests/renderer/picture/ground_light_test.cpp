@@ -11,6 +11,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -19,10 +20,7 @@ namespace {
 constexpr RenderSettings kSmall{
     .width = 24, .height = 16, .samples_per_pixel = 4, .air_nodes = 8, .layers = {}};
 
-double Luminance(const std::array<float, 3>& rgb) {
-  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
-         0.0722 * static_cast<double>(rgb[2]);
-}
+using tests::Luminance;
 
 /// Looking down on the bare planet towards a heading, of one cover.
 Scene Planet(GroundCover::Kind kind, double heading, double pitch) {

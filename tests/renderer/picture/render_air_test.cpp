@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of the air over terrain.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,15 +9,14 @@
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/fixtures/thread_counts.h"
 
 namespace alpenglow {
 namespace {
 
-double Luminance(const std::array<float, 3>& rgb) {
-  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
-         0.0722 * static_cast<double>(rgb[2]);
-}
+using tests::Luminance;
 
 double InscatterAt(const Image& image, int x, int y) {
   const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
@@ -46,13 +44,8 @@ TEST(RenderAir, ShaftsAreTheSameBytesForAnyNumberOfThreads) {
   const SceneRenderer& renderer = RangeRenderer();
   const RenderSettings settings{
       .width = 32, .height = 18, .samples_per_pixel = 4, .air_nodes = 12, .layers = {}};
-  std::vector<Image> images;
-  for (const std::size_t threads : {1U, 2U, 8U}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    images.push_back(renderer.Render(kMorning, settings));
-  }
-  EXPECT_EQ(images[0].rgb, images[1].rgb);
-  EXPECT_EQ(images[0].rgb, images[2].rgb);
+  static_cast<void>(
+      tests::SameForAnyNumberOfThreads([&] { return renderer.Render(kMorning, settings); }));
 }
 
 TEST(RenderAir, SharingTheAirOfAPixelIsRightToATenthOfAPercentOfTheLight) {

@@ -2,7 +2,6 @@
 #include "renderer/picture/render.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,8 @@
 #include "lut/picture/night_vision.h"
 #include "renderer/camera/camera_rays.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/luminance.h"
+#include "tests/fixtures/thread_counts.h"
 
 namespace alpenglow {
 namespace {
@@ -23,10 +24,7 @@ namespace {
 constexpr RenderSettings kSmall{
     .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 16, .layers = {}};
 
-double Luminance(const std::array<float, 3>& rgb) {
-  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
-         0.0722 * static_cast<double>(rgb[2]);
-}
+using tests::Luminance;
 
 TEST(Render, SkyPixelIsSingleScatteringOfTheJudgePlusDiffuseLight) {
   const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
@@ -81,13 +79,8 @@ TEST(Render, NightIsNeverNegativeAndNeverNaN) {
 TEST(Render, TheSameBytesForAnyNumberOfThreads) {
   const SceneRenderer renderer(BareScene(2.0, 120.0, 5.0, 60.0));
   const UtcInstant dawn = ParseInstant("2026-06-21T03:40:00Z");
-  std::vector<Image> images;
-  for (const std::size_t threads : {1U, 2U, 8U}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    images.push_back(renderer.Render(dawn, kSmall));
-  }
-  EXPECT_EQ(images[0].rgb, images[1].rgb);
-  EXPECT_EQ(images[0].rgb, images[2].rgb);
+  static_cast<void>(
+      tests::SameForAnyNumberOfThreads([&] { return renderer.Render(dawn, kSmall); }));
 }
 
 /// The camera of a bare scene somewhere else.
@@ -164,15 +157,10 @@ TEST(Render, LensFilterAndPathGiveTheSameBytesForAnyNumberOfThreads) {
   RenderSettings settings = kSmall;
   settings.samples_per_pixel = 7;
   settings.layers = {PictureLayer::kDepth, PictureLayer::kLamps};
-  std::vector<Image> images;
-  for (const std::size_t threads : {1U, 2U, 8U}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    images.push_back(renderer.Render(shot, settings));
-  }
-  EXPECT_EQ(images[0].rgb, images[1].rgb);
-  EXPECT_EQ(images[0].rgb, images[2].rgb);
+  const Image image =
+      tests::SameForAnyNumberOfThreads([&] { return renderer.Render(shot, settings); });
   double lamps = 0.0;
-  for (const float value : images[0].layers[1].values) lamps += static_cast<double>(value);
+  for (const float value : image.layers[1].values) lamps += static_cast<double>(value);
   EXPECT_GT(lamps, 0.0) << "the lamp is in the picture";
 }
 

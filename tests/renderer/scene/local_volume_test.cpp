@@ -14,6 +14,7 @@
 #include "renderer/media/fog_layer.h"
 #include "renderer/media/local_media.h"
 #include "renderer/terrain/lattice_noise.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -181,19 +182,12 @@ TEST(BlackBody, RadiatesAsStefanAndBoltzmannSay) {
       << "the tail beyond 0.2 mm is 1e-5, the sum's own error below it";
 }
 
-std::string MessageOf(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
+using tests::FaultOf;
 
 TEST(VolumeGrid, RefusesWhatIsNoDensity) {
   using Size = std::array<int, 3>;
   const auto grid = [](const Size& size, std::vector<float> values) {
-    return MessageOf([&] { VolumeGrid(size, std::move(values)); });
+    return FaultOf([&] { VolumeGrid(size, std::move(values)); });
   };
   EXPECT_EQ(grid({2, 2, 2}, std::vector<float>(7)), "7 values for a grid of 2 x 2 x 2 samples");
   EXPECT_EQ(grid({1, 2, 2}, std::vector<float>(4)),
@@ -246,13 +240,13 @@ TEST_F(Nrrd, SaysWhatItDoesNotRead) {
   const auto file = folder_ / "x.nrrd";
   const auto read = [&](const std::string& header) {
     WriteText(file, "NRRD0004\n" + header + "\n\n");
-    return MessageOf([&] { (void)ReadNrrd(file); });
+    return FaultOf([&] { (void)ReadNrrd(file); });
   };
   EXPECT_EQ(read("type: double"),
             file.string() + ":2: type is \"double\"; it must be \"float\" or \"uint8\"");
   EXPECT_EQ(read("encoding: gzip"), file.string() + ":2: encoding is \"gzip\"; it must be \"raw\"");
   EXPECT_EQ(read("dimension: 4"), file.string() + ":2: dimension is 4; it must be 3");
-  EXPECT_EQ(MessageOf([&] { (void)ReadNrrd(folder_ / "none.nrrd"); }),
+  EXPECT_EQ(FaultOf([&] { (void)ReadNrrd(folder_ / "none.nrrd"); }),
             (folder_ / "none.nrrd").string() + ": cannot be read");
 }
 
@@ -260,7 +254,7 @@ TEST_F(RawGrid, RefusesAFileOfAnotherLength) {
   const auto file = folder_ / "g.raw";
   WriteText(file, LittleEndian(std::vector<float>(12, 0.5F)));
   EXPECT_EQ(ReadRawGrid(file, {2, 3, 2}).largest(), 0.5);
-  EXPECT_EQ(MessageOf([&] {
+  EXPECT_EQ(FaultOf([&] {
               (void)ReadRawGrid(file, {2, 3, 3});
             }),
             file.string() + ": 48 bytes of data; 2 x 3 x 3 floats are 72");

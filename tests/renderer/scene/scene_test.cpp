@@ -12,6 +12,7 @@
 #include "atmosphere/text/toml_table.h"
 #include "lut/picture/picture_text.h"
 #include "renderer/scene/scene_options.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -24,12 +25,7 @@ const std::string kPlace = "[place]\nlatitude = 35.3606\nlongitude = 138.7274\n"
 Scene Read(const std::string& text) { return SceneFromToml(text, "s.toml", "folder"); }
 
 std::string FaultOf(const std::string& text) {
-  try {
-    (void)Read(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
+  return tests::FaultOf([&] { return Read(text); });
 }
 
 TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {

@@ -8,6 +8,7 @@
 
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
@@ -24,15 +25,7 @@ EventDay Tromso(const char* date) {
   return {place, std::nullopt, DayFromText(date, place, std::nullopt)};
 }
 
-template <typename Call>
-std::string FaultOf(const Call& call) {
-  try {
-    (void)call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
-}
+using tests::FaultOf;
 
 TEST(FrameTimes, AnInstantIsReadAsItStands) {
   EXPECT_EQ(FormatUtc(InstantFromText("2026-06-21T04:00:00Z", Fuji())), "2026-06-21T04:00:00Z");

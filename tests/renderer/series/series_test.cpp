@@ -13,6 +13,7 @@
 #include "lut/program/program.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/provenance.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -22,12 +23,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 std::string FaultOfName(const std::string& pattern) {
-  try {
-    FrameName name(pattern);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no fault";
+  return tests::FaultOf([&] { return FrameName(pattern); });
 }
 
 TEST(FrameName, NumbersAreFilledIn) {
