@@ -6,7 +6,6 @@
 #include <string>
 
 #include "atmosphere/air/medium.h"
-#include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
 #include "lut/picture/picture_text.h"
@@ -41,9 +40,8 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
 
 // Where refraction shows it, as in the pictures of skyseries.
 PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant) {
-  const SunPosition sun = SunAt(eye, instant);
-  return {sun.elevation_rad + RefractionFromHeight(sun.elevation_rad, eye.height_m),
-          sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad};
+  const SunPosition sun = ApparentSunAt(eye, instant);
+  return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad};
 }
 
 SkyJob JobFrom(const SkyOptions& options) {

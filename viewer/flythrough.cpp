@@ -188,7 +188,7 @@ void Flythrough::WriteReplay(const CameraPath& path,
 
 std::string Flythrough::HudText() const {
   if (!hud_) return "skyview";
-  const SunPosition sun = ApparentSun(eye_.place, now_);
+  const SunPosition sun = ApparentSunAt(eye_.place, now_);
   return fmt::format(
       "skyview  {:.4f} {:.4f}  {:.0f} m ({:.0f} m over ground)  heading {:03.0f}  pitch {:+.0f}  "
       "view {:.0f}  {} x{:.0f}  sun {:+.1f} at {:03.0f}  EV {:.1f}",

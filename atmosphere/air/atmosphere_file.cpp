@@ -27,7 +27,7 @@
 //                        which they make of it
 //
 // What people think in becomes the aerosol's extinction at 550 nm and the ground:
-//   visibility V             3.912 / V - molecules         Koschmieder (1924), 2 % contrast
+//   visibility V             3.912 / V - molecules         kOpticalDepthOfVisibility
 //   turbidity T              (T - 1) (column of molecules) / H_M
 //                                                          McCartney (1976): optical depth of air
 //                                                          with haze over that without
@@ -45,6 +45,7 @@
 #include "atmosphere/air/ozone_column.h"
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
@@ -412,14 +413,13 @@ class AtmosphereFile {
     if (const auto turbidity = table.Number("turbidity", 1.0, 1000.0)) {
       return (*turbidity - 1.0) * molecules * MoleculeColumn_m(medium) / medium.mie_scale_height_m;
     }
-    constexpr double kLogOfContrast = 3.912;  // -log(0.02)
     const double visibility_m = *table.Number("visibility_m", 1.0, 1e7);
-    const double extinction = kLogOfContrast / visibility_m - molecules;
+    const double extinction = kOpticalDepthOfVisibility / visibility_m - molecules;
     if (!(extinction >= 0.0)) {
       table.Fail("visibility_m",
                  fmt::format("aerosol.visibility_m is {}; the molecules alone limit "
                              "it to {:.0f}",
-                             visibility_m, kLogOfContrast / molecules));
+                             visibility_m, kOpticalDepthOfVisibility / molecules));
     }
     return extinction;
   }

@@ -29,4 +29,8 @@ inline constexpr double kLuminousEfficacy_lm_per_W = 683.002;
 /// in the dark as by day.
 inline constexpr double kScotopicEfficacy_lm_per_W = 1700.0;
 
+/// Optical depth through which a black object is just seen against the horizon, -ln 0.02: the
+/// visibility times the extinction. Koschmieder (1924), Beitr. Phys. freien Atm. 12, 33.
+inline constexpr double kOpticalDepthOfVisibility = 3.912;
+
 }  // namespace alpenglow

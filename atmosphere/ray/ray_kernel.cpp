@@ -246,13 +246,15 @@ void Scatter(const AirConstants<Real>& air, const RaySamples<Real>& samples,
   using Lanes = BatchOf<Real>;
   using T = typename Lanes::Type;
   for (std::size_t band = 0; band < air.bands; ++band) {
-    const T rayleigh(air.rayleigh[band]), mie(air.mie_extinction[band]), ozone(air.ozone[band]);
+    const Extinction<T> extinction{T(air.rayleigh[band]), T(air.mie_extinction[band]),
+                                   T(air.ozone[band])};
     T rayleigh_sum(Real(0)), mie_sum(Real(0));
     for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
       const auto at = [i](const auto& row) { return Lanes::Load(&row[i]); };
-      const T tau = rayleigh * (at(samples.view_rayleigh) + at(samples.sun_rayleigh)) +
-                    mie * (at(samples.view_mie) + at(samples.sun_mie)) +
-                    ozone * (at(samples.view_ozone) + at(samples.sun_ozone));
+      const ColumnSet<T> columns{at(samples.view_rayleigh) + at(samples.sun_rayleigh),
+                                 at(samples.view_mie) + at(samples.sun_mie),
+                                 at(samples.view_ozone) + at(samples.sun_ozone)};
+      const T tau = OpticalDepthOf(extinction, columns);
       const T light = at(samples.weight) * at(samples.lit) * exp(-tau);
       rayleigh_sum += light * at(samples.rayleigh_density);
       mie_sum += light * at(samples.mie_density);

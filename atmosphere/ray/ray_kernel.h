@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/ray/ray_samples.h"
 
 namespace alpenglow {
@@ -23,15 +24,15 @@ struct AirConstants {
   std::array<Real, kMaxBands> rayleigh, mie_scattering, mie_extinction, ozone;
 };
 
+/// Of a band [1/km].
+template <typename Real>
+[[nodiscard]] Extinction<Real> ExtinctionAt(const AirConstants<Real>& air, std::size_t band) {
+  return {air.rayleigh[band], air.mie_extinction[band], air.ozone[band]};
+}
+
 /// The observer, moved to where the ray enters the air; all distances count from here.
 struct RayEntry {
   double altitude_km, mu, mu_s, nu;
-};
-
-/// Columns [km] of molecules, aerosol and ozone.
-template <typename T>
-struct ColumnSet {
-  T rayleigh, mie, ozone;
 };
 
 /// A panel of a ray (ray_panels.h) and the Gauss rule for it, both rows padded with zeros to whole

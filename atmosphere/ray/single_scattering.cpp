@@ -299,9 +299,7 @@ Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double 
   const ColumnSet<Real> columns = rows.At(0);
   Bands<Real> transmittance(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
-    transmittance[band] = std::exp(-(constants_.rayleigh[band] * columns.rayleigh +
-                                     constants_.mie_extinction[band] * columns.mie +
-                                     constants_.ozone[band] * columns.ozone));
+    transmittance[band] = std::exp(-OpticalDepthOf(ExtinctionAt(constants_, band), columns));
   }
   return transmittance;
 }
@@ -315,10 +313,7 @@ Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   Bands<Real> depth(bands());
   for (std::size_t band = 0; band < bands(); ++band) {
-    depth[band] =
-        metres * (static_cast<Real>(medium_.rayleigh_scattering_per_m[band]) * columns.rayleigh +
-                  static_cast<Real>(medium_.mie_extinction_per_m[band]) * columns.mie +
-                  static_cast<Real>(medium_.ozone_absorption_per_m[band]) * columns.ozone);
+    depth[band] = metres * OpticalDepthOf(ExtinctionAt<Real>(medium_, band), columns);
   }
   return depth;
 }

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/refraction.h"
 
 namespace alpenglow {
 namespace {
@@ -113,6 +114,12 @@ SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant, doub
   const glm::dvec3 enu = frame.EnuFromEcef(direction).xyz;
   return {std::atan2(enu.z, std::hypot(enu.x, enu.y)), Azimuth(enu), distance_au,
           std::asin(kSunRadius_m / (distance_au * kAstronomicalUnit_m)), direction};
+}
+
+SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant) {
+  SunPosition sun = SunAt(place, instant);
+  sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, place.height_m);
+  return sun;
 }
 
 Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {

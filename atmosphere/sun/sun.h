@@ -26,6 +26,10 @@ struct SunPosition {
 [[nodiscard]] SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant,
                                 double delta_t_s);
 
+/// The sun where refraction shows it from the place's height: SunAt, its elevation raised by
+/// RefractionFromHeight (refraction.h). `direction` stays the one without refraction.
+[[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant);
+
 /// Unit vector from elevation and azimuth.
 [[nodiscard]] Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad);
 

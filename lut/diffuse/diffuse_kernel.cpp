@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "atmosphere/ray/batch.h"
+#include "atmosphere/ray/optical_depth.h"
 
 namespace alpenglow {
 namespace {
@@ -575,9 +576,12 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
       }
       alignas(64) float attenuation[kBlockBands][kChunk];
       for (std::size_t band = 0; band < kBlockBands; ++band) {
-        const T depth = T(blocks[b].rayleigh[band]) * Lanes::Load(&samples.view_rayleigh[first]) +
-                        T(blocks[b].mie_extinction[band]) * Lanes::Load(&samples.view_mie[first]) +
-                        T(blocks[b].ozone[band]) * Lanes::Load(&samples.view_ozone[first]);
+        const Extinction<T> extinction{T(blocks[b].rayleigh[band]),
+                                       T(blocks[b].mie_extinction[band]), T(blocks[b].ozone[band])};
+        const ColumnSet<T> columns{Lanes::Load(&samples.view_rayleigh[first]),
+                                   Lanes::Load(&samples.view_mie[first]),
+                                   Lanes::Load(&samples.view_ozone[first])};
+        const T depth = OpticalDepthOf(extinction, columns);
         Lanes::Store(attenuation[band], Lanes::Load(&samples.weight[first]) * exp(-depth));
       }
       for (std::size_t s = 0; s < size; ++s) {

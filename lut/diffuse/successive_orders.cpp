@@ -72,8 +72,7 @@ MarchLight LightOf(const AirConstants<float>& air, std::size_t first_band,
   MarchLight light{};
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane) {
     const std::size_t band = first_band + lane;
-    const float depth =
-        air.rayleigh[band] * at[3] + air.mie_extinction[band] * at[4] + air.ozone[band] * at[5];
+    const float depth = OpticalDepthOf(ExtinctionAt(air, band), {at[3], at[4], at[5]});
     const float share = at[0] * std::exp(-depth);
     light.rayleigh[lane] = share * air.rayleigh[band] * at[1];
     light.mie[lane] = share * air.mie_scattering[band] * at[2];

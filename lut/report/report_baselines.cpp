@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "lut/eval/eval.h"
@@ -23,24 +24,26 @@ float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerK
 
 /// Coefficients of one wavelength [1/km] and in float.
 struct BandCoefficients {
-  float rayleigh, mie_scattering, mie_extinction, ozone;
+  Extinction<float> extinction;
+  float mie_scattering;
 
   BandCoefficients(const Medium& medium, std::size_t band)
-      : rayleigh(PerKilometre(medium.rayleigh_scattering_per_m[band])),
-        mie_scattering(PerKilometre(medium.mie_scattering_per_m[band])),
-        mie_extinction(PerKilometre(medium.mie_extinction_per_m[band])),
-        ozone(PerKilometre(medium.ozone_absorption_per_m[band])) {}
+      : extinction{PerKilometre(medium.rayleigh_scattering_per_m[band]),
+                   PerKilometre(medium.mie_extinction_per_m[band]),
+                   PerKilometre(medium.ozone_absorption_per_m[band])},
+        mie_scattering(PerKilometre(medium.mie_scattering_per_m[band])) {}
 
   /// What a sample scatters towards the observer, of radiance one from everywhere.
   [[nodiscard]] float ScatteredAt(const RaySamples<float>& samples, std::size_t i) const {
-    const float view = rayleigh * samples.view_rayleigh[i] + mie_extinction * samples.view_mie[i] +
-                       ozone * samples.view_ozone[i];
+    const float view = OpticalDepthOf(
+        extinction, {samples.view_rayleigh[i], samples.view_mie[i], samples.view_ozone[i]});
     return samples.weight[i] * std::exp(-view) *
-           (rayleigh * samples.rayleigh_density[i] + mie_scattering * samples.mie_density[i]);
+           (extinction.rayleigh * samples.rayleigh_density[i] +
+            mie_scattering * samples.mie_density[i]);
   }
   [[nodiscard]] float ToSun(const RaySamples<float>& samples, std::size_t i) const {
-    return rayleigh * samples.sun_rayleigh[i] + mie_extinction * samples.sun_mie[i] +
-           ozone * samples.sun_ozone[i];
+    return OpticalDepthOf(extinction,
+                          {samples.sun_rayleigh[i], samples.sun_mie[i], samples.sun_ozone[i]});
   }
 
  private:
@@ -54,8 +57,7 @@ Bands<float> TransmittanceOf(const Medium& medium, float rayleigh_km, float mie_
   Bands<float> result(medium.wavelengths_nm.size());
   for (std::size_t band = 0; band < result.count; ++band) {
     const BandCoefficients sigma(medium, band);
-    result[band] = std::exp(
-        -(sigma.rayleigh * rayleigh_km + sigma.mie_extinction * mie_km + sigma.ozone * ozone_km));
+    result[band] = std::exp(-OpticalDepthOf(sigma.extinction, {rayleigh_km, mie_km, ozone_km}));
   }
   return result;
 }

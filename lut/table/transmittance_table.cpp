@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/text/error.h"
 #include "lut/table/table_size.h"
 #include "lut/table/transmittance_map.h"
@@ -48,9 +49,8 @@ TransmittanceTable::TransmittanceTable(const Medium& medium, const Transmittance
       const Point point = PointOfTexel(column, row);
       const std::array<double, 3> columns_m = air.ColumnsToSpace(point.altitude_m, point.mu);
       for (std::size_t band = 0; band < bands; ++band) {
-        const double tau = medium_.rayleigh_scattering_per_m[band] * columns_m[0] +
-                           medium_.mie_extinction_per_m[band] * columns_m[1] +
-                           medium_.ozone_absorption_per_m[band] * columns_m[2];
+        const double tau = OpticalDepthOf(ExtinctionAt<double>(medium_, band),
+                                          {columns_m[0], columns_m[1], columns_m[2]});
         texels_[(row * size_.mu + column) * bands + band] = static_cast<float>(std::exp(-tau));
       }
     }

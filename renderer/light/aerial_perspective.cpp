@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/number/quadrature.h"
+#include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
@@ -235,9 +236,9 @@ AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu,
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     air.inscatter[band] = std::max(direct[band], 0.0F) + diffuse[band];
-    const float depth = air_per_km.rayleigh[band] * samples.view_rayleigh[last] +
-                        air_per_km.mie_extinction[band] * samples.view_mie[last] +
-                        air_per_km.ozone[band] * samples.view_ozone[last];
+    const float depth = OpticalDepthOf(
+        ExtinctionAt(air_per_km, band),
+        {samples.view_rayleigh[last], samples.view_mie[last], samples.view_ozone[last]});
     air.transmittance[band] = std::exp(-std::max(depth, 0.0F));
   }
   return air;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/refraction.h"
+#include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/ground/terrain_sunlight.h"
 
@@ -38,9 +38,7 @@ SunPosition SceneState::ApparentSun(const Shot& shot) const {
   GeodeticPosition eye = scene.place;
   eye.height_m = ground.eye_height_m;
   if (const auto pose = shot.middle()) eye = pose->place;
-  SunPosition sun = SunAt(eye, shot.instant);
-  sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, eye.height_m);
-  return sun;
+  return ApparentSunAt(eye, shot.instant);
 }
 
 CameraStand SceneState::StandOf(const Shot& shot) const {

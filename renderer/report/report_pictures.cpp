@@ -266,7 +266,7 @@ Scene RunwayScene(int lamps, bool with_beam) {
   scene.medium = MediumPreset("earth");
   scene.terrain.kind = TerrainSource::Kind::kNone;
   scene.camera = CameraFromDegrees({kEye_m, false}, 90.0, -4.0, 0.0, 50.0);
-  scene.fog = Fog{.extinction_per_m = 3.912 / kVisibility_m,  // Koschmieder, contrast 2 %
+  scene.fog = Fog{.extinction_per_m = kOpticalDepthOfVisibility / kVisibility_m,
                   .scale_height_m = 25.0,
                   .base_height_m = 0.0,
                   .phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};

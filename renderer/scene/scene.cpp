@@ -15,9 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHighestEye_m = 1e9;
-// Optical depth at which a black object is just seen against the horizon: -ln 0.02, Koschmieder
-// (1924).
-constexpr double kContrastThreshold = 3.912;
 constexpr double kDeepestPlace_m = -12000.0;  // as PlaceFromDegrees
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
@@ -346,7 +343,7 @@ std::optional<Fog> FogOf(const TomlTable& document) {
     table->Fail("visibility_m", "give one of fog.visibility_m and fog.extinction_per_m");
   }
   Fog fog;
-  fog.extinction_per_m = extinction ? *extinction : kContrastThreshold / *visibility;
+  fog.extinction_per_m = extinction ? *extinction : kOpticalDepthOfVisibility / *visibility;
   fog.scale_height_m =
       table->Number("scale_height_m", 1.0, 1e5).value_or(std::numeric_limits<double>::infinity());
   fog.base_height_m = table->Number("base_height_m", kDeepestPlace_m, 1e5);
@@ -428,8 +425,9 @@ Volume VolumeOf(const TomlTable& table, const fs::path& folder, std::size_t band
     table.Fail("visibility_m", fmt::format("give one of {} and {}", table.FullName("visibility_m"),
                                            table.FullName("extinction_per_m")));
   }
-  volume.extinction_per_m = visibility ? std::vector<double>{kContrastThreshold / *visibility}
-                                       : PerBand(table, "extinction_per_m", 1e4, bands, 0.0);
+  volume.extinction_per_m = visibility
+                                ? std::vector<double>{kOpticalDepthOfVisibility / *visibility}
+                                : PerBand(table, "extinction_per_m", 1e4, bands, 0.0);
   volume.albedo = PerBand(table, "albedo", 1.0, bands, 1.0);
   volume.emission_per_m = PerBand(table, "emission_per_m", 1e12, bands, 0.0);
   volume.temperature_k = table.Number("temperature_k", 100.0, 50000.0);

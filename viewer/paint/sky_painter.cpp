@@ -8,7 +8,6 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/sun/refraction.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/dither.h"
 #include "renderer/ground/surface.h"
@@ -133,12 +132,6 @@ std::vector<ShaderPiece> LightTexts(int degree) {
     pieces.push_back(Piece(name));
   }
   return pieces;
-}
-
-SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant) {
-  SunPosition sun = SunAt(place, instant);
-  sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, place.height_m);
-  return sun;
 }
 
 SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const TriangleMesh& mesh,
@@ -266,7 +259,7 @@ void SkyPainter::PaintPicture(const Eye& eye, const RenderTarget& target, float 
 
 void SkyPainter::Paint(const Eye& eye, const UtcInstant& instant, int width, int height,
                        int samples) {
-  const SunPosition sun = ApparentSun(eye.place, instant);
+  const SunPosition sun = ApparentSunAt(eye.place, instant);
   const int side = static_cast<int>(std::lround(std::sqrt(samples)));
   Fit(surface_, width * side, height * side, RenderTarget::Depth::k32Bit);
   Fit(picture_, width, height, RenderTarget::Depth::kNone);

@@ -64,7 +64,4 @@ class SkyPainter {
 /// light of this degree.
 [[nodiscard]] std::vector<ShaderPiece> LightTexts(int degree);
 
-/// The sun from a place at any height, where refraction shows it.
-[[nodiscard]] SunPosition ApparentSun(const GeodeticPosition& place, const UtcInstant& instant);
-
 }  // namespace alpenglow
