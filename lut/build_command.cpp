@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "lut/build_command.h"
 
-#include <fmt/core.h>
-
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "atmosphere/air/medium.h"
 #include "lut/eval/eval.h"
+#include "lut/program/output_name.h"
 #include "lut/store/exchange_tables.h"
 #include "lut/store/table_folder.h"
 #include "lut/train/table_search.h"
@@ -55,18 +53,26 @@ void CheckLayout(const BuildOptions& options) {
   }
 }
 
+/// Refuses an atmosphere that a file of this name in the folder would replace.
+void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
+  if (!options.atmosphere) return;
+  RequireNoInput({"--out", std::filesystem::path(options.out) / name},
+                 {{"--atmosphere", *options.atmosphere}});
+}
+
 void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
                          const CommonOptions& common) {
+  RequireAtmosphereElsewhere(options, kMediumFileName);
   const Medium medium =
       options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("bruneton2017");
   MakeFolder(options.out);  // before the work
   WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
                       exchange, options.out);
   if (!IsTheMediumThatLoadersAssume(medium)) {
-    fmt::print(stderr,
-               "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
-               "these tables are for {}\n",
-               medium.name);
+    Say(fmt::format(
+        "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
+        "these tables are for {}\n",
+        medium.name));
   }
 }
 
@@ -83,7 +89,7 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
         medium, {.max_error = *max_error,
                  .wanted = options.tables == "all" ? TablesWanted::kAll : TablesWanted::kSmallest});
     WriteTables(choice, options.out);
-    fmt::print("{}", ChoiceText(choice, *max_error));
+    Print(ChoiceText(choice, *max_error));
     return;
   }
   BuildTableFolder(medium, TableQualityFromName(options.quality),
@@ -98,7 +104,9 @@ Subcommand AddBuildCommand(CLI::App& app) {
   CLI::App& build = *app.add_subcommand(
       "build",
       "Build the tables of an atmosphere: transmittance, single scattering, multiple scattering.");
-  build.add_option("--out", options->out, "Folder for the tables; made when missing")->required();
+  build.add_option("--out", options->out, "Folder for the tables; made when missing")
+      ->check(FaultOfFolderName)
+      ->required();
   AddAtmosphereOption(build, options->atmosphere);
   CLI::Option* quality =
       build

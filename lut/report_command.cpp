@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "lut/report_command.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "atmosphere/air/medium.h"
+#include "lut/program/output_name.h"
 #include "lut/report/report.h"
 
 namespace alpenglow {
@@ -25,7 +24,7 @@ void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOption
                      .quick = options.quick,
                      .progress = common.progress_style()});
   WriteReport(report, options.out);
-  if (!common.quiet) fmt::print("{}", SummaryOf(report));
+  if (!common.quiet) Print(SummaryOf(report));
 }
 
 }  // namespace
@@ -36,7 +35,9 @@ Subcommand AddReportCommand(CLI::App& app) {
       "report",
       "Measure every method against the judges, error against time and memory, by day, at sunset "
       "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
-  report.add_option("--out", options->out, "Folder for the report; made when missing")->required();
+  report.add_option("--out", options->out, "Folder for the report; made when missing")
+      ->check(FaultOfFolderName)
+      ->required();
   report.add_option("--atmosphere", options->atmosphere,
                     "Atmosphere file (TOML); without it the presets earth and hazy");
   report.add_flag("--quick", options->quick,

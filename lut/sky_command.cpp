@@ -9,6 +9,7 @@
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
 #include "lut/picture/picture_text.h"
+#include "lut/program/output_name.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow {
@@ -113,7 +114,18 @@ double Ev100Of(const RenderedSky& sky, const ExposureRule& rule, const Look& loo
   return MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2);
 }
 
+/// Whatever would keep the picture from its files, before the picture is made.
+void RequireOutputs(const SkyOptions& options) {
+  std::vector<NamedFile> outputs{{"--out", options.out}};
+  if (options.png) outputs.push_back({"--png", *options.png});
+  for (const NamedFile& output : outputs) {
+    if (options.atmosphere) RequireNoInput(output, {{"--atmosphere", *options.atmosphere}});
+    RequireWritable(output.file);
+  }
+}
+
 void MakeSky(const SkyOptions& options, const CommonOptions& common) {
+  RequireOutputs(options);
   const ExposureRule rule = ExposureRuleFromText(options.exposure);
   Look look = LookFromName(options.curve);
   look.night_vision = options.night_vision;
@@ -158,8 +170,11 @@ void AddSun(CLI::App& sky, SkyOptions& options) {
 
 void AddPicture(CLI::App& sky, SkyOptions& options) {
   sky.add_option("--out", options.out, "EXR file: linear sRGB in cd/m^2, envmap latlong")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".exr"); })
       ->required();
-  CLI::Option* png = sky.add_option("--png", options.png, "PNG file as well: exposed, tone-mapped");
+  CLI::Option* png =
+      sky.add_option("--png", options.png, "PNG file as well: exposed, tone-mapped")
+          ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
   sky.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
       ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // skylut: tables of the sky. Builds, describes and evaluates them.
-#include <fmt/core.h>
-
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/text/error.h"
@@ -11,6 +10,7 @@
 #include "lut/eval/eval.h"
 #include "lut/eval/lamp_cases.h"
 #include "lut/program/command_line.h"
+#include "lut/program/output_name.h"
 #include "lut/program/program.h"
 #include "lut/report_command.h"
 #include "lut/sky_command.h"
@@ -40,13 +40,17 @@ void AddEval(CLI::App& app, Options& options) {
       "Evaluate cases, one a line: id,quantity,altitude_m,view_zenith_deg,"
       "relative_azimuth_deg,sun_zenith_deg,distance_m. Quantities: transmittance, "
       "optical_depth, single, inscatter_single, total, irradiance_sun, irradiance_sky; "
-      "radiances [1/sr] and irradiances [1] per unit solar irradiance. Results: "
+      "radiances [1/sr] and irradiances [1] per unit solar irradiance. distance_m empty: to the "
+      "ground, whose light single and total bring, or out of the top; given: the segment ends "
+      "there, or at the ground or the top if nearer, and light of the ground is left out. Results: "
       "id,wavelength_nm,value,error. Or a file of lamps in homogeneous air, quantity airlight: "
       "id,quantity,scattering_per_m,extinction_per_m,phase,g,segment_m,light_along_m,"
       "light_across_m,profile,axis_x,axis_y,axis_z,exponent,inner_deg,outer_deg (--method "
       "integral; no atmosphere is needed): radiance for unit intensity [1/(sr m2)].");
   eval.add_option("--cases", options.cases, "Cases (CSV)")->required();
-  eval.add_option("--out", options.results, "Results (CSV)")->required();
+  eval.add_option("--out", options.results, "Results (CSV)")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ""); })
+      ->required();
   eval.add_option("--method", options.method, "table (needs --lut), integral or path-trace")
       ->check(CLI::IsMember({"table", "integral", "path-trace"}))
       ->required();
@@ -92,7 +96,15 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
                                {.samples = options.samples.value_or(16), .max_error = error});
 }
 
+std::vector<NamedFile> InputsOf(const Options& options) {
+  std::vector<NamedFile> inputs{{"--cases", options.cases}};
+  if (options.atmosphere) inputs.push_back({"--atmosphere", *options.atmosphere});
+  return inputs;
+}
+
 void Evaluate(const Options& options) {
+  RequireNoInput({"--out", options.results}, InputsOf(options));
+  RequireWritable(options.results);
   const ProgressStyle style = options.common.progress_style();
   if (!HoldsLampCases(options.cases)) {
     EvaluateFile(options.cases, options.results, *EvaluatorFor(options), style);
@@ -129,7 +141,7 @@ int Run(int argc, char** argv) {
   } else if (app.got_subcommand("report")) {
     report(options.common);
   } else if (app.got_subcommand("info")) {
-    fmt::print("{}", DescribeTables(options.described));
+    Print(DescribeTables(options.described));
   } else {
     Evaluate(options);
   }

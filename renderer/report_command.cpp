@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/report_command.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "atmosphere/air/medium.h"
+#include "lut/program/output_name.h"
 #include "renderer/report/report.h"
 
 namespace alpenglow {
@@ -27,7 +26,7 @@ void WriteMeasuredReport(const PictureReportOptions& options) {
                             .quick = options.quick,
                             .progress = options.common.progress_style()});
   WriteReport(report, options.out);
-  if (!options.common.quiet) fmt::print("{}", SummaryOf(report));
+  if (!options.common.quiet) Print(SummaryOf(report));
 }
 
 }  // namespace
@@ -39,7 +38,9 @@ std::function<void()> AddPictureReportCommand(CLI::App& app) {
       "Measure the air before mountains, shafts, lamps and whole pictures against slow judges, "
       "error against time: CSV, SVG plots, summary.md and a page, index.html.");
   report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
-  report.add_option("--out", options->out, "Folder for the report; made when missing")->required();
+  report.add_option("--out", options->out, "Folder for the report; made when missing")
+      ->check(FaultOfFolderName)
+      ->required();
   report.add_option("--atmosphere", options->atmosphere,
                     "Atmosphere file (TOML) of the air before mountains; without it the presets "
                     "earth and hazy");

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // skyseries: pictures of a scene through the day. A still is a series of one.
-#include <fmt/core.h>
-
 #include <memory>
 
 #include "renderer/report_command.h"
+#include "renderer/scene/scene_files.h"
 #include "renderer/series/path_frames.h"
 #include "renderer/series/provenance.h"
 #include "renderer/series/series.h"
@@ -46,10 +45,18 @@ std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene,
   return FramesFromTimes(options.times, day);
 }
 
+std::vector<NamedFile> InputsOf(const SkyseriesOptions& options, const Scene& scene) {
+  std::vector<NamedFile> inputs = FilesOf(scene);
+  if (!options.scene_file.empty()) inputs.push_back({"the scene", options.scene_file});
+  if (options.path) inputs.push_back({"--path", *options.path});
+  if (options.scene.atmosphere) inputs.push_back({"--atmosphere", *options.scene.atmosphere});
+  return inputs;
+}
+
 std::unique_ptr<SceneRenderer> Load(const Scene& scene) {
   auto renderer = std::make_unique<SceneRenderer>(scene);
   if (!renderer->terrain_message().empty()) {
-    fmt::print(stderr, "skyseries: {}\n", renderer->terrain_message());
+    Say(fmt::format("skyseries: {}\n", renderer->terrain_message()));
   }
   return renderer;
 }
@@ -72,7 +79,8 @@ NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
                          const RenderSettings& settings, const SkyseriesOptions& options) {
   if (!ChoosesEffects(options) && !options.explain) return renderer.Render(shot, settings);
   ChosenPicture picture = renderer.RenderWithin(shot, settings, BudgetOf(options));
-  if (options.explain) fmt::print("{}\n{}\n", FormatUtc(shot.instant), ExplainText(picture.choice));
+  if (options.explain)
+    Print(fmt::format("{}\n{}\n", FormatUtc(shot.instant), ExplainText(picture.choice)));
   return {std::move(picture.image), NotesOn(picture.choice)};
 }
 
@@ -89,6 +97,7 @@ int Run(const SkyseriesOptions& options) {
   output.look = LookFromName(options.tone_curve);
   output.look.night_vision = options.night_vision;
   output.resume = options.resume;
+  output.inputs = InputsOf(options, scene);
   if (options.contact_sheet) output.contact_sheet = *options.contact_sheet;
   output.progress = options.common.progress_style();
 
@@ -119,8 +128,12 @@ int Run(const SkyseriesOptions& options) {
       path};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
-    fmt::print(stderr, "skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,
-               summary.developed, summary.kept);
+    if (summary.removed > 0) {
+      Say(fmt::format("skyseries: removed {} unfinished files of runs that were killed\n",
+                      summary.removed));
+    }
+    Say(fmt::format("skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,
+                    summary.developed, summary.kept));
   }
   return 0;
 }

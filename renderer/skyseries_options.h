@@ -10,6 +10,7 @@
 #include "lut/picture/look.h"
 #include "lut/picture/picture_text.h"
 #include "lut/program/command_line.h"
+#include "lut/program/output_name.h"
 #include "renderer/camera/pixel_samples.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
@@ -150,8 +151,11 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_flag("--night-vision", options.night_vision,
                "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
                "grows brighter");
-  app.add_flag("--resume", options.resume, "Keep intact frames that were made with these settings");
-  app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small");
+  app.add_flag("--resume", options.resume,
+               "Keep intact frames that were made with these settings; remove unfinished files of "
+               "runs that were killed on this machine");
+  app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
 }
 
 inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {

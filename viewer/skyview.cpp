@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // skyview: a flight through a scene, on the graphics card.
-#include <fmt/core.h>
-
 #include <chrono>
 
 #include "atmosphere/number/constants.h"
+#include "lut/program/output_name.h"
+#include "renderer/scene/scene_files.h"
 #include "renderer/series/frame_times.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
@@ -91,6 +91,35 @@ void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, F
   }
 }
 
+std::vector<NamedFile> InputsOf(const SkyviewOptions& options, const Scene& scene) {
+  std::vector<NamedFile> inputs = FilesOf(scene);
+  if (!options.scene_file.empty()) inputs.push_back({"the scene", options.scene_file});
+  if (options.replay) inputs.push_back({"--replay", *options.replay});
+  return inputs;
+}
+
+std::vector<NamedFile> OutputsOf(const SkyviewOptions& options) {
+  std::vector<NamedFile> outputs;
+  if (options.record) outputs.push_back({"--record", *options.record});
+  if (!options.screenshot) return outputs;
+  const bool many = options.replay && options.headless;
+  for (const std::filesystem::path& file :
+       many ? ReplayPictures(*options.screenshot, options.frames)
+            : std::vector<std::filesystem::path>{*options.screenshot}) {
+    outputs.push_back({"--screenshot", file});
+  }
+  return outputs;
+}
+
+/// Whatever would keep the pictures and the flight from their files, before the flight.
+void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
+  const std::vector<NamedFile> inputs = InputsOf(options, scene);
+  for (const NamedFile& output : OutputsOf(options)) {
+    RequireNoInput(output, inputs);
+    RequireWritable(output.file);
+  }
+}
+
 int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
   const ImageSize size = ImageSizeFromText(options.size);
@@ -99,16 +128,17 @@ int Run(const SkyviewOptions& options) {
   const UtcInstant start = StartOf(options, scene);
   std::optional<CameraPath> path;
   if (options.replay) path = ReadCameraPath(*options.replay);
+  RequireOutputs(options, scene);
   // The context outlives what was made in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
   const auto window = options.headless
                           ? nullptr
                           : std::make_unique<Window>(size.width, size.height, options.fullscreen);
-  if (!options.common.quiet) fmt::print(stderr, "skyview: {}\n", GlDescription());
+  if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
   Flythrough flight(scene, start);
   flight.Place(PlacementOf(options));
   if (!flight.terrain_message().empty())
-    fmt::print(stderr, "skyview: {}\n", flight.terrain_message());
+    Say(fmt::format("skyview: {}\n", flight.terrain_message()));
   FlightRecorder recorder;
   if (window) {
     Fly(options, path, flight, *window, recorder);

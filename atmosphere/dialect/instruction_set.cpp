@@ -49,7 +49,8 @@ InstructionSet Named(std::string_view name) {
 
 InstructionSet FirstChoice() {
   const char* const name = std::getenv("ALPENGLOW_INSTRUCTION_SET");
-  return name == nullptr ? AvailableInstructionSets().back() : Named(name);
+  const bool unset = name == nullptr || *name == '\0';  // as shells clear a variable for a command
+  return unset ? AvailableInstructionSets().back() : Named(name);
 }
 
 std::atomic<InstructionSet>& Current() {

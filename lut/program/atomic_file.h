@@ -2,6 +2,7 @@
 // Files that are written whole or not at all.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string_view>
@@ -20,5 +21,14 @@ void WriteFileAtomically(const std::filesystem::path& target,
 
 /// As above, with the whole content given.
 void WriteTextAtomically(const std::filesystem::path& target, std::string_view text);
+
+/// Throws the OutputError that writing there would end with (no such folder, no right, a folder of
+/// that name): before the work, so that it is not lost.
+void RequireWritable(const std::filesystem::path& target);
+
+/// Removes the temporaries in a folder whose writers were killed, and no others: of this machine,
+/// by their names (a farm shares folders), and locked by nobody, as their writers keep them until
+/// they are done. File systems without locks keep theirs. Returns how many were removed.
+std::size_t RemoveAbandonedTemporaries(const std::filesystem::path& folder);
 
 }  // namespace alpenglow

@@ -2,18 +2,13 @@
 #include "lut/program/program.h"
 
 #include <OpenEXR/OpenEXRConfig.h>
-#include <fmt/core.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/version.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <csignal>
-#include <cstdio>
-#include <iostream>
 #include <optional>
-#include <system_error>
 
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/text/error.h"
@@ -42,21 +37,12 @@ void InstallHandlers() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);
-}
-
-void FlushStandardOutput() {
-  errno = 0;
-  const bool streams = static_cast<bool>(std::cout.flush());
-  if (!streams || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw OutputError("standard output: cannot be written: " +
-                      std::generic_category().message(errno == 0 ? EIO : errno));
-  }
+  for (const int lost : {SIGXFSZ, SIGPIPE, SIGHUP}) std::signal(lost, SIG_IGN);
 }
 
 int Report(const std::string& name, std::string message, int status) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  fmt::print(stderr, "{}: {}\n", name, message);
+  Say(fmt::format("{}: {}\n", name, message));
   return status;
 }
 
@@ -73,6 +59,7 @@ std::string SimdText() {
 }  // namespace
 
 int RunProgram(const std::string& name, const std::function<int()>& body) {
+  OccupyStandardDescriptors();
   InstallHandlers();
   try {
     const int status = body();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the three programs have in common: exit statuses, signals, version, threads; progress and
-// atomic output have headers of their own, included here.
+// What the three programs have in common: exit statuses, signals, version, threads; messages,
+// progress and atomic output have headers of their own, included here.
 #pragma once
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "lut/program/atomic_file.h"
+#include "lut/program/messages.h"
 #include "lut/program/progress.h"
 
 namespace alpenglow {
@@ -16,7 +17,10 @@ namespace alpenglow {
 /// OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else 70. Output
 /// that standard output did not take is an OutputError too.
 /// Installs handlers for SIGINT and SIGTERM that make Interrupted() true; the second signal of a
-/// kind ends the program at once. SIGXFSZ is ignored: a file over the limit is an OutputError.
+/// kind ends the program at once. SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over the limit and
+/// a result that nobody reads are OutputErrors, and a terminal that goes away takes the messages
+/// with it, but not the work. Whoever closed standard error gets no messages, in no file either
+/// (OccupyStandardDescriptors).
 int RunProgram(const std::string& name, const std::function<int()>& body);
 
 /// True once SIGINT or SIGTERM has arrived. Long loops ask it and call ThrowIfInterrupted between

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/messages.h"
 
 namespace alpenglow {
 namespace {
@@ -109,21 +109,19 @@ struct Progress::State {
     const std::string time = done >= total ? "in " + DurationText(ElapsedSeconds())
                              : left        ? DurationText(*left) + " left"
                                            : "";
-    fmt::print(stderr, "\r{} [{}] {:3} % {}/{} {:<12}", label, Bar(done, total), Percent(), done,
-               total, time);
-    std::fflush(stderr);
+    Say(fmt::format("\r{} [{}] {:3} % {}/{} {:<12}", label, Bar(done, total), Percent(), done,
+                    total, time));
   }
   void PrintLine() const {
     const std::optional<double> left = SecondsLeft();
-    fmt::print(stderr, "{}: {} % ({} of {}){}\n", label, Percent(), done, total,
-               left ? ", " + DurationText(*left) + " left" : "");
+    Say(fmt::format("{}: {} % ({} of {}){}\n", label, Percent(), done, total,
+                    left ? ", " + DurationText(*left) + " left" : ""));
   }
   void PrintJson() const {
     const std::optional<double> left = SecondsLeft();
-    fmt::print(stderr,
-               "{{\"label\":{},\"done\":{},\"total\":{},\"elapsed_s\":{:.3f},\"eta_s\":{}}}\n",
-               JsonString(label), done, total, ElapsedSeconds(),
-               left ? fmt::format("{:.3f}", *left) : "null");
+    Say(fmt::format("{{\"label\":{},\"done\":{},\"total\":{},\"elapsed_s\":{:.3f},\"eta_s\":{}}}\n",
+                    JsonString(label), done, total, ElapsedSeconds(),
+                    left ? fmt::format("{:.3f}", *left) : "null"));
   }
 };
 
@@ -133,7 +131,7 @@ Progress::Progress(std::string label, std::size_t total, ProgressStyle style)
 }
 
 Progress::~Progress() {
-  if (state_->form == Form::kBar) fmt::print(stderr, "\n");
+  if (state_->form == Form::kBar) Say("\n");
 }
 
 void Progress::Advance(std::size_t steps) {

@@ -310,7 +310,7 @@ void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Med
       WriteTextAtomically(file, LittleEndian(texture.rgba, TypeOf(options)));
     }
   }
-  WriteTextAtomically(folder / "atmosphere.toml", MediumText(medium, options));
+  WriteTextAtomically(folder / kMediumFileName, MediumText(medium, options));
 }
 
 }  // namespace alpenglow

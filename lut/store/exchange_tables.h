@@ -37,6 +37,9 @@
 
 namespace alpenglow {
 
+/// Beside the tables: the medium that they were made for.
+inline constexpr const char* kMediumFileName = "atmosphere.toml";
+
 enum class ExchangeLayout { kBruneton, kTakram };
 /// kDat and kBin: texels and nothing else, little-endian, RGBA interleaved, x fastest, first row of
 /// the first layer first.

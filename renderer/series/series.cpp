@@ -216,6 +216,26 @@ void CreateFolder(const fs::path& folder) {
   if (error) throw OutputError(fmt::format("{}: {}", folder.string(), error.message()));
 }
 
+void RequireNoInputAmongTheOutputs(const std::vector<Frame>& frames, const SeriesOutput& output) {
+  RequireNoInput({"--out: the manifest", output.name.Manifest()}, output.inputs);
+  if (output.contact_sheet) {
+    RequireNoInput({"--contact-sheet", *output.contact_sheet}, output.inputs);
+  }
+  for (const Frame& frame : frames) {
+    RequireNoInput({"--out", output.name.Exr(frame.number)}, output.inputs);
+    if (output.png) RequireNoInput({"--png", output.name.Png(frame.number)}, output.inputs);
+  }
+}
+
+std::size_t RemoveLeftovers(const SeriesOutput& output) {
+  const fs::path folder = output.name.Folder();
+  std::size_t removed = RemoveAbandonedTemporaries(folder);
+  if (output.contact_sheet && output.contact_sheet->parent_path() != folder) {
+    removed += RemoveAbandonedTemporaries(output.contact_sheet->parent_path());
+  }
+  return removed;
+}
+
 }  // namespace
 
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
@@ -224,9 +244,14 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
     throw InputError(
         fmt::format("--out has no frame number (%04d), but there are {} frames", frames.size()));
   }
+  RequireNoInputAmongTheOutputs(frames, output);
   CreateFolder(output.name.Folder());
-  if (output.contact_sheet) CreateFolder(output.contact_sheet->parent_path());
+  if (output.contact_sheet) {
+    CreateFolder(output.contact_sheet->parent_path());
+    RequireWritable(*output.contact_sheet);
+  }
   Series series(source, frames, output);
+  const std::size_t removed = output.resume ? RemoveLeftovers(output) : 0;
   series.WriteManifest();  // before the work, so that a folder that takes no files is found out
   Progress progress("frames", selected.size(), output.progress);
   try {
@@ -248,7 +273,9 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   }
   series.WriteManifest();
   series.WriteContactSheet();
-  return series.summary();
+  SeriesSummary summary = series.summary();
+  summary.removed = removed;
+  return summary;
 }
 
 }  // namespace alpenglow

@@ -12,6 +12,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "lut/picture/image.h"
 #include "lut/picture/look.h"
+#include "lut/program/output_name.h"
 #include "lut/program/progress.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/series/frame_name.h"
@@ -55,6 +56,7 @@ struct SeriesOutput {
   ExposureRule exposure = {};  // of every frame
   Look look = {};
   bool resume = false;
+  std::vector<NamedFile> inputs = {};  // that no file of the series may replace
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;
   ProgressStyle progress = ProgressStyle::kAuto;
 };
@@ -62,8 +64,9 @@ struct SeriesOutput {
 /// What was done for the selected frames.
 struct SeriesSummary {
   int rendered = 0;
-  int kept = 0;       // intact, with the same settings
-  int developed = 0;  // pixels kept, exposure or curve changed: written again
+  int kept = 0;             // intact, with the same settings
+  int developed = 0;        // pixels kept, exposure or curve changed: written again
+  std::size_t removed = 0;  // temporaries of runs that were killed
 };
 
 /// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
@@ -73,10 +76,12 @@ struct SeriesSummary {
 ///
 /// Files are written atomically, in folders that are created when they are missing. With `resume`
 /// a frame is rendered only if its file is missing, unreadable, or made with other settings: each
-/// file carries a fingerprint of its settings. Stops between frames when a signal has come
+/// file carries a fingerprint of its settings; and what killed runs left behind in the folders is
+/// removed (RemoveAbandonedTemporaries). Stops between frames when a signal has come
 /// (ThrowIfInterrupted), finished frames and the manifest kept.
 ///
-/// Throws OutputError; InputError for several frames under a name without a number.
+/// Throws OutputError; InputError for several frames under a name without a number, and when a file
+/// of the series is one of its inputs.
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
                         const std::vector<Frame>& selected, const SeriesOutput& output);
 

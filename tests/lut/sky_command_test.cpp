@@ -27,9 +27,10 @@ class SkylutSky : public TemporaryFolder {
 
 TEST_F(SkylutSky, AWrongCommandLineIsStatus2) {
   for (const char* arguments :
-       {"", "--out a.exr", "--sun-elevation 10", "--out a.exr --sun-elevation 91",
-        "--out a.exr --sun-azimuth 10", "--out a.exr --sun-elevation 10 --latitude 46",
-        "--out a.exr --latitude 46 --longitude 8",
+       {"", "--out a.hdr --sun-elevation 10", "--out - --sun-elevation 10",
+        "--out a.exr --png a.jpg --sun-elevation 10", "--out a.exr", "--sun-elevation 10",
+        "--out a.exr --sun-elevation 91", "--out a.exr --sun-azimuth 10",
+        "--out a.exr --sun-elevation 10 --latitude 46", "--out a.exr --latitude 46 --longitude 8",
         "--out a.exr --latitude 46 --time 2026-06-21T12:00:00Z",
         "--out a.exr --sun-elevation 10 --orient maya", "--out a.exr --sun-elevation 10 --size 5",
         "--out a.exr --sun-elevation 10 --tone-map agx",
@@ -51,9 +52,23 @@ TEST_F(SkylutSky, AWrongInputIsStatus3AndNamedInOneLine) {
 }
 
 TEST_F(SkylutSky, AFolderThatIsMissingIsStatus4) {
-  const Outcome outcome = Run("--quiet --size 8x4 --out no/where/a.exr --sun-elevation 10");
-  EXPECT_EQ(outcome.status, 4);
-  EXPECT_THAT(outcome.error, HasSubstr("no/where"));
+  for (const char* outputs : {"--out no/where/a.exr", "--out a.exr --png no/where/a.png"}) {
+    const Outcome outcome =
+        Run(std::string("--progress plain --size 8x4 --sun-elevation 10 ") + outputs);
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_THAT(outcome.error, HasSubstr("no/where"));
+    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1)
+        << "no row was rendered for nothing: " << outcome.error;
+  }
+  EXPECT_EQ(FileCount(), 0U);
+}
+
+TEST_F(SkylutSky, TheAtmosphereIsNeverOverwritten) {
+  WriteText(folder_ / "air.exr", "preset = \"earth\"\n");
+  const Outcome outcome = Run("--out ./air.exr --sun-elevation 10 --atmosphere air.exr");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("an input is not overwritten"));
+  EXPECT_EQ(ContentOf(folder_ / "air.exr"), "preset = \"earth\"\n");
 }
 
 TEST_F(SkylutSky, WritesALatitudeLongitudePictureThatSaysWhatMadeIt) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lut/store/table_file.h"
+#include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -68,6 +69,9 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
        {"",
         "frobnicate",
         "build",
+        "build --out t.dds",
+        "build --out -",
+        "report --out r.png",
         "build --out t --quality best",
         "build --out t --threads -1",
         "build --out t --max-error much",
@@ -84,6 +88,7 @@ TEST_F(Skylut, AWrongCommandLineIsStatus2) {
         "build --out t --layout takram --single-scattering-only",
         "info",
         "eval --cases c --out r",
+        "eval --cases c --out - --method integral",
         "eval --cases c --out r --method path-trace --samples 8",
         "eval --cases c --out r --method table",
         "eval --cases c --out r --method table --lut t --samples 8",
@@ -235,6 +240,53 @@ TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
   const Outcome eval = Run("eval --cases cases.csv --out none/r.csv --method integral --quiet");
   EXPECT_EQ(eval.status, 4) << eval.error;
   EXPECT_THAT(eval.error, HasSubstr("none/r.csv"));
+}
+
+TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
+  WriteCases();
+  const std::vector<std::string> eval{ALPENGLOW_SKYLUT, "eval",
+                                      "--cases",        (folder_ / "cases.csv").string(),
+                                      "--method",       "integral",
+                                      "--progress",     "plain",
+                                      "--out",          (folder_ / "r.csv").string()};
+  ASSERT_EQ(Run("eval --cases cases.csv --out told.csv --method integral").status, 0);
+  for (const tests::Lost how :
+       {tests::Lost::kFull, tests::Lost::kClosed, tests::Lost::kPipe, tests::Lost::kTerminal}) {
+    fs::remove(folder_ / "r.csv");
+    EXPECT_EQ(tests::StatusWithLostMessages(eval, how).value_or(0), 0) << static_cast<int>(how);
+    EXPECT_EQ(ContentOf(folder_ / "r.csv"), ContentOf(folder_ / "told.csv"))
+        << static_cast<int>(how);
+    std::vector<std::string> wrong = eval;
+    wrong.back() = (folder_ / "none" / "r.csv").string();
+    EXPECT_EQ(tests::StatusWithLostMessages(wrong, how).value_or(4), 4) << "the status still tells";
+  }
+}
+
+TEST_F(Skylut, ResultsThatNobodyTakesAreStatus4) {
+  WriteCoarseTables("tables");
+  for (const char* command : {"info tables", "--version", "info --help"}) {
+    const std::string run = std::string("'" ALPENGLOW_SKYLUT "' ") + command;
+    for (const char* nowhere : {" >/dev/full", " >&-"}) {
+      const Outcome outcome = RunCommand("(" + run + nowhere + ")");
+      EXPECT_EQ(outcome.status, 4) << command << nowhere;
+      EXPECT_THAT(outcome.error, HasSubstr("standard output")) << command << nowhere;
+    }
+  }
+}
+
+TEST_F(Skylut, AnInputIsNeverOverwritten) {
+  WriteCases();
+  const std::string cases = ContentOf(folder_ / "cases.csv");
+  fs::create_directory(folder_ / "t");
+  WriteText(folder_ / "t" / "atmosphere.toml", "preset = \"bruneton2017\"\n");
+  for (const char* arguments : {"eval --cases cases.csv --out ./cases.csv --method integral",
+                                "build --out t --layout takram --atmosphere t/atmosphere.toml"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_THAT(outcome.error, HasSubstr("an input is not overwritten"));
+  }
+  EXPECT_EQ(ContentOf(folder_ / "cases.csv"), cases);
+  EXPECT_EQ(ContentOf(folder_ / "t" / "atmosphere.toml"), "preset = \"bruneton2017\"\n");
 }
 
 TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {

@@ -12,6 +12,7 @@
 
 #include "lut/picture/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
+#include "tests/fixtures/lost_messages.h"
 
 namespace alpenglow {
 namespace {
@@ -272,6 +273,63 @@ TEST_F(Skyseries, SigtermKeepsFinishedFramesAndTheNextRunResumes) {
   EXPECT_LT(frames, 40U) << "the signal came too late to show anything";
   EXPECT_EQ(WaitFor(Start(SeriesArguments())), 0);
   EXPECT_TRUE(fs::exists(folder_ / "series" / "f.0039.exr"));
+}
+
+TEST_F(Skyseries, LostMessagesLoseNoFrame) {
+  for (const tests::Lost how :
+       {tests::Lost::kFull, tests::Lost::kClosed, tests::Lost::kPipe, tests::Lost::kTerminal}) {
+    fs::remove_all(folder_ / "series");
+    const std::optional<int> status = tests::StatusWithLostMessages(
+        {ALPENGLOW_SKYSERIES, InFolder("s.toml"), "--size", "16x9", "--samples", "1", "--from",
+         "sunrise", "--to", "sunset", "--count", "5", "--progress", "plain", "--out",
+         InFolder("series/f.%d.exr")},
+        how);
+    if (!status) continue;  // no such thing here (a system without terminals)
+    EXPECT_EQ(*status, 0) << static_cast<int>(how);
+    for (int frame = 0; frame < 5; ++frame) {
+      EXPECT_NO_THROW((void)ReadExr(folder_ / "series" / fmt::format("f.{}.exr", frame)))
+          << static_cast<int>(how);
+    }
+    EXPECT_THAT(ContentOf(folder_ / "series" / "f.manifest.csv"),
+                testing::StartsWith("frame,file,utc"))
+        << "no message went into an output";
+  }
+}
+
+TEST_F(Skyseries, ResumingRemovesWhatAKilledRunLeft) {
+  fs::create_directory(folder_ / "series");
+  tests::LeaveTemporaryOf(folder_ / "series" / "f.0.exr");
+  const std::string series = InFolder("s.toml") + " --size 16x9 --samples 1 --at noon --out " +
+                             InFolder("series/f.%d.exr");
+  const auto files = [&] {
+    return std::distance(fs::directory_iterator(folder_ / "series"), fs::directory_iterator());
+  };
+  ASSERT_EQ(Run(series).status, 0);
+  EXPECT_EQ(files(), 3) << "picture, manifest, and what was left: another run may be looking at it";
+  const Outcome resumed = Run(series + " --resume");
+  EXPECT_EQ(resumed.status, 0);
+  EXPECT_THAT(resumed.error, HasSubstr("removed 1 unfinished"));
+  EXPECT_EQ(files(), 2);
+}
+
+TEST_F(Skyseries, AnInputIsNeverOverwritten) {
+  WriteText(folder_ / "colour.png", "a picture");
+  WriteText(folder_ / "x.hgt", "an elevation model");
+  WriteText(folder_ / "s.toml",
+            "[place]\nlatitude = 46.5\nlongitude = 8.0\n[time]\nutc = \"2026-06-21T10:00:00Z\"\n"
+            "[terrain]\ndem = \"x.hgt\"\ncolour = \"colour.png\"\n");
+  fs::create_symlink("s.toml", folder_ / "scene.exr");
+  for (const std::string& arguments :
+       {InFolder("scene.exr") + " --out " + InFolder("scene.exr"),
+        InFolder("s.toml") + " --png --out " + InFolder("colour.exr"),
+        InFolder("s.toml") + " --out " + InFolder("a.exr") + " --contact-sheet " +
+            InFolder("colour.png")}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_THAT(outcome.error, HasSubstr("an input is not overwritten"));
+  }
+  EXPECT_EQ(ContentOf(folder_ / "colour.png"), "a picture");
+  EXPECT_EQ(Run(SmallStill() + " --contact-sheet sheet.jpg").status, 2);
 }
 
 TEST_F(Skyseries, TwoProcessesOnTheSameFramesBothSucceed) {

@@ -9,6 +9,7 @@
 #include "lut/picture/image.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene_folder.h"
+#include "tests/fixtures/lost_messages.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow {
@@ -131,11 +132,35 @@ TEST_F(Skyview, AMediumOfManyBandsIsRefused) {
   EXPECT_THAT(outcome.error, HasSubstr("at most 4"));
 }
 
-TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFour) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFourBeforeTheFlight) {
   const Outcome outcome =
       Run(InFolder("s.toml") + " --headless --size 16x9 --screenshot /no/such/folder/a.png");
   EXPECT_EQ(outcome.status, 4) << outcome.error;
+}
+
+TEST_F(Skyview, LostMessagesLoseNoPicture) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  for (const tests::Lost how : {tests::Lost::kFull, tests::Lost::kClosed, tests::Lost::kPipe}) {
+    fs::remove(folder_ / "a.png");
+    const std::optional<int> status =
+        tests::StatusWithLostMessages({ALPENGLOW_SKYVIEW, InFolder("s.toml"), "--headless",
+                                       "--size", "16x9", "--screenshot", InFolder("a.png")},
+                                      how);
+    EXPECT_EQ(status.value_or(0), 0) << static_cast<int>(how);
+    EXPECT_EQ(ReadPng(InFolder("a.png")).width, 16) << static_cast<int>(how);
+  }
+}
+
+TEST_F(Skyview, AnInputIsNeverOverwritten) {
+  WriteText(folder_ / "p.csv",
+            "t_s,latitude,longitude,height_m,heading\n0,46.5,8,3000,350\n10,46.6,8,5000,10\n");
+  const std::string path = ContentOf(folder_ / "p.csv");
+  const Outcome outcome =
+      Run(InFolder("s.toml") + " --headless --screenshot " + InFolder("a.%d.png") + " --replay " +
+          InFolder("p.csv") + " --record " + InFolder("p.csv"));
+  EXPECT_EQ(outcome.status, 3) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("an input is not overwritten"));
+  EXPECT_EQ(ContentOf(folder_ / "p.csv"), path);
 }
 
 TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {

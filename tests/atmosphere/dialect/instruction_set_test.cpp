@@ -65,8 +65,9 @@ TEST(InstructionSet, TheBestAvailableOneIsUsedUnlessTheEnvironmentNamesAnother) 
   ASSERT_FALSE(sets.empty());
   EXPECT_EQ(sets.front(), InstructionSet::kBaseline);
   const char* const forced = std::getenv("ALPENGLOW_INSTRUCTION_SET");
-  EXPECT_EQ(NameOf(CurrentInstructionSet()),
-            forced == nullptr ? std::string(NameOf(sets.back())) : std::string(forced));
+  EXPECT_EQ(NameOf(CurrentInstructionSet()), forced == nullptr || *forced == '\0'
+                                                 ? std::string(NameOf(sets.back()))
+                                                 : std::string(forced));
 }
 
 TEST(InstructionSet, AScopeEndsWithTheSetBeforeIt) {
@@ -91,6 +92,16 @@ TEST(InstructionSetDeathTest, AnUnknownNameInTheEnvironmentIsRefused) {
         }
       },
       ::testing::ExitedWithCode(3), "ALPENGLOW_INSTRUCTION_SET is \"mmx\"; .* have");
+}
+
+TEST(InstructionSetDeathTest, AnEmptyNameInTheEnvironmentIsAsIfItWereUnset) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(
+      {
+        setenv("ALPENGLOW_INSTRUCTION_SET", "", 1);
+        std::exit(CurrentInstructionSet() == AvailableInstructionSets().back() ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/program/program.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -18,6 +19,8 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/output_name.h"
+#include "tests/fixtures/lost_messages.h"
 
 namespace alpenglow {
 namespace {
@@ -113,6 +116,28 @@ TEST(Program, VersionNamesProgramReleaseAndLibraries) {
 TEST(Program, ANegativeNumberOfThreadsIsRefused) {
   EXPECT_THROW(ThreadLimit{-1}, InputError);
   EXPECT_NO_THROW(ThreadLimit{0});
+}
+
+TEST(Program, ResultsThatStandardOutputDoesNotTakeAreStatus4AfterTheWork) {
+  const int full = open("/dev/full", O_WRONLY);
+  ASSERT_GE(full, 0);
+  std::fflush(stdout);
+  const int before = dup(STDOUT_FILENO);
+  dup2(full, STDOUT_FILENO);
+  bool done = false;
+  const Outcome outcome = RunBody([&] {
+    Print(std::string(100000, 'x'));  // more than a buffer holds
+    done = true;
+    return 0;
+  });
+  dup2(before, STDOUT_FILENO);
+  std::clearerr(stdout);
+  close(before);
+  close(full);
+  EXPECT_TRUE(done);
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.error_text, HasSubstr("standard output: cannot be written: No space left"));
+  EXPECT_EQ(RunBody([] { return 0; }).status, 0) << "the next run knows nothing of it";
 }
 
 TEST_F(AtomicFile, ContentArrivesWholeAndNothingElseStays) {
@@ -230,6 +255,78 @@ TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
   const std::string content = ContentOf(folder_ / "a.txt");
   EXPECT_EQ(content, std::string(5000, content.at(0))) << "one writer's content, unmixed";
   EXPECT_EQ(FilesIn(folder_), 1U);
+}
+
+TEST_F(AtomicFile, WhatAKilledWriterLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
+  tests::LeaveTemporaryOf(folder_ / "a.exr");
+  ASSERT_EQ(FilesIn(folder_), 1U);
+  std::size_t removed = 0, there = 0;
+  WriteFileAtomically(folder_ / "b.exr", [&](const fs::path& name) {
+    std::ofstream(name) << "b";
+    removed = RemoveAbandonedTemporaries(folder_);
+    there = FilesIn(folder_);
+  });
+  EXPECT_EQ(removed, 1U);
+  EXPECT_EQ(there, 1U) << "the living writer's";
+  EXPECT_EQ(ContentOf(folder_ / "b.exr"), "b");
+  EXPECT_EQ(RemoveAbandonedTemporaries(folder_ / "missing"), 0U);
+}
+
+TEST_F(AtomicFile, TemporariesOfOtherMachinesAndFilesOfOtherNamesAreNotRemoved) {
+  tests::LeaveTemporaryOf(folder_ / "a.exr");
+  const fs::path ours = *fs::directory_iterator(folder_);
+  std::string name = ours.filename().string();  // .a.MACHINE-...
+  name[3] = name[3] == '0' ? '1' : '0';
+  fs::rename(ours, folder_ / name);
+  for (const char* other : {".a.part.exr", "a.exr.part", ".hidden", "a.exr"}) {
+    std::ofstream(folder_ / other) << "x";
+  }
+  EXPECT_EQ(RemoveAbandonedTemporaries(folder_), 0U);
+  EXPECT_EQ(FilesIn(folder_), 5U);
+}
+
+TEST_F(AtomicFile, WhetherATargetCanBeWrittenIsKnownBeforeAndChangesNothing) {
+  WriteTextAtomically(folder_ / "a.txt", "old");
+  EXPECT_NO_THROW(RequireWritable(folder_ / "a.txt"));
+  EXPECT_NO_THROW(RequireWritable(folder_ / "b.txt"));
+  EXPECT_THROW(RequireWritable(folder_), OutputError);
+  EXPECT_THROW(RequireWritable(folder_ / "none" / "a.txt"), OutputError);
+  EXPECT_THROW(RequireWritable("/dev/null"), OutputError);
+  EXPECT_EQ(ContentOf(folder_ / "a.txt"), "old");
+  EXPECT_EQ(FilesIn(folder_), 1U);
+}
+
+TEST_F(AtomicFile, ANameThatIsNearlyTooLongStillHasATemporary) {
+  const fs::path target = folder_ / (std::string(250, 'n') + ".exr");  // of 255 bytes
+  WriteTextAtomically(target, "one");
+  EXPECT_EQ(ContentOf(target), "one");
+}
+
+using OutputName = Folder;
+
+TEST_F(OutputName, AnInputIsRecognisedUnderEveryName) {
+  std::ofstream(folder_ / "in.csv") << "x";
+  fs::create_symlink("in.csv", folder_ / "link.csv");
+  fs::create_directory(folder_ / "sub");
+  const std::vector<NamedFile> inputs{{"--cases", folder_ / "in.csv"}};
+  for (const fs::path& same :
+       {folder_ / "in.csv", folder_ / "link.csv", folder_ / "sub" / ".." / "in.csv"}) {
+    EXPECT_THROW(RequireNoInput({"--out", same}, inputs), InputError) << same;
+  }
+  EXPECT_NO_THROW(RequireNoInput({"--out", folder_ / "out.csv"}, inputs));
+  EXPECT_NO_THROW(RequireNoInput({"--out", folder_ / "o"}, {{"--cases", folder_ / "none"}}));
+}
+
+TEST_F(OutputName, TheExtensionSaysWhatIsWritten) {
+  EXPECT_EQ(FaultOfFileName("a/b.exr", ".exr"), "");
+  EXPECT_THAT(FaultOfFileName("b.hdr", ".exr"), HasSubstr("must end in .exr"));
+  EXPECT_THAT(FaultOfFileName("-", ".exr"), HasSubstr("standard output"));
+  EXPECT_THAT(FaultOfFileName("-", ""), HasSubstr("standard output"));
+  EXPECT_EQ(FaultOfFileName("results", ""), "");
+  EXPECT_EQ(FaultOfFolderName("tables"), "");
+  EXPECT_EQ(FaultOfFolderName("tables.v2"), "");
+  EXPECT_EQ(FaultOfFolderName("."), "");
+  for (const char* file : {"t.dds", "t.exr", "-"}) EXPECT_NE(FaultOfFolderName(file), "") << file;
 }
 
 std::string ProgressText(ProgressStyle style, std::size_t total, std::size_t skipped = 0) {
