@@ -18,6 +18,7 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "lut/picture/exr_header.h"
 #include "lut/picture/image.h"
 #include "lut/program/atomic_file.h"
 
@@ -125,6 +126,7 @@ Result Reading(const fs::path& file, const std::function<Result()>& read) {
     throw InputError(fmt::format("{}: no such file", file.string()));
   }
   try {
+    RequireBoundedExrHeader(file);
     return read();
   } catch (const InputError&) {
     throw;

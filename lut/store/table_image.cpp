@@ -2,6 +2,7 @@
 #include "lut/store/table_image.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
@@ -19,6 +20,7 @@
 #include <type_traits>
 
 #include "atmosphere/text/error.h"
+#include "lut/picture/exr_header.h"
 #include "lut/program/atomic_file.h"
 #include "lut/table/table_size.h"
 
@@ -31,6 +33,27 @@ constexpr int kLongestSide = 1 << 20;
 
 // Deflate makes at most 1032 bytes of one: a file cannot hold more than this many times its size.
 constexpr std::uint64_t kLargestExpansion = 1032;
+
+/// The rows that the library decompresses together: it takes memory for all of them, however few
+/// the image has.
+std::uint64_t RowsOfAChunk(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::NO_COMPRESSION:
+    case Imf::RLE_COMPRESSION:
+    case Imf::ZIPS_COMPRESSION:
+      return 1;
+    case Imf::ZIP_COMPRESSION:
+    case Imf::PXR24_COMPRESSION:
+      return 16;
+    case Imf::PIZ_COMPRESSION:
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+    case Imf::DWAA_COMPRESSION:
+      return 32;
+    default:
+      return 256;
+  }
+}
 
 /// Runs `read` and turns what the library throws, out of memory included, into an InputError.
 template <typename Read>
@@ -76,6 +99,7 @@ void RequireReadable(const fs::path& file) {
   if (!Imf::isOpenExrFile(file.c_str())) {
     throw InputError(fmt::format("{}: is not an OpenEXR file", file.string()));
   }
+  RequireBoundedExrHeader(file);
 }
 
 }  // namespace
@@ -175,10 +199,12 @@ std::vector<float> TableImageReader::Values(const std::vector<std::string>& chan
   if (present != channels.size()) {
     fail(fmt::format("has {} channels; this table has {}", present, channels.size()));
   }
-  const std::uint64_t values = std::uint64_t{width()} * height() * channels.size();
-  const std::uint64_t bytes = values * sizeof(float);
+  const std::uint64_t row = std::uint64_t{width()} * channels.size();
+  const std::uint64_t values = row * height();
+  const std::uint64_t chunk = RowsOfAChunk(state_->header().compression());
+  const std::uint64_t bytes = row * ((height() + chunk - 1) / chunk * chunk) * sizeof(float);
   if (bytes > kLargestTable_bytes || bytes / kLargestExpansion > fs::file_size(file_)) {
-    fail(fmt::format("claims {} bytes of texels, more than it can hold", bytes));
+    fail(fmt::format("claims {} bytes of texels, more than it can hold", values * sizeof(float)));
   }
   return NamingTheFile(file_, [&] {
     std::vector<float> result(values);

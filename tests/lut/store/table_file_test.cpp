@@ -14,14 +14,19 @@
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <vector>
 
 #include "atmosphere/air/medium_toml.h"
 #include "atmosphere/text/error.h"
 #include "lut/store/table_image.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -406,6 +411,64 @@ TEST_F(TableFile, AxesThatClaimMoreThanTheFileCanHoldAreRefused) {
   std::memcpy(&bytes[window + 12], &last, 4);
   WriteText(bad_, bytes);
   ExpectRefused("");
+}
+
+/// The largest memory that a process had which read the file [kB].
+long PeakOfReading(const fs::path& file) {
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      static_cast<void>(DescribeTable(file));
+    } catch (const InputError&) {
+      // Refused: what is wanted.
+    }
+    _exit(0);
+  }
+  int status = 0;
+  rusage used = {};
+  wait4(child, &status, 0, &used);
+  return used.ru_maxrss;
+}
+
+// Where the library takes what an attribute claims: 1.9 GB for a table of 46 kB.
+TEST_F(TableFile, AnAttributeThatIsLongerThanTheFileIsRefusedBeforeMemoryIsTaken) {
+  const std::string whole = ContentOf(good_);
+  for (const char* attribute : {"alpenglow.medium", "alpenglow.producer", "channels"}) {
+    std::string bytes = whole;
+    const std::size_t name = bytes.find(std::string(attribute) + '\0');
+    ASSERT_NE(name, std::string::npos);
+    const std::size_t type = bytes.find('\0', name) + 1;
+    const std::size_t size = bytes.find('\0', type) + 1;
+    for (const std::uint32_t claim : {0x7fffff00U, 0xffffffffU, 100000000U}) {
+      std::memcpy(&bytes[size], &claim, 4);
+      WriteText(bad_, bytes);
+      ExpectRefused(fmt::format("attribute {} claims {} bytes", attribute, claim));
+      if (tests::kSanitized) continue;  // whose own memory is larger
+      EXPECT_LT(PeakOfReading(bad_), PeakOfReading(good_) + 20000) << "kB, " << attribute;
+    }
+  }
+}
+
+// The library decompresses sixteen rows together, and takes memory for them though the image has
+// two: 65536 texels of 40 channels are 10 MB a row, zeros of which are 10 kB in the file.
+TEST_F(TableFile, ARowThatIsVeryWideIsRefusedBeforeMemoryIsTaken) {
+  std::vector<double> wavelengths_nm;
+  for (int i = 0; i < 40; ++i) wavelengths_nm.push_back(400.0 + 7.0 * i);
+  WriteTable(good_,
+             TransmittanceTable(MediumPreset("earth", wavelengths_nm), {.mu = 8, .altitudes = 4}));
+  Imf::Header header(65536, 2);
+  const Imf::Header good = GoodHeader();
+  for (auto attribute = good.begin(); attribute != good.end(); ++attribute) {
+    if (std::strncmp(attribute.name(), "alpenglow.", 10) == 0) {
+      header.insert(attribute.name(), attribute.attribute());
+    }
+  }
+  header.channels() = good.channels();
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.insert("alpenglow.axisSizes", Imf::StringAttribute("65536 2"));
+  WriteImage(header, 0.0F);
+  ASSERT_LT(fs::file_size(bad_), 100000U);
+  ExpectRefused("more than it can hold");
 }
 
 TEST_F(TableFile, TexelsOutsideOfZeroToOneAreRefusedWithTheirPlace) {
