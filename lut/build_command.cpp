@@ -23,6 +23,7 @@ struct BuildOptions {
   std::string tables = "smallest";
   std::string layout = "native";
   std::optional<std::string> type, format, max_error;
+  std::optional<int> lowest_sun_deg;
 };
 
 /// The layout of other programs, when one is asked for.
@@ -33,6 +34,7 @@ std::optional<ExchangeOptions> ExchangeOf(const BuildOptions& options) {
       options.layout == "takram" ? ExchangeLayout::kTakram : ExchangeLayout::kBruneton;
   if (options.type) exchange.type = TexelTypeFromName(*options.type);
   if (options.format) exchange.format = TexelFormatFromName(*options.format);
+  exchange.lowest_sun_deg = options.lowest_sun_deg;
   return exchange;
 }
 
@@ -42,7 +44,7 @@ void CheckLayout(const BuildOptions& options) {
     if (options.single_scattering_only) {
       throw CLI::ValidationError("--single-scattering-only", "needs --layout native");
     }
-    if (const auto fault = FaultOf(*exchange)) throw CLI::ValidationError("--format", *fault);
+    if (const auto fault = FaultOf(*exchange)) throw CLI::ValidationError("--layout", *fault);
     return;
   }
   if (options.type.value_or("float") != "float") {
@@ -50,6 +52,9 @@ void CheckLayout(const BuildOptions& options) {
   }
   if (options.format.value_or("exr") != "exr") {
     throw CLI::ValidationError("--format", "layout native is exr");
+  }
+  if (options.lowest_sun_deg) {
+    throw CLI::ValidationError("--lowest-sun", "needs --layout bruneton or takram");
   }
 }
 
@@ -145,16 +150,21 @@ Subcommand AddBuildCommand(CLI::App& app) {
       ->excludes(quality)
       ->excludes(max_error)
       ->capture_default_str();
-  build
-      .add_option("--type", options->type,
-                  "float or half; default: float, but half for takram. bruneton in half has its "
-                  "lowest sun 12 degrees below the horizon, all others 30")
+  build.add_option("--type", options->type, "float or half; default: float, but half for takram")
       ->check(CLI::IsMember({"float", "half"}));
   build
       .add_option("--format", options->format,
                   "exr, bin (half, takram) or dat (float, bruneton): default exr, but dat for "
                   "bruneton")
       ->check(CLI::IsMember({"exr", "bin", "dat"}));
+  build
+      .add_option(
+          "--lowest-sun", options->lowest_sun_deg,
+          "Degrees from the zenith of the lowest sun in the tables, which the programs have "
+          "as a constant: 102 (default of bruneton: his demo as it stands, in half "
+          "precision) or 120 (takram, which has no other, and his demo when compiled for "
+          "single precision)")
+      ->check(CLI::IsMember({102, 120}));
   build.parse_complete_callback([options] { CheckLayout(*options); });
   build.footer(
       "Examples: skylut build --out tables --atmosphere atmosphere.toml --quality fine\n"

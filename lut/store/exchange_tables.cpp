@@ -15,10 +15,8 @@
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "lut/diffuse/multiple_scattering.h"
 #include "lut/program/program.h"
 #include "lut/store/table_folder.h"
-#include "lut/table/scattering_table.h"
 #include "lut/table/transmittance_table.h"
 
 namespace alpenglow {
@@ -26,10 +24,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The sizes are constants of the programs that load the tables.
-constexpr TransmittanceTableSize kTransmittanceSize{.mu = 256, .altitudes = 64};
-constexpr ScatteringTableSize kScatteringSize{.nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
-constexpr std::size_t kIrradianceSuns = 64, kIrradianceAltitudes = 16;
+constexpr TransmittanceTableSize kTransmittanceSize{.mu = kTransmittanceShape.width,
+                                                    .altitudes = kTransmittanceShape.height};
+constexpr const ScatteringTableSize& kScatteringSize = kExchangeScatteringSize;
+
+constexpr TextureShape ScatteringShape(const char* name) {
+  return {name, kScatteringSize.nu * kScatteringSize.mu_s, kScatteringSize.mu,
+          kScatteringSize.altitudes};
+}
 
 // Four orders of scattering: three of the light that is scattered once more.
 constexpr DiffuseLightOptions kFourOrders{.altitudes = 32,
@@ -69,9 +71,9 @@ std::array<float, 4> Rgba(const Medium& medium, const Bands<float>& unit, bool t
   return rgba;
 }
 
-ExchangeTexture EmptyTexture(std::string name, std::size_t width, std::size_t height,
-                             std::size_t depth) {
-  return {std::move(name), width, height, depth, std::vector<float>(4 * width * height * depth)};
+ExchangeTexture EmptyTexture(const TextureShape& shape) {
+  return {shape.name, shape.width, shape.height, shape.depth,
+          std::vector<float>(4 * shape.width * shape.height * shape.depth)};
 }
 
 void Put(ExchangeTexture& texture, std::size_t texel, const std::array<float, 4>& rgba) {
@@ -80,8 +82,7 @@ void Put(ExchangeTexture& texture, std::size_t texel, const std::array<float, 4>
 
 ExchangeTexture TransmittanceTexture(const Medium& medium) {
   const TransmittanceTable table(medium, kTransmittanceSize);
-  ExchangeTexture texture =
-      EmptyTexture("transmittance", kTransmittanceSize.mu, kTransmittanceSize.altitudes, 1);
+  ExchangeTexture texture = EmptyTexture(kTransmittanceShape);
   for (std::size_t texel = 0; texel < texture.width * texture.height; ++texel) {
     Bands<float> transmittance(3);
     std::copy_n(&table.texels()[3 * texel], 3, transmittance.value.begin());
@@ -91,7 +92,7 @@ ExchangeTexture TransmittanceTexture(const Medium& medium) {
 }
 
 ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& light) {
-  ExchangeTexture texture = EmptyTexture("irradiance", kIrradianceSuns, kIrradianceAltitudes, 1);
+  ExchangeTexture texture = EmptyTexture(kIrradianceShape);
   for (std::size_t y = 0; y < texture.height; ++y) {
     const double h = medium.atmosphere_height_m * static_cast<double>(y) /
                      static_cast<double>(texture.height - 1);
@@ -119,8 +120,7 @@ class HigherOrders {
     for (std::size_t nu = 0; nu < size.nu; ++nu) {
       for (std::size_t mu_s = 0; mu_s < size.mu_s; ++mu_s) {
         const ViewRay ray = rays_.RayOfTexel(nu, mu_s, row % size.mu, row / size.mu);
-        const Bands<float> more =
-            light_.InscatterAlong(air_.Sample(ray, kHigherOrderSampling), ray.nu);
+        const Bands<float> more = HigherOrdersAlong(air_, light_, ray);
         const auto phase = static_cast<float>(shared::PhaseRayleigh<double>(ray.nu));
         for (std::size_t band = 0; band < 3; ++band) values.push_back(more[band] / phase);
       }
@@ -134,11 +134,6 @@ class HigherOrders {
   AirIntegrator<float> air_;
 };
 
-ExchangeTexture EmptyScattering(std::string name) {
-  return EmptyTexture(std::move(name), kScatteringSize.nu * kScatteringSize.mu_s,
-                      kScatteringSize.mu, kScatteringSize.altitudes);
-}
-
 /// scattering, higher_order_scattering, single_mie_scattering.
 std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const DiffuseLight& light,
                                                   double lowest_mu_s, ProgressStyle style) {
@@ -147,9 +142,9 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const Di
   const ScatteringTable once(medium, {.size = kScatteringSize, .lowest_mu_s = lowest_mu_s},
                              &progress);
   const HigherOrders higher(once, light);
-  std::array<ExchangeTexture, 3> textures{EmptyScattering("scattering"),
-                                          EmptyScattering("higher_order_scattering"),
-                                          EmptyScattering("single_mie_scattering")};
+  const std::vector<TextureShape> shapes = ShapesOf(ExchangeLayout::kTakram);
+  std::array<ExchangeTexture, 3> textures{EmptyTexture(shapes[2]), EmptyTexture(shapes[3]),
+                                          EmptyTexture(shapes[4])};
   const std::size_t width = textures[0].width;
   tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t row) {
     if (Interrupted()) return;
@@ -219,25 +214,14 @@ std::string LittleEndian(const std::vector<float>& values, TexelType type) {
   return bytes;
 }
 
-const char* Suffix(TexelFormat format) {
-  switch (format) {
-    case TexelFormat::kExr:
-      return ".exr";
-    case TexelFormat::kBin:
-      return ".bin";
-    case TexelFormat::kDat:
-      return ".dat";
-  }
-  throw InternalError("an unknown format");
-}
-
 std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
   return fmt::format(
       "# What the tables beside this file were made for, by {}.\n"
-      "# Layout {}, {} texels, lowest sun at zenith cosine {:.6f}; medium {}, hash {:016x}.\n{}",
+      "# Layout {}, {} texels, lowest sun {} degrees from the zenith (cosine {:.6f}); medium {}, "
+      "hash {:016x}.\n{}",
       ProducerText(), options.layout == ExchangeLayout::kTakram ? "takram" : "bruneton",
-      TypeOf(options) == TexelType::kHalf ? "half" : "float", LowestSunOf(options), medium.name,
-      MediumHash(medium), TomlFromMedium(medium));
+      TypeOf(options) == TexelType::kHalf ? "half" : "float", LowestSunAngle_deg(options),
+      LowestSunOf(options), medium.name, MediumHash(medium), TomlFromMedium(medium));
 }
 
 }  // namespace
@@ -257,11 +241,16 @@ TexelFormat TexelFormatFromName(std::string_view name) {
 
 std::optional<std::string> FaultOf(const ExchangeOptions& options) {
   const TexelFormat format = FormatOf(options);
+  const double sun_deg = LowestSunAngle_deg(options);
+  if (sun_deg != kDemoLowestSun_deg && sun_deg != kLowestSun_deg) {
+    return fmt::format("a lowest sun is 102 or 120 degrees from the zenith, not {}", sun_deg);
+  }
   if (options.layout == ExchangeLayout::kTakram) {
     if (format == TexelFormat::kDat) return "layout takram is exr or bin, not dat";
     if (format == TexelFormat::kBin && TypeOf(options) == TexelType::kFloat) {
       return "layout takram reads bin as half, not float";
     }
+    if (sun_deg != kLowestSun_deg) return "layout takram has a lowest sun of 120 degrees";
   } else {
     if (format == TexelFormat::kBin) return "layout bruneton is dat or exr, not bin";
     if (format == TexelFormat::kDat && TypeOf(options) == TexelType::kHalf) {
@@ -271,10 +260,43 @@ std::optional<std::string> FaultOf(const ExchangeOptions& options) {
   return std::nullopt;
 }
 
+double LowestSunAngle_deg(const ExchangeOptions& options) {
+  return options.lowest_sun_deg.value_or(
+      options.layout == ExchangeLayout::kTakram ? kLowestSun_deg : kDemoLowestSun_deg);
+}
+
 double LowestSunOf(const ExchangeOptions& options) {
-  const bool demo_in_half =
-      options.layout == ExchangeLayout::kBruneton && TypeOf(options) == TexelType::kHalf;
-  return demo_in_half ? std::cos(102.0 / 180.0 * kPi) : -0.5;
+  const double sun_deg = LowestSunAngle_deg(options);
+  return sun_deg == kLowestSun_deg ? -0.5 : std::cos(sun_deg * kRadiansPerDegree);
+}
+
+std::vector<TextureShape> ShapesOf(ExchangeLayout layout) {
+  std::vector<TextureShape> shapes{kTransmittanceShape, kIrradianceShape,
+                                   ScatteringShape("scattering")};
+  if (layout == ExchangeLayout::kTakram) {
+    shapes.push_back(ScatteringShape("higher_order_scattering"));
+    shapes.push_back(ScatteringShape("single_mie_scattering"));
+  }
+  return shapes;
+}
+
+const char* SuffixOf(TexelFormat format) {
+  switch (format) {
+    case TexelFormat::kExr:
+      return ".exr";
+    case TexelFormat::kBin:
+      return ".bin";
+    case TexelFormat::kDat:
+      return ".dat";
+  }
+  throw InternalError("an unknown format");
+}
+
+DiffuseLight FourOrdersOf(const Medium& medium) { return DiffuseLight(medium, kFourOrders); }
+
+Bands<float> HigherOrdersAlong(const AirIntegrator<float>& air, const DiffuseLight& light,
+                               const ViewRay& ray) {
+  return light.InscatterAlong(air.Sample(ray, kHigherOrderSampling), ray.nu);
 }
 
 bool IsTheMediumThatLoadersAssume(const Medium& medium) {
@@ -285,7 +307,7 @@ std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
                                                   const ExchangeOptions& options,
                                                   ProgressStyle style) {
   RequireThreeBands(medium);
-  const DiffuseLight light(medium, kFourOrders);
+  const DiffuseLight light = FourOrdersOf(medium);
   std::vector<ExchangeTexture> textures{TransmittanceTexture(medium),
                                         IrradianceTexture(medium, light)};
   auto [scattering, higher, mie] = ScatteringTextures(medium, light, LowestSunOf(options), style);
@@ -303,7 +325,7 @@ void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Med
   MakeFolder(folder);
   const TexelFormat format = FormatOf(options);
   for (const ExchangeTexture& texture : textures) {
-    const fs::path file = folder / (texture.name + Suffix(format));
+    const fs::path file = folder / (texture.name + SuffixOf(format));
     if (format == TexelFormat::kExr) {
       WriteExr(file, texture, options, medium);
     } else {

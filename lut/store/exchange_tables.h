@@ -4,7 +4,9 @@
 //
 // The textures and what they hold, for red, green and blue = the three wavelengths of the medium,
 // longest first; the mapping is that of transmittance_map.glsl and scattering_map.glsl, the sun
-// down to mu_s_min:
+// down to mu_s_min, which the loading program has as a constant: cos 120 degrees in three-atmosphere;
+// in Bruneton's demo cos 102 degrees when compiled for half precision, as it stands, whatever the
+// files' own precision, and cos 120 degrees when compiled for single precision:
 //
 //   transmittance           256 x 64        mu, r               to the top of the air; A = 1
 //   irradiance              64 x 16         mu_s, r (linear)    of the sky on a horizontal plane,
@@ -32,8 +34,10 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "lut/diffuse/multiple_scattering.h"
 #include "lut/program/progress.h"
 #include "lut/store/table_image.h"
+#include "lut/table/scattering_table.h"
 
 namespace alpenglow {
 
@@ -52,20 +56,46 @@ enum class TexelFormat { kExr, kBin, kDat };
 struct ExchangeOptions {
   ExchangeLayout layout = ExchangeLayout::kTakram;
   /// Without a value: takram half .exr, bruneton float .dat.
-  std::optional<TexelType> type;
-  std::optional<TexelFormat> format;
+  std::optional<TexelType> type = {};
+  std::optional<TexelFormat> format = {};
+  /// Zenith angle, kDemoLowestSun_deg or kLowestSun_deg; without a value what the program as it
+  /// stands assumes.
+  std::optional<double> lowest_sun_deg = {};
 };
+inline constexpr double kDemoLowestSun_deg = 102.0;
+inline constexpr double kLowestSun_deg = 120.0;
 
-/// Why no program loads such files: takram has no .dat, its .bin is half; bruneton has no .bin, its
-/// .dat is float. Nothing when one does.
+/// Why no program loads such files: takram has no .dat, its .bin is half, its lowest sun 120
+/// degrees; bruneton has no .bin, its .dat is float. Nothing when one does.
 [[nodiscard]] std::optional<std::string> FaultOf(const ExchangeOptions& options);
 
-/// Zenith cosine of the lowest sun: cos 120 degrees; cos 102 degrees for bruneton in half
-/// precision.
+/// Zenith angle of the lowest sun of these options, and its cosine.
+[[nodiscard]] double LowestSunAngle_deg(const ExchangeOptions& options);
 [[nodiscard]] double LowestSunOf(const ExchangeOptions& options);
 
 /// The medium that programs with fixed constants assume: the preset bruneton2017.
 [[nodiscard]] bool IsTheMediumThatLoadersAssume(const Medium& medium);
+
+/// What a texture is called and how large it is: constants of the programs that load it.
+struct TextureShape {
+  const char* name;
+  std::size_t width, height, depth;
+};
+inline constexpr TextureShape kTransmittanceShape{"transmittance", 256, 64, 1};
+inline constexpr TextureShape kIrradianceShape{"irradiance", 64, 16, 1};
+inline constexpr ScatteringTableSize kExchangeScatteringSize{
+    .nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
+
+/// The textures of a layout, in the order of MakeExchangeTextures.
+[[nodiscard]] std::vector<TextureShape> ShapesOf(ExchangeLayout layout);
+
+/// ".exr", ".bin" or ".dat".
+[[nodiscard]] const char* SuffixOf(TexelFormat format);
+
+/// Light scattered two to four times [1/sr], for unit solar irradiance, which these tables count.
+[[nodiscard]] DiffuseLight FourOrdersOf(const Medium& medium);
+[[nodiscard]] Bands<float> HigherOrdersAlong(const AirIntegrator<float>& air,
+                                             const DiffuseLight& light, const ViewRay& ray);
 
 /// One texture as those programs hold it: texel (x, y, z) is rgba[4 * ((z * height + y) * width +
 /// x)], 3-D textures stacked along the rows.

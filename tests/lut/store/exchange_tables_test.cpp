@@ -208,7 +208,7 @@ TEST_F(ExchangeFiles, RawFilesAreLittleEndianFromTheFirstRow) {
 TEST_F(ExchangeFiles, WhatNoProgramLoadsIsRefused) {
   const auto refused = [](ExchangeLayout layout, std::optional<TexelType> type,
                           std::optional<TexelFormat> format) {
-    return FaultOf({layout, type, format}).has_value();
+    return FaultOf({.layout = layout, .type = type, .format = format}).has_value();
   };
   EXPECT_TRUE(refused(ExchangeLayout::kTakram, {}, TexelFormat::kDat));
   EXPECT_TRUE(refused(ExchangeLayout::kTakram, TexelType::kFloat, TexelFormat::kBin));
@@ -226,10 +226,20 @@ TEST_F(ExchangeFiles, WhatNoProgramLoadsIsRefused) {
       InputError)
       << "four bands";
   EXPECT_FALSE(IsTheMediumThatLoadersAssume(MediumPreset("earth")));
-  EXPECT_DOUBLE_EQ(LowestSunOf({.layout = ExchangeLayout::kBruneton,
-                                .type = TexelType::kHalf,
-                                .format = TexelFormat::kExr}),
-                   std::cos(102.0 * std::acos(-1.0) / 180.0));
+}
+
+// The constant of the demo is that of its half precision, though its files are float.
+TEST(LowestSun, IsThatOfTheProgramAsItStandsUnlessAnotherIsAskedFor) {
+  const double demo = std::cos(102.0 * std::acos(-1.0) / 180.0);
+  const ExchangeOptions bruneton{.layout = ExchangeLayout::kBruneton};
+  EXPECT_DOUBLE_EQ(LowestSunOf(bruneton), demo);
+  EXPECT_DOUBLE_EQ(LowestSunOf({.layout = ExchangeLayout::kBruneton, .type = TexelType::kHalf}),
+                   demo);
+  EXPECT_EQ(LowestSunOf({.layout = ExchangeLayout::kBruneton, .lowest_sun_deg = 120.0}), -0.5);
+  EXPECT_EQ(LowestSunOf({}), -0.5) << "takram";
+  EXPECT_FALSE(FaultOf({.lowest_sun_deg = 120.0}).has_value());
+  EXPECT_TRUE(FaultOf({.lowest_sun_deg = 102.0}).has_value()) << "takram loads no such files";
+  EXPECT_TRUE(FaultOf({.layout = ExchangeLayout::kBruneton, .lowest_sun_deg = 110.0}).has_value());
 }
 
 TEST(ExchangeMedium, IsThatOfThreeAtmosphereByDefault) {
