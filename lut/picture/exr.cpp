@@ -173,6 +173,9 @@ void AddLayers(const fs::path& file, const Imf::ChannelList& channels, Image& im
 
 void WriteExr(const fs::path& file, const Image& image, const Metadata& metadata,
               Projection projection) {
+  if (const auto fault = FaultyValue(image)) {
+    throw InternalError(fmt::format("{} is not written: {}", file.string(), *fault));
+  }
   WriteFileAtomically(file, [&](const fs::path& name) {
     try {
       WritePixels(name, image, metadata, projection);

@@ -1,14 +1,50 @@
 // SPDX-License-Identifier: MIT
 #include "lut/picture/image.h"
 
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
+namespace {
+
+std::string FaultAt(const Image& image, std::size_t pixel, std::string_view of, float value) {
+  const auto width = static_cast<std::size_t>(image.width);
+  return fmt::format("pixel ({}, {}) of {} is {}", pixel % width, pixel / width, of, value);
+}
+
+std::optional<std::string> FaultOf(const Image& image, const Channel& layer) {
+  const bool is_distance = layer.name.ends_with(".Z");
+  const auto fault = std::find_if(layer.values.begin(), layer.values.end(), [&](float value) {
+    return is_distance ? !(value >= 0.0F) : !std::isfinite(value);
+  });
+  if (fault == layer.values.end()) return std::nullopt;
+  const auto pixel = static_cast<std::size_t>(fault - layer.values.begin());
+  return FaultAt(image, pixel, "layer " + layer.name, *fault);
+}
+
+}  // namespace
 
 Image::Image(int image_width, int image_height) : width(image_width), height(image_height) {
   RequireInRange(image_width, 1, kLargestImageSide, "image width");
   RequireInRange(image_height, 1, kLargestImageSide, "image height");
   rgb.resize(static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height));
+}
+
+std::optional<std::string> FaultyValue(const Image& image) {
+  for (std::size_t pixel = 0; pixel < image.rgb.size(); ++pixel) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = image.rgb[pixel][c];
+      if (std::isfinite(value)) continue;
+      return FaultAt(image, pixel, std::string("layer ") + "RGB"[c], value);
+    }
+  }
+  for (const Channel& layer : image.layers) {
+    if (auto fault = FaultOf(image, layer)) return fault;
+  }
+  return std::nullopt;
 }
 
 }  // namespace alpenglow

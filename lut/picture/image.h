@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace alpenglow {
 /// Pixels along one side of a picture, at most.
 inline constexpr int kLargestImageSide = 32768;
 
-/// A plane of floats, row 0 at the top.
+/// A plane of floats, row 0 at the top. A channel whose name ends in ".Z" is of distances, as
+/// OpenEXR's depth channel Z: infinite where a ray meets nothing. Values of all others are finite.
 struct Channel {
   std::string name;  // as in the EXR file: "R", "depth.Z", ...
   std::vector<float> values;
@@ -40,6 +42,10 @@ struct Image {
   }
 };
 
+/// The first value that cannot be (see Channel), in words: "pixel (3, 4) of layer lamps.R is nan".
+/// Nothing where all are as they should be.
+[[nodiscard]] std::optional<std::string> FaultyValue(const Image& image);
+
 /// What made a picture: name and value, written into the file's header.
 using Metadata = std::map<std::string, std::string>;
 
@@ -48,7 +54,8 @@ using Metadata = std::map<std::string, std::string>;
 enum class Projection { kCamera, kLatitudeLongitude };
 
 /// Writes float RGB and the layers, ZIP, atomically, with the metadata as text attributes and
-/// whiteLuminance 1 (the unit is cd/m^2). Throws OutputError.
+/// whiteLuminance 1 (the unit is cd/m^2). Throws OutputError; InternalError naming file, pixel and
+/// layer for a FaultyValue, before anything is written.
 void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
               Projection projection = Projection::kCamera);
 /// Reads what WriteExr wrote (any scan-line EXR with R, G, B); every other channel becomes a layer.

@@ -141,6 +141,22 @@ Lamp AsWideAsAPixel(const PlacedLamp& placed, double pixel_angle_rad) {
   return lamp;
 }
 
+/// A lamp as it lights the air along a ray from the eye, times a share.
+struct LampAlongRay {
+  Lamp lamp;
+  double share = 1.0;
+};
+LampAlongRay AlongRay(const PlacedLamp& placed, const glm::dvec3& direction,
+                      double pixel_angle_rad) {
+  LampAlongRay along{AsWideAsAPixel(placed, pixel_angle_rad)};
+  // From within the lamp a ray goes along with the lamp's light, which has one intensity all along.
+  if (placed.distance_m <= placed.lamp.radius_m) {
+    along.share = RelativeIntensity(placed.lamp, direction);
+    along.lamp.profile = {};
+  }
+  return along;
+}
+
 }  // namespace
 
 struct LampLight::State {
@@ -354,8 +370,11 @@ struct LampLight::State {
 
   void StandBeforeEye(PlacedLamp& placed) const {
     const glm::dvec3 to_lamp = placed.lamp.position_m - eye;
-    placed.distance_m = std::max(glm::length(to_lamp), 1e-6);
-    placed.direction = to_lamp / placed.distance_m;
+    constexpr double kAtTheEye_m = 1e-6;
+    const double distance_m = glm::length(to_lamp);
+    placed.distance_m = std::max(distance_m, kAtTheEye_m);
+    // A lamp at the eye has no direction; any one will do.
+    placed.direction = distance_m > kAtTheEye_m ? to_lamp / distance_m : -placed.lamp.axis;
     placed.air = AirAround(0.5 * (eye + placed.lamp.position_m));
     placed.middle_air = placed.air;
     for (LampLayer& layer : placed.middle_air.layers) {
@@ -364,6 +383,18 @@ struct LampLight::State {
     }
     placed.blur = lens ? lens->BlurRadius(to_lamp) : 0.0;
     placed.towards_eye = Bands<float>(bands);
+  }
+
+  // Of a lamp that the eye is in: its luminance, I(-d) / (pi R^2) of the direction d of the ray, as
+  // if the eye were in its middle and saw the inside of the luminous sphere. What a lamp from
+  // outside tends to: its disk, I / (pi R^2) bright, fills the sky.
+  [[nodiscard]] Bands<float> SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray) const {
+    const double radius = placed.lamp.radius_m;
+    Bands<float> seen(bands);
+    AddScaled(placed.intensity,
+              TransmittanceBetween(placed.air, ray.eye, ray.eye + radius * ray.direction),
+              RelativeIntensity(placed.lamp, -ray.direction) / (kPi * radius * radius), seen);
+    return seen;
   }
 
   // Of a lamp's light as the eye gets it, what a ray of the camera sees of it [1/sr].
@@ -523,11 +554,11 @@ Bands<float> LampLight::InAir(const LampNodes& lamps, const LampRayEnd& ray, dou
   Bands<float> sum(state_->bands);
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = state_->nodes[index].light;
-    const Lamp lamp = AsWideAsAPixel(placed, pixel_angle_rad);
+    const auto [lamp, share] = AlongRay(placed, ray.direction, pixel_angle_rad);
     const double reach = State::Reach(placed, ray.length_m);
     for (const auto& [begin, end] : state_->LitPieces(placed, ray.direction, reach)) {
       const LampSegment segment{state_->eye, ray.direction, begin, end};
-      AddScaled(placed.intensity, Airlight(placed.air, lamp, segment, nodes), 1.0, sum);
+      AddScaled(placed.intensity, Airlight(placed.air, lamp, segment, nodes), share, sum);
     }
   }
   return sum;
@@ -577,6 +608,11 @@ Bands<float> LampLight::Seen(const LampNodes& lamps, const CameraRay& ray, doubl
   Bands<float> sum(state_->bands);
   for (const std::uint32_t index : lamps) {
     const PlacedLamp& placed = state_->nodes[index].light;
+    if (glm::length(placed.lamp.position_m - ray.eye) <= placed.lamp.radius_m) {
+      const Bands<float> around = state_->SeenFromWithin(placed, ray);
+      sum = sum + (left ? left(placed.lamp.radius_m) * around : around);
+      continue;
+    }
     const double share =
         state_->SeenPerSr(placed, ray, pixel_angle_rad) / (placed.distance_m * placed.distance_m);
     if (share == 0.0) continue;
@@ -726,8 +762,10 @@ Share WeighInAir(const Node& node, std::uint32_t number, const TileRays& tile,
     const LampSegment segment{eye, direction, 0.0, std::min(length, 4.0 * light.distance_m + 20e3)};
     return light.candela * Airlight(light.middle_air, lamp, segment, kScoutNodes)[0];
   };
-  Lamp bright = AsWideAsAPixel(light, pixel_angle_rad);
-  Share share{number, along(bright, tile.Farthest(light.direction), tile.shortest()), 0.0, 0.0};
+  const glm::dvec3 farthest = tile.Farthest(light.direction);
+  const LampAlongRay dim = AlongRay(light, farthest, pixel_angle_rad);
+  Share share{number, dim.share * along(dim.lamp, farthest, tile.shortest()), 0.0, 0.0};
+  Lamp bright = dim.lamp;
   bright.profile = {};  // as if its beam pointed everywhere
   const glm::dvec3 nearest = tile.Nearest(light.direction);
   share.most = along(bright, nearest, tile.longest());
@@ -812,8 +850,9 @@ LampTile LampLight::State::TileAt(const LampLight& light, const MovingCamera& ca
   }
   for (std::uint32_t i = 0; i < lamps; ++i) {
     const PlacedLamp& lamp = nodes[i].light;
-    if (glm::length(lamp.direction - rays.middle()) <
-        rays.radius_rad + lamp.blur + lamp.lamp.radius_m / lamp.distance_m) {
+    const bool is_within = lamp.distance_m <= lamp.lamp.radius_m;
+    if (is_within || glm::length(lamp.direction - rays.middle()) <
+                         rays.radius_rad + lamp.blur + lamp.lamp.radius_m / lamp.distance_m) {
       tile.seen.push_back(i);
     }
   }

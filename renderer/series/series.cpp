@@ -66,7 +66,9 @@ std::optional<NotedPicture> KeptPicture(const fs::path& file,
                                         const std::string& render_fingerprint) {
   if (ExrValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
   try {
-    return NotedPicture(ReadExr(file), NotesOf(file));
+    NotedPicture kept(ReadExr(file), NotesOf(file));
+    if (FaultyValue(kept.image)) return std::nullopt;
+    return kept;
   } catch (const InputError&) {
     return std::nullopt;  // damaged: to be rendered again
   }

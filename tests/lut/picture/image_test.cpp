@@ -64,6 +64,35 @@ TEST_F(ExrFile, ReturnsEveryBitOfPixelsLayersAndMetadata) {
   EXPECT_EQ(FileCount(), 1U) << "no temporary is left";
 }
 
+TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const auto fault_of = [&](const Image& image) -> std::string {
+    try {
+      WriteExr(folder_ / "a.exr", image, kMetadata);
+    } catch (const InternalError& fault) {
+      return fault.what();
+    }
+    return "none";
+  };
+  Image image = TestImage();
+  image.at(3, 4)[1] = kNan;
+  EXPECT_NE(fault_of(image).find("a.exr is not written: pixel (3, 4) of layer G is nan"),
+            std::string::npos)
+      << fault_of(image);
+  image = TestImage();
+  image.at(0, 1)[2] = kInfinite;
+  EXPECT_NE(fault_of(image).find("pixel (0, 1) of layer B is inf"), std::string::npos);
+  image = TestImage();
+  image.layers[0].values[5] = kNan;
+  EXPECT_NE(fault_of(image).find("pixel (5, 0) of layer depth.Z is nan"), std::string::npos);
+  image.layers[0].name = "lamps.R";
+  image.layers[0].values[5] = 0.0F;
+  EXPECT_NE(fault_of(image).find("of layer lamps.R is inf"), std::string::npos)
+      << "only distances are infinite where there is nothing";
+  EXPECT_EQ(FileCount(), 0U) << "nothing is left, under no name";
+}
+
 TEST_F(ExrFile, OnePixelAndOneColumnAreImages) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
     Image image(width, height);

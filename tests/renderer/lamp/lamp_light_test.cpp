@@ -166,6 +166,50 @@ TEST(LampLight, ABeamLightsTheAirInItAndNoneBesideIt) {
   EXPECT_EQ(luminance({0.0, 1.0, 0.2}), 0.0) << "over it";
 }
 
+TEST(LampLight, AnEyeInALampSeesItsLuminanceAllAround) {
+  Scene scene = NightScene();
+  scene.lights = {LightAt(0.0, 0.0, kEyeHeight_m, 1000.0)};
+  const Stage at_the_eye(scene);
+  scene.lights = {LightAt(0.03, 0.0, kEyeHeight_m, 1000.0)};  // of a radius of 0.05 m
+  const Stage beside_it(scene);
+  const double luminance = 1000.0 / (kPi * 0.05 * 0.05);
+  for (const glm::dvec3& towards :
+       {glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, -0.6, -0.8)}) {
+    for (const Stage* stage : {&at_the_eye, &beside_it}) {
+      const Bands<float> seen = stage->light.Seen({0}, {kEye, kEye, towards, towards}, 1e-3);
+      EXPECT_NEAR(stage->Luminance(seen) / luminance, 1.0, 1e-5)
+          << "in floats, through 5 cm of air, which takes 1e-6 of the light";
+    }
+  }
+}
+
+TEST(LampLight, AHeadlampLightsTheAirBeforeItAndIsNotSeenByItsEye) {
+  Scene scene = NightScene();
+  AddFog(scene, 0.01, 1000.0);
+  Light lamp = LightAt(0.0, 0.0, kEyeHeight_m, 1000.0);
+  scene.lights = {lamp};
+  const Stage around(scene);
+  lamp.type = Light::Type::kSpot;  // to the north
+  lamp.inner_rad = 0.3;
+  lamp.outer_rad = 0.6;
+  scene.lights = {lamp};
+  const Stage ahead(scene);
+  const auto in_air = [](const Stage& stage, const glm::dvec3& towards) {
+    return stage.Luminance(stage.light.InAir({0}, {towards, 300.0}, 1e-3, 16));
+  };
+  const glm::dvec3 north(0.0, 1.0, 0.0), east(1.0, 0.0, 0.0),
+      aside(std::sin(0.2), std::cos(0.2), 0.0);
+  EXPECT_GT(in_air(around, north), 0.0);
+  EXPECT_EQ(in_air(ahead, north), in_air(around, north)) << "in the beam all along the ray";
+  EXPECT_EQ(in_air(ahead, aside), in_air(around, aside));
+  EXPECT_EQ(in_air(ahead, east), 0.0);
+  const auto seen = [&](const glm::dvec3& towards) {
+    return ahead.Luminance(ahead.light.Seen({0}, {kEye, kEye, towards, towards}, 1e-3));
+  };
+  EXPECT_EQ(seen(north), 0.0);
+  EXPECT_GT(seen(-north), 0.0) << "looking into it";
+}
+
 /// Illuminance of the eye by lamps near the middle of a picture of 320 x 180 pixels, from 64 rays a
 /// pixel.
 double IlluminanceInPicture(const Stage& stage, const LampLight& light, const CameraRays& camera) {
@@ -427,6 +471,57 @@ TEST(LampLight, PicturesHaveALayerOfLampLight) {
   }
   EXPECT_GT(sum, 0.0);
   EXPECT_NEAR(sum / whole, 1.0, 1e-3) << "at night there is no other light";
+}
+
+class LampsAtTheEye : public TemporaryFolder {
+ protected:
+  // What cannot be in the picture of such a lamp, by day or night.
+  [[nodiscard]] static std::string FaultOf(const Scene& scene, const std::string& time) {
+    const RenderSettings settings{.width = 16,
+                                  .height = 9,
+                                  .samples_per_pixel = 2,
+                                  .air_nodes = 4,
+                                  .layers = {PictureLayer::kDepth, PictureLayer::kLamps}};
+    return FaultyValue(SceneRenderer(scene).Render(ParseInstant(time), settings)).value_or("");
+  }
+  static Scene With(Light lamp) {
+    Scene scene = NightScene();
+    scene.lights = {std::move(lamp)};
+    return scene;
+  }
+  const Light point_ = LightAt(0.0, 0.0, kEyeHeight_m, 1000.0);
+  const std::string night_ = "2026-01-15T23:00:00Z", day_ = "2026-06-21T11:00:00Z";
+};
+
+TEST_F(LampsAtTheEye, OfEveryKindMakePicturesOfNumbers) {
+  EXPECT_EQ(FaultOf(With(point_), night_), "");
+  EXPECT_EQ(FaultOf(With(point_), day_), "");
+  Light spot = point_;
+  spot.type = Light::Type::kSpot;
+  spot.inner_rad = 0.2;
+  spot.outer_rad = 0.4;
+  EXPECT_EQ(FaultOf(With(spot), night_), "");
+  WriteText(
+      folder_ / "lamp.ies",
+      "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 50\n0 45 90\n0\n1000 500 0\n");
+  Light measured = point_;
+  measured.ies = folder_ / "lamp.ies";
+  measured.pitch_rad = -0.5 * kPi;
+  EXPECT_EQ(FaultOf(With(measured), night_), "");
+}
+
+TEST_F(LampsAtTheEye, MakePicturesOfNumbersInFogAndThroughALens) {
+  Scene scene = With(point_);
+  AddFog(scene, 0.02, 100.0);
+  EXPECT_EQ(FaultOf(scene, night_), "");
+  EXPECT_EQ(FaultOf(scene, day_), "") << "where the sun lights the fog too";
+  scene = With(point_);
+  scene.camera.lens = ThinLens{2.0, 0.05, 10.0};
+  EXPECT_EQ(FaultOf(scene, night_), "");
+  scene = With(point_);
+  scene.lights.push_back(LightAt(5.0, 0.0, kEyeHeight_m, 1000.0));
+  scene.lights.push_back(LightAt(-5.0, 0.0, kEyeHeight_m, 1000.0));
+  EXPECT_EQ(FaultOf(scene, night_), "") << "the middle of lamps at the eye";
 }
 
 }  // namespace
