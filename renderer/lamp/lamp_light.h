@@ -10,15 +10,12 @@
 // The air of a lamp is the scene's molecules and aerosol and its fog, of exponential density over
 // the plane that touches the sphere halfway between eye and lamp.
 //
-// Lamps that shine evenly are leaves of a tree whose inner nodes stand for all lamps below them
-// (Walter et al. 2005, "Lightcuts", ACM TOG 24, 1098). For each tile of the picture the tree is cut
-// where the nodes' second moments say that one lamp in the middle is as good as all; what a pixel
-// costs depends on the cut, not on the lamps that the scene has. Nodes that are far from a tile in
-// angle shine smoothly over it: their light in the air is computed on a lattice of every fourth
-// pixel and interpolated where the ends of the rays allow it.
+// What a pixel costs depends on the cut of the tree of lamps (lamp_tree.h, tile_cut.h), not on the
+// lamps that the scene has. Nodes that are far from a tile in angle shine smoothly over it: their
+// light in the air is computed on a lattice of every fourth pixel and interpolated where the ends of
+// the rays allow it.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -29,55 +26,16 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/camera/moving_camera.h"
 #include "renderer/ground/scene_ground.h"
+#include "renderer/lamp/lamp_plan.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow {
-
-struct LampSettings {
-  int nodes = 12;  // of Airlight, see there
-  /// Of a tile's lamp light: what standing for others and being left out may add up to.
-  double share_of_error = 5e-3;
-  double floor_cd_per_m2 = 0.0;  // errors below this do not matter
-};
 
 /// A surface point that lamps may light.
 struct LitPoint {
   glm::dvec3 point{0.0};
   glm::dvec3 normal{0.0, 0.0, 1.0};            // unit, of the shading
   glm::dvec3 geometric_normal{0.0, 0.0, 1.0};  // unit, of the triangle
-};
-
-/// Nodes of the tree of lamps, by number.
-using LampNodes = std::vector<std::uint32_t>;
-
-/// What a tile of a picture sees of the lamps.
-struct LampTile {
-  LampNodes near_air;  // light in the air that varies between its pixels
-  LampNodes far_air;   // light in the air that is smooth over it
-  LampNodes surface;   // on surfaces
-  LampNodes seen;      // lamps in the picture
-  /// Of far_air, at (x0 + 4 i, y0 + 4 j); empty without any.
-  std::vector<Bands<float>> lattice;
-  std::vector<double> lattice_length_m;  // of the rays there; NaN where terrain shades lamps
-};
-
-struct LampPlan {
-  static constexpr int kTile = 16;    // pixels
-  static constexpr int kSpacing = 4;  // pixels
-  static constexpr int kLattice = kTile / kSpacing + 1;
-  int columns = 0;
-  std::vector<LampTile> tiles;
-
-  [[nodiscard]] const LampTile& At(int x, int y) const {
-    return tiles[static_cast<std::size_t>(y / kTile) * static_cast<std::size_t>(columns) +
-                 static_cast<std::size_t>(x / kTile)];
-  }
-};
-
-/// A ray from the eye, and where it meets something.
-struct LampRayEnd {
-  glm::dvec3 direction{0.0};
-  double length_m = 0.0;
 };
 
 /// Immutable; safe to ask from many threads.
@@ -94,10 +52,8 @@ class LampLight {
   /// is that of the scene's place, a pinhole.
   [[nodiscard]] LampLight SeenBy(const CameraRays& camera) const;
 
-  /// Where a ray of the camera ends [m]; infinite in the sky.
-  using Trace = std::function<double(const CameraRay& ray)>;
   [[nodiscard]] LampPlan PlanFor(const MovingCamera& camera, int width, int height,
-                                 const LampSettings& settings, const Trace& trace) const;
+                                 const LampSettings& settings, const RayTrace& trace) const;
 
   /// What the fog leaves of the light from a distance along a ray.
   [[nodiscard]] Bands<float> FogTransmittance(const glm::dvec3& direction, double length_m) const;

@@ -9,7 +9,7 @@
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/pixel_filter.h"
 #include "renderer/effect/effects.h"
-#include "renderer/lamp/lamp_light.h"
+#include "renderer/lamp/lamp_plan.h"
 #include "renderer/picture/picture_layers.h"
 
 namespace alpenglow {

@@ -342,7 +342,7 @@ Scene RunwayScene(int rows = 50) {
 }
 
 /// Where rays meet a plane below the eye.
-LampLight::Trace ToPlane(double below_m) {
+RayTrace ToPlane(double below_m) {
   return [below_m](const CameraRay& ray) {
     const double z = ray.direction.z;
     return z < 0.0 ? below_m / -z : std::numeric_limits<double>::infinity();
@@ -354,7 +354,7 @@ struct PlanError {
 };
 
 // Of light in the air by a plan against all lamps, one or more in every tile.
-PlanError ErrorOfPlan(const Scene& scene, int width, int height, const LampLight::Trace& trace) {
+PlanError ErrorOfPlan(const Scene& scene, int width, int height, const RayTrace& trace) {
   const Stage stage(scene);
   const CameraRays camera(scene.camera, width, height);
   const LampPlan plan = stage.light.PlanFor(camera, width, height, {}, trace);

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Which nodes of the tree of lamps a tile of a picture needs: the tree is cut where the nodes'
+// second moments say that one lamp in the middle is as good as all, and the dimmest are left out.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "renderer/camera/moving_camera.h"
+#include "renderer/lamp/lamp_plan.h"
+#include "renderer/lamp/lamp_tree.h"
+
+namespace alpenglow {
+
+/// Pixels [x0, x1) by [y0, y1).
+struct PixelBox {
+  int x0, y0, x1, y1;
+};
+
+/// The rays of a tile's corners and its middle, and where they end; more by points of the iris and
+/// of time where there are any.
+struct TileRays {
+  std::vector<LampRayEnd> rays;
+  double radius_rad = 0.0;  // of the cone around the middle that holds the tile
+  // Of the ends on surfaces: the middle one (or any), and how far the others lie from it.
+  std::optional<glm::dvec3> surface;
+  double surface_spread_m = 0.0;
+
+  TileRays(const MovingCamera& moving, const PixelBox& box, const RayTrace& trace);
+
+  [[nodiscard]] const glm::dvec3& middle() const { return rays[0].direction; }
+  [[nodiscard]] double longest() const;
+  [[nodiscard]] double shortest() const;
+  /// How far the ends of the rays stay from a distance.
+  [[nodiscard]] double GapTo(double distance_m) const;
+  /// The direction of the tile's cone that is nearest to a lamp's.
+  [[nodiscard]] glm::dvec3 Nearest(const glm::dvec3& to_lamp) const;
+  /// And the one that is farthest from it.
+  [[nodiscard]] glm::dvec3 Farthest(const glm::dvec3& to_lamp) const;
+
+ private:
+  void Add(const CameraRay& ray, const RayTrace& trace);
+};
+
+/// Nodes that light the air before a tile.
+[[nodiscard]] LampNodes CutInAir(const LampTree& tree, const TileRays& tile, const glm::dvec3& eye,
+                                 double pixel_angle_rad, const LampSettings& settings);
+/// Nodes that light surfaces in a tile; none without any.
+[[nodiscard]] LampNodes CutOnSurface(const LampTree& tree, const TileRays& tile,
+                                     const LampSettings& settings);
+
+/// Far enough from a tile that light in the air is a parabola between lattice points: across h the
+/// straight line misses 1/D by (h / D)^2 / 4.
+[[nodiscard]] bool IsFar(const LampNode& node, const TileRays& tile, double pixel_angle_rad);
+
+}  // namespace alpenglow
