@@ -53,8 +53,8 @@ std::vector<NamedFile> InputsOf(const SkyseriesOptions& options, const Scene& sc
   return inputs;
 }
 
-std::unique_ptr<SceneRenderer> Load(const Scene& scene) {
-  auto renderer = std::make_unique<SceneRenderer>(scene);
+std::unique_ptr<SceneRenderer> Load(const Scene& scene, Progress* progress) {
+  auto renderer = std::make_unique<SceneRenderer>(scene, progress);
   if (!renderer->terrain_message().empty()) {
     Say(fmt::format("skyseries: {}\n", renderer->terrain_message()));
   }
@@ -111,8 +111,9 @@ int Run(const SkyseriesOptions& options) {
   settings.layers = LayersFromNames(options.layers);
   if (options.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
   std::unique_ptr<SceneRenderer> loaded;
-  const auto renderer = [&]() -> const SceneRenderer& {  // built for the first frame that needs it
-    if (!loaded) loaded = Load(scene);
+  // Built for the first frame that needs it.
+  const auto renderer = [&](Progress* progress) -> const SceneRenderer& {
+    if (!loaded) loaded = Load(scene, progress);
     return *loaded;
   };
   const auto shot = [&](const Frame& frame) {
@@ -120,8 +121,11 @@ int Run(const SkyseriesOptions& options) {
                 : Shot(frame.instant);
   };
   const SeriesSource source{
-      [&](const Frame& frame) { return RenderFrame(renderer(), shot(frame), settings, options); },
-      [&](const Frame& frame) { return renderer().Illuminance(shot(frame)); },
+      [&](const Frame& frame, Progress& progress) {
+        settings.progress = &progress;
+        return RenderFrame(renderer(&progress), shot(frame), settings, options);
+      },
+      [&](const Frame& frame) { return renderer(nullptr).Illuminance(shot(frame)); },
       MetadataOf(scene, path, settings, options),
       scene.place,
       scene.zone,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "atmosphere/text/error.h"
 #include "lut/program/messages.h"
@@ -42,10 +43,10 @@ std::string JsonString(const std::string& text) {
   return quoted + '"';
 }
 
-std::string Bar(std::size_t done, std::size_t total) {
-  constexpr std::size_t kWidth = 30;
-  const std::size_t filled = total == 0 ? kWidth : done * kWidth / total;
-  return std::string(filled, '#') + std::string(kWidth - filled, '.');
+constexpr std::size_t kBarWidth = 30;
+
+std::string Bar(std::size_t filled) {
+  return std::string(filled, '#') + std::string(kBarWidth - filled, '.');
 }
 
 }  // namespace
@@ -75,53 +76,95 @@ struct Progress::State {
   std::mutex mutex{};
   std::size_t done = 0;
   std::size_t skipped = 0;
-  std::size_t reported_steps = 0;  // of Resolution() that the last line reported
+  double part = 0.0;              // of the next unit
+  std::string step{};             // that prepares it
+  std::set<std::string> named{};  // steps that have had their line
+  Clock::time_point step_start{};
+  double prepared_s = 0.0;         // before any unit was done: says nothing about the speed
+  std::size_t reported_steps = 0;  // of the resolution that the last line reported
 
   [[nodiscard]] double ElapsedSeconds() const {
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
+  [[nodiscard]] double Worked() const { return static_cast<double>(done - skipped) + part; }
   [[nodiscard]] std::optional<double> SecondsLeft() const {
-    const std::size_t worked = done - skipped;
     if (done >= total) return 0.0;
-    if (worked == 0) return std::nullopt;
-    return ElapsedSeconds() * static_cast<double>(total - done) / static_cast<double>(worked);
+    if (Worked() <= 0.0) return std::nullopt;
+    return (ElapsedSeconds() - prepared_s) * (static_cast<double>(total - done) - part) / Worked();
   }
-  [[nodiscard]] std::size_t Percent() const { return total == 0 ? 100 : done * 100 / total; }
+  /// Of `whole` equal parts of the work, how many are complete.
+  [[nodiscard]] std::size_t Complete(std::size_t whole) const {
+    if (total == 0) return whole;
+    return static_cast<std::size_t>((static_cast<double>(done) + part) *
+                                    static_cast<double>(whole) / static_cast<double>(total));
+  }
+  [[nodiscard]] std::size_t Percent() const { return Complete(100); }
 
-  void Count(std::size_t steps) {
-    done = std::min(total, done + steps);
+  void EndStep() {
+    if (!step.empty() && Worked() <= 0.0)
+      prepared_s += std::chrono::duration<double>(Clock::now() - step_start).count();
+    step.clear();
+  }
+  void Count(std::size_t units) {
+    EndStep();
+    done = std::min(total, done + units);
+    part = 0.0;
+    Report();
+  }
+  void SetPart(double share) {
+    if (done >= total) return;
+    EndStep();
+    part = std::clamp(share, part, 1.0 - 1e-9);  // the whole is for Advance() to tell
+    constexpr std::chrono::seconds kBetweenLines(2);
+    if (form == Form::kLines && Clock::now() - std::max(drawn, start) < kBetweenLines) return;
+    Report();
+  }
+  void SetStep(std::string_view name) {
+    EndStep();
+    step = name;
+    step_start = Clock::now();
+    if (form == Form::kBar) DrawBar();
+    if (form == Form::kBar || form == Form::kNothing || !named.insert(step).second) return;
+    Say(form == Form::kJson ? fmt::format("{{\"label\":{},\"step\":{},\"elapsed_s\":{:.3f}}}\n",
+                                            JsonString(label), JsonString(step), ElapsedSeconds())
+                              : fmt::format("{}: preparing {}\n", label, step));
+  }
+  void Report() {
     if (form == Form::kBar) DrawBar();
     if (form == Form::kLines && IsDue(20)) PrintLine();
     if (form == Form::kJson && IsDue(100)) PrintJson();
   }
   /// Whether another of `resolution` equal parts of the work is complete since the last report.
   bool IsDue(std::size_t resolution) {
-    const std::size_t steps = total == 0 ? resolution : done * resolution / total;
+    const std::size_t steps = Complete(resolution);
     if (steps == reported_steps) return false;
     reported_steps = steps;
     return true;
   }
   void DrawBar() {
     const Clock::time_point now = Clock::now();
-    if (done < total && now - drawn < std::chrono::milliseconds(100)) return;
+    if (done < total && step.empty() && now - drawn < std::chrono::milliseconds(100)) return;
     drawn = now;
     const std::optional<double> left = SecondsLeft();
-    const std::string time = done >= total ? "in " + DurationText(ElapsedSeconds())
-                             : left        ? DurationText(*left) + " left"
-                                           : "";
-    Say(fmt::format("\r{} [{}] {:3} % {}/{} {:<12}", label, Bar(done, total), Percent(), done,
-                    total, time));
+    const std::string note = done >= total   ? "in " + DurationText(ElapsedSeconds())
+                             : !step.empty() ? step
+                             : left          ? DurationText(*left) + " left"
+                                             : "";
+    Say(fmt::format("\r{} [{}] {:3} % {}/{} {:<20}", label, Bar(Complete(kBarWidth)), Percent(),
+                      done, total, note));
   }
-  void PrintLine() const {
+  void PrintLine() {
+    drawn = Clock::now();
     const std::optional<double> left = SecondsLeft();
     Say(fmt::format("{}: {} % ({} of {}){}\n", label, Percent(), done, total,
-                    left ? ", " + DurationText(*left) + " left" : ""));
+                      left ? ", " + DurationText(*left) + " left" : ""));
   }
   void PrintJson() const {
     const std::optional<double> left = SecondsLeft();
-    Say(fmt::format("{{\"label\":{},\"done\":{},\"total\":{},\"elapsed_s\":{:.3f},\"eta_s\":{}}}\n",
-                    JsonString(label), done, total, ElapsedSeconds(),
-                    left ? fmt::format("{:.3f}", *left) : "null"));
+    Say(fmt::format(
+        "{{\"label\":{},\"done\":{},{}\"total\":{},\"elapsed_s\":{:.3f},\"eta_s\":{}}}\n",
+        JsonString(label), done, part > 0.0 ? fmt::format("\"part\":{:.3f},", part) : "", total,
+        ElapsedSeconds(), left ? fmt::format("{:.3f}", *left) : "null"));
   }
 };
 
@@ -143,6 +186,20 @@ void Progress::Skip(std::size_t steps) {
   const std::lock_guard<std::mutex> lock(state_->mutex);
   state_->skipped += steps;
   state_->Count(steps);
+}
+
+void Progress::Prepare(std::string_view step) {
+  const std::lock_guard<std::mutex> lock(state_->mutex);
+  state_->SetStep(step);
+}
+
+void Prepare(Progress* progress, std::string_view step) {
+  if (progress != nullptr) progress->Prepare(step);
+}
+
+void Progress::Part(double share) {
+  const std::lock_guard<std::mutex> lock(state_->mutex);
+  state_->SetPart(share);
 }
 
 }  // namespace alpenglow

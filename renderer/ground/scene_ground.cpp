@@ -16,11 +16,14 @@ struct LoadedMesh {
   std::string message;
 };
 
-LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame) {
+LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progress) {
+  if (scene.terrain.kind != TerrainSource::Kind::kNone) Prepare(progress, "terrain");
   switch (scene.terrain.kind) {
-    case TerrainSource::Kind::kBuiltInRange:
-      return {MeshFromElevation(BuiltInRange(scene.terrain.centre.value_or(scene.place)), frame),
-              ""};
+    case TerrainSource::Kind::kBuiltInRange: {
+      const ElevationGrid range = BuiltInRange(scene.terrain.centre.value_or(scene.place));
+      Prepare(progress, "mesh");
+      return {MeshFromElevation(range, frame), ""};
+    }
     case TerrainSource::Kind::kElevationModel: {
       const ElevationModel model = ReadElevation(scene.terrain.file, scene.terrain.voids);
       std::string message;
@@ -28,6 +31,7 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame) {
         message = fmt::format("{}: {} samples without data, {} filled", scene.terrain.file.string(),
                               model.voids, model.voids_filled);
       }
+      Prepare(progress, "mesh");
       return {MeshFromElevation(model.grid, frame), message};
     }
     case TerrainSource::Kind::kMesh:
@@ -52,12 +56,13 @@ Ellipsoid EllipsoidOf(const Medium& medium) {
   return medium.follows_wgs84 ? kWgs84 : Ellipsoid{medium.planet_radius_m, 0.0};
 }
 
-SceneGround LoadGround(const Scene& scene) {
+SceneGround LoadGround(const Scene& scene, Progress* progress) {
   GeodeticPosition foot = scene.place;
   foot.height_m = 0.0;
   const LocalFrame frame(EllipsoidOf(scene.medium), foot);
-  LoadedMesh loaded = LoadMesh(scene, frame);
+  LoadedMesh loaded = LoadMesh(scene, frame, progress);
   std::optional<Terrain> terrain;
+  if (loaded.mesh) Prepare(progress, "tree of triangles");
   if (loaded.mesh) terrain.emplace(std::move(*loaded.mesh));
   const double ground = GroundUnderEye(terrain);
   const Height& height = scene.camera.height;
@@ -66,6 +71,7 @@ SceneGround LoadGround(const Scene& scene) {
     throw InputError(
         fmt::format("camera.height_m is {:.1f}; the ground there is at {:.1f} m", eye, ground));
   }
+  Prepare(progress, "air");  // what follows
   const bool from_file = scene.terrain.kind == TerrainSource::Kind::kMesh;
   const bool is_one_surface = !from_file || !terrain || IsOneSurface(*terrain);
   if (!is_one_surface) {

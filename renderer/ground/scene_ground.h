@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "lut/program/progress.h"
 #include "renderer/scene/scene.h"
 #include "renderer/terrain/terrain.h"
 
@@ -23,6 +24,7 @@ struct SceneGround {
 
 /// Loads or generates the terrain and stands the eye on it. Throws InputError for files that cannot
 /// be read and for an eye given above_ground where the terrain has none, or below the ground.
-[[nodiscard]] SceneGround LoadGround(const Scene& scene);
+/// @param progress  told what is prepared, if not null.
+[[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);
 
 }  // namespace alpenglow

@@ -5,7 +5,8 @@
 
 namespace alpenglow {
 
-SceneRenderer::SceneRenderer(const Scene& scene) : state_(std::make_unique<SceneState>(scene)) {}
+SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
+    : state_(std::make_unique<SceneState>(scene, progress)) {}
 SceneRenderer::~SceneRenderer() = default;
 
 const Medium& SceneRenderer::medium() const { return state_->medium; }

@@ -36,7 +36,8 @@ struct ChosenPicture {
 class SceneRenderer {
  public:
   /// Throws InputError for what the scene names and cannot be read, or an eye below the ground.
-  explicit SceneRenderer(const Scene& scene);
+  /// @param progress  told what is prepared, if not null; not kept.
+  explicit SceneRenderer(const Scene& scene, Progress* progress = nullptr);
   ~SceneRenderer();
 
   /// Linear sRGB in cd/m^2. The same bytes for any number of threads. Throws InputError for a size

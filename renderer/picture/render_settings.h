@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "atmosphere/sun/time.h"
+#include "lut/program/progress.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/pixel_filter.h"
 #include "renderer/effect/effects.h"
@@ -24,6 +25,7 @@ struct RenderSettings {
   bool share_air = true;  // between rays of a pixel; false for comparison
   std::vector<PictureLayer> layers;
   LampSettings lamps = {};
+  Progress* progress = nullptr;  // told of steps, and of the rows of pixels that are done
 };
 
 /// When a picture is taken, and from where.

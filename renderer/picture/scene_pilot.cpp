@@ -72,6 +72,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
            : effect == Effect::kBounce ? frame.slopes_s
                                        : 0.0;
   };
+  Prepare(settings.progress, "choice of effects");
   pilot.present = whole.Present(frame);
   const auto refine = [&](const char* name, const auto& change) {
     pilot.refinements.push_back({name, [&, change] {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -101,6 +102,7 @@ Image SceneState::Pixels(const PictureFrame& frame, const std::vector<PixelPlace
 Image SceneState::Picture(const PictureFrame& frame) const {
   PixelWriter writer(colour, frame.settings.width, frame.settings.height, frame.settings.layers);
   ThrowIfInterrupted();
+  std::atomic<int> rows{0};
   tbb::parallel_for(0, frame.settings.height, [&](int y) {
     if (Interrupted()) return;
     for (int x = 0; x < frame.settings.width; ++x) {
@@ -108,6 +110,8 @@ Image SceneState::Picture(const PictureFrame& frame) const {
       if (!writer.AsksForMiddle()) continue;
       writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
     }
+    if (frame.settings.progress != nullptr)
+      frame.settings.progress->Part(static_cast<double>(++rows) / frame.settings.height);
   });
   ThrowIfInterrupted();
   return writer.Take();

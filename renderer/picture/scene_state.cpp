@@ -67,6 +67,7 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
                      nullptr};
   frame.light.effects = settings.effects;
   if (frame.Has(Effect::kShafts)) {
+    Prepare(settings.progress, "shadows");
     const Stopwatch watch;
     frame.sunlight = known ? known
                            : std::make_shared<TerrainSunlight>(ground, frame.light.to_sun,
@@ -74,6 +75,7 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
     frame.sunlight_s = watch.seconds();
   }
   if (frame.Has(Effect::kLights)) {
+    if (!lamps.All().empty()) Prepare(settings.progress, "lamps");
     const Stopwatch watch;
     frame.plan = std::make_shared<LampPlan>(PlanLamps(frame));
     frame.plan_s = watch.seconds();
@@ -84,6 +86,7 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
 }
 
 void SceneState::LightTerrain(PictureFrame& frame) const {
+  Prepare(frame.settings.progress, "light of slopes");
   if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // made once, for all frames
   const Stopwatch watch;
   frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.ground_sources());

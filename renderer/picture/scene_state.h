@@ -23,8 +23,8 @@
 namespace alpenglow {
 
 struct SceneState {
-  explicit SceneState(const Scene& of)
-      : SceneState(of, std::make_shared<SceneGround>(LoadGround(of)), nullptr) {}
+  SceneState(const Scene& of, Progress* progress)
+      : SceneState(of, std::make_shared<SceneGround>(LoadGround(of, progress)), nullptr) {}
   /// @param known  the horizons of that ground, or null.
   SceneState(const Scene& of, std::shared_ptr<const SceneGround> on,
              std::shared_ptr<const HorizonsOnDemand> known)

@@ -108,13 +108,13 @@ class Series {
       : source_(source), frames_(frames), output_(output) {}
 
   /// @return whether the frame had to be rendered.
-  bool Make(const Frame& frame) {
+  bool Make(const Frame& frame, Progress& progress) {
     const fs::path exr = output_.name.Exr(frame.number);
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
     std::optional<NotedPicture> picture;
     if (output_.resume) picture = KeptPicture(exr, wanted);
     const bool rendered = !picture;
-    if (rendered) picture = source_.render(frame);
+    if (rendered) picture = source_.render(frame, progress);
     const double ev100 = Ev100Of(frame, picture->image);
     Write(frame, *picture, ev100, rendered);
     if (output_.contact_sheet) AddThumbnail(frame, picture->image, ev100);
@@ -259,7 +259,7 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   try {
     for (const Frame& frame : selected) {
       ThrowIfInterrupted();
-      if (series.Make(frame)) {
+      if (series.Make(frame, progress)) {
         progress.Advance();
       } else {
         progress.Skip();

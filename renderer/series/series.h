@@ -33,7 +33,8 @@ inline constexpr const char* kNotePrefix = "alpenglow.note.";
 
 /// What makes the pictures of a series.
 struct SeriesSource {
-  std::function<NotedPicture(const Frame&)> render;
+  /// Tells the progress what it prepares, and how much of the picture is done.
+  std::function<NotedPicture(const Frame&, Progress&)> render;
   /// Of sun and sky on a horizontal plane at the eye [lux], for ExposureRule::Kind::kIncident.
   std::function<double(const Frame&)> illuminance;
   /// Everything that the pixels depend on but the instant and the pose (SceneMetadata, size,

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/built_in_range.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "atmosphere/number/constants.h"
@@ -24,38 +27,42 @@ namespace {
 constexpr double kUpliftOverErodibility = 98.0;
 constexpr double kUpliftPerStep_m = 250.0;
 
-// One value a sample, of its place.
+// One value a sample, of its place. Many threads.
 template <typename Function>
-std::vector<float> Everywhere(const Land& land, Function&& value_at) {
-  std::vector<float> values;
-  values.reserve(land.height_m.size());
-  for (int row = 0; row < land.size; ++row) {
-    for (int column = 0; column < land.size; ++column) {
-      const auto [x_km, y_km] = land.PlaceOf(row, column);
-      values.push_back(static_cast<float>(value_at(x_km, y_km)));
+std::vector<float> Everywhere(const Land& grid, const Function& value_at) {
+  std::vector<float> values(grid.index(grid.size, 0));
+  tbb::parallel_for(0, grid.size, [&](int row) {
+    for (int column = 0; column < grid.size; ++column) {
+      const auto [x_km, y_km] = grid.PlaceOf(row, column);
+      values[grid.index(row, column)] = static_cast<float>(value_at(x_km, y_km));
     }
-  }
+  });
   return values;
 }
 
-Rock RockOf(const Land& land) {
-  Rock rock;
-  for (int row = 0; row < land.size; ++row) {
-    for (int column = 0; column < land.size; ++column) {
-      const auto [x, y] = land.PlaceOf(row, column);
+// The range's grid at a part of its samples a side, without heights.
+Land GridOf(int size) { return {size, 1e3 * kRangeSpacing_km * kRangeSize / size, {}}; }
+
+Rock RockOf(const Land& grid) {
+  const std::size_t samples = grid.index(grid.size, 0);
+  Rock rock{std::vector<float>(samples), std::vector<float>(samples), std::vector<float>(samples)};
+  tbb::parallel_for(0, grid.size, [&](int row) {
+    for (int column = 0; column < grid.size; ++column) {
+      const auto [x, y] = grid.PlaceOf(row, column);
+      const std::size_t i = grid.index(row, column);
       const double uplift = RelativeUplift(x, y);
-      rock.uplift_m_per_step.push_back(static_cast<float>(kUpliftPerStep_m * uplift));
-      rock.erodibility_per_step.push_back(static_cast<float>(
-          kUpliftPerStep_m / kUpliftOverErodibility * RelativeErodibility(x, y)));
-      rock.steepest_slope.push_back(static_cast<float>(SteepestSlope(x, y, uplift)));
+      rock.uplift_m_per_step[i] = static_cast<float>(kUpliftPerStep_m * uplift);
+      rock.erodibility_per_step[i] =
+          static_cast<float>(kUpliftPerStep_m / kUpliftOverErodibility * RelativeErodibility(x, y));
+      rock.steepest_slope[i] = static_cast<float>(SteepestSlope(x, y, uplift));
     }
-  }
+  });
   return rock;
 }
 
 // A plain with less than a metre of roughness, to start from.
 Land Plain(int size) {
-  Land land{size, 1e3 * kRangeSpacing_km * kRangeSize / size, {}};
+  Land land = GridOf(size);
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) {
       land.height_m.push_back(static_cast<float>(LatticeUniform(column, row, 7)));
@@ -64,23 +71,48 @@ Land Plain(int size) {
   return land;
 }
 
-void Erode(Land& land, int steps, std::uint32_t seed) {
-  const Rock rock = RockOf(land);
+// A value that other threads work out while this one goes on. Rivers are cut one after the other;
+// what the land is made of does not depend on them.
+template <typename Value>
+class Ahead {
+ public:
+  template <typename Function>
+  explicit Ahead(const Function& make) {
+    group_.run([this, make] { value_ = make(); });
+  }
+  [[nodiscard]] const Value& Get() {
+    group_.wait();
+    return value_;
+  }
+
+ private:
+  Value value_;
+  tbb::task_group group_;
+};
+
+void Erode(Land& land, const Rock& rock, int steps, std::uint32_t seed) {
+  constexpr int kStepsAlike = 4;
+  std::optional<ScatteredSamples> scattered;
   for (int step = 0; step < steps; ++step) {
-    ErodeOnce(land, rock, seed + static_cast<std::uint32_t>(step / 4));
+    if (step % kStepsAlike == 0)
+      scattered.emplace(land.size, seed + static_cast<std::uint32_t>(step / kStepsAlike));
+    ErodeOnce(land, rock, *scattered);
   }
 }
 
 // Rivers find their way on a coarse grid, where a step reaches far, and cut it finer and finer.
 Land ErodedLand() {
+  const auto rock_of = [](int size) { return [=] { return RockOf(GridOf(size)); }; };
+  Ahead<Rock> first(rock_of(kRangeSize / 8)), second(rock_of(kRangeSize / 4)),
+      third(rock_of(kRangeSize / 2)), last(rock_of(kRangeSize));
   Land land = Plain(kRangeSize / 8);
-  Erode(land, 80, 1000);
+  Erode(land, first.Get(), 80, 1000);
   land = Refined(land, 60.0, 11);
-  Erode(land, 40, 2000);
+  Erode(land, second.Get(), 40, 2000);
   land = Refined(land, 30.0, 12);
-  Erode(land, 20, 3000);
+  Erode(land, third.Get(), 20, 3000);
   land = WithRibs(Bent(Refined(land, 15.0, 13), 5.0, 1.9, 40), 160.0, 0.7, 60);
-  Erode(land, 8, 4000);
+  Erode(land, last.Get(), 8, 4000);
   return land;
 }
 
@@ -95,7 +127,7 @@ Land Finished(Land land) {
   }
   land = WithRibs(land, 90.0, 0.5, 70);
   for (int pass = 0; pass < 3; ++pass) land = Softened(land, soil);
-  FillValleys(land, 0.018F, gravel_m, 5);
+  FillValleys(land, 0.018F, gravel_m, ScatteredSamples(land.size, 5));
   land = Softened(land, std::vector<float>(soil.size(), 0.25F));
   for (int pass = 0; pass < 3; ++pass) land = Softened(land, soil);
   return land;
@@ -106,8 +138,16 @@ Land RangeLand() {
   Land land = Finished(ErodedLand());
   const std::vector<float> base_m = Everywhere(land, BaseHeight);
   for (std::size_t i = 0; i < base_m.size(); ++i) land.height_m[i] += base_m[i];
-  static_cast<void>(DrainAndFill(land, 6));  // ribs and bends have left some pits
+  static_cast<void>(
+      DrainAndFill(land, ScatteredSamples(land.size, 6)));  // ribs and bends have left some pits
   return land;
+}
+
+// Made once a process: it is the same wherever it stands. Isolated, so that a thread that waits for
+// its parts does not take up another task that waits for the land.
+const Land& TheLand() {
+  static const Land kLand = tbb::this_task_arena::isolate([] { return RangeLand(); });
+  return kLand;
 }
 
 // From here on a box of longitudes and latitudes is too much of a wedge: the grid goes around the
@@ -194,7 +234,7 @@ class PolarMap {
   glm::dvec2 centre_;
 };
 
-ElevationGrid BoxGrid(Land land, const GeodeticPosition& centre) {
+ElevationGrid BoxGrid(const Land& land, const GeodeticPosition& centre) {
   const BoxMap map(centre);
   const double half_m = 0.5 * land.spacing_m * (land.size - 1);
   const GeodeticPosition north_west = map.At(-half_m, half_m);
@@ -206,7 +246,7 @@ ElevationGrid BoxGrid(Land land, const GeodeticPosition& centre) {
   grid.step_lat_rad = (north_west.latitude_rad - south_east.latitude_rad) / (land.size - 1);
   grid.columns = land.size;
   grid.rows = land.size;
-  grid.height_m = std::move(land.height_m);
+  grid.height_m = land.height_m;
   return grid;
 }
 
@@ -246,8 +286,8 @@ ElevationGrid BuiltInRange(const GeodeticPosition& centre) {
   RequireInRange(centre.latitude_rad, -0.5 * kPi, 0.5 * kPi, "latitude_rad");
   GeodeticPosition wrapped = centre;
   wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
-  if (IsPolar(wrapped)) return PolarGrid(RangeLand(), wrapped);
-  return BoxGrid(RangeLand(), wrapped);
+  if (IsPolar(wrapped)) return PolarGrid(TheLand(), wrapped);
+  return BoxGrid(TheLand(), wrapped);
 }
 
 BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {

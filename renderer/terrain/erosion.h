@@ -10,6 +10,7 @@
 // than its angle of repose slides.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,6 +26,22 @@ struct Rock {
   std::vector<float> steepest_slope;        // tangent of the angle of repose
 };
 
+/// The samples of a square grid, each moved by up to a third of the spacing when distances are taken,
+/// so that rivers do not follow the axes of the grid.
+class ScatteredSamples {
+ public:
+  /// @param size  samples a side.
+  ScatteredSamples(int size, std::uint32_t seed);
+
+  /// Distances [samples] between consecutive samples of a row, `first` at their head, and those
+  /// `rows` south and `columns` east of them; both in {-1, 0, 1}, not both 0.
+  [[nodiscard]] const float* Distances(std::size_t first, int rows, int columns) const;
+
+ private:
+  int size_;
+  std::vector<float> to_east_, to_south_west_, to_south_, to_south_east_;
+};
+
 /// Where water goes. The rim is the outlet: its samples are their own receivers.
 struct Drainage {
   std::vector<std::uint32_t> order;     // every sample after its receiver
@@ -33,18 +50,16 @@ struct Drainage {
   std::vector<float> area_m2;           // drained through the sample, its own included
 };
 
-/// The drainage tree of a land; closed basins are filled to their outlets on the way. `seed`
-/// scatters the samples by up to a third of the spacing when distances are taken, so that rivers do
-/// not follow the axes of the grid.
-[[nodiscard]] Drainage DrainAndFill(Land& land, std::uint32_t seed);
+/// The drainage tree of a land; closed basins are filled to their outlets on the way.
+[[nodiscard]] Drainage DrainAndFill(Land& land, const ScatteredSamples& scattered);
 
 /// One implicit step of uplift, river incision and slides. The rim stays where it is.
-void ErodeOnce(Land& land, const Rock& rock, std::uint32_t seed);
+void ErodeOnce(Land& land, const Rock& rock, const ScatteredSamples& scattered);
 
 /// Valley floors: rivers fill their valleys with gravel, at most `deepest_m` (one value a sample)
 /// high, as long as the floor rises upstream by no more than `floor_slope`; where the rock rises
 /// faster the river runs on it.
 void FillValleys(Land& land, float floor_slope, const std::vector<float>& deepest_m,
-                 std::uint32_t seed);
+                 const ScatteredSamples& scattered);
 
 }  // namespace alpenglow

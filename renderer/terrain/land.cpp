@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/land.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,6 +35,14 @@ double BinomialMean(const Land& land, int row, int column) {
   return sum / 16.0;
 }
 
+// Visits every sample off the rim: visit(row, column). Many threads.
+template <typename Visit>
+void ForInside(int size, const Visit& visit) {
+  tbb::parallel_for(1, std::max(size - 1, 1), [&](int row) {
+    for (int column = 1; column < size - 1; ++column) visit(row, column);
+  });
+}
+
 }  // namespace
 
 float CubicHeight(const Land& land, double row, double column) {
@@ -57,56 +67,48 @@ float CubicHeight(const Land& land, double row, double column) {
 Land Refined(const Land& coarse, double roughness_m, std::uint32_t seed) {
   Land fine{2 * coarse.size, 0.5 * coarse.spacing_m, {}};
   fine.height_m.resize(4 * coarse.height_m.size(), 0.0F);
-  for (int row = 1; row < fine.size - 1; ++row) {
-    for (int column = 1; column < fine.size - 1; ++column) {
-      fine.height_m[fine.index(row, column)] =
-          CubicHeight(coarse, 0.5 * row - 0.25, 0.5 * column - 0.25) +
-          static_cast<float>(roughness_m * (LatticeUniform(column, row, seed) - 0.5));
-    }
-  }
+  ForInside(fine.size, [&](int row, int column) {
+    fine.height_m[fine.index(row, column)] =
+        CubicHeight(coarse, 0.5 * row - 0.25, 0.5 * column - 0.25) +
+        static_cast<float>(roughness_m * (LatticeUniform(column, row, seed) - 0.5));
+  });
   return fine;
 }
 
 Land WithRibs(const Land& land, double height_m, double wavelength_km, std::uint32_t seed) {
   Land ribbed = land;
-  for (int row = 1; row < land.size - 1; ++row) {
-    for (int column = 1; column < land.size - 1; ++column) {
-      const double slope = Slope(land, row, column);
-      const double strength = height_m * std::min(1.0, slope * slope);
-      if (strength < 0.01 * height_m) continue;
-      const auto [x, y] = land.PlaceOf(row, column);
-      const double ribs = RidgedNoise(x / wavelength_km, y / wavelength_km, 2, seed) - 0.5;
-      ribbed.height_m[land.index(row, column)] += static_cast<float>(strength * ribs);
-    }
-  }
+  ForInside(land.size, [&](int row, int column) {
+    const double slope = Slope(land, row, column);
+    const double strength = height_m * std::min(1.0, slope * slope);
+    if (strength < 0.01 * height_m) return;
+    const auto [x, y] = land.PlaceOf(row, column);
+    const double ribs = RidgedNoise(x / wavelength_km, y / wavelength_km, 2, seed) - 0.5;
+    ribbed.height_m[land.index(row, column)] += static_cast<float>(strength * ribs);
+  });
   return ribbed;
 }
 
 Land Softened(const Land& land, const std::vector<float>& weight) {
   Land soft = land;
-  for (int row = 1; row < land.size - 1; ++row) {
-    for (int column = 1; column < land.size - 1; ++column) {
-      const std::size_t sample = land.index(row, column);
-      if (weight[sample] == 0.0F) continue;
-      const auto mean = static_cast<float>(BinomialMean(land, row, column));
-      soft.height_m[sample] += weight[sample] * (mean - land.height_m[sample]);
-    }
-  }
+  ForInside(land.size, [&](int row, int column) {
+    const std::size_t sample = land.index(row, column);
+    if (weight[sample] == 0.0F) return;
+    const auto mean = static_cast<float>(BinomialMean(land, row, column));
+    soft.height_m[sample] += weight[sample] * (mean - land.height_m[sample]);
+  });
   return soft;
 }
 
 Land Bent(const Land& land, double samples, double wavelength_km, std::uint32_t seed) {
   Land bent = land;
-  for (int row = 1; row < land.size - 1; ++row) {
-    for (int column = 1; column < land.size - 1; ++column) {
-      const auto [x, y] = land.PlaceOf(row, column);
-      const double u = x / wavelength_km;
-      const double v = y / wavelength_km;
-      bent.height_m[land.index(row, column)] =
-          CubicHeight(land, row + samples * FractalNoise(u, v, 3, seed),
-                      column + samples * FractalNoise(u, v, 3, seed + 10));
-    }
-  }
+  ForInside(land.size, [&](int row, int column) {
+    const auto [x, y] = land.PlaceOf(row, column);
+    const double u = x / wavelength_km;
+    const double v = y / wavelength_km;
+    bent.height_m[land.index(row, column)] =
+        CubicHeight(land, row + samples * FractalNoise(u, v, 3, seed),
+                    column + samples * FractalNoise(u, v, 3, seed + 10));
+  });
   return bent;
 }
 

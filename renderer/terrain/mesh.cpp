@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/mesh.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -19,17 +21,15 @@ constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 class MeshBuilder {
  public:
   MeshBuilder(const ElevationGrid& grid, const LocalFrame& frame)
-      : grid_(grid), frame_(frame), vertex_of_sample_(grid.height_m.size(), kNoVertex) {}
+      : grid_(grid),
+        frame_(frame),
+        closes_(grid.ClosesAroundTheEarth()),
+        vertex_of_sample_(grid.height_m.size(), kNoVertex) {}
 
   TriangleMesh Build() {
     AddVertices();
-    const int last_column = grid_.ClosesAroundTheEarth() ? grid_.columns : grid_.columns - 1;
-    mesh_.triangles.reserve(2 * static_cast<std::size_t>(grid_.rows) *
-                            static_cast<std::size_t>(grid_.columns));
-    for (int row = 0; row + 1 < grid_.rows; ++row) {
-      for (int column = 0; column < last_column; ++column) AddCell(row, column);
-    }
-    if (grid_.ClosesAroundTheEarth()) {
+    AddCells();
+    if (closes_) {
       AddPole(0, 0.5 * kPi);
       AddPole(grid_.rows - 1, -0.5 * kPi);
     }
@@ -43,23 +43,43 @@ class MeshBuilder {
   }
 
  private:
-  std::uint32_t AddVertex(double latitude_rad, double longitude_rad, double height_m) {
-    const auto vertex = static_cast<std::uint32_t>(position_m_.size());
-    position_m_.push_back(frame_.EnuFromGeodetic({latitude_rad, longitude_rad, height_m}).xyz);
-    return vertex;
+  using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+  [[nodiscard]] glm::dvec3 PositionOf(double latitude_rad, double longitude_rad,
+                                      double height_m) const {
+    return frame_.EnuFromGeodetic({latitude_rad, longitude_rad, height_m}).xyz;
   }
 
   void AddVertices() {
     ALPENGLOW_ENSURE(grid_.height_m.size(), <, std::size_t{kNoVertex} - 2);
-    position_m_.reserve(grid_.height_m.size());
-    for (int row = 0; row < grid_.rows; ++row) {
+    std::uint32_t vertices = 0;
+    for (std::size_t i = 0; i < grid_.height_m.size(); ++i)
+      if (!std::isnan(grid_.height_m[i])) vertex_of_sample_[i] = vertices++;
+    position_m_.resize(vertices);
+    tbb::parallel_for(0, grid_.rows, [&](int row) {
       for (int column = 0; column < grid_.columns; ++column) {
-        const float height = grid_.at(row, column);
-        if (std::isnan(height)) continue;
-        vertex_of_sample_[grid_.index(row, column)] = AddVertex(
-            grid_.LatitudeOfRow(row), grid_.LongitudeOfColumn(column), static_cast<double>(height));
+        const std::uint32_t vertex = vertex_of_sample_[grid_.index(row, column)];
+        if (vertex == kNoVertex) continue;
+        position_m_[vertex] = PositionOf(grid_.LatitudeOfRow(row), grid_.LongitudeOfColumn(column),
+                                         static_cast<double>(grid_.at(row, column)));
       }
-    }
+    });
+  }
+
+  // Every row by itself, and then one after the other.
+  void AddCells() {
+    std::vector<Triangles> of_row(static_cast<std::size_t>(std::max(grid_.rows - 1, 0)));
+    const int last_column = closes_ ? grid_.columns : grid_.columns - 1;
+    tbb::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t row) {
+      of_row[row].reserve(2 * static_cast<std::size_t>(grid_.columns));
+      for (int column = 0; column < last_column; ++column)
+        AddCell(static_cast<int>(row), column, of_row[row]);
+    });
+    std::size_t count = 0;
+    for (const Triangles& triangles : of_row) count += triangles.size();
+    mesh_.triangles.reserve(count + 2 * static_cast<std::size_t>(grid_.columns));  // poles
+    for (const Triangles& triangles : of_row)
+      mesh_.triangles.insert(mesh_.triangles.end(), triangles.begin(), triangles.end());
   }
 
   [[nodiscard]] std::uint32_t VertexAt(int row, int column) const {
@@ -68,7 +88,7 @@ class MeshBuilder {
 
   // Two triangles along the diagonal that fits the surface better, so that crests and gullies that
   // run diagonally stay whole; one where a corner is a void.
-  void AddCell(int row, int column) {
+  void AddCell(int row, int column, Triangles& into) const {
     const std::uint32_t nw = VertexAt(row, column);
     const std::uint32_t ne = VertexAt(row, column + 1);
     const std::uint32_t sw = VertexAt(row + 1, column);
@@ -76,19 +96,18 @@ class MeshBuilder {
     const bool void_off_falling = ne == kNoVertex || sw == kNoVertex;
     const bool void_off_rising = nw == kNoVertex || se == kNoVertex;
     if (void_off_falling || (!void_off_rising && FallingDiagonalFits(row, column))) {
-      AddTriangle(nw, sw, se);
-      AddTriangle(nw, se, ne);
+      AddTriangle(nw, sw, se, into);
+      AddTriangle(nw, se, ne, into);
     } else {
-      AddTriangle(nw, sw, ne);
-      AddTriangle(ne, sw, se);
+      AddTriangle(nw, sw, ne, into);
+      AddTriangle(ne, sw, se, into);
     }
   }
 
   [[nodiscard]] double HeightNear(int row, int column) const {
     const int within_row = std::clamp(row, 0, grid_.rows - 1);
-    const int within_column = grid_.ClosesAroundTheEarth()
-                                  ? (column + grid_.columns) % grid_.columns
-                                  : std::clamp(column, 0, grid_.columns - 1);
+    const int within_column = closes_ ? (column + grid_.columns) % grid_.columns
+                                      : std::clamp(column, 0, grid_.columns - 1);
     return static_cast<double>(grid_.at(within_row, within_column));
   }
 
@@ -109,13 +128,13 @@ class MeshBuilder {
   }
 
   // Left out: triangles at a void, and those that a row of samples at the pole has shrunk.
-  void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, Triangles& into) const {
     if (a == kNoVertex || b == kNoVertex || c == kNoVertex) return;
     const glm::dvec3& corner = position_m_[a];
     const glm::dvec3 normal = glm::cross(position_m_[b] - corner, position_m_[c] - corner);
     constexpr double kLeastDoubleArea_m2 = 1e-6;
     if (!(glm::length(normal) > kLeastDoubleArea_m2)) return;
-    mesh_.triangles.push_back({a, b, c});
+    into.push_back({a, b, c});
   }
 
   // A fan from the ring next to a pole to a vertex at the pole, of the ring's mean height.
@@ -127,20 +146,22 @@ class MeshBuilder {
       sum += static_cast<double>(grid_.at(row, column));
     }
     if (std::isnan(sum)) return;
-    const std::uint32_t pole = AddVertex(pole_rad, 0.0, sum / grid_.columns);
+    const auto pole = static_cast<std::uint32_t>(position_m_.size());
+    position_m_.push_back(PositionOf(pole_rad, 0.0, sum / grid_.columns));
     for (int column = 0; column < grid_.columns; ++column) {
       const std::uint32_t west = VertexAt(row, column);
       const std::uint32_t east = VertexAt(row, column + 1);
       if (pole_rad > 0.0) {
-        AddTriangle(pole, west, east);
+        AddTriangle(pole, west, east, mesh_.triangles);
       } else {
-        AddTriangle(pole, east, west);
+        AddTriangle(pole, east, west, mesh_.triangles);
       }
     }
   }
 
   const ElevationGrid& grid_;
   const LocalFrame& frame_;
+  bool closes_;  // around the earth
   std::vector<std::uint32_t> vertex_of_sample_;
   std::vector<glm::dvec3> position_m_;
   TriangleMesh mesh_;

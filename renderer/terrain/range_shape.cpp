@@ -69,9 +69,14 @@ double ChainUplift(const StrikeFrame& place) {
   for (std::size_t i = 0; i < kChains.size(); ++i) {
     const Chain& chain = kChains[i];
     const auto seed = static_cast<std::uint32_t>(100 + 10 * i);
-    const double wander = 3.5 * FractalNoise(place.along_km / 17.0, 0.3, 3, seed);
+    constexpr double kWander_km = 3.5;
+    constexpr double kOctaves_km = kWander_km * (1.0 + 0.5 + 0.25);  // no noise reaches 1
+    const double from_chain_km = place.across_km - chain.across_km;
+    if (std::abs(from_chain_km) > chain.half_width_km + kOctaves_km) continue;
+    const double wander = kWander_km * FractalNoise(place.along_km / 17.0, 0.3, 3, seed);
+    const double offset = (from_chain_km - wander) / chain.half_width_km;
+    if (std::abs(offset) >= 1.0) continue;
     const double strength = 1.0 + 0.9 * FractalNoise(place.along_km / 9.0, 0.7, 2, seed + 5);
-    const double offset = (place.across_km - chain.across_km - wander) / chain.half_width_km;
     uplift += chain.uplift * std::clamp(strength, 0.35, 1.4) * Bump(offset);
   }
   return uplift;

@@ -2,6 +2,8 @@
 #include "renderer/terrain/terrain.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,28 +96,42 @@ void CheckMesh(const TriangleMesh& mesh) {
   }
 }
 
-double LongestEdge(const TriangleMesh& mesh) {
-  double longest2 = 0.0;
-  for (const auto& triangle : mesh.triangles) {
+/// How far triangles reach, and the square of their longest edge.
+struct Reach {
+  Box box;
+  double longest2_m2 = 0.0;
+
+  void Add(const std::array<glm::dvec3, 3>& corner) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const glm::dvec3 edge =
-          ToDouble(mesh.positions[triangle[(k + 1) % 3]]) - ToDouble(mesh.positions[triangle[k]]);
-      longest2 = std::max(longest2, glm::dot(edge, edge));
+      box.low = glm::min(box.low, corner[k]);
+      box.high = glm::max(box.high, corner[k]);
+      const glm::dvec3 edge = corner[(k + 1) % 3] - corner[k];
+      longest2_m2 = std::max(longest2_m2, glm::dot(edge, edge));
     }
   }
-  return std::sqrt(longest2);
+  [[nodiscard]] Reach With(const Reach& other) const {
+    return {{glm::min(box.low, other.box.low), glm::max(box.high, other.box.high)},
+            std::max(longest2_m2, other.longest2_m2)};
+  }
+};
+
+Reach ReachOf(const TriangleMesh& mesh) {
+  const tbb::blocked_range<std::size_t> all(0, mesh.triangles.size(), 1 << 14);
+  return tbb::parallel_reduce(
+      all, Reach{},
+      [&](const tbb::blocked_range<std::size_t>& some, Reach reach) {
+        for (std::size_t i = some.begin(); i < some.end(); ++i) {
+          const auto& [a, b, c] = mesh.triangles[i];
+          reach.Add({ToDouble(mesh.positions[a]), ToDouble(mesh.positions[b]),
+                     ToDouble(mesh.positions[c])});
+        }
+        return reach;
+      },
+      [](const Reach& a, const Reach& b) { return a.With(b); });
 }
 
-// Bounds of the triangles, wide enough that a clipped ray starts off them.
-Box BoundsOf(const TriangleMesh& mesh) {
-  Box box;
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t vertex : triangle) {
-      const glm::dvec3 position = ToDouble(mesh.positions[vertex]);
-      box.low = glm::min(box.low, position);
-      box.high = glm::max(box.high, position);
-    }
-  }
+// Wide enough that a clipped ray starts off the triangles.
+Box Widened(const Box& box) {
   const glm::dvec3 margin = 1.0 + 1e-5 * glm::max(glm::abs(box.low), glm::abs(box.high));
   return {box.low - margin, box.high + margin};
 }
@@ -184,8 +200,9 @@ struct Terrain::Scene {
 
   explicit Scene(TriangleMesh triangles) : mesh(std::move(triangles)) {
     CheckMesh(mesh);
-    bounds = BoundsOf(mesh);
-    longest_edge_m = LongestEdge(mesh);
+    const Reach reach = ReachOf(mesh);
+    bounds = Widened(reach.box);
+    longest_edge_m = std::sqrt(reach.longest2_m2);
     device = rtcNewDevice("");
     if (device == nullptr) throw InternalError("Embree has no device for this processor");
     rtcSetDeviceErrorFunction(device, &Scene::KeepFault, this);

@@ -373,6 +373,43 @@ TEST(Progress, SkippedWorkSaysNothingAboutTheSpeed) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("\"done\":2,\"total\":4"));
 }
 
+std::string TextOfOneUnit(ProgressStyle style) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 2, style);
+    progress.Prepare("terrain");
+    progress.Prepare("mesh");
+    progress.Prepare("terrain");
+    for (int quarter = 1; quarter <= 4; ++quarter) progress.Part(0.25 * quarter);
+    progress.Advance();
+  }
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, ALongUnitTellsWhatIsPreparedAndHowMuchOfItIsDone) {
+  const std::string json = TextOfOneUnit(ProgressStyle::kJson);
+  EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"step\":\"mesh\",\"elapsed_s\":"));
+  EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":0,\"part\":0.250,\"total\":2,"));
+  EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":1,\"total\":2,"));
+  EXPECT_EQ(LinesOf(json), 2U + 5U) << "two steps, four parts, the whole";
+}
+
+TEST(Progress, StepsAreNamedOnceAndShortUnitsKeepToTheirLine) {
+  EXPECT_EQ(TextOfOneUnit(ProgressStyle::kPlain).substr(0, 68),
+            "frames: preparing terrain\nframes: preparing mesh\nframes: 50 % (1 of ");
+}
+
+TEST(Progress, PartsOfUnitsNeverGoBack) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 1, ProgressStyle::kJson);
+    progress.Part(0.5);
+    progress.Part(0.25);  // from a thread that was held up
+    progress.Part(0.75);
+  }
+  EXPECT_EQ(LinesOf(testing::internal::GetCapturedStderr()), 2U);
+}
+
 TEST(Progress, QuietSaysNothing) { EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), ""); }
 
 TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {

@@ -54,7 +54,7 @@ class SeriesRun : public TemporaryFolder {
  protected:
   SeriesSource Source() {
     SeriesSource source;
-    source.render = [this](const Frame& frame) {
+    source.render = [this](const Frame& frame, Progress&) {
       ++renderings_;
       if (on_render_) on_render_();
       Image image(16, 9);
@@ -126,7 +126,7 @@ TEST_F(SeriesRun, AnIncidentExposureFollowsTheLightOnThePlaceNotThePicture) {
 
 TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
   SeriesSource source = Source();
-  source.render = [](const Frame&) {
+  source.render = [](const Frame&, Progress&) {
     Image image(16, 9);
     image.rgb.assign(image.rgb.size(), {2e-3F, 1e-4F, 1e-4F});
     image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1e-3F)});
