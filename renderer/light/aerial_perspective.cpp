@@ -150,8 +150,9 @@ int AerialPerspective::NodesFor(double length_m, double low_m, double high_m, bo
   // Logarithm of how much the integrand changes from end to end.
   const double change = (haze + clear) * length_m + rise / medium.rayleigh_scale_height_m +
                         std::min(share, 1.0) * rise / medium.mie_scale_height_m;
-  const int nodes = 2 + static_cast<int>(change / 1.2);
-  return std::min(nodes + (shafts ? 3 : 0), 12);
+  constexpr double kMost = 12.0;
+  const double nodes = 2.0 + std::floor(std::min(change, 2.0 * kMost) / 1.2) + (shafts ? 3.0 : 0.0);
+  return static_cast<int>(std::min(nodes, kMost));
 }
 
 // k of a panel's map: half of the nodes within 20 km of altitude over the lower end, or 8 optical
@@ -202,7 +203,7 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
     if (extent.end == RayEnd::kLength) {
       // Beams that graze the planet light the end at its shadow by far less than the other.
       const int least = ray.mu_s < 0.0 ? kTwilightNodes : 0;
-      const int asked = NodesFor(panel.length_m(), low, std::max(first, last), !unbroken);
+      const int asked = NodesFor(panel.length_m(), low, std::max({first, last, low}), !unbroken);
       panel.nodes = std::min(std::max(asked, least), nodes.sky);
     }
     const GaussRule& rule = GaussLegendre(panel.nodes);

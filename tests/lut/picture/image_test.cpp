@@ -4,6 +4,7 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -295,6 +296,22 @@ TEST(Dither, NoiseIsTriangularAndChannelsAreUncorrelated) {
     EXPECT_NEAR(product[a][a], 1.0 / 6.0, 1e-3) << "variance of the triangle on (-1, 1)";
     EXPECT_LT(std::abs(product[a][(a + 1) % 3]), 0.05 / 6.0) << "5 % correlation";
   }
+}
+
+// Hard case 32.
+TEST_F(ExrFile, PicturesAreInFloatsAndHoldTheSunsDisk) {
+  // 1.6e9 cd/m^2 in the mean, and 65504 is the largest half.
+  Image image(3, 1);
+  image.at(1, 0) = {1.9e9F, 1.6e9F, 1.4e9F};
+  image.layers.push_back({"inscatter.R", {0.0F, 1.6e9F, 1e-30F}});
+  WriteExr(folder_ / "sun.exr", image, {});
+  const Imf::InputFile file((folder_ / "sun.exr").c_str());
+  const Imf::ChannelList& channels = file.header().channels();
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+    EXPECT_EQ(channel.channel().type, Imf::FLOAT) << channel.name();
+  const Image back = ReadExr(folder_ / "sun.exr");
+  EXPECT_EQ(back.rgb, image.rgb);
+  EXPECT_EQ(back.layers[0].values, image.layers[0].values);
 }
 
 }  // namespace

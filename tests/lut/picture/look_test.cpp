@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "atmosphere/text/error.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/night_vision.h"
@@ -51,6 +54,28 @@ TEST(Look, NightVisionIsSeenBeforeItIsMetered) {
   image.layers.push_back({kScotopicChannel, std::vector<float>(16, 3e-3F)});
   EXPECT_EQ(Seen(image, {}).rgb, image.rgb);
   EXPECT_EQ(Seen(image, {.night_vision = true}).rgb, SeenByNight(image).rgb);
+}
+
+// Hard case 44.
+TEST(Look, PicturesOfOnePixelOneColumnAndOneLongRowAreDeveloped) {
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
+    // An even grey at dusk, where night vision changes it.
+    Image image(width, height);
+    for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
+    image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1.0F)});
+    for (const Look& look : {Look{}, LookFromName("local"), Look{.night_vision = true},
+                             Look{ToneCurve::kAgx, true, true}}) {
+      const Image seen = Seen(image, look);
+      EXPECT_EQ(look.night_vision, seen.rgb != image.rgb);
+      const DisplayImage display = Develop(seen, MeterEv100(seen, 1e9), look);
+      ASSERT_EQ(display.rgb.size(), 3 * image.rgb.size());
+      for (std::size_t i = 1; i < display.rgb.size(); i += 3) {
+        EXPECT_NEAR(display.rgb[i], 127, look.night_vision ? 12 : 3)
+            << width << " x " << height << ", pixel " << i / 3
+            << ": middle grey, metered to a 32nd of a stop and dithered; by night it is bluish";
+      }
+    }
+  }
 }
 
 }  // namespace

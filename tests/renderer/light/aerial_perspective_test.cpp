@@ -208,5 +208,50 @@ TEST(AerialPerspective, NothingIsThereOverNoDistanceAndLittleOverAMillimetre) {
       << "3 % is lost and gained over a kilometre of air";
 }
 
+// Hard case 2.
+TEST(AerialPerspective, BelowTheSphereAirIsFoundOverEveryDistance) {
+  // Fixed on 2026-11-22: from 11 km below, the air to a point that was below too got no node.
+  const Air air(MediumPreset("earth"));
+  for (const double eye_m : {-430.0, -11000.0}) {
+    for (const double mu : {-0.2, 0.0, 0.3}) {
+      for (const double length_m : {1.0, 1e3, 15e3, 60e3}) {
+        const ViewRay ray{eye_m, mu, 0.5, 0.3, length_m};
+        const AirAlongRay found = air.aerial.Along(ray, {});
+        for (std::size_t band = 0; band < found.inscatter.count; ++band) {
+          EXPECT_TRUE(std::isfinite(found.inscatter[band])) << eye_m << " " << mu;
+          EXPECT_GE(found.inscatter[band], 0.0F) << eye_m << " " << mu;
+          EXPECT_TRUE(found.transmittance[band] >= 0.0F && found.transmittance[band] <= 1.0F);
+        }
+      }
+    }
+  }
+}
+
+// Hard case 39.
+TEST(AerialPerspective, IsContinuousInTheDistanceFromNothingToTheEndOfTheAir) {
+  // The number of nodes grows with the distance; where it does, light must not jump.
+  const Air air(WithOpticalDepth(0.1));
+  for (const double mu : {0.02, 0.0, -0.005}) {
+    const auto at = [&](double length_m) {
+      return air.aerial.Along({1500.0, mu, 0.3, 0.5, length_m}, {});
+    };
+    const double all = Sum(at(3e6).inscatter);
+    double before = 0.0, seen_before = static_cast<double>(at(0.0).transmittance.count);
+    for (double length_m = 1e-3; length_m < 3e6; length_m *= 1.01) {
+      const AirAlongRay here = at(length_m);
+      // In 1 % of the distance at most 1 % of the light comes in addition.
+      EXPECT_NEAR(Sum(here.inscatter), before, 0.012 * before + 1e-6 * all) << length_m << " m";
+      EXPECT_LE(Sum(here.transmittance), seen_before + 1e-5) << length_m << " m";
+      const AirAlongRay next = at(std::nextafter(length_m, 4e6));
+      EXPECT_NEAR(Sum(next.inscatter), Sum(here.inscatter), 2e-3 * Sum(here.inscatter))
+          << length_m << " m: a thousandth either way";
+      before = Sum(here.inscatter);
+      seen_before = Sum(here.transmittance);
+    }
+    EXPECT_EQ(Sum(at(1e9).inscatter), all) << "beyond the end of the air";
+    EXPECT_NEAR(Sum(air.aerial.Along({1500.0, mu, 0.3, 0.5}, {}).inscatter) / all, 1.0, 2e-3);
+  }
+}
+
 }  // namespace
 }  // namespace alpenglow

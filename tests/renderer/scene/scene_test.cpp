@@ -166,6 +166,9 @@ TEST(Scene, FogAndLampsThatMakeNoSenseAreRefusedByKey) {
   EXPECT_THAT(FaultOf(kPlace + light), HasSubstr("intensity_cd is missing"));
   EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = -1\n"), HasSubstr("intensity_cd is -1"));
   EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = inf\n"), HasSubstr("intensity_cd"));
+  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = -inf\n"), HasSubstr("intensity_cd"));
+  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = nan\n"), HasSubstr("intensity_cd is nan"));
+  EXPECT_EQ(FaultOf(kPlace + light + "intensity_cd = 0\n"), "no fault");
   EXPECT_THAT(FaultOf(kPlace + light + "ies = \"a\"\ncone = [1, 2]\n"), HasSubstr("cone is for"));
   EXPECT_THAT(FaultOf(kPlace + light + "type = \"spot\"\nies = \"a\"\n"), HasSubstr("ies is for"));
 }

@@ -301,6 +301,20 @@ TEST(ContactSheet, ReducingKeepsTheMean) {
   EXPECT_EQ(Reduced(Image(5000, 1), 100).height, 1);
 }
 
+// Hard case 44.
+TEST(ContactSheet, ThumbnailsOfOnePixelOneColumnAndOneRowHaveTheirPlace) {
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
+    const Image small = Reduced(Image(width, height), kThumbnailWidth);
+    EXPECT_LE(small.width, kThumbnailWidth);
+    DisplayImage white{small.width, small.height, {}};
+    white.rgb.assign(3 * small.rgb.size(), 255);
+    const DisplayImage sheet = ContactSheet({{white, ""}, {white, ""}, {white, ""}});
+    EXPECT_EQ(std::count(sheet.rgb.begin(), sheet.rgb.end(), 255),
+              static_cast<std::ptrdiff_t>(3 * white.rgb.size()))
+        << width << " x " << height;
+  }
+}
+
 using Provenance = TemporaryFolder;
 
 TEST_F(Provenance, FingerprintFollowsEverySettingAndTheTerrainsContent) {

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Pictures at the ends of what a scene, an eye and a picture may be.
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "renderer/camera/camera_rays.h"
+#include "renderer/picture/render.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+const UtcInstant kNoon = ParseInstant("2026-06-21T11:30:00Z");
+
+RenderSettings Settings(int width, int height, std::vector<std::string> layers = {}) {
+  return {.width = width,
+          .height = height,
+          .samples_per_pixel = 1,
+          .air_nodes = 12,
+          .layers = std::move(layers)};
+}
+
+double Luminance(const std::array<float, 3>& rgb) {
+  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+         0.0722 * static_cast<double>(rgb[2]);
+}
+
+/// From another camera at the place of a bare scene; angles in degrees.
+Shot ShotFrom(double height_m, double pitch, double roll, double fov) {
+  const Camera camera = CameraFromDegrees({}, 40.0, pitch, roll, 60.0);
+  Shot shot(kNoon);
+  shot.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad, camera.pitch_rad,
+                 camera.roll_rad, fov * kRadiansPerDegree}};
+  return shot;
+}
+
+void ExpectLightEverywhere(const Image& image) {
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    for (const float channel : image.rgb[i]) EXPECT_TRUE(std::isfinite(channel)) << "pixel " << i;
+    EXPECT_GT(Luminance(image.rgb[i]), 1.0) << "by day nothing is black; pixel " << i;
+  }
+}
+
+// Hard case 1.
+TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
+  const SceneRenderer renderer(BareScene(0.0, 40.0, 0.0, 2.0));
+  const Image image = renderer.Render(kNoon, Settings(2, 100, {"depth"}));
+  ExpectLightEverywhere(image);
+  for (int y = 0; y < image.height; ++y) {
+    const float depth = image.layers[0].values[static_cast<std::size_t>(2 * y)];
+    EXPECT_EQ(std::isinf(depth), y < 50) << "row " << y;
+  }
+}
+
+// A funnel that is so deep in the middle, and 300 m above the sea at its rim, 30 km away.
+Scene AtTheBottomOf(const std::filesystem::path& file, double depth_m) {
+  std::string text = fmt::format("v 0 0 {}\n", -depth_m);
+  constexpr int kRim = 24;
+  for (int i = 0; i < kRim; ++i) {
+    const double turn = 2.0 * kPi * i / kRim;
+    text += fmt::format("v {} {} 300\n", 30e3 * std::cos(turn), 30e3 * std::sin(turn));
+  }
+  for (int i = 0; i < kRim; ++i) text += fmt::format("f 1 {} {}\n", i + 2, (i + 1) % kRim + 2);
+  WriteText(file, text);
+  Scene scene = BareScene(0.0, 40.0, 55.0, 30.0);
+  scene.camera.height = {2.0, true};
+  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+  return scene;
+}
+
+class RenderExtremesFiles : public TemporaryFolder {};
+
+// Hard case 2.
+TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShoreAndNothingIsBlack) {
+  const Image shore =
+      SceneRenderer(BareScene(0.0, 40.0, 55.0, 30.0)).Render(kNoon, Settings(12, 8));
+  for (const double depth_m : {430.0, 11000.0}) {
+    const SceneRenderer renderer(AtTheBottomOf(folder_ / "sink.obj", depth_m));
+    EXPECT_NEAR(renderer.eye_height_m(), 2.0 - depth_m, 1e-3);
+    const Image sky = renderer.Render(kNoon, Settings(12, 8));
+    for (std::size_t i = 0; i < sky.rgb.size(); ++i) {
+      EXPECT_NEAR(Luminance(sky.rgb[i]) / Luminance(shore.rgb[i]), 1.0, 1e-3)
+          << depth_m << " m down, pixel " << i << ": the ground's shape does not change the sky";
+    }
+    // The walls, the rim and what is over it, and the floor.
+    for (const double pitch : {0.0, -60.0}) {
+      const Shot down = ShotFrom(renderer.eye_height_m(), pitch, 0.0, 60.0);
+      ExpectLightEverywhere(renderer.Render(down, Settings(12, 8)));
+    }
+    EXPECT_GT(renderer.Illuminance(kNoon), 90e3) << "lux";
+  }
+}
+
+Scene WithoutAir(double height_m, double heading, double pitch, double fov) {
+  Scene scene = BareScene(height_m, heading, pitch, fov);
+  for (auto* list : {&scene.medium.rayleigh_scattering_per_m, &scene.medium.mie_scattering_per_m,
+                     &scene.medium.mie_extinction_per_m, &scene.medium.ozone_absorption_per_m}) {
+    std::fill(list->begin(), list->end(), 0.0);
+  }
+  return scene;
+}
+
+// Hard cases 28, 32.
+TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
+  const SunPosition sun = SceneRenderer(WithoutAir(2.0, 0.0, 0.0, 2.0)).ApparentSun(kNoon);
+  const Scene scene = WithoutAir(2.0, sun.azimuth_rad / kRadiansPerDegree,
+                                 sun.elevation_rad / kRadiansPerDegree, 2.0);
+  const SceneRenderer renderer(scene);
+  constexpr int kSide = 200;
+  const Image image =
+      renderer.Render(kNoon, Settings(kSide, kSide, {"transmittance", "inscatter"}));
+  const CameraRays camera(scene.camera, kSide, kSide);
+  const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+  const double radius = 0.5 * 0.5334 * kRadiansPerDegree / sun.distance_au;
+  double illuminance = 0.0, brightest = 0.0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const double away = std::acos(glm::dot(camera.Direction(x + 0.5, y + 0.5), to_sun));
+      const bool is_sky = away > 1.02 * radius;
+      EXPECT_TRUE(!is_sky || image.at(x, y) == (std::array<float, 3>{})) << x << ", " << y;
+      illuminance += Luminance(image.at(x, y)) * std::pow(camera.PixelAngle(), 2);
+      brightest = std::max(brightest, Luminance(image.at(x, y)));
+    }
+  }
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(image.layers[c].values[i], 1.0F) << "transmittance";
+      EXPECT_EQ(image.layers[3 + c].values[i], 0.0F) << "inscatter";
+    }
+  }
+  const double expected =
+      BandColour(scene.medium.wavelengths_nm).Xyz(scene.medium.solar_irradiance)[1] /
+      (sun.distance_au * sun.distance_au);
+  EXPECT_NEAR(illuminance / expected, 1.0, 0.01) << "a disk of 53 pixels across";
+  EXPECT_NEAR(expected, 133e3 / std::pow(sun.distance_au, 2), 2e3) << "lux above the air";
+  EXPECT_GT(brightest, 1.6e9) << "cd/m^2; the middle is brighter than the mean";
+  EXPECT_LT(brightest, 3e9);
+}
+
+// Hard case 28.
+TEST(RenderExtremes, WithoutAirTheGroundIsSunlitAndTheNightIsBlack) {
+  const SceneRenderer renderer(WithoutAir(1000.0, 40.0, -30.0, 40.0));
+  ExpectLightEverywhere(renderer.Render(kNoon, Settings(8, 8)));
+  const Image night = renderer.Render(ParseInstant("2026-06-21T23:30:00Z"), Settings(8, 8));
+  for (const auto& rgb : night.rgb) EXPECT_EQ(rgb, (std::array<float, 3>{}));
+  const SunPosition sun = renderer.ApparentSun(kNoon);
+  const double lux =
+      BandColour(renderer.medium().wavelengths_nm).Xyz(renderer.medium().solar_irradiance)[1] *
+      std::sin(sun.elevation_rad) / (sun.distance_au * sun.distance_au);
+  EXPECT_NEAR(renderer.Illuminance(kNoon) / lux, 1.0, 1e-4);
+}
+
+// Hard case 33.
+TEST_F(RenderExtremesFiles, TwilightAMillionTimesDimmerThanNoonHasNoBands) {
+  constexpr int kRows = 200;  // 4 to 24 degrees up, away from the sun and towards it
+  const RenderSettings column = Settings(1, kRows);
+  for (const double heading : {310.0, 130.0}) {
+    const SceneRenderer renderer(BareScene(2.0, heading, 14.0, 0.1));
+    const double noon = Luminance(renderer.Render(kNoon, column).at(0, kRows / 2));
+    const Image image = renderer.Render(ParseInstant("2026-06-21T20:50:00Z"), column);
+    const double dusk = Luminance(image.at(0, kRows / 2));
+    WriteExr(folder_ / "dusk.exr", image, {});
+    const Image kept = ReadExr(folder_ / "dusk.exr");
+    EXPECT_EQ(kept.rgb, image.rgb);
+    // Exposed a million times longer, from pixel to pixel the light moves on as evenly as by day.
+    std::vector<double> stops;
+    for (int y = 0; y < kRows; ++y) stops.push_back(std::log2(1e6 * Luminance(kept.at(0, y))));
+    double largest = 0.0;
+    for (std::size_t y = 2; y < stops.size(); ++y) {
+      largest = std::max(largest, std::abs(stops[y] - 2.0 * stops[y - 1] + stops[y - 2]));
+    }
+    EXPECT_LT(largest, 2e-3) << "a code of 8 bits is 0.065 stops in AgX's 16.5; heading "
+                             << heading;
+    EXPECT_LT(dusk, 1e-5 * noon);
+    EXPECT_GT(dusk, 1e-7 * noon);
+  }
+}
+
+double TanHalf(double fov_deg) { return std::tan(0.5 * fov_deg * kRadiansPerDegree); }
+
+double FovOf(double tan_half) { return 2.0 * std::atan(tan_half) / kRadiansPerDegree; }
+
+// Hard case 44.
+TEST(RenderExtremes, PicturesOfOnePixelAndOneColumnArePartsOfWiderOnes) {
+  const SceneRenderer renderer(BareScene(100.0, 40.0, 10.0, 60.0));
+  for (const double fov : {1.0, 60.0, 179.0}) {
+    for (const double roll : {0.0, 90.0}) {
+      // A third of a picture that is three times as wide.
+      const Shot narrow = ShotFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
+      const Image three =
+          renderer.Render(ShotFrom(100.0, 10.0, roll, fov), Settings(3, 5, {"depth"}));
+      const Image column = renderer.Render(narrow, Settings(1, 5));
+      for (int y = 0; y < 5; ++y) {
+        const bool sky = std::isinf(three.layers[0].values[static_cast<std::size_t>(3 * y + 1)]);
+        EXPECT_NEAR(Luminance(column.at(0, y)) / Luminance(three.at(1, y)), 1.0, sky ? 1e-4 : 1e-2)
+            << "light on the ground comes from another point of the sun's disk in every pixel; "
+            << fov << ", roll " << roll << ", row " << y;
+      }
+      EXPECT_EQ(renderer.Render(narrow, Settings(1, 1)).at(0, 0), column.at(0, 2));
+    }
+  }
+}
+
+// Hard case 44.
+TEST(RenderExtremes, ACameraOnItsSideSeesRowsAsColumns) {
+  constexpr int kPixels = 9;
+  constexpr double kFov = 10.0;
+  const SceneRenderer renderer(BareScene(100.0, 40.0, 30.0, 60.0));
+  const Shot upright = ShotFrom(100.0, 30.0, 0.0, FovOf(kPixels * TanHalf(kFov)));
+  const Image row = renderer.Render(upright, Settings(kPixels, 1));
+  const Image column = renderer.Render(ShotFrom(100.0, 30.0, 90.0, kFov), Settings(1, kPixels));
+  for (int i = 0; i < kPixels; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(column.at(0, i)[c] / row.at(kPixels - 1 - i, 0)[c], 1.0F, 1e-4F)
+          << "rolled clockwise, its top looks to the right; pixel " << i;
+    }
+  }
+}
+
+// Hard case 44.
+TEST(RenderExtremes, SixteenThousandColumnsAreSmoothAndAPanoramaCloses) {
+  constexpr int kWidth = 16384;
+  const SceneRenderer renderer(BareScene(100.0, 40.0, 20.0, 360.0));
+  const RenderSettings wide = Settings(kWidth, 1);
+  ExpectLightEverywhere(renderer.Render(kNoon, Settings(1, 1)));
+  for (const double fov : {1.0, 179.0, 360.0}) {
+    const bool closes = fov == 360.0;
+    // Of two rows of a panorama the upper one looks 45 degrees up.
+    const Image image = closes ? renderer.Render(kNoon, Settings(kWidth, 2))
+                               : renderer.Render(ShotFrom(100.0, 20.0, 0.0, fov), wide);
+    ExpectLightEverywhere(image);
+    for (int x = 0; x < (closes ? kWidth : kWidth - 1); ++x) {
+      EXPECT_NEAR(Luminance(image.at((x + 1) % kWidth, 0)) / Luminance(image.at(x, 0)), 1.0, 0.01)
+          << "from one column to the next; field of view " << fov << ", column " << x;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
