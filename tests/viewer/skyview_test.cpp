@@ -174,5 +174,20 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
   }
 }
 
+// Hard case 49.
+TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const std::string shot = " s.toml --headless --size 16x9 --screenshot a.png";
+  if (Run(shot).error.find("Mesa") == std::string::npos) {
+    GTEST_SKIP() << "only Mesa's drivers can be told to be old";
+  }
+  const Outcome outcome = RunCommand(
+      "env -u DISPLAY -u WAYLAND_DISPLAY MESA_GL_VERSION_OVERRIDE=2.1 '" ALPENGLOW_SKYVIEW "' " +
+      InFolder("s.toml") + " --headless --size 16x9 --screenshot " + InFolder("old.png"));
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.error, HasSubstr("older than 3.3"));
+  EXPECT_FALSE(fs::exists(InFolder("old.png")));
+}
+
 }  // namespace
 }  // namespace alpenglow

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// skyview in a window: the program itself on a display that follows a script
+// (tests/fixtures/scripted_display.cpp).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "lut/picture/image.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class SkyviewWindow : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    WriteText(folder_ / "s.toml", kBareSceneText);
+  }
+  /// @param display  as ALPENGLOW_DISPLAY and ALPENGLOW_DISPLAY_GL say it.
+  [[nodiscard]] Outcome Run(const std::string& display, const std::string& arguments) const {
+    return RunCommand("env " + display + " '" ALPENGLOW_SKYVIEW_ON_SCRIPTED_DISPLAY "' s.toml " +
+                      arguments);
+  }
+  [[nodiscard]] bool HasDisplay() const { return Run("ALPENGLOW_DISPLAY='8x8'", "").status == 0; }
+};
+
+/// Sizes of the pictures that were shown. Each had light in its middle.
+std::vector<std::string> Shown(const std::string& printed) {
+  std::istringstream lines(printed);
+  std::string word, size;
+  std::vector<std::string> sizes;
+  for (int red = 0, green = 0, blue = 0; lines >> word >> size >> red >> green >> blue;) {
+    EXPECT_GT(red + green + blue, 60) << size;
+    sizes.push_back(size);
+  }
+  return sizes;
+}
+
+// Hard case 49.
+TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  // As it opens, minimised, on a display of twice the density, a pixel, and a column.
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 0x0 0x0 128x72 1x1 1x40'", "");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(Shown(outcome.out), ElementsAre("64x36", "128x72", "1x1", "1x40"))
+      << "and nothing while it is minimised";
+}
+
+// Hard case 49.
+TEST_F(SkyviewWindow, AScreenshotHasTheSizeThatTheWindowHasThen) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome outcome =
+      Run("ALPENGLOW_DISPLAY='64x36 0x0 100x50 100x50'", "--frames 2 --screenshot shot.png");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  const DisplayImage image = ReadPng(folder_ / "shot.png");
+  EXPECT_EQ(image.width, 100) << "the second picture that was shown";
+  EXPECT_EQ(image.height, 50);
+}
+
+// Hard case 49.
+TEST_F(SkyviewWindow, OpenedMinimisedAndClosedItEndsInPeace) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='0x0 0x0'", "");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(Shown(outcome.out), ElementsAre());
+}
+
+// Hard case 49.
+TEST_F(SkyviewWindow, ADisplayWithOpenGl21IsRefusedWithStatusFiveAndAClearMessage) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  for (const char* newest : {"2.1", "3.2"}) {
+    const Outcome outcome =
+        Run(std::string("ALPENGLOW_DISPLAY=64x36 ALPENGLOW_DISPLAY_GL=") + newest,
+            "--frames 1 --screenshot shot.png");
+    EXPECT_EQ(outcome.status, 5) << newest;
+    EXPECT_THAT(outcome.error, HasSubstr("no OpenGL 3.3 core context"));
+    EXPECT_THAT(outcome.out, "");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "shot.png"));
+  }
+  const Outcome old = Run("ALPENGLOW_DISPLAY=64x36 ALPENGLOW_DISPLAY_GL=3.3", "");
+  EXPECT_EQ(old.status, 0) << "3.3 is enough; " << old.error;
+}
+
+}  // namespace
+}  // namespace alpenglow
