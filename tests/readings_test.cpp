@@ -7,6 +7,7 @@
 namespace alpenglow {
 namespace {
 
+// Hard case 9.
 TEST(Readings, FloatAgreesWithDoubleToOnePartInAHundredThousand) {
   for (const tests::SharedTextCase& c : tests::AllSharedTextCases()) {
     SCOPED_TRACE(c.glsl);

@@ -130,6 +130,33 @@ SunPath TowardsSun(const Medium& medium, const Line& view, const ViewRay& ray, d
   return {true, {columns.value[0], columns.value[1], columns.value[2]}};
 }
 
+// The stretch of a line that lies in the planet's shadow, a half-cylinder away from the sun: its
+// points are nearer to the axis than the planet is wide. ray.h has the same from another formula.
+ShadowSpan DarkPart(const Line& line, const ViewRay& ray, const RayExtent& extent) {
+  const Extended nu = ray.nu;
+  const Extended sunwards = line.r * ray.mu_s;  // of the observer, from the planet's centre
+  const auto room = [&](Extended t) {           // radius^2 - distance from the axis^2
+    const Extended towards = sunwards + t * nu;
+    return line.radius * line.radius - line.r * line.r - 2 * line.r * line.mu * t - t * t +
+           towards * towards;
+  };
+  Extended begin = extent.begin_m, end = extent.end_m;
+  const Extended across = (1 - nu) * (1 + nu);
+  if (across > 1e-14L) {
+    const Extended nearest = (sunwards * nu - line.r * line.mu) / across;
+    if (room(nearest) <= 0) return {};
+    const Extended half = std::sqrt(room(nearest) / across);
+    begin = std::max(begin, nearest - half);
+    end = std::min(end, nearest + half);
+  } else if (room(0) <= 0) {
+    return {};
+  }
+  if (nu > 0) end = std::min(end, -sunwards / nu);
+  if (nu < 0) begin = std::max(begin, -sunwards / nu);
+  if ((nu == 0 && sunwards >= 0) || !(begin < end)) return {};
+  return {static_cast<double>(begin), static_cast<double>(end)};
+}
+
 }  // namespace
 
 OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray) {
@@ -154,9 +181,9 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
   constexpr double kOuterTolerance = 1e-9;
   const std::size_t bands = medium.wavelengths_nm.size();
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
-  const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
   const Extended radius = medium.planet_radius_m;
   const Line line{radius + std::max(ray.altitude_m, 0.0), ray.mu, radius};
+  const ShadowSpan shadow = DarkPart(line, ray, extent);
 
   std::vector<double> points = Breakpoints(medium, line, extent.begin_m, extent.end_m);
   const bool any_dark = shadow.dark_begin_m < shadow.dark_end_m;

@@ -235,6 +235,7 @@ TEST_F(Skylut, WrongInputsAreStatus3WithOneLineAndNoOutput) {
   EXPECT_FALSE(fs::exists(folder_ / "t" / "transmittance.exr"));
 }
 
+// Hard case 46.
 TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
   WriteCases();
   const Outcome build = Run("build --out cases.csv/tables --quality preview --quiet");
@@ -292,6 +293,7 @@ TEST_F(Skylut, AnInputIsNeverOverwritten) {
   EXPECT_EQ(ContentOf(folder_ / "t" / "atmosphere.toml"), "preset = \"bruneton2017\"\n");
 }
 
+// Hard case 45.
 TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {
   // The build is interrupted when its first line of progress is out, whenever that is.
   const std::string script = "cd '" + folder_.string() +

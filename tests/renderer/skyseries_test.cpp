@@ -155,6 +155,7 @@ TEST_F(Skyseries, ABadInputExitsWith3AndOneLine) {
   EXPECT_FALSE(fs::exists(folder_ / "still.exr"));
 }
 
+// Hard case 46.
 TEST_F(Skyseries, AnOutputThatCannotBeWrittenExitsWith4) {
   WriteText(folder_ / "file", "in the way");
   const Outcome outcome = Run(InFolder("s.toml") + " --size 16x9 --out " + InFolder("file/a.exr"));
@@ -233,6 +234,7 @@ TEST_F(Skyseries, ExplainingAloneLeavesNothingOut) {
   EXPECT_EQ(ReadExr(folder_ / "still.exr").rgb, plain.rgb);
 }
 
+// Hard case 48.
 TEST_F(Skyseries, AnotherBudgetOfEffectsIsRenderedAgainAndTheSameIsKept) {
   const std::string still = SmallStill() + " --resume";
   ASSERT_EQ(Run(still + " --effects all").status, 0);
@@ -248,6 +250,7 @@ TEST_F(Skyseries, AnotherBudgetOfEffectsIsRenderedAgainAndTheSameIsKept) {
   EXPECT_THAT(Run(still + " --effects=-skylight").error, HasSubstr("1 rendered"));
 }
 
+// Hard case 43.
 TEST_F(Skyseries, OneAndManyThreadsMakeTheSamePixels) {
   ASSERT_EQ(Run(SmallStill() + " --threads 1").status, 0);
   const Image one = ReadExr(folder_ / "still.exr");
@@ -255,6 +258,7 @@ TEST_F(Skyseries, OneAndManyThreadsMakeTheSamePixels) {
   EXPECT_EQ(ReadExr(folder_ / "still.exr").rgb, one.rgb);
 }
 
+// Hard case 45.
 TEST_F(Skyseries, SigtermKeepsFinishedFramesAndTheNextRunResumes) {
   const pid_t child = Start(SeriesArguments());
   while (!fs::exists(folder_ / "series" / "f.0001.exr")) {
@@ -332,6 +336,27 @@ TEST_F(Skyseries, AnInputIsNeverOverwritten) {
   EXPECT_EQ(Run(SmallStill() + " --contact-sheet sheet.jpg").status, 2);
 }
 
+// Hard case 45.
+TEST_F(Skyseries, SigkillLeavesWholeFramesAndTheNextRunResumes) {
+  const pid_t child = Start(SeriesArguments());
+  while (!fs::exists(folder_ / "series" / "f.0001.exr")) {
+    usleep(1000);
+    ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "it ended before the second frame";
+  }
+  kill(child, SIGKILL);
+  EXPECT_EQ(WaitFor(child), -1) << "by a signal";
+  const fs::path first = folder_ / "series" / "f.0000.exr";
+  const fs::file_time_type written = fs::last_write_time(first);
+  for (int frame = 0; fs::exists(folder_ / "series" / fmt::format("f.{:04}.exr", frame)); ++frame) {
+    EXPECT_NO_THROW((void)ReadExr(folder_ / "series" / fmt::format("f.{:04}.exr", frame)));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "series" / "f.0039.exr")) << "it came too late";
+  EXPECT_EQ(WaitFor(Start(SeriesArguments())), 0);
+  EXPECT_NO_THROW((void)ReadExr(folder_ / "series" / "f.0039.exr"));
+  EXPECT_EQ(fs::last_write_time(first), written) << "what was finished is kept";
+}
+
+// Hard case 47.
 TEST_F(Skyseries, TwoProcessesOnTheSameFramesBothSucceed) {
   std::vector<std::string> arguments = SeriesArguments();
   std::replace(arguments.begin(), arguments.end(), std::string("40"), std::string("5"));

@@ -90,6 +90,7 @@ TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
   EXPECT_EQ(Run(replay + InFolder("f.exr")).status, 3) << "three pictures under one name";
 }
 
+// Hard case 49.
 TEST_F(Skyview, WithoutADisplayAWindowIsRefusedWithStatusFive) {
   const Outcome outcome = Run(InFolder("s.toml"));
   EXPECT_EQ(outcome.status, 5);

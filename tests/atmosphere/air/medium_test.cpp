@@ -229,6 +229,7 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
   }
 }
 
+// Hard case 28.
 TEST(Medium, EmptyAirIsValid) {
   Medium medium = MediumPreset("earth");
   for (auto* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,

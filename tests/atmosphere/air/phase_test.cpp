@@ -91,6 +91,7 @@ double IntegrateOverCosine(const std::function<double(double)>& f, double low, d
   return sum / (3.0 * kSteps);
 }
 
+// Hard case 31.
 TEST(Phase, LightScatteredIntoAllDirectionsIsOne) {
   for (const PhaseFunction& phase : ManyPhases()) {
     const double whole =
@@ -227,6 +228,7 @@ TEST(Phase, FogScattersForwardTheMoreTheLargerItsDroplets) {
   EXPECT_THROW(static_cast<void>(FogPhase(51.0)), InputError);
 }
 
+// Hard case 13.
 TEST(Phase, CosinesBeyondOneByRoundingAreClamped) {
   for (const PhaseFunction& phase : ManyPhases()) {
     EXPECT_EQ(Phase(phase, 1.0 + 1e-12), Phase(phase, 1.0)) << Describe(phase);
@@ -239,6 +241,7 @@ double RelativeDifference(float in_float, double in_double) {
   return std::abs(static_cast<double>(in_float) / in_double - 1.0);
 }
 
+// Hard case 31.
 TEST(Phase, FloatAgreesWithDoubleEvenInTheSharpestLobe) {
   for (const float g : {-0.999f, -0.5f, 0.0f, 0.3f, 0.8f, 0.93f, 0.999f}) {
     for (const float c : {-1.0f, -0.999999f, -0.3f, 0.0f, 0.9f, 0.9999f, 0.9999999f, 1.0f}) {
@@ -281,6 +284,7 @@ TEST(Phase, NamesGoThereAndBack) {
   }
 }
 
+// Hard case 31.
 TEST(Phase, ParametersOutOfRangeAreNamed) {
   const auto message = [](const PhaseFunction& phase) {
     return tests::FaultOf([&] { Validate(phase, "mie"); });

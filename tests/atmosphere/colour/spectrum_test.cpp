@@ -433,6 +433,7 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
   }
 }
 
+// Hard case 36.
 TEST(BandColour, WhitePointOfAGreySurfaceUnderADaySkyMovesLessThanTwoPerCentBetweenSets) {
   // Sun at 30 degrees through the default air, on white paper.
   const std::vector<double> relative =

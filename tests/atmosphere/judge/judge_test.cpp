@@ -39,6 +39,7 @@ TEST(Judge, UniformAirHasTheDepthOfItsChord) {
   EXPECT_NEAR(depth.tau[0] / (1e-6 * 1000.0), 1.0, 3e-7);
 }
 
+// Hard case 28.
 TEST(Judge, EmptyAirIsBlackAndTransparent) {
   const Medium medium = OnlyMolecules(0.0, 8000.0);
   const auto light = judge::SingleScatteringAlong(medium, {2.0, 0.3, 0.5, 0.4});

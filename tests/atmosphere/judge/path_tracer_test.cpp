@@ -116,6 +116,7 @@ TEST(PathTracer, LightFromTheGroundAtTheEndOfASegmentIsLeftOut) {
   EXPECT_EQ(TraceRadiance(medium, ray).total[0], 0.0);
 }
 
+// Hard case 28.
 TEST(PathTracer, EmptyAirOverABlackPlanetIsBlack) {
   const Medium medium = Empty(0.0);
   for (const double view_deg : {0.0, 89.0, 150.0}) {
@@ -126,6 +127,7 @@ TEST(PathTracer, EmptyAirOverABlackPlanetIsBlack) {
   }
 }
 
+// Hard case 43.
 TEST(PathTracer, IsTheSameForAnyNumberOfThreads) {
   const Medium medium = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(2.0, 80.0, 40.0, 93.0);
@@ -168,6 +170,7 @@ TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
   }
 }
 
+// Hard case 30.
 TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
   const Medium medium = WithoutAbsorption();
   const double top = medium.planet_radius_m + medium.atmosphere_height_m;

@@ -146,6 +146,7 @@ TEST(Airlight, SunsFunctionHasItsKnownValues) {
   EXPECT_NEAR(SunFunction(1.0, 0.5 * kPi), 0.6214496242358134, 1e-10);
 }
 
+// Hard case 42.
 TEST(Airlight, TheRayThroughTheLampIsFiniteAndRight) {
   const LampAir air = HomogeneousAir(0.02, 0.02, HenyeyGreenstein(0.8));
   Lamp lamp = LampAt({40.0, 0.0, 0.0});
@@ -160,6 +161,7 @@ TEST(Airlight, TheRayThroughTheLampIsFiniteAndRight) {
   ExpectNearTheJudge(air, lamp, through, 1e-3, "a point of light 1 mm from the ray");
 }
 
+// Hard case 42.
 TEST(Airlight, ALampAtTheEyeBehindItAndBeyondTheEndIsFiniteAndRight) {
   const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(0.7));
   const LampSegment ahead = Along({1.0, 0.0, 0.0}, 50.0);
@@ -172,6 +174,7 @@ TEST(Airlight, ALampAtTheEyeBehindItAndBeyondTheEndIsFiniteAndRight) {
   ExpectNearTheJudge(air, lamp, ahead, 1e-3, "beyond the end");
 }
 
+// Hard case 14.
 TEST(Airlight, ASegmentOfLengthZeroHasNoneAndAShortOneInProportion) {
   const LampAir air = HomogeneousAir(0.01, 0.01, HenyeyGreenstein(0.5));
   const Lamp lamp = LampAt({3.0, 1.0, 0.0});
@@ -362,6 +365,7 @@ TEST(Airlight, ItsEffortIsTheNodesAndWhatFindsThePanels) {
   EXPECT_EQ(EffortOfAirlight(air, LampAt({4.0, 1.0, 0.0}), Along({1.0, 0.0, 0.0}, 0.0)).scouted, 0);
 }
 
+// Hard case 28.
 TEST(Airlight, NothingInTheAirScattersNothing) {
   const LampAir air = HomogeneousAir(0.0, 0.0, HenyeyGreenstein(0.0));
   EXPECT_EQ(Airlight(air, LampAt({30.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, kInfinite))[0], 0.0);

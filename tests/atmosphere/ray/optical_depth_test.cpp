@@ -108,6 +108,7 @@ TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
   }
 }
 
+// Hard case 9.
 TEST(OpticalDepth, FloatIsRightAtEveryAltitudeAndAngleInEveryInstructionSet) {
   const Medium medium = Earth();
   const AirIntegrator<double> in_double(medium);
@@ -150,6 +151,7 @@ double Radiance(const AirIntegrator<double>& air, const ViewRay& ray) {
   return air.Inscatter(air.Scatter(air.Sample(ray, {})), ray.nu)[0];
 }
 
+// Hard case 14.
 TEST(OpticalDepth, ASegmentOfLengthZeroHasNone) {
   const Medium medium = Earth();
   const AirIntegrator<float> air(medium);
@@ -160,6 +162,7 @@ TEST(OpticalDepth, ASegmentOfLengthZeroHasNone) {
   }
 }
 
+// Hard case 14.
 TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -183,6 +186,7 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
   }
 }
 
+// Hard case 5.
 TEST(OpticalDepth, OffTheLimbTheTransmittanceIsExactlyOneAndSpaceIsBlack) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -198,6 +202,7 @@ TEST(OpticalDepth, OffTheLimbTheTransmittanceIsExactlyOneAndSpaceIsBlack) {
   }
 }
 
+// Hard case 5.
 TEST(OpticalDepth, FromSpaceTheLimbShines) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -212,6 +217,7 @@ TEST(OpticalDepth, FromSpaceTheLimbShines) {
   }
 }
 
+// Hard case 8.
 TEST(OpticalDepth, ARayThatGrazesTheTopFromOutsideIsClearAndDark) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -227,6 +233,7 @@ TEST(OpticalDepth, ARayThatGrazesTheTopFromOutsideIsClearAndDark) {
   }
 }
 
+// Hard case 4.
 TEST(OpticalDepth, IsContinuousThroughTheTop) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -242,6 +249,7 @@ TEST(OpticalDepth, IsContinuousThroughTheTop) {
   }
 }
 
+// Hard case 7.
 TEST(OpticalDepth, OneUlpAcrossTheHorizonLightDoesNotJump) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -260,6 +268,7 @@ TEST(OpticalDepth, OneUlpAcrossTheHorizonLightDoesNotJump) {
   }
 }
 
+// Hard case 6.
 TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -277,6 +286,7 @@ TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
   }
 }
 
+// Hard case 11.
 TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);
@@ -289,6 +299,7 @@ TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
   }
 }
 
+// Hard case 12.
 TEST(OpticalDepth, TheViewAtTheSunAndAwayFromItIsFiniteForTheSharpestLobe) {
   Medium medium = Earth();
   for (const double g : {0.999, -0.999}) {
@@ -302,6 +313,7 @@ TEST(OpticalDepth, TheViewAtTheSunAndAwayFromItIsFiniteForTheSharpestLobe) {
   }
 }
 
+// Hard case 2.
 TEST(OpticalDepth, AnObserverBelowTheSphereSeesTheSkyOfTheGround) {
   const Medium medium = Earth();
   const AirIntegrator<double> air(medium);

@@ -16,6 +16,7 @@ namespace {
 constexpr double kRadius_m = 6.371e6;
 constexpr double kTop_m = 120e3;
 
+// Hard case 1.
 TEST(Ray, HorizontalOnTheGroundLeavesForSpace) {
   const RayExtent extent = ExtentOf({0.0, 0.0, 1.0, 0.0}, kRadius_m, kTop_m);
   EXPECT_EQ(extent.end, RayEnd::kSpace);
@@ -23,12 +24,14 @@ TEST(Ray, HorizontalOnTheGroundLeavesForSpace) {
       << "the tangent to the top";
 }
 
+// Hard case 1.
 TEST(Ray, JustBelowTheHorizontalOnTheGroundHitsItAtOnce) {
   const RayExtent extent = ExtentOf({0.0, -1e-12, 1.0, 0.0}, kRadius_m, kTop_m);
   EXPECT_EQ(extent.end, RayEnd::kGround);
   EXPECT_EQ(extent.end_m, 0.0);
 }
 
+// Hard case 7.
 TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   for (const double h : {0.01, 2.0, 1e3, 1e4, 1e5, 4e5}) {
     const double horizon = -std::sqrt(h * (2.0 * kRadius_m + h)) / (kRadius_m + h);
@@ -39,6 +42,7 @@ TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   }
 }
 
+// Hard case 5.
 TEST(Ray, FromSpaceMissesGrazesOrEnters) {
   const double h = 4e5;
   const double grazing =
@@ -54,6 +58,7 @@ TEST(Ray, FromSpaceMissesGrazesOrEnters) {
   EXPECT_EQ(down.end, RayEnd::kGround);
 }
 
+// Hard case 2.
 TEST(Ray, BelowTheSphereSeesTheSkyOfTheGround) {
   const RayExtent sunken = ExtentOf({-430.0, 0.5, 1.0, 0.5}, kRadius_m, kTop_m);
   const RayExtent ground = ExtentOf({0.0, 0.5, 1.0, 0.5}, kRadius_m, kTop_m);
@@ -66,6 +71,7 @@ TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 0.0}, kRadius_m, kTop_m).end_m, 0.0);
 }
 
+// Hard case 39.
 TEST(Ray, AShortRayThatComesNearGroundOrTopEndsThereOnlyIfItReachesThem) {
   constexpr double kFrom_m = 200.0;
   for (const double perigee_m : {-2.0, -0.5, 0.5, 2.0, 50.0}) {
@@ -84,6 +90,7 @@ TEST(Ray, AShortRayThatComesNearGroundOrTopEndsThereOnlyIfItReachesThem) {
   }
 }
 
+// Hard case 3.
 TEST(Ray, NotANumberAndTheCentreOfThePlanetAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW((void)ExtentOf({nan, 0.0, 1.0, 0.0}, kRadius_m, kTop_m), InputError);

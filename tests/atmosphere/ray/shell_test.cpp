@@ -24,12 +24,14 @@ double AltitudeOf(double h_km, double mu, double d_km) {
   return static_cast<double>(std::sqrt(r * r + 2 * r * mu * d + d * d) - kRadius_km);
 }
 
+// Hard case 1.
 TEST(Shell, TheHorizonFromTheGroundIsHorizontal) {
   EXPECT_EQ(shared::HorizonCosine(0.0, kRadius_km), 0.0);
   EXPECT_EQ(shared::HorizonCosine(0.0F, 6371.0F), 0.0F);
   EXPECT_EQ(shared::HorizonDistance(0.0, kRadius_km), 0.0);
 }
 
+// Hard case 9.
 TEST(Shell, AltitudeAlongARayIsThatOfThePlainFormulaInExtendedPrecision) {
   for (const double h : {0.0, 1e-5, 0.002, 1.0, 10.0, 120.0, 400.0}) {
     for (const double mu : {-1.0, -0.3, -0.01, 0.0, 0.01, 0.5, 1.0}) {
@@ -71,6 +73,7 @@ TEST(Shell, TheLowestPointOfTheLineIsAtThePerigee) {
   }
 }
 
+// Hard case 7.
 TEST(Shell, TheHorizonIsTheRayThatGrazesTheGround) {
   for (const double h : {1e-5, 0.002, 1.0, 11.0, 60.0, 400.0, 35786.0}) {
     const double mu = shared::HorizonCosine(h, kRadius_km);
@@ -81,6 +84,7 @@ TEST(Shell, TheHorizonIsTheRayThatGrazesTheGround) {
   }
 }
 
+// Hard case 7.
 TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
   for (const float h : {1e-5F, 0.002F, 0.1F, 1.0F, 11.0F}) {
     const float horizon = shared::HorizonCosine(h, 6371.0F);
@@ -98,6 +102,7 @@ TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
 
 // --- extents ---
 
+// Hard case 1.
 TEST(Extent, AHorizontalRayAtAltitudeZeroLeavesTheAir) {
   const RayExtent extent = ExtentOf({0.0, 0.0}, kRadius_m, kTop_m);
   EXPECT_EQ(extent.end, RayEnd::kSpace);
@@ -114,6 +119,7 @@ TEST(Extent, ARayBelowTheHorizontalAtAltitudeZeroHitsTheGroundAtOnce) {
   }
 }
 
+// Hard case 2.
 TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
   for (const double altitude_m : {-430.0, -11000.0}) {
     for (const double mu : {0.0, 0.1, 1.0}) {
@@ -125,6 +131,7 @@ TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
   }
 }
 
+// Hard case 3.
 TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -140,6 +147,7 @@ TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
   EXPECT_NE(message({0.0, 1.0, 1.0, 1.0, kNan}).find("length_m"), std::string::npos);
 }
 
+// Hard case 4.
 TEST(Extent, IsContinuousThroughTheTop) {
   for (const double mu : {-1.0, -0.5, -0.19}) {
     const double below = ExtentOf({kTop_m - 1e-6, mu}, kRadius_m, kTop_m).end_m;
@@ -152,6 +160,7 @@ TEST(Extent, IsContinuousThroughTheTop) {
   }
 }
 
+// Hard case 8.
 TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
     const double r = kRadius_m + altitude_m;
@@ -172,6 +181,7 @@ TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
   }
 }
 
+// Hard case 5.
 TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
     const double r = kRadius_m + altitude_m;
@@ -187,6 +197,7 @@ TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
   }
 }
 
+// Hard case 7.
 TEST(Extent, OneUlpAcrossTheHorizonEndsAtTheGroundOrInSpaceAndNowhereElse) {
   for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 400e3}) {
     const double horizon = shared::HorizonCosine(altitude_m * 1e-3, kRadius_km);
@@ -200,6 +211,7 @@ TEST(Extent, OneUlpAcrossTheHorizonEndsAtTheGroundOrInSpaceAndNowhereElse) {
   }
 }
 
+// Hard case 10.
 TEST(Extent, TheAzimuthOfAVerticalViewDoesNotMatter) {
   for (const double zenith : {0.0, 180.0}) {
     const ViewRay north = RayFromAngles(2.0, zenith, 0.0, 40.0);

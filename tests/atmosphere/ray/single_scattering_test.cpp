@@ -145,6 +145,7 @@ TEST(SingleScattering, SixtyFourSamplesAreTheJudgeInEveryRegime) {
   }
 }
 
+// Hard case 9.
 TEST(SingleScattering, FloatAgreesWithDouble) {
   const Medium medium = MediumPreset("earth");
   const AirIntegrator<float> single(medium);
@@ -161,6 +162,7 @@ TEST(SingleScattering, FloatAgreesWithDouble) {
   }
 }
 
+// Hard case 14.
 TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
   const AirIntegrator<float> air(MediumPreset("earth"));
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
@@ -173,6 +175,7 @@ TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
   }
 }
 
+// Hard case 14.
 TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
   const Medium medium = MediumPreset("earth");
   const AirIntegrator<float> air(medium);
@@ -255,6 +258,7 @@ TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheJudgeAtEveryAngle) {
   }
 }
 
+// Hard case 10.
 TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
   const AirIntegrator<float> air(MediumPreset("earth"));
   for (const double view : {0.0, 180.0}) {
@@ -265,6 +269,7 @@ TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
   }
 }
 
+// Hard case 4.
 TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
   const Medium medium = MediumPreset("earth");
   const AirIntegrator<float> air(medium);
@@ -328,6 +333,7 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   }
 }
 
+// Hard case 12.
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   Medium medium = MediumPreset("earth");
   medium.mie_phase.front() = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};

@@ -82,6 +82,7 @@ TEST(Geodesy, EcefAndBackIsTheSamePlaceWithinTenNanometres) {
   }
 }
 
+// Hard case 27.
 TEST(Geodesy, AntimeridianIsOneMeridianToTheLastBit) {
   const GeodeticPosition east = PlaceFromDegrees(-16.5, 180.0, 120.0);
   for (const GeodeticPosition& west :
@@ -120,6 +121,7 @@ TEST(Geodesy, LocalFrameIsARightHandedRotation) {
   }
 }
 
+// Hard case 16.
 TEST(Geodesy, LocalFrameMovesPointsAndBringsThemBack) {
   const LocalFrame frame(kWgs84, PlaceFromDegrees(35.5, 138.76, 900.0));
   const GeodeticPosition above{frame.origin().latitude_rad, frame.origin().longitude_rad, 1900.0};
@@ -181,6 +183,7 @@ std::string FaultOfPlace(double latitude, double longitude, double height_m) {
   return tests::FaultOf([&] { return PlaceFromDegrees(latitude, longitude, height_m); });
 }
 
+// Hard case 3.
 TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
   EXPECT_EQ(FaultOfPlace(90, 360, -12000), "no fault");
   EXPECT_EQ(FaultOfPlace(90.0000001, 0, 0), "latitude is 90.0000001; it must lie in [-90, 90]");
@@ -194,6 +197,7 @@ TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
   EXPECT_THAT(FaultOfPlace(0, 0, kNan), testing::StartsWith("height_m is nan"));
 }
 
+// Hard case 3.
 TEST(Geodesy, NonsenseIsNeverAnsweredWithAPlace) {
   EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {1.6, 0.0, 0.0}), InputError) << "91.7 degrees";
   EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {kNan, 0.0, 0.0}), InputError);

@@ -17,12 +17,14 @@ VisibleDisk AtHeight(double radii) {
   return DiskOverHorizon(std::sin(radii * kRadius_rad), 0.0, kRadius_rad);
 }
 
+// Hard case 21.
 TEST(SunDisk, HalfOfItIsVisibleWhenItsCentreIsOnTheHorizon) {
   EXPECT_NEAR(AtHeight(0.0).fraction, 0.5, 1e-9);
   // Centroid of a half disk: 4 / (3 pi) radii over the chord.
   EXPECT_NEAR(AtHeight(0.0).mu_s_effective / kRadius_rad, 4.0 / (3.0 * kPi), 1e-5);
 }
 
+// Hard case 21.
 TEST(SunDisk, SetsSmoothlyFromWholeToNone) {
   double before = 1.0;
   for (double height = 1.0; height >= -1.0; height -= 0.001) {
@@ -36,6 +38,7 @@ TEST(SunDisk, SetsSmoothlyFromWholeToNone) {
   EXPECT_EQ(AtHeight(-1.5).fraction, 0.0);
 }
 
+// Hard case 21.
 TEST(SunDisk, VisiblePartNeverSinksBelowTheHorizon) {
   for (double height = -0.999; height < 1.0; height += 0.01)
     EXPECT_GE(AtHeight(height).mu_s_effective, 0.0) << height;

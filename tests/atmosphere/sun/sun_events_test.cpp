@@ -139,6 +139,7 @@ TEST(SunEvents, TheSunRisesEarlierOnASummit) {
       << "no dip below the sea; each search is within 0.01 s";
 }
 
+// Hard case 24.
 TEST(SunEvents, PolarDayHasNoonAndNothingElse) {
   const GeodeticPosition tromso = PlaceFromDegrees(69.65, 18.96, 0.0);
   const UtcInstant midsummer = ParseInstant("2026-06-21T12:00:00Z");
@@ -147,6 +148,7 @@ TEST(SunEvents, PolarDayHasNoonAndNothingElse) {
   }
 }
 
+// Hard case 24.
 TEST(SunEvents, PolarNightHasTwilightsAsDeepAsTheSunIs) {
   const UtcInstant midwinter = ParseInstant("2026-12-21T12:00:00Z");
   const auto has = [&](SunEvent event, double latitude) {
@@ -174,6 +176,7 @@ TEST(SunEvents, WhiteNightsHaveSunriseButNoNauticalDusk) {
   EXPECT_FALSE(FindSunEvent(SunEvent::kAstronomicalDawn, petersburg, day).has_value());
 }
 
+// Hard case 27.
 TEST(SunEvents, AtThePolesTheSunRisesOnceAYear) {
   for (const double latitude : {-90.0, 90.0}) {
     int sunrises = 0;
@@ -190,6 +193,7 @@ TEST(SunEvents, AtThePolesTheSunRisesOnceAYear) {
 }
 
 // Whatever the search samples, it must agree with a watch through the whole day.
+// Hard case 24.
 TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
   const GeodeticPosition place = PlaceFromDegrees(69.65, 0.0, 0.0);
   const double target = SeaHorizonFrom(0.0).true_elevation_rad;
@@ -218,6 +222,7 @@ TEST(SunEvents, AroundTheMidnightSunNothingIsMissedOrInvented) {
   EXPECT_LT(days_with, 10) << "the midnight sun begins within these days";
 }
 
+// Hard case 27.
 TEST(SunEvents, Longitudes180AndMinus180AreIdentical) {
   const UtcInstant around = ParseInstant("2026-06-21T12:00:00Z");
   for (const SunEvent event : kInOrder) {

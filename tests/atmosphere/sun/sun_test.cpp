@@ -143,6 +143,7 @@ TEST(Sun, IsLargestAtPerihelion) {
   EXPECT_GT(near.angular_radius_rad, far.angular_radius_rad);
 }
 
+// Hard case 27.
 TEST(Sun, ExactPolesHaveOneElevationAndAzimuthsThatFollowTheLongitude) {
   const UtcInstant instant = ParseInstant("2026-06-21T09:00:00Z");
   for (const double latitude : {-90.0, 90.0}) {
@@ -155,6 +156,7 @@ TEST(Sun, ExactPolesHaveOneElevationAndAzimuthsThatFollowTheLongitude) {
   }
 }
 
+// Hard case 27.
 TEST(Sun, Longitudes180AndMinus180AreIdentical) {
   for (const double latitude : {-90.0, -16.5, 0.0, 65.0, 90.0}) {
     const UtcInstant instant = ParseInstant("2026-02-11T20:17:00Z");
@@ -171,6 +173,7 @@ TEST(Sun, Longitudes180AndMinus180AreIdentical) {
   }
 }
 
+// Hard case 25.
 TEST(Sun, ALeapSecondMovesItNoFurtherThanAnyOther) {
   const GeodeticPosition place = PlaceFromDegrees(-33.9, 151.2, 0.0);
   std::vector<Vector<Enu>> seen;

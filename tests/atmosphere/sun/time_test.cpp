@@ -20,6 +20,7 @@ std::string FaultOf(std::string_view text, const std::optional<std::string>& zon
   return tests::FaultOf([&] { return ParseInstant(text, zone); });
 }
 
+// Hard case 25.
 TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   const UtcInstant expected{61212, 4 * 3600.0};
   EXPECT_EQ(ParseInstant("2026-06-21T04:00:00Z"), expected) << "MJD 61212 is 2026-06-21";
@@ -36,6 +37,7 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   EXPECT_EQ(ParseInstant("2100-12-31T23:59:59Z").modified_julian_day, 88433);
 }
 
+// Hard case 25.
 TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
   EXPECT_EQ(
       FaultOf("2024-02-30T00:00:00Z"),
@@ -87,6 +89,7 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
   }
 }
 
+// Hard case 25.
 TEST(Time, TheLeapSecondOf2016Exists) {
   const UtcInstant leap = ParseInstant("2016-12-31T23:59:60Z");
   EXPECT_EQ(leap, (UtcInstant{57753, 86400.0}));
@@ -101,6 +104,7 @@ TEST(Time, TheLeapSecondOf2016Exists) {
   EXPECT_EQ(DayLength(57752), 86400.0);
 }
 
+// Hard case 25.
 TEST(Time, ThereAre27LeapSecondsUntil2026AndNoOthersAreAccepted) {
   int leap_seconds = 0;
   for (int day = 15020; day < 61406; ++day) leap_seconds += DayLength(day) > 86400.0 ? 1 : 0;
@@ -111,6 +115,7 @@ TEST(Time, ThereAre27LeapSecondsUntil2026AndNoOthersAreAccepted) {
   EXPECT_THAT(FaultOf("2050-06-30T23:59:60Z"), testing::HasSubstr("there is no leap second"));
 }
 
+// Hard case 26.
 TEST(Time, LocalTimesInAGapOrAnOverlapAskForTheOffset) {
   EXPECT_EQ(FaultOf("2026-03-29T02:30:00", "Europe/Berlin"),
             "time \"2026-03-29T02:30:00\": clocks in Europe/Berlin skip this time (the offset goes "

@@ -62,6 +62,7 @@ TEST(DiffuseLight, SunCoordinateAndItsInverseAgree) {
   }
 }
 
+// Hard case 28.
 TEST(DiffuseLight, EmptyAirOverABlackPlanetIsDark) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
@@ -133,6 +134,7 @@ TEST(LegendreCoefficients, OfATableAreThoseOfItsBrokenLine) {
   EXPECT_NEAR(chi[2], p2, 1e-6);
 }
 
+// Hard case 43.
 TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
   const Medium medium = MediumPreset("bruneton2017");
   std::vector<std::vector<float>> values;
@@ -164,6 +166,7 @@ TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
   }
 }
 
+// Hard case 29.
 TEST(DiffuseLight, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
@@ -281,6 +284,7 @@ TEST(DiffuseLight, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
   }
 }
 
+// Hard case 23.
 TEST(DiffuseLight, IsNeverNegative) {
   for (const char* name : {"hazy", "clear-mountain"}) {
     const Medium medium = MediumPreset(name);

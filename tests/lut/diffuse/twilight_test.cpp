@@ -99,6 +99,7 @@ TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
       << "trapezoids over steps of 1 and 2 km: 0.1 % too much";
 }
 
+// Hard case 22.
 TEST(Twilight, IsAsBrightAsPublished) {
   if (PublishedLux().empty()) GTEST_SKIP() << "shared/tables is absent";
   const Daylight daylight(MediumPreset("earth", WavelengthSet(8)));

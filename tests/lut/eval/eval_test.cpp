@@ -410,6 +410,7 @@ TEST_F(Eval, ColumnsComeInAnyOrderAndLinesEndAsTheyLike) {
   EXPECT_EQ(results.at({"a b", 440.0}).value, results.at({"c", 440.0}).value);
 }
 
+// Hard case 43.
 TEST_F(Eval, OrderOfResultsIsThatOfCasesForAnyNumberOfThreads) {
   std::string text = kHeader;
   for (int i = 0; i < 9000; ++i) {

@@ -94,6 +94,7 @@ TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
   EXPECT_EQ(FileCount(), 0U) << "nothing is left, under no name";
 }
 
+// Hard case 44.
 TEST_F(ExrFile, OnePixelAndOneColumnAreImages) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{1, 500}, std::pair{16384, 1}}) {
     Image image(width, height);
@@ -150,6 +151,7 @@ TEST_F(ExrFile, AMissingFolderIsAnOutputError) {
   }
 }
 
+// Hard case 46.
 TEST_F(ExrFile, AFullDiskIsAnOutputError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
   fs::create_symlink("/dev/full", folder_ / "a.exr");
@@ -204,6 +206,7 @@ TEST(Develop, LinearCurveReproducesTheSrgbCodeOnAverage) {
       << "the tile holds every threshold once, so the mean is kept to rounding of 0.2140";
 }
 
+// Hard case 35.
 TEST(Develop, ASlowGradientHasNoBands) {
   // One code over 256 columns: without dither two flat bands, with it every 64-column block
   // differs.
@@ -264,6 +267,7 @@ TEST(Dither, NeighboursDifferAsInBlueNoise) {
 }
 
 // Faint vertical stripes in an even sky, 2026-11-21: columns of the one tile stood over each other.
+// Hard case 35.
 TEST(Dither, ColumnsOfAnEvenPictureAreAsEvenAsIfEveryPixelHadItsOwnNoise) {
   constexpr int kWidth = 320;
   constexpr int kHeight = 704;
@@ -278,6 +282,7 @@ TEST(Dither, ColumnsOfAnEvenPictureAreAsEvenAsIfEveryPixelHadItsOwnNoise) {
       << "half a code a pixel, that is, the deviation of triangular dither and rounding together";
 }
 
+// Hard case 35.
 TEST(Dither, NoiseIsTriangularAndChannelsAreUncorrelated) {
   std::array<double, 3> mean = {};
   std::array<std::array<double, 3>, 3> product = {};

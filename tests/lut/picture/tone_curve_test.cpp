@@ -126,6 +126,7 @@ TEST(Reinhard, KeepsTheMappedLuminanceOfSaturatedColours) {
   EXPECT_NEAR(shared::Luminance(light[0], light[1], light[2]), shared::ReinhardLuminance(y), 1e-12);
 }
 
+// Hard case 34.
 TEST(ToneCurves, EveryColourIsFiniteAndInRange) {
   std::vector<Color> colours = Colours();
   const double huge = std::numeric_limits<double>::max();
@@ -174,6 +175,7 @@ TEST(ToneCurves, FloatAgreesWithDouble) {
   }
 }
 
+// Hard case 34.
 TEST(Gamut, NegativeChannelsAreMixedAwayAtConstantLuminance) {
   const Color colour = {-0.1, 0.8, 0.6};
   const Color inside = InsideGamut(colour);

@@ -88,6 +88,7 @@ TEST(Program, EveryKindOfFailureHasItsStatusAndOneLine) {
   }
 }
 
+// Hard case 45.
 TEST(Program, ASignalStopsTheWorkBetweenUnitsAndSetsTheStatus) {
   for (const int signal : {SIGINT, SIGTERM}) {
     int units = 0;
@@ -156,6 +157,7 @@ TEST_F(AtomicFile, ModeFollowsTheUmask) {
   EXPECT_EQ(status.st_mode & 0777, 0644U);
 }
 
+// Hard case 45.
 TEST_F(AtomicFile, AFailedWriterLeavesTheOldFileAndNoTemporary) {
   WriteTextAtomically(folder_ / "a.txt", "old");
   const auto fail = [](const fs::path& name) {
@@ -180,6 +182,7 @@ TEST_F(AtomicFile, OtherExceptionsPassAndLeaveNothing) {
   EXPECT_EQ(FilesIn(folder_), 0U);
 }
 
+// Hard case 46.
 TEST_F(AtomicFile, AMissingFolderIsAnOutputErrorThatNamesTheTarget) {
   const fs::path target = folder_ / "missing" / "a.txt";
   try {
@@ -190,6 +193,7 @@ TEST_F(AtomicFile, AMissingFolderIsAnOutputErrorThatNamesTheTarget) {
   }
 }
 
+// Hard case 46.
 TEST_F(AtomicFile, AFolderRemovedWhileWritingIsAnOutputError) {
   const fs::path folder = folder_ / "gone";
   fs::create_directory(folder);
@@ -198,6 +202,7 @@ TEST_F(AtomicFile, AFolderRemovedWhileWritingIsAnOutputError) {
       OutputError);
 }
 
+// Hard case 46.
 TEST_F(AtomicFile, AReadOnlyFolderIsAnOutputError) {
   if (geteuid() == 0) GTEST_SKIP() << "the superuser writes into read-only folders";
   fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
@@ -220,6 +225,7 @@ TEST_F(AtomicFile, ASymbolicLinkIsFollowed) {
 }
 
 // A file-size limit stands in for the full disk: write() fails in the same way, with EFBIG.
+// Hard case 46.
 TEST_F(AtomicFile, AFullDiskIsAnOutputErrorAndLeavesNothing) {
   const fs::path target = folder_ / "a.txt";
   rlimit before = {};
@@ -243,6 +249,7 @@ TEST_F(AtomicFile, AFullDiskIsAnOutputErrorAndLeavesNothing) {
   EXPECT_EQ(FilesIn(folder_), 0U);
 }
 
+// Hard case 47.
 TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
   const auto write = [&](char letter) {
     for (int i = 0; i < 50; ++i) {

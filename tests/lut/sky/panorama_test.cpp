@@ -201,6 +201,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
   }
 }
 
+// Hard case 32.
 TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
   for (const auto& [width, height] : {std::pair{16, 8}, std::pair{256, 128}, std::pair{900, 450}}) {
     PanoramaSettings settings = SunAtDegrees(41.0, 77.0);
@@ -255,6 +256,7 @@ TEST(Panorama, ItsCompassStandsWhereTheSunsOfTheQuartersStand) {
   EXPECT_FALSE(ink(180.0, -4.0, -2.0));
 }
 
+// Hard case 43.
 TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
   const PanoramaSettings settings = SunAtDegrees(3.0, 30.0);
   std::vector<Image> images;
@@ -266,6 +268,7 @@ TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(images[0].rgb, images[2].rgb);
 }
 
+// Hard case 44.
 TEST(Panorama, OnePixelIsAPicture) {
   PanoramaSettings settings = SunAtDegrees(30.0, 0.0);
   settings.width = settings.height = 1;

@@ -93,6 +93,7 @@ TEST(SkyView, OfHazeIsAsRight) {
   }
 }
 
+// Hard case 7.
 TEST(SkyView, HasNoStripeAtTheHorizon) {
   const Air& earth = Air::Earth();
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
@@ -111,6 +112,7 @@ TEST(SkyView, HasNoStripeAtTheHorizon) {
   }
 }
 
+// Hard case 23.
 TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
   const Air& earth = Air::Earth();
   for (const double altitude_m : {-400.0, 0.0, 119999.0, 120001.0, 36e6, 1e9}) {
@@ -127,6 +129,7 @@ TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
   }
 }
 
+// Hard case 10.
 TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
   const SkyView view = Air::Earth().View(10e3, 20.0);
   for (const double zenith : {0.0, kPi}) {
@@ -136,6 +139,7 @@ TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
   }
 }
 
+// Hard case 37.
 TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
   const SkyView view = Air::Earth().View(2.0, -3.0);
   for (const double zenith : {0.3, 1.2, 1.55, 2.0}) {
@@ -148,6 +152,7 @@ TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
   }
 }
 
+// Hard case 7.
 TEST(SkyView, BothSidesOfTheHorizonAreWhatTheyAreDirectly) {
   const Air& earth = Air::Earth();
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
@@ -200,6 +205,7 @@ double LargestBend(const std::vector<double>& values) {
   return largest;
 }
 
+// Hard case 22.
 TEST(SkyView, TwilightHasNoBlocksInAzimuth) {
   for (const double altitude_m : {2.0, 10e3}) {
     for (const double elevation_deg : {-4.0, -8.0, -12.0}) {
@@ -220,6 +226,7 @@ TEST(SkyView, TwilightHasNoBlocksInAzimuth) {
   }
 }
 
+// Hard case 22.
 TEST(SkyView, TheTerminatorOnTheLimbHasNoBlocks) {
   // Seen from space light dies within a few degrees of azimuth: there the bends are real.
   const Air& earth = Air::Earth();
@@ -243,6 +250,7 @@ TEST(SkyView, TheTerminatorOnTheLimbHasNoBlocks) {
   }
 }
 
+// Hard cases 22, 33.
 TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
   for (const double zenith_deg : {0.0, 45.0, 85.0}) {
     std::vector<double> stops;
@@ -258,6 +266,7 @@ TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
   }
 }
 
+// Hard case 38.
 TEST(SkyView, TooFewNodesAreRefused) {
   const Air& earth = Air::Earth();
   const auto refuse = [&](const SkyViewSize& size) {

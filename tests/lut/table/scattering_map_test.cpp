@@ -56,6 +56,7 @@ TEST(ScatteringMap, InverseReturnsTheSunOnADenseGrid) {
   }
 }
 
+// Hard case 37.
 TEST(ScatteringMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
   for (const double n : {4.0, 6.0, 128.0}) {
     for (double i = 0.0; i < n; ++i) {
@@ -75,6 +76,7 @@ TEST(ScatteringMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
   }
 }
 
+// Hard case 37.
 TEST(ScatteringMap, HalvesMeetAtTheHorizonInTheMiddle) {
   const double n = 128.0;
   EXPECT_DOUBLE_EQ(MuTexelFromUnit<double>(0.0, 1.0, n), 63.5 / 128.0) << "straight down";
@@ -93,6 +95,7 @@ TEST(ScatteringMap, OnTheGroundEveryDownwardRayHasOneCoordinate) {
   }
 }
 
+// Hard case 9.
 TEST(ScatteringMap, FloatAgreesWithDouble) {
   for (const double z : Altitudes()) {
     const float h = static_cast<float>(z);
@@ -124,6 +127,7 @@ TEST(ScatteringMap, FloatAgreesWithDouble) {
   }
 }
 
+// Hard case 13.
 TEST(ScatteringMap, ImpossibleScatteringAnglesAreMovedToTheNearestPossible) {
   EXPECT_NEAR(PossibleScatteringCosine<double>(-1.0, 0.3, 1.0), 0.3, 1e-15) << "sun in the zenith";
   EXPECT_NEAR(PossibleScatteringCosine<double>(1.0, 0.6, 0.6), 1.0, 1e-15) << "looking at the sun";

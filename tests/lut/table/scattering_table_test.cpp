@@ -171,6 +171,7 @@ TEST(ScatteringTable, OfAzimuthsIsExactAtTheNodesAndHoldsTheIntegrals) {
   }
 }
 
+// Hard case 23.
 TEST(ScatteringTable, OfAzimuthsIsNeverNegativeNeverNaN) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -191,6 +192,7 @@ TEST(ScatteringTable, OfAzimuthsIsNeverNegativeNeverNaN) {
   EXPECT_GT(SmallAzimuthTable().Lookup(at_the_sun).mie[0], 0.0F);
 }
 
+// Hard case 11.
 TEST(ScatteringTable, SunInTheZenithIsRotationallySymmetric) {
   const ScatteringTable& table = SmallTable();
   for (const double zenith_deg : {10.0, 60.0, 89.0, 120.0}) {
@@ -203,6 +205,7 @@ TEST(ScatteringTable, SunInTheZenithIsRotationallySymmetric) {
   }
 }
 
+// Hard case 23.
 TEST(ScatteringTable, NeverNegativeNeverNaN) {
   const ScatteringTable& table = SmallTable();
   std::mt19937 random(4);
@@ -222,6 +225,7 @@ TEST(ScatteringTable, NeverNegativeNeverNaN) {
   }
 }
 
+// Hard case 23.
 TEST(ScatteringTable, NightIsBlackBelowTheLowestUsefulSun) {
   const ScatteringTable& table = SmallTable();
   std::mt19937 random(5);
@@ -235,6 +239,7 @@ TEST(ScatteringTable, NightIsBlackBelowTheLowestUsefulSun) {
   }
 }
 
+// Hard case 6.
 TEST(ScatteringTable, ObserversAboveTheTopSeeWhatTheRaySeesWhereItEnters) {
   const ScatteringTable& table = SmallTable();
   EXPECT_EQ(table.Lookup(RayFromAngles(4e5, 60.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "upwards";
@@ -260,6 +265,7 @@ TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
   }
 }
 
+// Hard case 14.
 TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
   if (kSanitized) GTEST_SKIP() << kTooSlow;
   const ScatteringTable& table = StandardTable();
@@ -279,6 +285,7 @@ TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
   }
 }
 
+// Hard case 38.
 TEST(ScatteringTable, TheSmallestTableWorks) {
   const ScatteringTable table(
       MediumPreset("bruneton2017"),
@@ -291,6 +298,7 @@ TEST(ScatteringTable, TheSmallestTableWorks) {
   }
 }
 
+// Hard case 38.
 TEST(ScatteringTable, SizesThatCannotBeAreRefusedWithTheirBytes) {
   const Medium medium = MediumPreset("earth");
   const auto build = [&](const ScatteringTableSize& size) {
@@ -310,6 +318,7 @@ TEST(ScatteringTable, SizesThatCannotBeAreRefusedWithTheirBytes) {
   EXPECT_THROW(ScatteringTable(medium, {.size = kTiny, .lowest_mu_s = 0.5}), InputError);
 }
 
+// Hard case 43.
 TEST(ScatteringTable, NumberOfThreadsDoesNotChangeAByte) {
   const Medium medium = MediumPreset("earth");
   const auto texels_with = [&](int threads) {
@@ -321,6 +330,7 @@ TEST(ScatteringTable, NumberOfThreadsDoesNotChangeAByte) {
   EXPECT_EQ(texels_with(8), one);
 }
 
+// Hard case 28.
 TEST(ScatteringTable, NoAirScattersNothing) {
   Medium medium = MediumPreset("bruneton2017");
   for (auto* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,

@@ -58,6 +58,7 @@ TEST(TransmittanceMap, InverseReturnsTheRayOnADenseGrid) {
   }
 }
 
+// Hard case 37.
 TEST(TransmittanceMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
   for (const double n : {2.0, 3.0, 64.0, 256.0}) {
     for (double i = 0.0; i < n; ++i) {
@@ -74,6 +75,7 @@ TEST(TransmittanceMap, ForwardReturnsTheCoordinateOfEveryTexelCentre) {
   }
 }
 
+// Hard case 37.
 TEST(TransmittanceMap, FirstAndLastTexelCentresAreTheEndsOfTheRange) {
   EXPECT_DOUBLE_EQ(TexelFromUnit<double>(0.0, 256.0), 0.5 / 256.0);
   EXPECT_DOUBLE_EQ(TexelFromUnit<double>(1.0, 256.0), 255.5 / 256.0);
@@ -84,6 +86,7 @@ TEST(TransmittanceMap, FirstAndLastTexelCentresAreTheEndsOfTheRange) {
   EXPECT_NEAR(UnitFromSkyCosine<double>(1.0, horizon, kTop_km, kRadius_km), 1.0, 1e-13);
 }
 
+// Hard case 9.
 TEST(TransmittanceMap, FloatAgreesWithDouble) {
   for (const double z : Altitudes()) {
     const float h = static_cast<float>(z);
@@ -103,6 +106,7 @@ TEST(TransmittanceMap, FloatAgreesWithDouble) {
   }
 }
 
+// Hard case 9.
 TEST(TransmittanceMap, AltitudesOfMillimetresSurviveSinglePrecision) {
   for (const double h : {1e-6, 1e-3, 1.0}) {
     const float x = UnitFromAltitude<float>(static_cast<float>(h), 120.0F, 6371.0F);

@@ -107,12 +107,14 @@ TEST(TransmittanceTable, GroundIsOpaqueAndEmptySpaceIsClear) {
   EXPECT_EQ(table.LookupAlong({100.0, 0.2, 1.0, 1.0, 0.0})[0], 1.0F) << "length 0";
 }
 
+// Hard case 2.
 TEST(TransmittanceTable, ObserversBelowTheGroundSeeWhatThoseOnItSee) {
   const TransmittanceTable table(MediumPreset("earth"), {.mu = 16, .altitudes = 8});
   EXPECT_EQ(table.Lookup(-430.0, 0.7)[0], table.Lookup(0.0, 0.7)[0]);
   EXPECT_GT(table.Lookup(-11000.0, 0.7)[0], 0.0F);
 }
 
+// Hard case 4.
 TEST(TransmittanceTable, OnTheTopJustAboveAndJustBelowAgree) {
   const Medium medium = MediumPreset("earth");
   const TransmittanceTable table(medium, {.mu = 64, .altitudes = 32});
@@ -123,6 +125,7 @@ TEST(TransmittanceTable, OnTheTopJustAboveAndJustBelowAgree) {
   }
 }
 
+// Hard case 38.
 TEST(TransmittanceTable, TwoTexelsAnAxisWork) {
   const Medium medium = MediumPreset("earth");
   const TransmittanceTable table(medium, {.mu = 2, .altitudes = 2});
@@ -134,6 +137,7 @@ TEST(TransmittanceTable, TwoTexelsAnAxisWork) {
   }
 }
 
+// Hard case 38.
 TEST(TransmittanceTable, SizesThatCannotBeAreRefusedWithTheirBytes) {
   const Medium medium = MediumPreset("earth");
   EXPECT_THROW(TransmittanceTable(medium, {.mu = 1, .altitudes = 64}), InputError);
@@ -157,6 +161,7 @@ TEST(TransmittanceTable, MoreBandsThanATableHoldsAreRefused) {
   EXPECT_THROW(TransmittanceTable(MediumPreset("earth", wavelengths)), InputError);
 }
 
+// Hard case 43.
 TEST(TransmittanceTable, NumberOfThreadsDoesNotChangeAByte) {
   const Medium medium = MediumPreset("earth");
   const auto texels_with = [&](int threads) {

@@ -34,6 +34,7 @@ TEST(CameraRays, RightOfAPictureLookingNorthIsEast) {
   EXPECT_GT(north.Direction(100.0, 0.0).z, 0.0) << "rows count downwards";
 }
 
+// Hard case 44.
 TEST(CameraRays, RollOfNinetyDegreesLaysTheHorizonUpright) {
   // Rolled clockwise, the right edge of the picture looks down.
   const CameraRays rolled(CameraFromDegrees({}, 0.0, 0.0, 90.0, 90.0), 200, 100);
@@ -65,6 +66,7 @@ TEST(CameraRays, APlaceInThePictureIsFoundBackFromItsDirection) {
   EXPECT_FALSE(north.PlaceOf({0.0, -1.0, 0.0}).has_value()) << "behind the camera";
 }
 
+// Hard case 44.
 TEST(CameraRays, DirectionsAreUnitVectorsForEveryFieldOfView) {
   for (const double fov : {0.1, 1.0, 60.0, 179.0, 360.0}) {
     const CameraRays rays(CameraFromDegrees({}, 33.0, -20.0, 10.0, fov), 7, 5);

@@ -316,6 +316,7 @@ TEST_F(LampShadows, ALampBehindTheWallIsNotSeen) {
   EXPECT_GT(seen(scene.lights[1]), 0.0);
 }
 
+// Hard case 42.
 TEST_F(LampShadows, ALampBelowTheGroundIsRefused) {
   Scene scene = WallScene();
   scene.lights = {LightAt(50.0, 0.0, -5.0, 1000.0)};

@@ -174,6 +174,7 @@ TEST(AerialPerspective, ShaftsAreTheIntegralOverTheLitPieces) {
   }
 }
 
+// Hard case 41.
 TEST(AerialPerspective, ShadeHasNoDirectLightAtAllAndKeepsTheDiffuse) {
   const Air air(MediumPreset("earth"));
   const ViewRay ray{1500.0, 0.02, 0.1, 0.99, 30e3};
@@ -195,6 +196,7 @@ TEST(AerialPerspective, FullLightIsTheSameByBothWays) {
       << "moments of the pieces sum up to those of the whole; more nodes are used";
 }
 
+// Hard cases 14, 39.
 TEST(AerialPerspective, NothingIsThereOverNoDistanceAndLittleOverAMillimetre) {
   const Air air(MediumPreset("earth"));
   ViewRay ray{1500.0, 0.02, 0.1, 0.9, 0.0};

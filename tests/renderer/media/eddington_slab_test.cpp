@@ -158,6 +158,7 @@ PhaseFunction Lobe(double g) {
   return phase;
 }
 
+// Hard case 30.
 TEST(EddingtonSlab, LosesNoLightWhereNothingAbsorbs) {
   for (const double depth : {1e-3, 0.3, 3.0, 40.0, 1000.0}) {
     for (const double mu0 : {0.02, 0.3, 1.0}) {

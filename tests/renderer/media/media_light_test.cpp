@@ -215,6 +215,7 @@ TEST(MediaLight, ThinFogLeavesTheGroundItsLight) {
   }
 }
 
+// Hard case 30.
 TEST(MediaLight, WhiteFogOverBlackGroundKeepsTheEnergyOfSunAndSky) {
   // What comes down through fog and what goes up from it is what fell in, over black ground.
   Stage stage;
@@ -324,6 +325,7 @@ TEST(RenderMedia, EmptyVolumesChangeNoByte) {
       << "extinction 0";
 }
 
+// Hard case 43.
 TEST(RenderMedia, BytesAreTheSameForAnyNumberOfThreads) {
   Scene scene = WithVolume(0.02, 0.9);
   scene.fog = Fog{0.004, 40.0, 0.0, 1.0, FogPhase(12.0)};

@@ -110,6 +110,7 @@ TEST_F(Valley, IsBrighterByTheLightOfItsWalls) {
   EXPECT_GT(with_walls, 1.02 * without_bounce) << "snow on one wall lights the other";
 }
 
+// Hard case 43.
 TEST_F(Valley, IsTheSameBytesForAnyNumberOfThreads) {
   Scene scene = ValleyScene();
   scene.ground.sea_level_m = 20.0;  // a lake in it

@@ -40,6 +40,7 @@ class RenderAirFiles : public TemporaryFolder {};
 
 const UtcInstant kMorning = ParseInstant("2026-06-21T04:20:00Z");
 
+// Hard case 43.
 TEST(RenderAir, ShaftsAreTheSameBytesForAnyNumberOfThreads) {
   const SceneRenderer& renderer = RangeRenderer();
   const RenderSettings settings{
@@ -72,6 +73,7 @@ TEST(RenderAir, SharingTheAirOfAPixelIsRightToATenthOfAPercentOfTheLight) {
          "do; pixels of a tenth of a degree";
 }
 
+// Hard case 40.
 TEST_F(RenderAirFiles, AMountainBeforeTheSunHasNoGlowInItsShadedAir) {
   // A ridge across the view, 1500 m high and 4 km off; the sun stands behind it, low.
   const std::filesystem::path file = folder_ / "ridge.obj";

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
@@ -56,6 +57,26 @@ TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
   for (int y = 0; y < image.height; ++y) {
     const float depth = image.layers[0].values[static_cast<std::size_t>(2 * y)];
     EXPECT_EQ(std::isinf(depth), y < 50) << "row " << y;
+  }
+}
+
+// Hard case 6.
+TEST(RenderExtremes, AClimbToOrbitIsContinuousFromPictureToPicture) {
+  const SceneRenderer renderer(BareScene(1.7, 40.0, 0.0, 20.0));
+  // The sky, the horizon, which the limb passes at 100 km, and the ground.
+  for (const double pitch : {40.0, -10.0, -60.0}) {
+    double peak = 0.0;
+    std::vector<double> seen;
+    for (double height_m = 1.7; height_m < 400e3; height_m *= 1.01) {
+      const Shot shot = ShotFrom(height_m, pitch, 0.0, 0.1);
+      seen.push_back(Luminance(renderer.Render(shot, Settings(1, 1)).at(0, 0)));
+      peak = std::max(peak, seen.back());
+      if (seen.size() < 3) continue;
+      const double* last = &seen.back();
+      EXPECT_NEAR(last[0] - last[-1], last[-1] - last[-2], 0.02 * peak)
+          << pitch << " degrees up, at " << height_m << " m: the pace changes by less than 2 % of "
+          << "the brightest";
+    }
   }
 }
 

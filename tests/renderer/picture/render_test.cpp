@@ -65,6 +65,7 @@ TEST(Render, NoonSkyHasThePublishedOrderOfLuminance) {
   EXPECT_GT(image.at(8, 4)[2], image.at(8, 4)[0]) << "the sky is blue";
 }
 
+// Hard case 23.
 TEST(Render, NightIsNeverNegativeAndNeverNaN) {
   const SceneRenderer renderer(BareScene(2.0, 0.0, 10.0, 360.0));
   for (const char* time :
@@ -76,6 +77,7 @@ TEST(Render, NightIsNeverNegativeAndNeverNaN) {
   }
 }
 
+// Hard case 43.
 TEST(Render, TheSameBytesForAnyNumberOfThreads) {
   const SceneRenderer renderer(BareScene(2.0, 120.0, 5.0, 60.0));
   const UtcInstant dawn = ParseInstant("2026-06-21T03:40:00Z");
@@ -143,6 +145,7 @@ TEST(Render, AMovingCameraSeesTheMeanOfWhatItPasses) {
   }
 }
 
+// Hard case 43.
 TEST(Render, LensFilterAndPathGiveTheSameBytesForAnyNumberOfThreads) {
   Scene scene = BareScene(20.0, 120.0, 0.0, 60.0);
   scene.camera.lens = ThinLens{1.4, 0.085, 6.0, 7, 0.1};
@@ -173,6 +176,7 @@ TEST(Render, AnEyeBelowTheGroundOrTooFarAwayIsRefused) {
   EXPECT_THROW((void)renderer.Render(shot, kSmall), InputError);
 }
 
+// Hard case 20.
 TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
   // Without refraction of the line of sight the sea horizon lies acos(R / (R + h)) below the
   // horizontal.
@@ -195,6 +199,7 @@ TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
   }
 }
 
+// Hard case 32.
 TEST(Render, SunIrradianceInThePictureOfTheDiskIsThatOfTheSun) {
   // Radiance over the disk's pixels sums to the direct normal illuminance.
   const Scene at_sun = [] {
@@ -271,6 +276,7 @@ TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
   EXPECT_EQ(lit_share(-15.0, 0, 60), 0.0) << "the sun is under the summit's horizon";
 }
 
+// Hard case 22.
 TEST(Render, IlluminanceFallsSmoothlyFromNoonIntoTheNight) {
   const SceneRenderer renderer(BareScene(2.0, 0.0, 0.0, 60.0));
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
@@ -279,7 +285,7 @@ TEST(Render, IlluminanceFallsSmoothlyFromNoonIntoTheNight) {
   EXPECT_LT(at_noon, 130e3);
   double before = std::log2(renderer.Illuminance(ParseInstant("2026-06-21T17:00:00Z")));
   double step_before = 0.0;
-  for (int minute = 1; minute <= 210; ++minute) {
+  for (int minute = 1; minute <= 340; ++minute) {
     const UtcInstant instant{61212, 17.0 * 3600.0 + 60.0 * minute};
     const double stops = std::log2(renderer.Illuminance(instant));
     EXPECT_LT(stops, before) << minute << " minutes after 17:00 UTC";

@@ -156,6 +156,7 @@ radius_m = 0.2
   EXPECT_EQ(scene.lights[0].radius_m, 0.2);
 }
 
+// Hard case 42.
 TEST(Scene, FogAndLampsThatMakeNoSenseAreRefusedByKey) {
   const std::string light = "[[light]]\nlatitude = 35\nlongitude = 138\n";
   EXPECT_THAT(FaultOf(kPlace + "[fog]\nscale_height_m = 30\n"), HasSubstr("fog.visibility_m"));
@@ -307,12 +308,14 @@ TEST(Scene, LocalTimeIsReadInThePlacesZone) {
               HasSubstr("time.local needs place.zone"));
 }
 
+// Hard case 44.
 TEST(Scene, PanoramasAndSteepRollsAreCameras) {
   EXPECT_TRUE(Read(kPlace + "[camera]\nfov = 360\nroll = 90\n").camera.IsPanorama());
   EXPECT_FALSE(Read(kPlace + "[camera]\nfov = 179\n").camera.IsPanorama());
   EXPECT_NO_THROW((void)Read(kPlace + "[camera]\nfov = 1\nheading = -90\n"));
 }
 
+// Hard case 27.
 TEST(Scene, LatitudeNinetyAndLongitudes180ArePlacesOnEarth) {
   for (const char* place : {"latitude = 90\nlongitude = 0\n", "latitude = -90\nlongitude = -180\n",
                             "latitude = 0\nlongitude = 180\n"}) {

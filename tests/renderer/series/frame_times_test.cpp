@@ -67,6 +67,7 @@ TEST(FrameTimes, AnEventNeedsADay) {
   EXPECT_THAT(FaultOf([&] { return InstantFromText("sunrise", day); }), HasSubstr("which day"));
 }
 
+// Hard case 24.
 TEST(FrameTimes, PolarDayAndNightHaveNoSunrise) {
   EXPECT_THAT(FaultOf([] { return InstantFromText("sunrise", Tromso("2026-06-21")); }),
               HasSubstr("there is no sunrise on 2026-06-21"));

@@ -169,6 +169,7 @@ TEST_F(SeriesRun, WithoutResumeEverythingIsRenderedAgain) {
   EXPECT_EQ(renderings_, 6);
 }
 
+// Hard case 48.
 TEST_F(SeriesRun, ResumeRendersStaleFramesAgain) {
   SeriesOutput output = Output();
   Run(Source(), output);
@@ -183,6 +184,7 @@ TEST_F(SeriesRun, ResumeRendersStaleFramesAgain) {
   EXPECT_EQ(RunSeries(changed, later, later, output).rendered, 1) << "frame 2 shows another time";
 }
 
+// Hard case 45.
 TEST_F(SeriesRun, ResumeRendersDamagedFramesAgain) {
   SeriesOutput output = Output();
   Run(Source(), output);
@@ -235,6 +237,7 @@ TEST_F(SeriesRun, OnlySelectedFramesAreRenderedAndTheManifestHasAll) {
       << manifest;
 }
 
+// Hard case 45.
 TEST_F(SeriesRun, ASignalKeepsFinishedFramesAndLeavesNoPart) {
   on_render_ = [this] {
     if (renderings_ == 2) std::raise(SIGINT);
@@ -252,6 +255,7 @@ TEST_F(SeriesRun, ASignalKeepsFinishedFramesAndLeavesNoPart) {
   EXPECT_EQ(RunProgram("skytest", [] { return 0; }), 0) << "forgets the signal";
 }
 
+// Hard case 46.
 TEST_F(SeriesRun, AFolderRemovedWhileRunningIsAnOutputErrorThatNamesTheFrame) {
   SeriesOutput output{FrameName((folder_ / "sub" / "frame.%04d.exr").string())};
   output.progress = ProgressStyle::kQuiet;
@@ -317,6 +321,7 @@ TEST(ContactSheet, ThumbnailsOfOnePixelOneColumnAndOneRowHaveTheirPlace) {
 
 using Provenance = TemporaryFolder;
 
+// Hard case 48.
 TEST_F(Provenance, FingerprintFollowsEverySettingAndTheTerrainsContent) {
   WriteText(folder_ / "dem.tif", "one");
   Scene scene;

@@ -204,12 +204,14 @@ TEST(BuiltInRangeView, ShowsTheHighestPeakAndChainBehindChain) {
   EXPECT_LT(view.heading_deg, 180.0);
 }
 
+// Hard case 17.
 TEST(BuiltInRangeView, ShowsTheSameBesideAPole) {
   const Sight sight = Look(Degrees(89.9, 120.0));
   EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
   EXPECT_GT(sight.farthest_m, 40e3);
 }
 
+// Hard case 17.
 TEST(BuiltInRangeView, ShowsTheSameOverTheSouthPole) {
   const Sight sight = Look(Degrees(-90.0, 0.0));
   EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);

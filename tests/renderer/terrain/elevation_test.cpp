@@ -167,6 +167,7 @@ TEST_F(ElevationFile, AProjectedPlaneIsStillThatPlane) {
   OGRCoordinateTransformation::DestroyCT(to_geographic);
 }
 
+// Hard case 17.
 TEST_F(ElevationFile, AMapAroundThePoleClosesAroundThePole) {
   Recipe recipe;
   recipe.columns = 101;
@@ -200,6 +201,7 @@ TEST_F(ElevationFile, ARasterOverTheMeridianOfGreenwichStaysWholeHoweverLongitud
   }
 }
 
+// Hard case 17.
 TEST_F(ElevationFile, ARasterOverThe180thMeridianStaysWhole) {
   Recipe recipe;
   recipe.geotransform = {179.995, 0.001, 0.0, -17.0, 0.0, -0.001};

@@ -77,6 +77,7 @@ double LongestEdge(const TriangleMesh& mesh) {
   return longest;
 }
 
+// Hard case 16.
 TEST(MeshFromElevation, VerticesLieAtTheirHeightOverTheEllipsoid) {
   const ElevationGrid grid =
       Grid(47.0, 7.5, 0.01, 101, 101, [](int row, int column) { return 10.0 * row + column; });
@@ -124,6 +125,7 @@ TEST(MeshFromElevation, APeak150KilometresAwaySinksAsTheEllipsoidSaysItMust) {
       << "and a sphere says about the same: 150 km away the ground is 1767 m down";
 }
 
+// Hard case 17.
 TEST(MeshFromElevation, TheGroundIsOnePieceOverThe180thMeridian) {
   const auto height = [](int row, int column) { return 20.0 * ((row * 7 + column * 3) % 11); };
   const ElevationGrid over = Grid(-17.0, 179.9, 0.01, 21, 21, height);
@@ -138,6 +140,7 @@ TEST(MeshFromElevation, TheGroundIsOnePieceOverThe180thMeridian) {
   EXPECT_EQ(BorderEdges(mesh), 4U * 20U);
 }
 
+// Hard case 17.
 TEST(MeshFromElevation, ARingAroundThePoleIsClosedThereAndAtItsSeam) {
   for (const bool north : {true, false}) {
     ElevationGrid grid = Grid(90.0, -180.0, 0.01, 8, 36, [](int row, int) { return 5.0 * row; });
@@ -176,6 +179,7 @@ TEST(MeshFromElevation, NormalsOfASlopeAreItsOwn) {
   EXPECT_NEAR(normal[1] / normal[2], -30.0 / step_m, 1e-4);
 }
 
+// Hard case 18.
 TEST(MeshFromElevation, ACrestAlongADiagonalStaysWhole) {
   const ElevationGrid grid = Grid(
       46.0, 8.0, 0.001, 9, 9, [](int row, int column) { return row + column == 8 ? 100.0 : 0.0; });

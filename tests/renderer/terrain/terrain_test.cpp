@@ -68,6 +68,7 @@ glm::dvec3 RandomDirection(std::mt19937& random) {
   return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
 }
 
+// Hard case 16.
 TEST(Terrain, DistanceToAPlaneIsTheClosedForm) {
   const Terrain terrain(Plane());
   std::mt19937 random(1);
@@ -126,6 +127,7 @@ TEST(Terrain, DistanceToABallLiesBetweenItsInnerAndOuterSphere) {
   }
 }
 
+// Hard case 19.
 TEST(Terrain, NothingThatIsConvexShadesItself) {
   // Far from the origin of the frame, where a float is 4 mm; facets of 100 m.
   const glm::dvec3 centre(50e3, -40e3, 2e3);
@@ -150,6 +152,7 @@ TEST(Terrain, NothingThatIsConvexShadesItself) {
          "facets of 50 m by less";
 }
 
+// Hard case 19.
 TEST(Terrain, TheSmoothPointKeepsFacetsOutOfTheTerminator) {
   const Terrain terrain(Ball({0.0, 0.0, 0.0}, 2000.0, 128));
   std::mt19937 random(4);
@@ -241,6 +244,7 @@ TriangleMesh Hills() {
   return MeshFromElevation(grid, frame);
 }
 
+// Hard case 18.
 TEST(Terrain, NoRaySlipsBetweenTriangles) {
   const TriangleMesh mesh = Hills();
   const Terrain terrain(mesh);
@@ -280,6 +284,7 @@ std::vector<double> ManyHits(const Terrain& terrain) {
   return values;
 }
 
+// Hard case 43.
 TEST(Terrain, ManyThreadsSeeTheSameHitsToTheLastBit) {
   const Terrain terrain(Hills());
   const std::vector<double> alone = ManyHits(terrain);
@@ -297,6 +302,7 @@ TEST(Terrain, OneBuiltByOneThreadIsTheSameAsOneBuiltByMany) {
   EXPECT_EQ(ManyHits(Terrain(Hills())), many);
 }
 
+// Hard case 20.
 TEST(Terrain, TheSeaHidesAMountain150KilometresAwayUpToTheRightHeight) {
   // The eye is 2 m above the sea at 45 degrees; the sight line touches the sea 5 km away and then
   // climbs to (150 km - 5 km)^2 / 2 R = 1649 m, R = 6367 km being the meridian's radius there.

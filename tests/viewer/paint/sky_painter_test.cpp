@@ -120,6 +120,7 @@ TEST_F(SkyPainterTest, TheSkyIsTheRenderersFromNoonToTwilight) {
   }
 }
 
+// Hard case 5.
 TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
   for (const double height_m : {10e3, 400e3}) {
     const Scene scene = BareScene(height_m, 160.0, height_m > 100e3 ? -20.0 : -5.0, 50.0);

@@ -13,6 +13,7 @@ namespace {
 
 using SharedText = tests::Headless;
 
+// Hard case 9.
 TEST_F(SharedText, GpuAgreesWithFloatToOnePartInAHundredThousand) {
   for (const tests::SharedTextCase& c : tests::AllSharedTextCases()) {
     SCOPED_TRACE(c.glsl);
