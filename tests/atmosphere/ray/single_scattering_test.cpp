@@ -451,5 +451,49 @@ TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
   EXPECT_EQ(nodes, std::vector<std::size_t>(nodes.size(), nodes.front()));
 }
 
+// Hard case 31.
+TEST(SingleScattering, ScaleHeightsOfAMetreAndOfTwoHundredKilometresAreThoseOfTheJudge) {
+  for (const double rayleigh_m : {1.0, 100.0, 8000.0, 200e3}) {
+    for (const double mie_m : {1.0, 100.0, 200e3}) {
+      Medium medium = MediumPreset("bruneton2017");
+      medium.rayleigh_deficit = {};
+      // The same columns, in another layer.
+      for (double& value : medium.rayleigh_scattering_per_m)
+        value *= medium.rayleigh_scale_height_m / rayleigh_m;
+      for (auto* list : {&medium.mie_scattering_per_m, &medium.mie_extinction_per_m}) {
+        for (double& value : *list) value *= medium.mie_scale_height_m / mie_m;
+      }
+      medium.rayleigh_scale_height_m = rayleigh_m;
+      medium.mie_scale_height_m = mie_m;
+      const AirIntegrator<float> air(medium);
+      for (const double altitude_m : {0.0, 0.5, 2.0, 50.0, 5000.0, 50e3}) {
+        for (const double mu : {1.0, 0.3, 0.0, -0.02}) {
+          SCOPED_TRACE(::testing::Message() << "scale heights " << rayleigh_m << " and " << mie_m
+                                            << " m, from " << altitude_m << " m, mu " << mu);
+          const ViewRay ray{altitude_m, mu, 0.5, 0.3};
+          const auto depth = judge::OpticalDepthAlong(medium, ray);
+          const auto truth = judge::SingleScatteringAlong(medium, ray);
+          const auto through = air.TransmittanceAlong(ray);
+          const auto light = Inscatter(air, ray, kFine);
+          for (std::size_t band = 0; band < air.bands(); ++band) {
+            EXPECT_NEAR(static_cast<double>(through[band]), std::exp(-depth.tau[band]), 1e-6);
+            // Half of the nodes lie within 10 km: a metre of haze above or below is seen by few.
+            EXPECT_NEAR(static_cast<double>(light[band]), truth.inscatter[band],
+                        (mie_m < 100.0 ? 0.1 : 1e-3) * truth.inscatter[band] + 1e-12);
+          }
+        }
+      }
+    }
+  }
+  for (const double beyond_m : {0.99, 2.1e5}) {
+    Medium medium = MediumPreset("earth");
+    medium.mie_scale_height_m = beyond_m;
+    const auto fault = FindFault(medium);
+    ASSERT_TRUE(fault.has_value()) << beyond_m;
+    EXPECT_EQ(fault->key, "mie.scale_height_m");
+    EXPECT_NE(fault->text.find("[1, 200000]"), std::string::npos) << fault->text;
+  }
+}
+
 }  // namespace
 }  // namespace alpenglow

@@ -398,5 +398,48 @@ TEST(DiffuseLight, SkyIrradianceAgreesWithPathTracing) {
   EXPECT_GE(compared, 9);
 }
 
+// Hard case 31.
+TEST(DiffuseLight, ScaleHeightsOfAMetreAndOfTwoHundredKilometresGiveLight) {
+  for (const auto& [rayleigh_m, mie_m] :
+       {std::pair{1.0, 1.0}, {8000.0, 1.0}, {8000.0, 200e3}, {200e3, 1200.0}, {200e3, 200e3}}) {
+    Medium medium = MediumPreset("bruneton2017");
+    medium.rayleigh_deficit = {};
+    for (double& value : medium.rayleigh_scattering_per_m)
+      value *= medium.rayleigh_scale_height_m / rayleigh_m;
+    for (auto* list : {&medium.mie_scattering_per_m, &medium.mie_extinction_per_m}) {
+      for (double& value : *list) value *= medium.mie_scale_height_m / mie_m;
+    }
+    medium.rayleigh_scale_height_m = rayleigh_m;
+    medium.mie_scale_height_m = mie_m;
+    const DiffuseLight light(medium, kSmall);
+    for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
+    // What falls on the ground is no more than sun and nothing less than none.
+    const auto sky = light.SkyIrradiance(0.0, 0.7);
+    for (std::size_t band = 0; band < sky.count; ++band) {
+      EXPECT_GT(sky[band], 0.0F) << rayleigh_m << " " << mie_m;
+      EXPECT_LT(sky[band], 1.0F) << rayleigh_m << " " << mie_m;
+    }
+  }
+}
+
+// Hard case 29.
+TEST(DiffuseLight, AtAnOpticalDepthOfFiftyItIsFiniteAndSaysWhenOrdersAreMissing) {
+  Medium medium = MediumPreset("bruneton2017");
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    medium.mie_extinction_per_m[band] = 50.0 / medium.mie_scale_height_m;
+    medium.mie_scattering_per_m[band] = 0.99 * medium.mie_extinction_per_m[band];
+  }
+  DiffuseLightOptions options = kSmall;
+  std::vector<float> brightest;
+  for (const int orders : {5, 400, 800}) {
+    options.max_orders = orders;
+    const DiffuseLight light(medium, options);
+    EXPECT_EQ(light.converged(), orders > 5) << orders;
+    for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
+    brightest.push_back(light.SkyIrradiance(1e4, 0.7)[0]);
+  }
+  EXPECT_EQ(brightest[1], brightest[2]) << "what has converged asks for no further orders";
+}
+
 }  // namespace
 }  // namespace alpenglow
