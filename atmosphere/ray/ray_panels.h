@@ -3,8 +3,7 @@
 // with a map that is dense where the air is.
 //
 // A ray is cut at the planet's shadow and at its perigee (and, for a tent of ozone, on request
-// where it bends the light). The map of distance in a panel is that of ray_map.glsl. Beside a rational
-// map with as many nodes the error is 3 to 20 times less.
+// where it bends the light). The map of distance in a panel is that of ray_map.glsl.
 #pragma once
 
 #include <array>

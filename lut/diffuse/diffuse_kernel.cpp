@@ -301,13 +301,13 @@ void Arrive(const DiffuseGrid& grid, const MarchDirection& direction, const Marc
   });
 }
 
-// Distance to an altitude 20 km higher or through 8 optical depths, and the map t = length v / (1 +
-// k (1 - v)) that puts half of the nodes before it, dense at the lower end: as AirIntegrator does.
+// By the gentle stretch of ray_map.glsl: all pieces have as many nodes.
 void Place(const LitPieces& pieces, const LitPoints& points) {
   using namespace shared;
   using Lanes = BatchOf<float>;
   using T = typename Lanes::Type;
-  const T h0(pieces.altitude_km), mu0(pieces.mu), radius(pieces.radius_km), zero(0.0F), one(1.0F);
+  const T h0(pieces.altitude_km), mu0(pieces.mu), radius(pieces.radius_km), zero(0.0F), one(1.0F),
+      gentle(1.0F);
   for (std::size_t i = 0; i < pieces.count; i += Lanes::kLanes) {
     const T begin = Lanes::Load(pieces.begin + i), end = Lanes::Load(pieces.end + i);
     const T nu = Lanes::Load(pieces.nu + i), mu_s0 = Lanes::Load(pieces.mu_s + i);
@@ -318,18 +318,20 @@ void Place(const LitPieces& pieces, const LitPoints& points) {
     const T low = max(min(z_begin, z_end), zero);
     const T at = select(up, begin, end);
     const T cosine = abs(ZenithCosineAlongRay<T>(h0, mu0, at, low, radius));
-    const T thick = T(8.0F) / max(T(pieces.extinction) * exp(-low / T(8.0F)), T(1e-9F));
-    const T half = min(DistanceUpTo<T>(low, cosine, T(low + T(20.0F)), radius), thick);
-    const T k = max(length / half - T(2.0F), zero);
+    const T b = PanelStretch<T>(low, cosine, length, T(pieces.extinction), gentle, radius);
+    const auto straight = b < T(0.25F);
+    const T stretch = select(straight, one, b);
+    const T scale = StretchedScale<T>(length, T(exp(stretch)));
     for (std::size_t n = 0; n < pieces.nodes; ++n) {
       const T v(pieces.node[n]);
-      const T bend = one + k * (one - v);
-      const T t = length * v / bend;
+      const T growth = exp(stretch * v);
+      const T t = select(straight, T(length * v), StretchedDistance<T>(scale, growth));
+      const T slope = select(straight, length, StretchedSlope<T>(scale, stretch, growth));
       const T d = select(up, T(begin + t), T(end - t));
       const T h = max(AltitudeAlongRay<T>(h0, mu0, d, radius), zero);
       const T mu = ZenithCosineAlongRay<T>(h0, mu0, d, h, radius);
       const std::size_t out = n * pieces.count + i;
-      Lanes::Store(points.weight + out, T(pieces.gauss[n]) * length * (one + k) / (bend * bend));
+      Lanes::Store(points.weight + out, T(pieces.gauss[n]) * slope);
       Lanes::Store(points.altitude + out, h);
       Lanes::Store(points.mu + out, mu);
       Lanes::Store(points.absolute_mu + out, T(abs(mu)));

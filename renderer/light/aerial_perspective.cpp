@@ -7,6 +7,7 @@
 
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/optical_depth.h"
+#include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
@@ -55,25 +56,28 @@ const LegendreAtNodes& LegendreAt(int nodes) {
 }
 
 /// A stretch of the ray where the integrand is smooth and altitude monotone. Distances from the eye
-/// [m]; v runs from 0 at the lower end to 1.
+/// [m]; v runs from 0 at the lower end to 1, by ray_map.glsl.
 struct Panel {
   double begin_m, end_m;
-  bool up;          // altitude rises along the ray
-  double strength;  // k of the map
+  bool up;  // altitude rises along the ray
+  double stretch, scale_m;
   int nodes;
 
   [[nodiscard]] double length_m() const { return end_m - begin_m; }
-  [[nodiscard]] double DistanceAt(double v) const {
-    const double t = length_m() * v / (1.0 + strength * (1.0 - v));
-    return up ? begin_m + t : end_m - t;
-  }
-  [[nodiscard]] double Derivative(double v) const {
-    const double bend = 1.0 + strength * (1.0 - v);
-    return length_m() * (1.0 + strength) / (bend * bend);
+  [[nodiscard]] double DistanceAt(double v) const { return NodeAt(v).distance_m; }
+  /// With the derivative of the distance by v as its weight.
+  [[nodiscard]] RayNode NodeAt(double v) const {
+    double t = length_m() * v, slope = length_m();
+    if (stretch > 0.0) {
+      const double growth = std::exp(stretch * v);
+      t = shared::StretchedDistance(scale_m, growth);
+      slope = shared::StretchedSlope(scale_m, stretch, growth);
+    }
+    return {up ? begin_m + t : end_m - t, slope};
   }
   [[nodiscard]] double CoordinateAt(double distance_m) const {
     const double t = up ? distance_m - begin_m : end_m - distance_m;
-    return t * (1.0 + strength) / (length_m() + strength * t);
+    return stretch > 0.0 ? std::asinh(t / scale_m) / stretch : t / length_m();
   }
 };
 
@@ -155,21 +159,15 @@ int AerialPerspective::NodesFor(double length_m, double low_m, double high_m, bo
   return static_cast<int>(std::min(nodes, kMost));
 }
 
-// k of a panel's map: half of the nodes within 20 km of altitude over the lower end, or 8 optical
-// depths. None of them is reached in two short ways.
-double AerialPerspective::StrengthOf(const ViewRay& ray, double length_m, double at_low_m,
-                                     double low_m) const {
-  constexpr double kRise_m = 20e3;
-  constexpr double kDepth = 8.0;
-  const double most_per_m = rayleigh_per_m_ + mie_per_m_;
-  if (length_m <= 2.0 * kRise_m && length_m * most_per_m <= 2.0 * kDepth) return 0.0;
+double AerialPerspective::StretchOf(const ViewRay& ray, double length_m, double at_low_m,
+                                    double low_m) const {
   const double radius = air_.medium().planet_radius_m;
   const double cosine = std::abs(
       shared::ZenithCosineAlongRay<double>(ray.altitude_m, ray.mu, at_low_m, low_m, radius));
-  const double extinction = most_per_m * std::exp(-low_m / 8000.0);
-  double half = shared::DistanceUpTo<double>(low_m, cosine, low_m + kRise_m, radius);
-  if (extinction > 0.0) half = std::min(half, kDepth / extinction);
-  return std::max(length_m / half - 2.0, 0.0);
+  constexpr double kKilometres = 1e-3;
+  return shared::PanelStretch<double>(kKilometres * low_m, cosine, kKilometres * length_m,
+                                      (rayleigh_per_m_ + mie_per_m_) / kKilometres, 1.0,
+                                      kKilometres * radius);
 }
 
 RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath* sunlit,
@@ -191,14 +189,16 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
   double highest = ray.altitude_m;
   for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
     if (cut[i + 1] - cut[i] <= 1e-12 * (extent.end_m - extent.begin_m)) continue;
-    Panel panel{cut[i], cut[i + 1], true, 0.0, nodes.sky};
+    Panel panel{cut[i], cut[i + 1], true, 0.0, 0.0, nodes.sky};
     const double first = AltitudeAlongRay<double>(ray.altitude_m, ray.mu, panel.begin_m, radius);
     const double last = AltitudeAlongRay<double>(ray.altitude_m, ray.mu, panel.end_m, radius);
     lowest = std::min({lowest, first, last});
     highest = std::max({highest, first, last});
     panel.up = last >= first;
     const double low = std::max(std::min(first, last), 0.0);
-    panel.strength = StrengthOf(ray, panel.length_m(), panel.up ? panel.begin_m : panel.end_m, low);
+    panel.stretch = StretchOf(ray, panel.length_m(), panel.up ? panel.begin_m : panel.end_m, low);
+    if (panel.stretch > 0.0)
+      panel.scale_m = StretchedScale(panel.length_m(), std::exp(panel.stretch));
     const bool unbroken = sunlit == nullptr || LightUnbroken(panel, *sunlit);
     if (extent.end == RayEnd::kLength) {
       // Beams that graze the planet light the end at its shadow by far less than the other.
@@ -211,8 +211,8 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
         unbroken ? std::array<double, kMostNodes>{} : SunlightAtNodes(panel, *sunlit);
     for (std::size_t k = 0; k < rule.node.size(); ++k, ++count) {
       const std::size_t j = panel.up ? k : rule.node.size() - 1 - k;  // in order from the eye
-      node[count] = {panel.DistanceAt(rule.node[j]),
-                     rule.weight[j] * panel.Derivative(rule.node[j])};
+      node[count] = panel.NodeAt(rule.node[j]);
+      node[count].weight_m *= rule.weight[j];
       light[count] = unbroken ? 1.0F : static_cast<float>(sunlight[j]);
     }
   }

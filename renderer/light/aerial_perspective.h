@@ -3,7 +3,7 @@
 // towards the eye and transmittance, in every band.
 //
 // The ray is cut into panels at its perigee and at the planet's shadow; in each, N Gauss nodes in
-// the mapped distance v (t = length v / (1 + k (1 - v)), dense at the lower end). With P_n the
+// the mapped distance v of ray_map.glsl, dense at the lower end. With P_n the
 // Legendre polynomials on [0, 1] and S(v) the sunlight, in [0, 1], that terrain lets through, the
 // weight of direct light at node j is that of the node times
 //
@@ -61,9 +61,9 @@ class AerialPerspective {
   [[nodiscard]] int NodesFor(double length_m, double low_m, double high_m, bool shafts) const;
 
  private:
-  /// k of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.
-  [[nodiscard]] double StrengthOf(const ViewRay& ray, double length_m, double at_low_m,
-                                  double low_m) const;
+  /// b of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.
+  [[nodiscard]] double StretchOf(const ViewRay& ray, double length_m, double at_low_m,
+                                 double low_m) const;
   [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, double nu,
                                 bool higher_orders) const;
 

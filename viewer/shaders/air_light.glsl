@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light that the air scatters into a ray: single scattering and light of higher orders, by
-// Gauss-Legendre in a mapped distance, as AirIntegrator does it (single_scattering.h).
+// Gauss-Legendre in the mapped distance of ray_map.glsl.
 
 uniform vec2 gauss[32];  // nodes in [0, 1] and weights of the rules
 
@@ -51,8 +51,7 @@ AirLight LightAlong(AirRay ray, int first, int count, bool with_single, bool wit
     float low = max(min(z_begin, z_end), 0.0);
     float at = up ? begin : begin + span;
     float cosine = abs(ZenithCosineAlongRay(ray.h, ray.mu, at, low, RADIUS));
-    bool at_shadow = lit && shadow.x < shadow.y && (at == shadow.x || at == shadow.y);
-    float b = PanelStretch(low, cosine, span, mie_options.y, at_shadow ? 1.0 : 0.0, RADIUS);
+    float b = PanelStretch(low, cosine, span, mie_options.y, 1.0, RADIUS);
     float scale = b > 0.0 ? StretchedScale(span, exp(b)) : 0.0;
     for (int i = 0; i < count; ++i) {
       vec2 node = gauss[first + i];
