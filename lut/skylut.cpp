@@ -14,6 +14,7 @@
 #include "lut/program/program.h"
 #include "lut/report_command.h"
 #include "lut/sky_command.h"
+#include "lut/store/exchange_check.h"
 #include "lut/store/table_folder.h"
 
 namespace alpenglow {
@@ -29,7 +30,10 @@ struct Options {
 
 void AddInfo(CLI::App& app, Options& options) {
   CLI::App& info = *app.add_subcommand(
-      "info", "Say what tables hold, units, ranges, what made them. Checks every texel.");
+      "info",
+      "Say what tables hold, units, ranges, what made them. Checks every texel. Folders of tables "
+      "for other programs (bruneton, takram, whoever made them) are held against texels of our "
+      "own.");
   info.add_option("tables", options.described, "A table file or a folder of tables")->required();
   info.footer("Example: skylut info tables");
 }
@@ -99,6 +103,11 @@ std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
 std::vector<NamedFile> InputsOf(const Options& options) {
   std::vector<NamedFile> inputs{{"--cases", options.cases}};
   if (options.atmosphere) inputs.push_back({"--atmosphere", *options.atmosphere});
+  if (!options.tables) return inputs;
+  for (const char* name :
+       {kTransmittanceFileName, kSingleScatteringFileName, kMultipleScatteringFileName}) {
+    inputs.push_back({"--lut", std::filesystem::path(*options.tables) / name});
+  }
   return inputs;
 }
 
@@ -117,6 +126,13 @@ void Evaluate(const Options& options) {
                    {.samples = options.samples.value_or(16),
                     .max_error = RelativeErrorFromText(options.max_error.value_or(""))},
                    style);
+}
+
+std::string Description(const std::filesystem::path& tables) {
+  if (const std::optional<std::filesystem::path> folder = ExchangeFolderOf(tables)) {
+    return DescriptionText(*folder, DescribeExchangeTables(*folder));
+  }
+  return DescribeTables(tables);
 }
 
 int Run(int argc, char** argv) {
@@ -141,7 +157,7 @@ int Run(int argc, char** argv) {
   } else if (app.got_subcommand("report")) {
     report(options.common);
   } else if (app.got_subcommand("info")) {
-    Print(DescribeTables(options.described));
+    Print(Description(options.described));
   } else {
     Evaluate(options);
   }

@@ -53,13 +53,6 @@ TexelFormat FormatOf(const ExchangeOptions& options) {
                                                                            : TexelFormat::kDat);
 }
 
-void RequireThreeBands(const Medium& medium) {
-  if (medium.wavelengths_nm.size() == 3) return;
-  throw InputError(fmt::format(
-      "spectrum.wavelengths_nm has {} values; tables for other programs hold red, green and blue",
-      medium.wavelengths_nm.size()));
-}
-
 /// Red, green and blue are the bands from the longest wavelength to the shortest.
 std::array<float, 4> Rgba(const Medium& medium, const Bands<float>& unit, bool times_sun,
                           float alpha) {
@@ -267,7 +260,14 @@ double LowestSunAngle_deg(const ExchangeOptions& options) {
 
 double LowestSunOf(const ExchangeOptions& options) {
   const double sun_deg = LowestSunAngle_deg(options);
-  return sun_deg == kLowestSun_deg ? -0.5 : std::cos(sun_deg * kRadiansPerDegree);
+  return sun_deg == kLowestSun_deg ? -0.5 : std::cos(sun_deg / 180.0 * kPi);
+}
+
+void RequireThreeBands(const Medium& medium) {
+  if (medium.wavelengths_nm.size() == 3) return;
+  throw InputError(fmt::format(
+      "spectrum.wavelengths_nm has {} values; tables for other programs hold red, green and blue",
+      medium.wavelengths_nm.size()));
 }
 
 std::vector<TextureShape> ShapesOf(ExchangeLayout layout) {

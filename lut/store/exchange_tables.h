@@ -73,6 +73,9 @@ inline constexpr double kLowestSun_deg = 120.0;
 [[nodiscard]] double LowestSunAngle_deg(const ExchangeOptions& options);
 [[nodiscard]] double LowestSunOf(const ExchangeOptions& options);
 
+/// Throws InputError unless the medium has red, green and blue.
+void RequireThreeBands(const Medium& medium);
+
 /// The medium that programs with fixed constants assume: the preset bruneton2017.
 [[nodiscard]] bool IsTheMediumThatLoadersAssume(const Medium& medium);
 

@@ -181,7 +181,17 @@ std::string TableImageReader::Attribute(const std::string& name) const {
   return text->value();
 }
 
-std::vector<float> TableImageReader::Values(const std::vector<std::string>& channels) const {
+bool TableImageReader::IsHalf() const {
+  const Imf::ChannelList& list = state_->header().channels();
+  return list.begin() != list.end() && list.begin().channel().type == Imf::HALF;
+}
+
+bool TableImageReader::Has(const std::string& name) const {
+  return state_->header().findTypedAttribute<Imf::StringAttribute>(name) != nullptr;
+}
+
+std::vector<float> TableImageReader::Values(const std::vector<std::string>& channels,
+                                            TexelTypes types) const {
   const auto fail = [&](const std::string& fault) {
     throw InputError(fmt::format("{}: {}", file_.string(), fault));
   };
@@ -191,7 +201,10 @@ std::vector<float> TableImageReader::Values(const std::vector<std::string>& chan
   for (const std::string& name : channels) {
     const Imf::Channel* channel = list.findChannel(name);
     if (channel == nullptr) fail(fmt::format("channel {} is missing", name));
-    if (channel->type != Imf::FLOAT) fail(fmt::format("channel {} is not 32-bit float", name));
+    const bool half_too = types == TexelTypes::kFloatOrHalf;
+    if (channel->type != Imf::FLOAT && !(half_too && channel->type == Imf::HALF)) {
+      fail(fmt::format("channel {} is not {}32-bit float", name, half_too ? "half or " : ""));
+    }
     if (channel->xSampling != 1 || channel->ySampling != 1) {
       fail(fmt::format("channel {} is subsampled", name));
     }

@@ -18,6 +18,7 @@ namespace alpenglow {
 using TextAttributes = std::map<std::string, std::string>;
 
 enum class TexelType { kFloat, kHalf };
+enum class TexelTypes { kFloat, kFloatOrHalf };
 
 /// What an image is made of. Values are interleaved: (row * width + column) * channels + channel.
 struct TableImage {
@@ -44,12 +45,16 @@ class TableImageReader {
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] std::size_t width() const;
   [[nodiscard]] std::size_t height() const;
+  /// Whether the first channel is half.
+  [[nodiscard]] bool IsHalf() const;
+  /// Whether there is such a text attribute.
+  [[nodiscard]] bool Has(const std::string& name) const;
   /// The text attribute; throws InputError when it is missing or of another type.
   [[nodiscard]] std::string Attribute(const std::string& name) const;
   /// Reads every value of these channels, interleaved in this order. Throws InputError when one is
-  /// missing, not 32-bit float or subsampled, when there are others, and when the file is cut
-  /// short.
-  [[nodiscard]] std::vector<float> Values(const std::vector<std::string>& channels) const;
+  /// missing, of another type or subsampled, when there are others, and when the file is cut short.
+  [[nodiscard]] std::vector<float> Values(const std::vector<std::string>& channels,
+                                          TexelTypes types = TexelTypes::kFloat) const;
 
  private:
   struct State;

@@ -246,6 +246,16 @@ TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
   EXPECT_THAT(eval.error, HasSubstr("none/r.csv"));
 }
 
+TEST_F(Skylut, ASetForAnotherProgramThatIsNotWholeIsRefusedByName) {
+  fs::create_directory(folder_ / "set");
+  WriteText(folder_ / "set" / "scattering.dat", "short");
+  for (const char* arguments : {"info set", "info set/scattering.dat"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_THAT(outcome.error, HasSubstr("set/transmittance.dat: is missing")) << arguments;
+  }
+}
+
 TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
   WriteCases();
   const std::vector<std::string> eval{ALPENGLOW_SKYLUT, "eval",
