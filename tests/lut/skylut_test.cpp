@@ -290,11 +290,14 @@ TEST_F(Skylut, ResultsThatNobodyTakesAreStatus4) {
 
 TEST_F(Skylut, AnInputIsNeverOverwritten) {
   WriteCases();
+  WriteCoarseTables("tables");
   const std::string cases = ContentOf(folder_ / "cases.csv");
   fs::create_directory(folder_ / "t");
   WriteText(folder_ / "t" / "atmosphere.toml", "preset = \"bruneton2017\"\n");
-  for (const char* arguments : {"eval --cases cases.csv --out ./cases.csv --method integral",
-                                "build --out t --layout takram --atmosphere t/atmosphere.toml"}) {
+  for (const char* arguments :
+       {"eval --cases cases.csv --out ./cases.csv --method integral",
+        "eval --cases cases.csv --out tables/transmittance.exr --lut tables --method table",
+        "build --out t --layout takram --atmosphere t/atmosphere.toml"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 3) << arguments;
     EXPECT_THAT(outcome.error, HasSubstr("an input is not overwritten"));
