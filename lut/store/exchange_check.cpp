@@ -86,6 +86,20 @@ std::vector<float> RawTexels(const fs::path& file, std::size_t texels, TexelType
   return values;
 }
 
+/// Loaders fill an alpha that is missing with 1, which only scattering cannot do without.
+std::vector<float> RgbaOf(const TableImageReader& image, bool needs_alpha) {
+  if (needs_alpha || image.HasChannel("A")) {
+    return image.Values({"R", "G", "B", "A"}, TexelTypes::kFloatOrHalf);
+  }
+  const std::vector<float> rgb = image.Values({"R", "G", "B"}, TexelTypes::kFloatOrHalf);
+  std::vector<float> rgba;
+  rgba.reserve(rgb.size() / 3 * 4);
+  for (std::size_t i = 0; i < rgb.size(); i += 3) {
+    rgba.insert(rgba.end(), {rgb[i], rgb[i + 1], rgb[i + 2], 1.0F});
+  }
+  return rgba;
+}
+
 /// Rows in the order of the textures; three-atmosphere has the last one on top.
 std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, bool reversed) {
   const TableImageReader image(file);
@@ -94,7 +108,7 @@ std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, 
     Fail(file, fmt::format("is {} x {} texels; it must be {} x {}", image.width(), image.height(),
                            shape.width, rows));
   }
-  std::vector<float> values = image.Values({"R", "G", "B", "A"}, TexelTypes::kFloatOrHalf);
+  std::vector<float> values = RgbaOf(image, std::string_view(shape.name) == "scattering");
   const auto row = static_cast<std::ptrdiff_t>(4 * shape.width);
   for (std::ptrdiff_t low = 0, high = static_cast<std::ptrdiff_t>(rows) - 1; reversed && low < high;
        ++low, --high) {
@@ -307,6 +321,16 @@ void RequireAgreement(const fs::path& file, const TexelErrors& errors, const Med
                    medium.name, 100.0 * errors.median, 100.0 * kLargestMedian));
 }
 
+fs::path FileOf(const fs::path& folder, const TextureShape& shape, const ExchangeOptions& options) {
+  return folder / (std::string(shape.name) + SuffixOf(*options.format));
+}
+
+/// What three-atmosphere can be told to do without.
+bool IsOptional(const TextureShape& shape) {
+  const std::string_view name = shape.name;
+  return name == "higher_order_scattering" || name == "single_mie_scattering";
+}
+
 /// The files of a set, read, with their ranges.
 struct LoadedTexture {
   ExchangeDescription::Texture description;
@@ -315,7 +339,7 @@ struct LoadedTexture {
 
 LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
                    const ExchangeOptions& options, const Medium& medium) {
-  const fs::path file = folder / (std::string(shape.name) + SuffixOf(*options.format));
+  const fs::path file = FileOf(folder, shape, options);
   LoadedTexture loaded;
   loaded.texels = TexelsOf(file, shape, options);
   loaded.description.file = file;
@@ -361,7 +385,8 @@ std::optional<fs::path> ExchangeFolderOf(const fs::path& file_or_folder) {
 }
 
 ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
-  ExchangeDescription description{.options = OptionsOf(folder), .medium = {}, .textures = {}};
+  ExchangeDescription description;
+  description.options = OptionsOf(folder);
   std::error_code error;
   description.medium_is_assumed = !fs::exists(folder / kMediumFileName, error);
   description.medium = description.medium_is_assumed ? MediumPreset("bruneton2017")
@@ -372,6 +397,10 @@ ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
   ExchangeOptions& options = description.options;
   std::vector<LoadedTexture> loaded;
   for (const TextureShape& shape : ShapesOf(options.layout)) {
+    if (IsOptional(shape) && !fs::exists(FileOf(folder, shape, options), error)) {
+      description.absent.push_back(FileOf(folder, shape, options));
+      continue;
+    }
     loaded.push_back(Load(folder, shape, options, medium));
   }
   const LoadedTexture& scattering = loaded[2];
@@ -408,6 +437,10 @@ std::string DescriptionText(const fs::path& folder, const ExchangeDescription& d
     text += "  programs with fixed constants assume bruneton2017: these need other constants\n";
   }
   for (const ExchangeDescription::Texture& texture : description.textures) text += LineOf(texture);
+  for (const fs::path& file : description.absent) {
+    text += fmt::format("  absent      {}: the loader must be told to do without\n",
+                        file.filename().string());
+  }
   return text + "  every texel is finite and in its range\n";
 }
 

@@ -39,6 +39,7 @@ struct ExchangeDescription {
   Medium medium;
   bool medium_is_assumed = false;  // bruneton2017, for there is no atmosphere.toml
   std::vector<Texture> textures;
+  std::vector<std::filesystem::path> absent;  // of those that three-atmosphere can do without
 };
 
 /// Reads every texture of the folder's layout and checks it: size, every texel finite, not negative

@@ -186,6 +186,10 @@ bool TableImageReader::IsHalf() const {
   return list.begin() != list.end() && list.begin().channel().type == Imf::HALF;
 }
 
+bool TableImageReader::HasChannel(const std::string& name) const {
+  return state_->header().channels().findChannel(name) != nullptr;
+}
+
 bool TableImageReader::Has(const std::string& name) const {
   return state_->header().findTypedAttribute<Imf::StringAttribute>(name) != nullptr;
 }

@@ -47,6 +47,7 @@ class TableImageReader {
   [[nodiscard]] std::size_t height() const;
   /// Whether the first channel is half.
   [[nodiscard]] bool IsHalf() const;
+  [[nodiscard]] bool HasChannel(const std::string& name) const;
   /// Whether there is such a text attribute.
   [[nodiscard]] bool Has(const std::string& name) const;
   /// The text attribute; throws InputError when it is missing or of another type.

@@ -469,11 +469,43 @@ TEST_F(TakramSet, OfAnotherAtmosphereThanBesideItIsRefused) {
   ExpectRefused(folder_, "differ from those of this program by");
 }
 
+// combinedScattering and higherOrderScattering: false of its loader.
+TEST_F(TakramSet, WhatTheLoaderCanDoWithoutMayBeAbsent) {
+  fs::remove(folder_ / "single_mie_scattering.bin");
+  fs::remove(folder_ / "higher_order_scattering.bin");
+  const ExchangeDescription description = DescribeExchangeTables(folder_);
+  EXPECT_EQ(description.textures.size(), 3U);
+  EXPECT_EQ(description.absent.size(), 2U);
+  EXPECT_THAT(DescriptionText(folder_, description),
+              testing::HasSubstr("absent      single_mie_scattering.bin"));
+}
+
+TEST_F(TakramSet, AnImageWithoutAlphaIsReadAsItsLoaderDoes) {
+  WriteExchangeTables(*textures_, air_, {}, folder_);
+  for (const char* name : {"scattering.bin", "irradiance.exr"}) fs::remove(folder_ / name);
+  const ExchangeTexture& irradiance = (*textures_)[1];
+  std::vector<float> rgb;  // last row first
+  for (std::size_t y = irradiance.height; y-- > 0;) {
+    for (std::size_t x = 0; x < irradiance.width; ++x) {
+      const float* texel = &irradiance.rgba[4 * (y * irradiance.width + x)];
+      rgb.insert(rgb.end(), texel, texel + 3);
+    }
+  }
+  WriteTableImage(
+      folder_ / "irradiance.exr",
+      {irradiance.width, irradiance.height, {"R", "G", "B"}, rgb, {}, TexelType::kHalf});
+  const ExchangeDescription description = DescribeExchangeTables(folder_);
+  EXPECT_EQ(description.textures[1].rgba[3].lowest, 1.0F);
+  EXPECT_LT(description.textures[1].errors.median, 4e-4) << "half a step of a half";
+}
+
 TEST_F(TakramSet, ADamagedTextureIsRefusedByItsName) {
   const fs::path file = folder_ / "higher_order_scattering.bin";
   const std::string whole = ContentOf(file);
-  fs::remove(file);
-  ExpectRefused(folder_, "higher_order_scattering.bin: is missing");
+  const std::string irradiance = ContentOf(folder_ / "irradiance.bin");
+  fs::remove(folder_ / "irradiance.bin");
+  ExpectRefused(folder_, "irradiance.bin: is missing");
+  WriteText(folder_ / "irradiance.bin", irradiance);
   WriteText(file, whole.substr(0, whole.size() - 8));
   ExpectRefused(folder_,
                 "higher_order_scattering.bin: has 8388600 bytes; such a table has 8388608");
