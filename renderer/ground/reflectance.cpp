@@ -166,7 +166,9 @@ MirroredRays Glossy::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye
       const double solid_angle =
           2.0 * kPi / (exponent_ + 1.0) * rule.weight[i] / kAzimuths * 4.0 * cosine;
       mirrored.rays[mirrored.count++] = {
-          light, SchlickReflectance(cosine, f0_) * normalisation_ * mu_light * solid_angle};
+          light,
+          SchlickReflectance(cosine, f0_) * normalisation_ * mu_light * solid_angle,
+          {sine, sine}};  // halfway to the mirror's own direction, and as far on the other side
     }
   }
   return mirrored;
@@ -243,6 +245,17 @@ Bands<float> Water::BodyAlbedo(double mu) const {
   return sent;
 }
 
+namespace {
+
+// Of a direction over the horizontal, which stands for those between two sines.
+Spread SpreadAbout(double sine, double lowest, double highest) {
+  const double range = std::max(highest - lowest, 1e-9);
+  return {std::max(sine - std::max(lowest, 0.0), 0.0), std::max(highest - sine, 0.0),
+          std::clamp(-lowest / range, 0.0, 1.0)};
+}
+
+}  // namespace
+
 // Faces weigh as much as the eye sees of them: their slope's probability times their projection.
 // Slopes along the line of sight are those of faces that do not turn away.
 MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const {
@@ -253,11 +266,19 @@ MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye)
   const double width = std::sqrt(variance_);
   const double first = std::max(-kSteepest, -mu / std::max(width * sine, 1e-9));
   const GaussRule& rule = GaussLegendre(8);
+  // Sine of the elevation that a face of slope x along the line of sight shows.
+  const auto elevation_of = [&](double x) {
+    return std::cos(std::acos(std::min(mu, 1.0)) - 2.0 * std::atan(width * x));
+  };
   MirroredRays mirrored;
   double total = 0.0;
+  double passed = 0.0;  // of the rule's weights: a node stands for its share of the slopes
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double x = first + (kSteepest - first) * rule.node[i];
     const double seen = (mu + width * x * sine) * std::exp(-x * x) * rule.weight[i];
+    const double lowest = elevation_of(first + (kSteepest - first) * passed);
+    passed += rule.weight[i];
+    const double highest = elevation_of(first + (kSteepest - first) * passed);
     for (const SlopeNode& across : kAcross) {
       const glm::dvec3 face =
           glm::normalize(normal + width * (x * axes.eyewards + across.x * axes.across));
@@ -265,8 +286,9 @@ MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye)
       const glm::dvec3 light = 2.0 * cosine * face - to_eye;
       const double share = across.weight * seen;
       total += share;
-      mirrored.rays[mirrored.count++] = {light,
-                                         share * FresnelReflectance(cosine, kRefractiveIndex)};
+      mirrored.rays[mirrored.count++] = {
+          light, share * FresnelReflectance(cosine, kRefractiveIndex),
+          SpreadAbout(std::max(glm::dot(light, normal), 0.0), lowest, highest)};
     }
   }
   for (std::size_t i = 0; i < mirrored.count; ++i) {

@@ -29,11 +29,18 @@ struct ReflectionAngles {
 [[nodiscard]] ReflectionAngles AnglesBetween(const glm::dvec3& normal, const glm::dvec3& to_light,
                                              const glm::dvec3& to_eye);
 
+/// The directions that one stands for, in the sine of the elevation over the surface.
+struct Spread {
+  double below = 0.0, above = 0.0;  // from so much lower to so much higher, not negative
+  double lifted = 0.0;  // share of all that lay under the horizontal, and counts as from there
+};
+
 /// A direction from which a glossy surface sees the sky, and the share of its radiance that goes
 /// on to the eye.
 struct MirroredRay {
   glm::dvec3 direction;  // unit; may point below the surface's horizon by a little
   double weight;
+  Spread spread;
 };
 
 /// All of them: the reflected radiance is the sum of weights times radiances.

@@ -241,22 +241,30 @@ BandLight SlopeLight::Irradiance(const glm::dvec3& point, const SurfaceSectors& 
   return irradiance;
 }
 
-BandLight SlopeLight::Radiance(const glm::dvec3& point, double azimuth_rad) const {
+BandLight SlopeLight::Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
+                               double horizon, const BandLight& beyond) const {
   const Neighbours around(*this, point);
-  const double turn = azimuth_rad / (2.0 * kPi);
-  const auto azimuth = static_cast<std::size_t>(std::lround(
-                           (turn - std::floor(turn)) * static_cast<double>(kHorizonAzimuths))) %
-                       kHorizonAzimuths;
   BandLight radiance(bands_);
-  float weight = 1e-9F;
-  for (std::size_t k = 0; k < 4; ++k)
-    weight += around.share[k] * views_.Weight(around.node[k], azimuth);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const float* light = around.light[k] + azimuth * stride_;
-    for (std::size_t band = 0; band < bands_; ++band)
-      radiance[band] += around.share[k] / weight * light[band];
-  }
-  return radiance;
+  float weight = 0.0F;
+  const auto add = [&](std::size_t direction, float share) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const float of_node = share * around.share[k];
+      weight += of_node * views_.Weight(around.node[k], direction);
+      const float* light = around.light[k] + direction * stride_;
+      for (std::size_t band = 0; band < bands_; ++band) radiance[band] += of_node * light[band];
+    }
+  };
+  const auto along = static_cast<float>(azimuth.along);
+  add(azimuth.before, 1.0F - along);
+  add(azimuth.after, along);
+  // A level surface has the weight h^2 / 2 of ground up to the sine h; a node that leans the other
+  // way has less, but not a tenth of it. What is lower than 0.005, 3 m over a cell of the coarse
+  // grid, that grid does not know: there it sees unevenness of a sea.
+  constexpr double kLeastShare = 0.1, kUnknown = 0.005;
+  const double known = std::max(horizon, 0.0) + kUnknown;
+  const auto least = static_cast<float>(kLeastShare * 0.5 * known * known);
+  const float missing = std::max(least - weight, 0.0F);
+  return 1.0F / (weight + missing) * (radiance + missing * beyond);
 }
 
 }  // namespace alpenglow

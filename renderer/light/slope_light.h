@@ -86,7 +86,11 @@ class SlopeLight {
   [[nodiscard]] BandLight Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
                                      const Horizons& horizons) const;
   /// Radiance [1/sr] of the ground that is seen in a horizontal direction.
-  [[nodiscard]] BandLight Radiance(const glm::dvec3& point, double azimuth_rad) const;
+  /// @param horizon  the sine of its elevation there.
+  /// @param beyond  radiance of what is seen instead where the coarse grid has next to nothing of
+  ///     that ground.
+  [[nodiscard]] BandLight Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
+                                   double horizon, const BandLight& beyond) const;
 
  private:
   struct Neighbours;

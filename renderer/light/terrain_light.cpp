@@ -74,17 +74,32 @@ BandLight TerrainLight::SkyRadiance(const SlopePoint& at, const glm::dvec3& dire
   return sky_.Radiance(at.altitude_m, at.mu_s, AtPlace(direction, at.up));
 }
 
-BandLight TerrainLight::Radiance(const SlopePoint& at, const glm::dvec3& direction) const {
+namespace {
+
+// The share of all directions that one stands for which lies below a horizon.
+double GroundShare(double sine, const Spread& spread, double horizon) {
+  constexpr double kSharpest = 0.011;  // a step of OpenSky: neither sky nor horizons are finer
+  const double range = std::max(spread.below + spread.above, kSharpest);
+  const double lowest = sine + 0.5 * (spread.above - spread.below - range);
+  const double within = std::clamp((horizon - lowest) / range, 0.0, 1.0);
+  const double at_horizontal = std::clamp((horizon - sine) / kSharpest, 0.0, 1.0);
+  return within + spread.lifted * (at_horizontal - within);
+}
+
+}  // namespace
+
+BandLight TerrainLight::Radiance(const SlopePoint& at, const glm::dvec3& direction,
+                                 const Spread& spread) const {
   const glm::dvec3 here = AtPlace(direction, at.up);
-  const double azimuth = std::atan2(here.y, here.x);
-  const double turn = azimuth / (2.0 * kPi);
-  const auto sector = static_cast<std::size_t>(std::lround((turn - std::floor(turn)) *
-                                                           static_cast<double>(kHorizonAzimuths))) %
-                      kHorizonAzimuths;
-  const Horizons horizons = horizons_->map().At(at.point);
-  if (slopes_ && here.z < static_cast<double>(horizons[sector]))
-    return slopes_->Radiance(at.point, azimuth);
-  return sky_.Radiance(at.altitude_m, at.mu_s, here);
+  const BandLight sky = sky_.Radiance(at.altitude_m, at.mu_s, here);
+  if (!slopes_) return sky;
+  const BetweenAzimuths azimuth(std::atan2(here.y, here.x));
+  const double horizon = azimuth.Mean(horizons_->map().At(at.point));
+  const auto ground = static_cast<float>(GroundShare(here.z, spread, horizon));
+  if (ground <= 0.0F) return sky;
+  const BandLight over_it =
+      sky_.Radiance(at.altitude_m, at.mu_s, glm::dvec3(here.x, here.y, std::max(here.z, horizon)));
+  return (1.0F - ground) * sky + ground * slopes_->Radiance(at.point, azimuth, horizon, over_it);
 }
 
 }  // namespace alpenglow

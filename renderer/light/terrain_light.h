@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "renderer/ground/reflectance.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/light/open_sky.h"
 #include "renderer/light/slope_light.h"
@@ -81,9 +82,10 @@ class TerrainLight {
 
   /// Radiance [1/sr] of the sky in a direction, whatever stands before it.
   [[nodiscard]] BandLight SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const;
-  /// Radiance [1/sr] in a direction: of the sky, or below the horizon of the ground there. Needs
-  /// horizons.
-  [[nodiscard]] BandLight Radiance(const SlopePoint& at, const glm::dvec3& direction) const;
+  /// Radiance [1/sr] in a direction: of the sky, and of the ground there as far as the directions
+  /// that it stands for lie below the horizon. Needs horizons.
+  [[nodiscard]] BandLight Radiance(const SlopePoint& at, const glm::dvec3& direction,
+                                   const Spread& spread = {}) const;
 
  private:
   std::shared_ptr<const TerrainHorizons> horizons_;

@@ -117,7 +117,7 @@ BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const 
   const auto rays = patch.Mirrored(hit.normal, to_eye);
   for (const MirroredRay& ray : rays.All()) {
     const BandLight seen = SeesTerrain(hit, light)
-                               ? light.on_terrain->Radiance(at, ray.direction)
+                               ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
                                : light.on_terrain->SkyRadiance(at, ray.direction);
     sum = sum + static_cast<float>(ray.weight) * seen;
   }

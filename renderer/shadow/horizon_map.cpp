@@ -144,6 +144,14 @@ double HorizonAzimuth(std::size_t i) {
   return 2.0 * kPi * static_cast<double>(i) / static_cast<double>(kHorizonAzimuths);
 }
 
+BetweenAzimuths::BetweenAzimuths(double azimuth_rad) {
+  const double turn = azimuth_rad / (2.0 * kPi);
+  const double at = (turn - std::floor(turn)) * static_cast<double>(kHorizonAzimuths);
+  along = at - std::floor(at);
+  before = static_cast<std::size_t>(at) % kHorizonAzimuths;
+  after = (before + 1) % kHorizonAzimuths;
+}
+
 HorizonMap::HorizonMap(const HeightRaster& heights, double planet_radius_m)
     : grid_{heights.first_x_m, heights.first_y_m, heights.cell_m,
             heights.columns,   heights.rows,      {}},

@@ -28,6 +28,18 @@ inline constexpr std::size_t kHorizonAzimuths = 16;
 /// Sines of the horizon's elevation over the local horizontal.
 using Horizons = std::array<float, kHorizonAzimuths>;
 
+/// The two azimuths that a direction lies between, and where.
+struct BetweenAzimuths {
+  std::size_t before, after;
+  double along;  // 0 at the first, 1 at the second
+
+  explicit BetweenAzimuths(double azimuth_rad);
+  [[nodiscard]] double Mean(const Horizons& horizons) const {
+    const auto a = static_cast<double>(horizons[before]), b = static_cast<double>(horizons[after]);
+    return a + along * (b - a);
+  }
+};
+
 /// Immutable; safe to ask from many threads.
 class HorizonMap {
  public:

@@ -13,6 +13,7 @@
 #include "atmosphere/number/halton.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/sky/sky_view.h"
+#include "renderer/ground/reflectance.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/lit_air.h"
@@ -284,6 +285,55 @@ TEST(TerrainLight, ShowsSkyOverTheHorizonAndGroundBelowIt) {
   EXPECT_FLOAT_EQ(sky, mountains.light().sky().Radiance(at.altitude_m, at.mu_s, steep)[2]);
   const glm::dvec3 below = glm::normalize(glm::dvec3(0.0, 1.0, -0.08));
   EXPECT_GT(mountains.light().Radiance(at, below)[2], 0.0F);
+}
+
+// A sea of 32 km with a coast 300 m high, 10 km away in the east-north-east, that ends half way
+// between two azimuths of the horizons.
+double SeaBeforeACoast(double x_m, double y_m) {
+  const bool is_coast = x_m > 10e3 && y_m > 0.2 * x_m && y_m < 0.9 * x_m;
+  return is_coast ? 300.0 : 0.0;
+}
+
+TEST(TerrainLight, ASeaMirrorsAFarCoastWithoutEdges) {
+  constexpr double kEye_m = 60.0;
+  const Terrain terrain(LandMesh(SeaBeforeACoast, 129, 250.0));
+  const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), TheAir().medium);
+  const glm::dvec3 to_sun = SunAtElevation(30.0);
+  TerrainLight light(horizons, TheAir().air, TheAir().diffuse, to_sun);
+  light.AddSlopes(
+      TheAir().medium,
+      [](const SlopePlace&) {
+        BandLight dark(TheAir().air.bands());
+        std::fill_n(dark.value.begin(), dark.count, 0.002F);
+        return dark;
+      },
+      to_sun.z);
+  const Water water(5.0, TheAir().medium.wavelengths_nm);
+  // What the water shows, of what it would show of the sky alone.
+  const auto share_of_sky = [&](double azimuth_deg, double distance_m) {
+    const double azimuth = azimuth_deg * kRadiansPerDegree;
+    const glm::dvec3 point(distance_m * std::cos(azimuth), distance_m * std::sin(azimuth), 0.0);
+    const glm::dvec3 to_eye = glm::normalize(glm::dvec3(0.0, 0.0, kEye_m) - point);
+    const SlopePoint at = Mountains::At(point, kUp, to_sun.z);
+    double shown = 0.0, sky = 0.0;
+    for (const MirroredRay& ray : water.Mirrored(kUp, to_eye).All()) {
+      shown += ray.weight * static_cast<double>(light.Radiance(at, ray.direction, ray.spread)[1]);
+      sky += ray.weight * static_cast<double>(light.SkyRadiance(at, ray.direction)[1]);
+    }
+    return shown / sky;
+  };
+  constexpr double kEdge = 0.02;  // what an eye sees in an even surface
+  for (double distance = 200.0; distance < 2000.0; distance *= 1.03) {
+    for (double azimuth = -10.0; azimuth < 60.0; azimuth += 0.5) {
+      const double here = share_of_sky(azimuth, distance);
+      EXPECT_NEAR(share_of_sky(azimuth + 0.5, distance), here, kEdge)
+          << "azimuth " << azimuth << ", " << distance << " m away";
+      EXPECT_NEAR(share_of_sky(azimuth, 1.01 * distance), here, kEdge)
+          << "azimuth " << azimuth << ", " << distance << " m away";
+    }
+  }
+  EXPECT_LT(share_of_sky(22.5, 600.0), 0.9) << "the coast is dark";
+  EXPECT_NEAR(share_of_sky(-45.0, 600.0), 1.0, 0.01) << "and there is none";
 }
 
 }  // namespace
