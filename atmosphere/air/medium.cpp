@@ -135,6 +135,60 @@ Fault FaultOfScalars(const Medium& medium) {
   return std::nullopt;
 }
 
+/// A limit that another parameter sets, and why.
+struct Limit {
+  double value;
+  std::string reason;
+};
+
+Fault OutOfLimits(const std::string& key, double value, const Limit& low, const Limit& high) {
+  if (value >= low.value && value <= high.value) return std::nullopt;
+  const std::string& reason = value < low.value ? low.reason : high.reason;
+  return MediumFault{key, fmt::format("{} is {}; {} it must lie in [{}, {}]", key, value, reason,
+                                      low.value, high.value)};
+}
+
+// Closed forms are series in scale height over radius.
+Fault FaultOfRadius(const Medium& medium) {
+  const auto with = [](double factor, const char* key, double value) {
+    return Limit{factor * value, fmt::format("with {} {}", key, value)};
+  };
+  Limit low = with(ranges::kLeastRadiusInScaleHeights, "rayleigh.scale_height_m",
+                   medium.rayleigh_scale_height_m);
+  const Limit of_aerosol =
+      with(ranges::kLeastRadiusInScaleHeights, "mie.scale_height_m", medium.mie_scale_height_m);
+  if (of_aerosol.value > low.value) low = of_aerosol;
+  if (medium.ozone.shape == OzoneShape::kSmooth) {
+    const Limit of_ozone = {
+        ranges::kLeastRadiusInSmoothOzone * medium.ozone.top_m,
+        fmt::format("with the smooth ozone layer of ozone.peak_m {}", medium.ozone.peak_m)};
+    if (of_ozone.value > low.value) low = of_ozone;
+  }
+  return OutOfLimits("planet.radius_m", medium.planet_radius_m, low,
+                     {ranges::kPlanetRadius_m.high, ""});
+}
+
+// Columns of ozone and of the molecules' deficit end where these do, not at the top.
+Fault FaultOfTop(const Medium& medium) {
+  Limit low = {ranges::kAtmosphereTop_m.low, ""};
+  const std::vector<double>& ozone = medium.ozone_absorption_per_m;
+  if (std::any_of(ozone.begin(), ozone.end(), [](double peak) { return peak > 0.0; })) {
+    const bool smooth = medium.ozone.shape == OzoneShape::kSmooth;
+    low = {(smooth ? ranges::kEndOfSmoothOzone : 1.0) * medium.ozone.top_m,
+           fmt::format("with ozone up to {}", medium.ozone.top_m)};
+  }
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  const double end_of_deficit = ranges::kEndOfDeficit * deficit.scale_height_m;
+  if (deficit.share > 0.0 && end_of_deficit > low.value) {
+    low = {end_of_deficit,
+           fmt::format("with rayleigh.deficit_scale_height_m {}", deficit.scale_height_m)};
+  }
+  const Limit high = {
+      ranges::kHighestTopInScaleHeights * medium.rayleigh_scale_height_m,
+      fmt::format("with rayleigh.scale_height_m {}", medium.rayleigh_scale_height_m)};
+  return OutOfLimits("planet.atmosphere_top_m", medium.atmosphere_height_m, low, high);
+}
+
 Fault FaultOfPhase(const Medium& medium) {
   const std::vector<PhaseFunction>& phases = medium.mie_phase;
   if (phases.size() != 1 && phases.size() != medium.wavelengths_nm.size()) {
@@ -197,6 +251,8 @@ std::optional<MediumFault> FindFault(const Medium& medium) {
   if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm)) return fault;
   if (Fault fault = FaultOfScalars(medium)) return fault;
   if (Fault fault = FaultOfLists(medium)) return fault;
+  if (Fault fault = FaultOfRadius(medium)) return fault;
+  if (Fault fault = FaultOfTop(medium)) return fault;
   if (Fault fault = FaultOfExtinction(medium)) return fault;
   return FaultOfPhase(medium);
 }

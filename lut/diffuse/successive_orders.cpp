@@ -309,6 +309,100 @@ void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band,
   }
 }
 
+// Share of an aerosol's scattered sunlight that falls between the directions of the marches. They
+// stand 11 degrees of azimuth from the sun at least: of the dust of Mars they miss 41 % at 450 nm,
+// of a lobe of g = 0.8 6 %, of 0.7 1 %. [phase * suns + sun].
+std::vector<double> MissedShares(const DiffuseMarches& marches) {
+  constexpr double kNoise = 0.01;  // of the rule for phase functions that it resolves
+  std::vector<double> shares;
+  for (const PhaseFunction& phase : marches.air().medium().mie_phase) {
+    for (std::size_t sun = 0; sun < marches.grid().suns; ++sun) {
+      double found = 0.0;
+      for (const March& march : marches.At(0)) {
+        double around = 0.0;
+        for (std::size_t k = 0; k < marches.azimuths(); ++k)
+          around += Phase(phase, marches.Nu(march, sun, k));
+        found += static_cast<double>(march.solid_angle) * around;
+      }
+      shares.push_back(std::abs(1.0 - found) < kNoise ? 0.0 : 1.0 - found);
+    }
+  }
+  return shares;
+}
+
+// Degree by degree, what is left of a beam spread by so much that moments show it without rings.
+float SpreadOf(std::size_t degree, std::size_t l) {
+  const auto squared = [](std::size_t x) { return static_cast<float>(x * (x + 1)); };
+  return std::exp(-2.3F * squared(l) / squared(degree + 1));
+}
+
+/// Light scattered once into a narrow peak, which the marches miss: it comes from the sun.
+class MissedPeak {
+ public:
+  explicit MissedPeak(const DiffuseMarches& marches)
+      : marches_(marches),
+        shares_(MissedShares(marches)),
+        twilight_(TwilightAtNodes(marches.grid())) {}
+
+  void Add(std::size_t altitude, std::size_t first_band, Field& field) const;
+
+ private:
+  void AddBand(const Bands<float>& peak, std::size_t node, std::size_t first_band,
+               Field& field) const;
+  [[nodiscard]] Bands<float> PeakAt(std::size_t altitude, std::size_t sun) const;
+
+  const DiffuseMarches& marches_;
+  std::vector<double> shares_;
+  std::vector<float> twilight_;
+};
+
+// Irradiance of the peak on a plane that faces the sun.
+Bands<float> MissedPeak::PeakAt(std::size_t altitude, std::size_t sun) const {
+  const AirIntegrator<float>& air = marches_.air();
+  const Medium& medium = air.medium();
+  const double altitude_m = 1000.0 * marches_.altitude_km(altitude), mu_s = marches_.mu_s(sun);
+  Bands<float> peak = air.TransmittanceToSpace(altitude_m, mu_s);
+  const double aerosol_m = static_cast<double>(air.ColumnsToSpace(altitude_m, mu_s)[1]);
+  for (std::size_t band = 0; band < peak.count; ++band) {
+    const std::size_t phase = medium.mie_phase.size() > 1 ? band : 0;
+    peak[band] *= static_cast<float>(shares_[phase * marches_.grid().suns + sun] *
+                                     medium.mie_scattering_per_m[band] * aerosol_m);
+  }
+  return peak;
+}
+
+void MissedPeak::Add(std::size_t altitude, std::size_t first_band, Field& field) const {
+  const Layout layout(marches_.grid());
+  for (std::size_t sun = 0; sun < layout.suns; ++sun) {
+    const ViewRay to_sun{1000.0 * marches_.altitude_km(altitude), marches_.mu_s(sun), 1.0, 1.0};
+    const Medium& medium = marches_.air().medium();
+    if (ExtentOf(to_sun, medium.planet_radius_m, medium.atmosphere_height_m).end == RayEnd::kGround)
+      continue;
+    AddBand(PeakAt(altitude, sun), altitude * layout.suns + sun, first_band, field);
+  }
+}
+
+void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t first_band,
+                         Field& field) const {
+  const Layout layout(marches_.grid());
+  const std::size_t sun = node % layout.suns;
+  const auto mu_s = static_cast<float>(marches_.mu_s(sun));
+  const Moments towards = LegendreTerms(static_cast<int>(layout.degree), mu_s);
+  Light light(0.0F);
+  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < peak.count; ++lane)
+    light[static_cast<int>(lane)] = peak[first_band + lane] / twilight_[sun];
+  float* moments = field.moments.data() + node * layout.stride;
+  for (std::size_t l = 0; l <= layout.degree; ++l) {
+    for (std::size_t m = 0; m <= l; ++m) {
+      const float share = SpreadOf(layout.degree, l) *
+                          towards[MomentIndex(static_cast<int>(l), static_cast<int>(m))];
+      for (int lane = 0; lane < 4; ++lane)
+        moments[PackedIndex(l, m) + static_cast<std::size_t>(lane)] += share * light[lane];
+    }
+  }
+  field.sky[node] += std::max(mu_s, 0.0F) * light;
+}
+
 // Orders after the second are smooth: fewer directions serve them.
 DiffuseLightOptions OfLaterOrders(DiffuseLightOptions options) {
   options.zenith_nodes = std::min(options.zenith_nodes, options.later_zenith_nodes);
@@ -330,7 +424,10 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptio
     blocks.emplace_back(marches, later, options, band);
     first.push_back(blocks.back().Empty());
   }
+  const MissedPeak peak(marches);
   tbb::parallel_for(std::size_t{0}, marches.grid().altitudes, [&](std::size_t altitude) {
+    for (std::size_t block = 0; block < blocks.size(); ++block)
+      peak.Add(altitude, block * kBlockBands, first[block]);
     for (const March& march : marches.At(altitude)) {
       const std::vector<float> radiance =
           SunlightScatteredOnce(marches, altitude, march, options.ray_nodes);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string>
 
 #include "atmosphere/text/error.h"
@@ -26,6 +27,14 @@ std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray) {
   if (!BringsLightOfGround(ray, extent)) return std::nullopt;
   const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
   return std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
+}
+
+double ClosedFormError(const Medium& medium) {
+  const double height_m = std::max(medium.rayleigh_scale_height_m, medium.mie_scale_height_m);
+  const double columns = 0.3 * std::pow(height_m / medium.planet_radius_m, 2.0);
+  if (medium.ozone.shape == OzoneShape::kTent) return std::max(kClosedFormError, columns);
+  const double ozone = 4e-4 * std::pow(3.0 * medium.ozone.top_m / medium.planet_radius_m, 4.0);
+  return std::max(kClosedFormError, columns + ozone);
 }
 
 std::optional<double> RelativeErrorFromText(std::string_view text) {

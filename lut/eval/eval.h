@@ -3,7 +3,12 @@
 //
 //   integral  AirIntegrator in double; light of all orders from DiffuseLight. The error is the
 //             difference between two numbers of nodes and what closed forms leave (bounds below).
-//             For errors below what these can do, the judge.
+//             For errors below what these can do, the judge. Of light of higher orders: the
+//             differences to two coarser solutions (one alone can be small by luck), and what the
+//             degrees of the aerosol that moments do not keep would hold (missing_degrees.h), times
+//             0.6, and 0.3 % of it. Of 620 values in air unseen by the calibration (clear, haze,
+//             dust, molecules, thick, over snow) 98 % are within it; it is 5 times the true error
+//             in the median.
 //   table     look-ups in stored tables; what they leave out, integrated on their number of nodes.
 //             The error is the distance to the integral.
 //   path-trace  the judge of multiple scattering. The error is one standard error.
@@ -65,8 +70,12 @@ inline constexpr double kSmallestMaxError = 1e-8;
 /// What is wrong with such a text, for the command line; empty when nothing is.
 [[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
 
-/// Relative error of closed-form optical depths (worst: rays that graze the top from outside).
+/// Relative error of closed-form optical depths (worst: rays that graze the top from outside), where
+/// the planet's radius is more than 120 times the scale heights; see medium_ranges.h.
 inline constexpr double kClosedFormError = 2e-5;
+
+/// The same over any planet.
+[[nodiscard]] double ClosedFormError(const Medium& medium);
 
 [[nodiscard]] constexpr bool NeedsLightOfAllOrders(Quantity quantity) {
   return quantity == Quantity::kTotal || quantity == Quantity::kIrradianceSky;

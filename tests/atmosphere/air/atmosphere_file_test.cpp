@@ -345,6 +345,14 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
       {"[planet]\nradius_m = nan\n", "a.toml:2: planet.radius_m is nan; it must lie in [1000, "},
       {"[planet]\nradius_m = inf\n", "a.toml:2: planet.radius_m is inf; it must lie in [1000, "},
       {"[planet]\nradius_m = 1e999\n", "a.toml:2: "},
+      {"[planet]\nradius_m = 30000\n",
+       "a.toml:2: planet.radius_m is 30000; with the smooth ozone layer of ozone.peak_m 22000 it "
+       "must lie in [198000, 100000000]"},
+      {"[planet]\natmosphere_top_m = 30000\n",
+       "a.toml:2: planet.atmosphere_top_m is 30000; with ozone up to 66000 it must lie in "
+       "[59400, "},
+      {"[mie]\nscale_height_m = 1\n",
+       "a.toml:2: mie.scale_height_m is 1; it must lie in [100, 200000]"},
       {"[planet]\nradius_m = [1]\n", "a.toml:2: planet.radius_m is a list"},
       {"[planet]\nradius_m = 2020-01-01\n", "a.toml:2: planet.radius_m is a date"},
       {"[planet]\nground_albedo = 1.5\n", "a.toml:2: planet.ground_albedo is 1.5"},

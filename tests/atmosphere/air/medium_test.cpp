@@ -177,7 +177,7 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Change faults[] = {
-      {"planet.radius_m is nan; it must lie in [1000, 1000000000]",
+      {"planet.radius_m is nan; it must lie in [1000, 100000000]",
        [](Medium& m) { m.planet_radius_m = kNan; }},
       {"planet.atmosphere_top_m is 0", [](Medium& m) { m.atmosphere_height_m = 0.0; }},
       {"planet.ground_albedo is 1.5; it must lie in [0, 1]",
@@ -237,6 +237,73 @@ TEST(Medium, EmptyAirIsValid) {
     std::fill(list->begin(), list->end(), 0.0);
   }
   EXPECT_EQ(FindFault(medium), std::nullopt);
+}
+
+/// bruneton2017 (a tent of ozone, one exponential of molecules), changed.
+template <typename Make>
+std::string FaultOfChanged(const Make& make) {
+  Medium medium = MediumPreset("bruneton2017");
+  make(medium);
+  const auto fault = FindFault(medium);
+  return fault ? fault->text : "";
+}
+
+TEST(Medium, RadiusAndTopAreAllowedWhereTheClosedFormsAreRight) {
+  const auto with_radius = [](double radius_m) {
+    return FaultOfChanged([&](Medium& m) { m.planet_radius_m = radius_m; });
+  };
+  EXPECT_EQ(with_radius(200e3), "") << "25 scale heights of 8 km";
+  EXPECT_EQ(with_radius(199e3),
+            "planet.radius_m is 199000; with rayleigh.scale_height_m 8000 it must lie in "
+            "[200000, 100000000]");
+  EXPECT_EQ(with_radius(1e8), "");
+  EXPECT_THAT(with_radius(1.01e8), HasSubstr("planet.radius_m is 101000000; it must lie in"));
+  EXPECT_THAT(FaultOfChanged([](Medium& m) {
+                m.planet_radius_m = 1e6;
+                m.mie_scale_height_m = 50e3;
+              }),
+              HasSubstr("with mie.scale_height_m 50000 it must lie in [1250000, 100000000]"));
+  EXPECT_THAT(FaultOfChanged([](Medium& m) {
+                m.planet_radius_m = 201e3;
+                m.ozone = SmoothOzone(30e3);
+                m.atmosphere_height_m = 90e3;
+              }),
+              HasSubstr("planet.radius_m is 201000; with the smooth ozone layer of ozone.peak_m "
+                        "30000 it must lie in [270000, "));
+  const auto with_top = [](double top_m) {
+    return FaultOfChanged([&](Medium& m) { m.atmosphere_height_m = top_m; });
+  };
+  EXPECT_EQ(with_top(40e3), "") << "where the tent of ozone ends";
+  EXPECT_EQ(with_top(39e3),
+            "planet.atmosphere_top_m is 39000; with ozone up to 40000 it must lie in "
+            "[40000, 2400000]");
+  EXPECT_EQ(with_top(2.4e6), "");
+  EXPECT_EQ(with_top(2.5e6),
+            "planet.atmosphere_top_m is 2500000; with rayleigh.scale_height_m 8000 it must lie in "
+            "[40000, 2400000]");
+  EXPECT_EQ(FaultOfChanged([](Medium& m) {
+              m.atmosphere_height_m = 10e3;
+              std::fill(m.ozone_absorption_per_m.begin(), m.ozone_absorption_per_m.end(), 0.0);
+            }),
+            "")
+      << "ozone that absorbs nothing may lie anywhere";
+  EXPECT_THAT(FaultOfChanged([](Medium& m) {
+                m.rayleigh_deficit = {0.3, 6e3};
+                m.atmosphere_height_m = 47e3;
+              }),
+              HasSubstr("with rayleigh.deficit_scale_height_m 6000 it must lie in [48000, "));
+}
+
+TEST(Medium, ScaleHeightsFromAHundredMetresToTwoHundredKilometresAreAllowed) {
+  const auto with_height = [](double height_m) {
+    return FaultOfChanged([&](Medium& m) { m.mie_scale_height_m = height_m; });
+  };
+  EXPECT_THAT(with_height(1.0), HasSubstr("mie.scale_height_m is 1; it must lie in [100, 200000]"));
+  EXPECT_EQ(with_height(100.0), "");
+  EXPECT_EQ(with_height(200e3), "") << "32 of them are the earth's radius";
+  EXPECT_THAT(with_height(201e3), HasSubstr("mie.scale_height_m is 201000"));
+  EXPECT_THAT(FaultOfChanged([](Medium& m) { m.rayleigh_scale_height_m = 1.0; }),
+              HasSubstr("rayleigh.scale_height_m is 1; it must lie in [100, 200000]"));
 }
 
 }  // namespace
