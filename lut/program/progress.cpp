@@ -126,8 +126,8 @@ struct Progress::State {
     if (form == Form::kBar) DrawBar();
     if (form == Form::kBar || form == Form::kNothing || !named.insert(step).second) return;
     Say(form == Form::kJson ? fmt::format("{{\"label\":{},\"step\":{},\"elapsed_s\":{:.3f}}}\n",
-                                            JsonString(label), JsonString(step), ElapsedSeconds())
-                              : fmt::format("{}: preparing {}\n", label, step));
+                                          JsonString(label), JsonString(step), ElapsedSeconds())
+                            : fmt::format("{}: preparing {}\n", label, step));
   }
   void Report() {
     if (form == Form::kBar) DrawBar();
@@ -151,13 +151,13 @@ struct Progress::State {
                              : left          ? DurationText(*left) + " left"
                                              : "";
     Say(fmt::format("\r{} [{}] {:3} % {}/{} {:<20}", label, Bar(Complete(kBarWidth)), Percent(),
-                      done, total, note));
+                    done, total, note));
   }
   void PrintLine() {
     drawn = Clock::now();
     const std::optional<double> left = SecondsLeft();
     Say(fmt::format("{}: {} % ({} of {}){}\n", label, Percent(), done, total,
-                      left ? ", " + DurationText(*left) + " left" : ""));
+                    left ? ", " + DurationText(*left) + " left" : ""));
   }
   void PrintJson() const {
     const std::optional<double> left = SecondsLeft();

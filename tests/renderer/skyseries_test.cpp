@@ -300,6 +300,7 @@ TEST_F(Skyseries, LostMessagesLoseNoFrame) {
   }
 }
 
+// Hard case 45.
 TEST_F(Skyseries, ResumingRemovesWhatAKilledRunLeft) {
   fs::create_directory(folder_ / "series");
   tests::LeaveTemporaryOf(folder_ / "series" / "f.0.exr");

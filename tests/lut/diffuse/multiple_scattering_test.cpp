@@ -424,8 +424,11 @@ TEST(DiffuseLight, SkyIrradianceAgreesWithPathTracing) {
 
 // Hard case 31.
 TEST(DiffuseLight, ThinnestAndThickestLayersGiveLight) {
-  for (const auto& [rayleigh_m, mie_m] :
-       {std::pair{200.0, 100.0}, {8000.0, 100.0}, {8000.0, 200e3}, {200e3, 1200.0}, {200e3, 200e3}}) {
+  for (const auto& [rayleigh_m, mie_m] : {std::pair{200.0, 100.0},
+                                          {8000.0, 100.0},
+                                          {8000.0, 200e3},
+                                          {200e3, 1200.0},
+                                          {200e3, 200e3}}) {
     Medium medium = MediumPreset("bruneton2017");
     medium.rayleigh_deficit = {};
     for (double& value : medium.rayleigh_scattering_per_m)
@@ -435,7 +438,7 @@ TEST(DiffuseLight, ThinnestAndThickestLayersGiveLight) {
     }
     medium.rayleigh_scale_height_m = rayleigh_m;
     medium.mie_scale_height_m = mie_m;
-    const DiffuseLight light(medium, kSmall);
+    const DiffuseLight light(medium, tests::kSmallLight);
     for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
     // What falls on the ground is no more than sun and nothing less than none.
     const auto sky = light.SkyIrradiance(0.0, 0.7);
@@ -453,7 +456,7 @@ TEST(DiffuseLight, AtAnOpticalDepthOfFiftyItIsFiniteAndSaysWhenOrdersAreMissing)
     medium.mie_extinction_per_m[band] = 50.0 / medium.mie_scale_height_m;
     medium.mie_scattering_per_m[band] = 0.99 * medium.mie_extinction_per_m[band];
   }
-  DiffuseLightOptions options = kSmall;
+  DiffuseLightOptions options = tests::kSmallLight;
   std::vector<float> brightest;
   for (const int orders : {5, 400, 800}) {
     options.max_orders = orders;

@@ -264,6 +264,7 @@ TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
   EXPECT_EQ(FilesIn(folder_), 1U);
 }
 
+// Hard case 45.
 TEST_F(AtomicFile, WhatAKilledWriterLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
   tests::LeaveTemporaryOf(folder_ / "a.exr");
   ASSERT_EQ(FilesIn(folder_), 1U);

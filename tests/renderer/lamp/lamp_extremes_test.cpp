@@ -46,7 +46,7 @@ Light LampToTheNorth(double north_m, double candela) {
 
 Image Picture(const Scene& scene) {
   return SceneRenderer(scene).Render(
-      kNight, {.width = 17, .height = 9, .samples_per_pixel = 1, .layers = {"lamps"}});
+      kNight, {.width = 17, .height = 9, .samples_per_pixel = 1, .layers = {PictureLayer::kLamps}});
 }
 
 double BrightestOf(const Image& image) {

@@ -166,6 +166,7 @@ TEST(LampLight, ABeamLightsTheAirInItAndNoneBesideIt) {
   EXPECT_EQ(luminance({0.0, 1.0, 0.2}), 0.0) << "over it";
 }
 
+// Hard case 42.
 TEST(LampLight, AnEyeInALampSeesItsLuminanceAllAround) {
   Scene scene = NightScene();
   scene.lights = {LightAt(0.0, 0.0, kEyeHeight_m, 1000.0)};
@@ -183,6 +184,7 @@ TEST(LampLight, AnEyeInALampSeesItsLuminanceAllAround) {
   }
 }
 
+// Hard case 42.
 TEST(LampLight, AHeadlampLightsTheAirBeforeItAndIsNotSeenByItsEye) {
   Scene scene = NightScene();
   AddFog(scene, 0.01, 1000.0);
@@ -494,6 +496,7 @@ class LampsAtTheEye : public TemporaryFolder {
   const std::string night_ = "2026-01-15T23:00:00Z", day_ = "2026-06-21T11:00:00Z";
 };
 
+// Hard case 42.
 TEST_F(LampsAtTheEye, OfEveryKindMakePicturesOfNumbers) {
   EXPECT_EQ(FaultOf(With(point_), night_), "");
   EXPECT_EQ(FaultOf(With(point_), day_), "");
@@ -511,6 +514,7 @@ TEST_F(LampsAtTheEye, OfEveryKindMakePicturesOfNumbers) {
   EXPECT_EQ(FaultOf(With(measured), night_), "");
 }
 
+// Hard case 42.
 TEST_F(LampsAtTheEye, MakePicturesOfNumbersInFogAndThroughALens) {
   Scene scene = With(point_);
   AddFog(scene, 0.02, 100.0);

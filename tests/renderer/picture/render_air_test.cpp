@@ -135,7 +135,8 @@ TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSideAndDarkAirBeforeIt) {
     const SceneRenderer renderer(scene);
     RenderSettings settings{
         .width = 16, .height = 9, .samples_per_pixel = 4, .air_nodes = 12, .layers = {}};
-    settings.layers = {"inscatter", "sun_visibility", "depth"};
+    settings.layers = {PictureLayer::kInscatter, PictureLayer::kSunVisibility,
+                       PictureLayer::kDepth};
     // What light there is comes straight from the sun.
     settings.effects = settings.effects.Without(Effect::kMultipleScattering)
                            .Without(Effect::kSkylight)

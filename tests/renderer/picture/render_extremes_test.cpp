@@ -21,7 +21,7 @@ namespace {
 
 const UtcInstant kNoon = ParseInstant("2026-06-21T11:30:00Z");
 
-RenderSettings Settings(int width, int height, std::vector<std::string> layers = {}) {
+RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers = {}) {
   return {.width = width,
           .height = height,
           .samples_per_pixel = 1,
@@ -53,7 +53,7 @@ void ExpectLightEverywhere(const Image& image) {
 // Hard case 1.
 TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
   const SceneRenderer renderer(BareScene(0.0, 40.0, 0.0, 2.0));
-  const Image image = renderer.Render(kNoon, Settings(2, 100, {"depth"}));
+  const Image image = renderer.Render(kNoon, Settings(2, 100, {PictureLayer::kDepth}));
   ExpectLightEverywhere(image);
   for (int y = 0; y < image.height; ++y) {
     const float depth = image.layers[0].values[static_cast<std::size_t>(2 * y)];
@@ -137,8 +137,8 @@ TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
                                  sun.elevation_rad / kRadiansPerDegree, 2.0);
   const SceneRenderer renderer(scene);
   constexpr int kSide = 200;
-  const Image image =
-      renderer.Render(kNoon, Settings(kSide, kSide, {"transmittance", "inscatter"}));
+  const Image image = renderer.Render(
+      kNoon, Settings(kSide, kSide, {PictureLayer::kTransmittance, PictureLayer::kInscatter}));
   const CameraRays camera(scene.camera, kSide, kSide);
   const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
   const double radius = 0.5 * 0.5334 * kRadiansPerDegree / sun.distance_au;
@@ -218,7 +218,7 @@ TEST(RenderExtremes, PicturesOfOnePixelAndOneColumnArePartsOfWiderOnes) {
       // A third of a picture that is three times as wide.
       const Shot narrow = ShotFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
       const Image three =
-          renderer.Render(ShotFrom(100.0, 10.0, roll, fov), Settings(3, 5, {"depth"}));
+          renderer.Render(ShotFrom(100.0, 10.0, roll, fov), Settings(3, 5, {PictureLayer::kDepth}));
       const Image column = renderer.Render(narrow, Settings(1, 5));
       for (int y = 0; y < 5; ++y) {
         const bool sky = std::isinf(three.layers[0].values[static_cast<std::size_t>(3 * y + 1)]);
