@@ -87,12 +87,18 @@ struct Weights {
   T w0, w1, w2, w3;
 };
 
-// Catmull-Rom weights of four neighbours (cubic_taps.h).
+namespace shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "lut/table/cubic_taps.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace shared
+
 template <typename T>
 Weights<T> Cubic(const T& t) {
-  const T half(0.5F), one(1.0F), two(2.0F), three(3.0F), four(4.0F), five(5.0F);
-  return {half * t * (t * (two - t) - one), half * (two + t * t * (three * t - five)),
-          half * t * (one + t * (four - three * t)), half * t * t * (t - one)};
+  using namespace shared;
+  return {CubicWeight0<T>(t), CubicWeight1<T>(t), CubicWeight2<T>(t), CubicWeight3<T>(t)};
 }
 
 template <typename T>

@@ -17,16 +17,19 @@ struct HarmonicNorms {
     std::size_t index = 0;
     for (int l = 0; l <= kMaxDegree; ++l) {
       for (int m = 0; m <= l; ++m, ++index) {
-        double ratio = 1.0;  // (l - m)! / (l + m)!
-        for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
-        norm[index] =
-            static_cast<float>(std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio));
+        norm[index] = static_cast<float>(HarmonicNorm(l, m));
       }
     }
   }
 };
 
 }  // namespace
+
+double HarmonicNorm(int l, int m) {
+  double ratio = 1.0;  // (l - m)! / (l + m)!
+  for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
+  return std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio);
+}
 
 Moments LegendreTerms(int degree, float mu) {
   static const HarmonicNorms norms;

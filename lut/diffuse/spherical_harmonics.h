@@ -14,6 +14,7 @@
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/air/phase.h"
+#include "atmosphere/number/constants.h"
 
 namespace alpenglow {
 
@@ -28,6 +29,14 @@ inline constexpr int kMaxDegree = 6;
 inline constexpr std::size_t kMaxMoments = MomentCount(kMaxDegree);
 
 using Moments = std::array<float, kMaxMoments>;
+
+/// norm_lm.
+[[nodiscard]] double HarmonicNorm(int l, int m);
+
+/// 2 pi integral of max(x, 0) P_l(x) dx: what a surface makes of moments of degree l (Ramamoorthi,
+/// Hanrahan 2001).
+inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{
+    kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
 
 /// norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
 [[nodiscard]] Moments LegendreTerms(int degree, float mu);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "lut/picture/dither_text.h"
+
 namespace alpenglow {
 namespace {
 
@@ -125,12 +127,9 @@ const std::vector<std::uint16_t>& DitherTile() {
   return tile;
 }
 
-// No shift at the origin; viewer/shaders/develop.frag.glsl does the same.
 DitherShift DitherShiftOf(int tile_x, int tile_y) {
-  std::uint32_t hash = static_cast<std::uint32_t>(tile_x) * 73856093U ^
-                       static_cast<std::uint32_t>(tile_y) * 19349663U;
-  hash = (hash ^ (hash >> 13)) * 0x85EBCA6BU;
-  hash ^= hash >> 16;
+  const std::uint32_t hash =
+      shared::DitherHash(static_cast<std::uint32_t>(tile_x), static_cast<std::uint32_t>(tile_y));
   constexpr std::uint32_t kMask = kSize - 1;
   return {static_cast<int>(hash & kMask), static_cast<int>((hash >> 8) & kMask)};
 }
@@ -153,9 +152,7 @@ float DitherNoise(int x, int y, int channel) {
 }
 
 std::uint8_t DitheredCode(float code, float noise) {
-  const float room = std::min({1.0F, 2.0F * code, 2.0F * (255.0F - code)});
-  const float dithered = std::clamp(code + noise * std::max(room, 0.0F), 0.0F, 255.0F);
-  return static_cast<std::uint8_t>(std::lround(dithered));
+  return static_cast<std::uint8_t>(std::lround(shared::DitheredValue(code, noise)));
 }
 
 }  // namespace alpenglow

@@ -6,6 +6,16 @@
 #include <array>
 #include <cstddef>
 
+#include "atmosphere/dialect/shared_math.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "lut/table/cubic_taps.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
+
 namespace alpenglow {
 
 /// The neighbours of a position; at the ends of the grid the missing neighbour continues the line
@@ -17,8 +27,8 @@ struct CubicTaps {
 
 /// Catmull-Rom weights of the four neighbours at a fraction t in [0, 1] of the cell.
 [[nodiscard]] inline std::array<float, 4> CatmullRom(float t) {
-  return {0.5F * t * (-1.0F + t * (2.0F - t)), 0.5F * (2.0F + t * t * (-5.0F + 3.0F * t)),
-          0.5F * t * (1.0F + t * (4.0F - 3.0F * t)), 0.5F * t * t * (t - 1.0F)};
+  return {shared::CubicWeight0(t), shared::CubicWeight1(t), shared::CubicWeight2(t),
+          shared::CubicWeight3(t)};
 }
 
 /// @param coordinate position in [0, 1] over n >= 2 nodes, clamped.

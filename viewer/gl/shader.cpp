@@ -103,7 +103,7 @@ std::vector<ShaderPiece> SharedTexts() {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
   for (const char* name : {"lut/table/transmittance_map.glsl", "lut/table/scattering_map.glsl",
-                           "lut/picture/tone_curve.glsl"}) {
+                           "lut/picture/tone_curve.glsl", "lut/picture/dither.glsl"}) {
     pieces.push_back({name, std::string(lut::EmbeddedText(name))});
   }
   for (const char* name :

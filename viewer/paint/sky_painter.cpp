@@ -11,6 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/dither.h"
 #include "renderer/ground/surface.h"
+#include "renderer/light/aerial_perspective.h"
 #include "renderer/picture/render.h"
 #include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
@@ -33,8 +34,8 @@ enum TextureUnit {
   kDitherUnit,
 };
 
-constexpr int kSkyNodes = 12;  // Gauss nodes of a panel of a ray to the sky, as SceneRenderer has
-constexpr int kNearNodes = 4;  // of a ray to terrain within 50 km
+constexpr int kSkyNodes = AerialPerspective::Nodes{}.sky;  // Gauss nodes of a panel of a ray
+constexpr int kNearNodes = 4;                              // of one to terrain within 50 km
 constexpr int kDiffuseSkySide = 96;   // texels of the map of diffuse light, azimuth and elevation
 constexpr int kMomentSuns = 512;      // finer than DiffuseLight's nodes: bilinear for its cubic, in
 constexpr int kMomentAltitudes = 96;  // twilight, where light falls by e a degree, to 5e-4

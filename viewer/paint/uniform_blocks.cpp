@@ -22,13 +22,6 @@ glm::vec4 PerKilometre(const std::vector<double>& per_m) {
   return GpuBandsOf(per_km);
 }
 
-// Norm of the real harmonic of degree l and order m.
-double HarmonicNorm(int l, int m) {
-  double ratio = 1.0;  // (l - m)! / (l + m)!
-  for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
-  return std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio);
-}
-
 }  // namespace
 
 glm::vec4 GpuBandsOf(const std::vector<double>& per_band) {
@@ -97,16 +90,12 @@ PhaseBlock PhaseBlockOf(const Medium& medium) {
 }
 
 MomentBlock MomentBlockOf(const Medium& medium, int degree) {
-  // pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients
-  // (Ramamoorthi, Hanrahan 2001).
-  constexpr std::array<double, kMaxDegree + 1> kCosine{
-      kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
   constexpr std::array<double, kMaxDegree + 1> kRayleigh{1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
   MomentBlock block;
   for (int l = 0; l <= degree; ++l) {
     const auto at = static_cast<std::size_t>(l);
     for (int m = 0; m <= l; ++m) {
-      block.emplace_back(HarmonicNorm(l, m), kRayleigh[at], kCosine[at], 0.0);
+      block.emplace_back(HarmonicNorm(l, m), kRayleigh[at], kClampedCosine[at], 0.0);
     }
   }
   const std::vector<double> mie = MieLegendreCoefficients(medium, degree);

@@ -9,9 +9,7 @@ out vec4 display;
 vec3 NoiseAt(ivec2 pixel) {
   ivec2 tile = textureSize(dither_noise, 0);
   uvec2 repetition = uvec2(pixel / tile);
-  uint hash = repetition.x * 73856093u ^ repetition.y * 19349663u;
-  hash = (hash ^ (hash >> 13)) * 0x85EBCA6Bu;
-  hash ^= hash >> 16;
+  uint hash = DitherHash(repetition.x, repetition.y);
   ivec2 shift = ivec2(uvec2(hash, hash >> 8));
   return texelFetch(dither_noise, (pixel + (shift & (tile - 1))) & (tile - 1), 0).rgb;
 }
@@ -34,6 +32,7 @@ void main() {
   vec3 srgb =
       255.0 * vec3(SrgbCode(AgxLight(code.r, code_share)), SrgbCode(AgxLight(code.g, code_share)),
                    SrgbCode(AgxLight(code.b, code_share)));
-  vec3 room = clamp(min(2.0 * srgb, 2.0 * (255.0 - srgb)), 0.0, 1.0);
-  display = vec4(floor(clamp(srgb + noise * room, 0.0, 255.0) + 0.5) / 255.0, 1.0);
+  vec3 dithered = vec3(DitheredValue(srgb.r, noise.r), DitheredValue(srgb.g, noise.g),
+                       DitheredValue(srgb.b, noise.b));
+  display = vec4(floor(dithered + 0.5) / 255.0, 1.0);
 }

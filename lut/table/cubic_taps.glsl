@@ -1,0 +1,16 @@
+// Catmull-Rom weights of the four neighbours of a position, the node before the cell first; t in
+// [0, 1] is the fraction of the cell.
+
+SHARED Number CubicWeight0(Number t) {
+  return Number(0.5) * t * (t * (Number(2.0) - t) - Number(1.0));
+}
+
+SHARED Number CubicWeight1(Number t) {
+  return Number(0.5) * (Number(2.0) + t * t * (Number(3.0) * t - Number(5.0)));
+}
+
+SHARED Number CubicWeight2(Number t) {
+  return Number(0.5) * t * (Number(1.0) + t * (Number(4.0) - Number(3.0) * t));
+}
+
+SHARED Number CubicWeight3(Number t) { return Number(0.5) * t * t * (t - Number(1.0)); }
