@@ -70,13 +70,7 @@ double LowestUsefulSun(const Medium& medium) {
 
 ScatteringTable::ScatteringTable(const Medium& medium, const ScatteringTableOptions& options,
                                  Progress* progress)
-    : air_(medium),
-      size_(options.size),
-      lowest_mu_s_(RequireLowestSun(medium, options.lowest_mu_s)),
-      axes_(options.axes),
-      radius_km_(medium.planet_radius_m / kMetresPerKilometre),
-      top_km_(medium.atmosphere_height_m / kMetresPerKilometre),
-      texels_(RequireSize(medium, options.size)) {
+    : ScatteringTable(medium, options, std::vector<float>(RequireSize(medium, options.size))) {
   tbb::parallel_for(std::size_t{0}, Rows(size_), [&](std::size_t row) {
     if (Interrupted()) return;
     FillRow(row);
