@@ -11,8 +11,8 @@
 //  4. Altitude, not radius; differences of squares factored; the conjugate form of a quadratic
 //  root.
 //  5. Capital = ours, lower case = builtin of both languages.
-//  6. Whole numbers of 32 bits that wrap are Bits; a function of Bits alone is SHARED_BITS. A constant
-//  with a name is SHARED_CONSTANT, and a whole number.
+//  6. Whole numbers of 32 bits that wrap are Bits; a function of Bits alone is SHARED_BITS. A
+//  constant with a name is SHARED_CONSTANT, and a whole number.
 //  7. Kilometres inside the text (the range of float), metres in every public C++ signature.
 
 // Number(0.1) rounds a literal to the type that is being read: that is its purpose.

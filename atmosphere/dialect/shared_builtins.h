@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The builtins of GLSL as C++, for float, double and, where a metre counts at 1e8 m, long double.
-// No include guard and no includes: shared_math.h reads it into alpenglow::shared, and batch.h again
-// into the unnamed namespace that the functions of a kernel need.
+// No include guard and no includes: shared_math.h reads it into alpenglow::shared, batch.h into the
+// unnamed namespace that the functions of a kernel need.
 
 using std::abs;
 using std::cos;

@@ -1,27 +1,30 @@
-// Where along a ray the light is sampled, and where the planet's shadow lies on it. Lengths in one unit,
-// kilometres but where it is said otherwise.
+// Where along a ray the light is sampled, and where the planet's shadow lies on it. Lengths in one
+// unit, kilometres but where it is said otherwise.
 //
-// A panel is a stretch of the ray on which the altitude is monotone; t is the distance from its lower end.
-// With v in [0, 1] of a Gauss rule,
+// A panel is a stretch of the ray on which the altitude is monotone; t is the distance from its
+// lower end. With v in [0, 1] of a Gauss rule,
 //
 //   t = length sinh(b v) / sinh(b),   b = 1.3 ln(2 length / half)
 //
-// where `half` is the distance to 10 km above the lower end, or 10 optical depths if less: beyond it nodes
-// thin out exponentially, as the air does. With g = exp(b v) this costs no further exponential.
+// where `half` is the distance to 10 km above the lower end, or 10 optical depths if less: beyond
+// it nodes thin out exponentially, as the air does. With g = exp(b v) this costs no further
+// exponential.
 //
-// A gentle stretch, 1.1 ln(2 length / half) and 12 km, has fewer nodes at the lower end: for panels that get no
-// more of them where that end is hard to integrate, and for those that begin behind an edge of the planet's
-// shadow, where sunlight comes back slowly. It is better than the rational map t = length v / (1 + k (1 - v)),
-// half of its nodes within 20 km or 8 optical depths: 12 nodes a panel are wrong by (rms, earth and hazy)
+// A gentle stretch, 1.1 ln(2 length / half) and 12 km, has fewer nodes at the lower end: for panels
+// that get no more of them where that end is hard to integrate, and for those that begin behind an
+// edge of the planet's shadow, where sunlight comes back slowly. It is better than the rational map
+// t = length v / (1 + k (1 - v)), half of its nodes within 20 km or 8 optical depths: 12 nodes a
+// panel are wrong by (rms, earth and hazy)
 //
-//                        rational           gentle
-//   sky, sun 0 to 5 deg  3e-6    1e-4       7e-6    1e-4
-//   sky in twilight      1.3e-4  3e-3       1.5e-4  7e-4
-//   ground from 400 km   2.3e-4  7e-3       4e-5    6e-4
-//   limb from 400 km     3.1e-4  7.5e-3     5e-5    7e-4
+//                                       rational           gentle
+//   sky, sun at 0 to 5 deg              3e-6    1e-4       7e-6    1e-4
+//   sky in twilight                     1.3e-4  3e-3       1.5e-4  7e-4
+//   ground from 400 km, sun over 5 deg  2.3e-4  7e-3       4e-5    6e-4
+//   limb from 400 km, sun over 5 deg    3.1e-4  7.5e-3     5e-5    7e-4
 
-// Stretch b of a panel whose lower end has altitude z and zenith cosine mu >= 0 upwards; gentle is 1 or 0. 0
-// where t is as good as length v: there sinh(b v) / sinh(b) differs from v by 1 %, and would cancel in float.
+// Stretch b of a panel whose lower end has altitude z and zenith cosine mu >= 0 upwards; gentle is
+// 1 or 0. 0 where t is as good as length v: there sinh(b v) / sinh(b) differs from v by 1 %, and
+// would cancel in float.
 // @param extinction  per kilometre at altitude 0, largest over bands.
 SHARED Number PanelStretch(Length z, Number mu, Length length, Number extinction, Number gentle,
                            Length R) {
@@ -48,10 +51,10 @@ SHARED Length StretchedSlope(Length scale, Number b, Number g) {
   return scale * b * Number(0.5) * (g + Number(1.0) / g);
 }
 
-// The shadow is the half of a cylinder behind the planet. At distance t of the ray the squared distance from
-// its axis less R^2 is a t^2 + 2 b t + c, and sun + t nu the height over the plane through the centre, across
-// the axis: dark is where both are negative.
-// a = 1 - nu^2, from where it does not cancel.
+// The shadow is the half of a cylinder behind the planet. At distance t of the ray the squared
+// distance from its axis less R^2 is a t^2 + 2 b t + c, and sun + t nu the height over the plane
+// through the centre, across the axis: dark is where both are negative. a = 1 - nu^2, from where it
+// does not cancel.
 
 // The ray runs along the axis: the cylinder has no ends on it.
 SHARED Number AlongShadow(Number a) { return select(a > Number(1e-14), Number(0.0), Number(1.0)); }

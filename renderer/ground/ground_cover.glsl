@@ -1,8 +1,8 @@
-// What mountain ground is made of, and relief finer than the mesh (surface.h). Lengths in metres: details of
-// the ground are as fine as that.
+// What mountain ground is made of, and relief finer than the mesh (surface.h). Lengths in metres:
+// details of the ground are as fine as that.
 
-// Three families of noise: two make the lines between materials waver, one is relief. Each is a sum of
-// octaves, half as long and half as high from one to the next.
+// Three families of noise: two make the lines between materials waver, one is relief. Each is a sum
+// of octaves, half as long and half as high from one to the next.
 SHARED_CONSTANT int kBroadWave_m = 900;  // of the longest octave
 SHARED_CONSTANT int kBroadOctaves = 5;
 SHARED_CONSTANT Bits kBroadSeed = 11u;
@@ -14,8 +14,8 @@ SHARED_CONSTANT int kReliefOctaves = 5;
 SHARED_CONSTANT Bits kReliefSeed = 47u;
 SHARED_CONSTANT int kReliefHeight_m = 14;
 
-// What is kept of an octave where one ray of the picture is `footprint` wide: octaves shorter than two
-// footprints fade out, so that distant ground does not glitter.
+// What is kept of an octave where one ray of the picture is `footprint` wide: octaves shorter than
+// two footprints fade out, so that distant ground does not glitter.
 SHARED Number OctaveShare(Length wavelength, Length footprint) {
   return min(max(wavelength / (Number(2.0) * footprint) - Number(1.0), Number(0.0)), Number(1.0));
 }
@@ -35,8 +35,8 @@ SHARED Number WaveringLevel(Number normal_up, Number broad, Number fine) {
   return normal_up + Number(0.05) * broad + Number(0.05) * fine;
 }
 
-// Rises of 0 to 1 with the wavering altitude: no trees left; bare of grass; cold enough for snow, which
-// gentle ground keeps 200 m below its line.
+// Rises of 0 to 1 with the wavering altitude: no trees left; bare of grass; cold enough for snow,
+// which gentle ground keeps 200 m below its line.
 SHARED Number TreelessRise(Length altitude, Length tree_line) {
   return SmoothRise(tree_line - Length(250.0), tree_line - Length(50.0), altitude);
 }
@@ -49,8 +49,8 @@ SHARED Number ColdRise(Length altitude, Length snow_line) {
   return SmoothRise(snow_line - Length(200.0), snow_line + Length(350.0), altitude);
 }
 
-// With the wavering level: not too steep for soil; flat, a meadow rather than a wood; and not so steep, over
-// about 45 degrees, that it sheds its snow.
+// With the wavering level: not too steep for soil; flat, a meadow rather than a wood; and not so
+// steep, over about 45 degrees, that it sheds its snow.
 SHARED Number SoilRise(Number level) { return SmoothRise(Number(0.66), Number(0.78), level); }
 
 SHARED Number FlatRise(Number level) { return SmoothRise(Number(0.95), Number(0.985), level); }

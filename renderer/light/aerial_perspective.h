@@ -3,9 +3,9 @@
 // towards the eye and transmittance, in every band.
 //
 // The ray is cut into panels at its perigee and at the planet's shadow; in each, N Gauss nodes in
-// the mapped distance v of ray_map.glsl, dense at the lower end. With P_n the
-// Legendre polynomials on [0, 1] and S(v) the sunlight, in [0, 1], that terrain lets through, the
-// weight of direct light at node j is that of the node times
+// the mapped distance v of ray_map.glsl, dense at the lower end. With P_n the Legendre polynomials
+// on [0, 1] and S(v) the sunlight, in [0, 1], that terrain lets through, the weight of direct light
+// at node j is that of the node times
 //
 //   sum over n < N of (2 n + 1) P_n(v_j) m_n,      m_n = integral of P_n(v) S(v) dv:
 //

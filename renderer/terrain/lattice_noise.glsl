@@ -1,5 +1,5 @@
-// Gradient noise on a lattice of points with hashed gradients (lattice_noise.h). Whole numbers are 32 bits
-// that wrap; places within a cell are in cells.
+// Gradient noise on a lattice of points with hashed gradients (lattice_noise.h). Whole numbers are
+// 32 bits that wrap; places within a cell are in cells.
 
 // Finaliser of MurmurHash3 (Appleby, public domain): every input bit moves every output bit.
 SHARED_BITS Bits MixedBits(Bits bits) {
