@@ -23,6 +23,11 @@ struct Channel {
 };
 
 /// Linear sRGB [cd/m^2] and, optionally, more layers of the same size.
+///
+/// Colours are not clamped: one that is more saturated than the display's gamut has a negative
+/// channel and keeps its luminance. The red of a low sun has negative blue; the blue that ozone
+/// leaves of deep twilight has negative red (100 km up, sun at -15 degrees: a hundredth of the
+/// blue, and on 16 bands more often than on 4). Tone curves bring them back (tone_curve.glsl).
 struct Image {
   int width = 0;
   int height = 0;

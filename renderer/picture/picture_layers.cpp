@@ -30,7 +30,10 @@ LayerValues LightOf(const BandColour& colour, Rays rays) {
   return Rgb(colour, MeanOf(kPart, rays));
 }
 
-// Colour of a factor (albedo, transmittance) as it looks under the sun above the air.
+// Colour of a factor (albedo, transmittance) as it looks under the sun above the air, within [0, 1].
+// Red light that has come far through air is more saturated than sRGB's red: its blue is negative,
+// down to -0.002 beside a red of 0.1. As light that is right (image.h); as a factor it would turn
+// light that it dims into its negative.
 template <BandLight Shaded::*kPart>
 LayerValues FactorOf(const BandColour& colour, Rays rays) {
   const BandLight factor = MeanOf(kPart, rays);
@@ -39,8 +42,10 @@ LayerValues FactorOf(const BandColour& colour, Rays rays) {
     sun[band] = static_cast<float>(SolarIrradiance(colour.wavelengths_nm()[band]));
   }
   const LayerValues white = Rgb(colour, sun);
-  const LayerValues seen = Rgb(colour, sun * factor);
-  return {seen[0] / white[0], seen[1] / white[1], seen[2] / white[2]};
+  LayerValues seen = Rgb(colour, sun * factor);
+  for (std::size_t c = 0; c < seen.size(); ++c)
+    seen[c] = std::clamp(seen[c] / white[c], 0.0F, 1.0F);
+  return seen;
 }
 
 LayerValues SunVisibility(const BandColour&, Rays rays) {
