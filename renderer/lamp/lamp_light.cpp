@@ -171,7 +171,7 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
     sum = sum + Scaled(placed.intensity,
                        glow.On(distance * towards, at.normal, state_->stage.UpAt(at.point)),
                        placed.mean_share);
-    if (cosine <= 0.0 || glm::dot(at.geometric_normal, towards) <= 0.0) continue;
+    if (cosine <= 0.0) continue;
     const double relative = RelativeIntensity(placed.lamp, -towards);
     if (relative <= 0.0) continue;
     if (state_->stage.ground().terrain && state_->stage.ground().terrain->Occluded(

@@ -33,9 +33,9 @@ namespace alpenglow {
 
 /// A surface point that lamps may light.
 struct LitPoint {
-  glm::dvec3 point{0.0};
+  glm::dvec3 point{0.0};                       // TerrainHit::smooth_point
   glm::dvec3 normal{0.0, 0.0, 1.0};            // unit, of the shading
-  glm::dvec3 geometric_normal{0.0, 0.0, 1.0};  // unit, of the triangle
+  glm::dvec3 geometric_normal{0.0, 0.0, 1.0};  // unit, of the triangle, which shadow rays leave
 };
 
 /// Immutable; safe to ask from many threads.

@@ -72,8 +72,11 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
                               std::array<double, 2> disk_sample) const {
   const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
   const double cosine = glm::dot(hit.normal, to_disk);
+  // The smooth surface faces the sun or not. Whether the triangle does is no matter: the shadow ray
+  // starts on the smooth surface (TerrainHit::smooth_point) or meets the triangle, whose own normal
+  // would draw facets along the edge of shade (Hanika 2021, Ray Tracing Gems II, ch. 4).
   const bool faces =
-      cosine > 0.0 && glm::dot(hit.geometric_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
+      cosine > 0.0 && glm::dot(hit.mesh_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
   const bool occluded = faces && parts_.ground.terrain && light.effects.Has(Effect::kShadows) &&
                         parts_.ground.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
                                                         std::numeric_limits<double>::infinity());
