@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground/scene_ground.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
@@ -16,23 +17,88 @@ struct LoadedMesh {
   std::string message;
 };
 
+// South, north, west and east ends of a grid [degrees].
+struct Rectangle {
+  double south, north, west, east;
+
+  explicit Rectangle(const ElevationGrid& grid)
+      : south(grid.LatitudeOfRow(grid.rows - 1) / kRadiansPerDegree),
+        north(grid.north_rad / kRadiansPerDegree),
+        west(grid.west_rad / kRadiansPerDegree),
+        east(grid.LongitudeOfColumn(grid.columns - 1) / kRadiansPerDegree) {}
+};
+
+// Whether anything of the model may stand over the horizon of an eye, on a sphere.
+bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double eye_m) {
+  constexpr double kRadius_m = 6.371e6;
+  const Rectangle model(grid);
+  float highest_m = 0.0F;
+  for (const float height_m : grid.height_m) highest_m = std::max(highest_m, height_m);
+  const auto dip = [](double height_m) {
+    return std::acos(kRadius_m / (kRadius_m + std::max(height_m, 0.0)));
+  };
+  const double latitude = place.latitude_rad / kRadiansPerDegree;
+  const double longitude = place.longitude_rad / kRadiansPerDegree;
+  const double middle = 0.5 * (model.west + model.east);
+  const double from_middle = std::remainder(longitude - middle, 360.0);
+  const double half = 0.5 * (model.east - model.west);
+  const double beside =
+      std::max(std::abs(from_middle) - half, 0.0) * kRadiansPerDegree;  // in longitude
+  const double nearest = std::clamp(latitude, model.south, model.north) * kRadiansPerDegree;
+  const double cosine = std::sin(place.latitude_rad) * std::sin(nearest) +
+                        std::cos(place.latitude_rad) * std::cos(nearest) * std::cos(beside);
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) <
+         dip(eye_m) + dip(static_cast<double>(highest_m));
+}
+
+// An eye that stands on the ground stands on the model's; one that flies sees some of it.
+void RequireEyeOver(const ElevationGrid& grid, const Scene& scene) {
+  const GeodeticPosition& place = scene.place;
+  if (grid.Covers(place.latitude_rad, place.longitude_rad)) return;
+  const Rectangle model(grid);
+  const Height& height = scene.camera.height;
+  if (!height.above_ground && IsInSight(grid, place, height.value_m)) return;
+  const bool swapped_lies_inside = grid.Covers(place.longitude_rad, place.latitude_rad);
+  throw InputError(
+      fmt::format("the camera at latitude {:.6g}, longitude {:.6g} is outside {}, which covers "
+                  "latitudes {:.6g} "
+                  "to {:.6g} and longitudes {:.6g} to {:.6g}{}",
+                  place.latitude_rad / kRadiansPerDegree, place.longitude_rad / kRadiansPerDegree,
+                  scene.terrain.file.string(), model.south, model.north, model.west, model.east,
+                  swapped_lies_inside ? "; latitude and longitude seem to be swapped" : ""));
+}
+
+std::string MessageOn(const ElevationModel& model, const std::string& file) {
+  std::string message;
+  if (model.voids > 0) {
+    message = fmt::format("{}: {} samples without data, {} filled", file, model.voids,
+                          model.voids_filled);
+  }
+  if (model.vertical_datum.empty()) return message;
+  if (!message.empty()) message += "; ";
+  return message + fmt::format(
+                       "{}: heights are declared as {}; they are taken as over the "
+                       "ellipsoid, which may lie a hundred metres off",
+                       file, model.vertical_datum);
+}
+
 LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progress) {
   if (scene.terrain.kind != TerrainSource::Kind::kNone) Prepare(progress, "terrain");
   switch (scene.terrain.kind) {
     case TerrainSource::Kind::kBuiltInRange: {
       const ElevationGrid range = BuiltInRange(scene.terrain.centre.value_or(scene.place));
       Prepare(progress, "mesh");
-      return {MeshFromElevation(range, frame), ""};
+      return {MeshFromElevation(range, frame),
+              scene.terrain.is_default
+                  ? "the terrain is made up: no elevation model of the place was named (--dem; or "
+                    "[terrain] in a scene file, where range = true asks for it)"
+                  : ""};
     }
     case TerrainSource::Kind::kElevationModel: {
       const ElevationModel model = ReadElevation(scene.terrain.file, scene.terrain.voids);
-      std::string message;
-      if (model.voids > 0) {
-        message = fmt::format("{}: {} samples without data, {} filled", scene.terrain.file.string(),
-                              model.voids, model.voids_filled);
-      }
+      RequireEyeOver(model.grid, scene);
       Prepare(progress, "mesh");
-      return {MeshFromElevation(model.grid, frame), message};
+      return {MeshFromElevation(model.grid, frame), MessageOn(model, scene.terrain.file.string())};
     }
     case TerrainSource::Kind::kMesh:
       return {ReadObj(scene.terrain.file), ""};

@@ -167,12 +167,16 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder) {
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   const std::optional<TomlTable> table = document.Table("terrain");
   if (!table) return {};
-  table->AllowOnly({"dem", "mesh", "none", "voids", "colour"});
+  table->AllowOnly({"dem", "mesh", "none", "range", "voids", "colour"});
   const std::optional<std::string> dem = table->Text("dem");
   const std::optional<std::string> mesh = table->Text("mesh");
   const bool none = table->Truth("none").value_or(false);
-  if (int{dem.has_value()} + int{mesh.has_value()} + int{none} > 1) {
-    table->Fail(mesh ? "mesh" : "none", "give one of terrain.dem, terrain.mesh and terrain.none");
+  const bool range = table->Truth("range").value_or(false);
+  if (int{dem.has_value()} + int{mesh.has_value()} + int{none} + int{range} > 1) {
+    table->Fail(mesh   ? "mesh"
+                : none ? "none"
+                       : "range",
+                "give one of terrain.dem, terrain.mesh, terrain.none and terrain.range");
   }
   const std::string voids = table->Text("voids").value_or("fill");
   if (voids != "fill" && voids != "open") {
@@ -184,6 +188,7 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   if (colour && none)
     table->Fail("colour", "terrain.colour lies over terrain; terrain.none is set");
   TerrainSource source;
+  source.is_default = !dem && !mesh && !none && !range;
   if (colour) source.colour = folder / *colour;
   source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
   if (none) source.kind = TerrainSource::Kind::kNone;

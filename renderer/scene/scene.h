@@ -59,7 +59,8 @@ struct TerrainSource {
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
   std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
-  std::filesystem::path colour = {};                      // over it, see ColourDrape; empty: none
+  bool is_default = true;  // nothing was said about the terrain: the range stands in for it
+  std::filesystem::path colour = {};  // over it, see ColourDrape; empty: none
 };
 
 /// What the ground is made of, and how it sends light on (reflectance.h).

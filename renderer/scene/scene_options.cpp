@@ -57,7 +57,10 @@ Scene SceneFromOptions(const SceneOptions& options) {
     scene.terrain.kind = TerrainSource::Kind::kElevationModel;
     scene.terrain.file = *options.dem;
   } else {
+    const SceneOptions at_home;  // the range's own place, where nobody looks for other mountains
     scene.terrain.centre = typed;
+    scene.terrain.is_default =
+        options.latitude != at_home.latitude || options.longitude != at_home.longitude;
   }
   return scene;
 }

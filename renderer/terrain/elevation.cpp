@@ -14,21 +14,48 @@ bool ElevationGrid::ClosesAroundTheEarth() const {
   return std::abs(turn - 2.0 * std::numbers::pi) < 1e-3 * step_lon_rad;
 }
 
-std::optional<double> ElevationGrid::HeightAt(double latitude_rad, double longitude_rad) const {
-  const double turn = 2.0 * std::numbers::pi / step_lon_rad;  // columns once around
-  double column = (longitude_rad - west_rad) / step_lon_rad;
+namespace {
+
+/// A place in rows and columns of a grid.
+struct GridPlace {
+  double row, column;
+  bool is_inside;
+};
+
+GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitude_rad) {
+  const double turn = 2.0 * std::numbers::pi / grid.step_lon_rad;  // columns once around
+  double column = (longitude_rad - grid.west_rad) / grid.step_lon_rad;
   column -= turn * std::floor(column / turn);
-  const double row = (north_rad - latitude_rad) / step_lat_rad;
-  const bool closed = ClosesAroundTheEarth();
+  const double row = (grid.north_rad - latitude_rad) / grid.step_lat_rad;
+  const bool closed = grid.ClosesAroundTheEarth();
   // A place on the first column may come out as one turn less an ulp.
   if (!closed && column > turn - 1e-6) column = 0.0;
-  const double last_column = closed ? columns : columns - 1;
+  const double last_column = closed ? grid.columns : grid.columns - 1;
   constexpr double kRounding = 1e-6;  // samples: the rim itself belongs to the grid
-  if (!(row >= -kRounding && row <= rows - 1 + kRounding && column <= last_column + kRounding)) {
-    return std::nullopt;
-  }
+  const bool is_inside =
+      row >= -kRounding && row <= grid.rows - 1 + kRounding && column <= last_column + kRounding;
+  return {row, column, is_inside};
+}
+
+// What the heights count from, if that is declared and not the ellipsoid.
+std::string VerticalDatumOf(const OGRSpatialReference& crs) {
+  const char* const name = crs.GetAttrValue("VERT_CS");
+  if (name == nullptr) return "";
+  return std::string(name).find("llipsoid") == std::string::npos ? name : "";
+}
+
+}  // namespace
+
+bool ElevationGrid::Covers(double latitude_rad, double longitude_rad) const {
+  return PlaceIn(*this, latitude_rad, longitude_rad).is_inside;
+}
+
+std::optional<double> ElevationGrid::HeightAt(double latitude_rad, double longitude_rad) const {
+  const auto [row, column, is_inside] = PlaceIn(*this, latitude_rad, longitude_rad);
+  if (!is_inside) return std::nullopt;
   const int r = std::clamp(static_cast<int>(row), 0, rows - 2);
-  const int c = std::clamp(static_cast<int>(column), 0, closed ? columns - 1 : columns - 2);
+  const int c =
+      std::clamp(static_cast<int>(column), 0, ClosesAroundTheEarth() ? columns - 1 : columns - 2);
   const int next = (c + 1) % columns;
   const double fr = std::clamp(row - r, 0.0, 1.0);
   const double fc = std::clamp(column - c, 0.0, 1.0);
@@ -49,6 +76,7 @@ ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids
   if (voids == VoidPolicy::kFill && raster.voids > 0) {
     model.voids_filled = FillVoids(raster.height_m, raster.rows, raster.columns);
   }
+  model.vertical_datum = VerticalDatumOf(raster.crs);
   model.grid = GeographicGrid(raster, file.string());
   return model;
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace alpenglow {
@@ -35,6 +36,8 @@ struct ElevationGrid {
   /// Whether the columns go once around the earth, so that the last one is the first one's
   /// neighbour.
   [[nodiscard]] bool ClosesAroundTheEarth() const;
+  /// Whether a place lies among the samples, void or not.
+  [[nodiscard]] bool Covers(double latitude_rad, double longitude_rad) const;
   /// Bilinear height [m] at a place; nothing outside the grid or beside a void.
   [[nodiscard]] std::optional<double> HeightAt(double latitude_rad, double longitude_rad) const;
 };
@@ -45,11 +48,14 @@ struct ElevationModel {
   ElevationGrid grid;
   std::size_t voids = 0;         // samples without data in the file
   std::size_t voids_filled = 0;  // of which were filled from their surroundings
+  /// What the file declares its heights to count from, as "EGM96 height"; empty where it declares
+  /// nothing, or the ellipsoid.
+  std::string vertical_datum;
 };
 
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
 /// earth (resampled to geographic WGS84 unless its samples already lie on such a grid), metres or
-/// feet. Heights are taken as above the ellipsoid. Voids are the declared nodata value, NaN, and
+/// feet. Heights are taken as above the ellipsoid, whatever vertical datum is declared. Voids are the declared nodata value, NaN, and
 /// the values that are nodata by custom: -32768, -32767, -9999, the lowest float. kFill closes them
 /// with a membrane (Laplace's equation) spanned over their rims; places outside the footprint of a
 /// resampled file stay open.

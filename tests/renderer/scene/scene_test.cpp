@@ -294,6 +294,8 @@ TEST(Scene, APlaceIsEnough) {
   const Scene scene = Read(kPlace);
   EXPECT_EQ(scene.medium.name, "earth");
   EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  EXPECT_TRUE(scene.terrain.is_default) << "the range stands in for terrain that nobody named";
+  EXPECT_FALSE(Read(kPlace + "[terrain]\nrange = true\n").terrain.is_default);
   EXPECT_EQ(scene.time, std::nullopt);
   EXPECT_EQ(scene.camera.height, (Height{2.0, true})) << "eye level";
   EXPECT_FALSE(scene.camera.lens.has_value());
@@ -394,6 +396,10 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
 TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
   const Scene scene = SceneFromOptions({});
   EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  EXPECT_FALSE(scene.terrain.is_default) << "at home";
+  SceneOptions elsewhere;
+  elsewhere.longitude = 11.0;
+  EXPECT_TRUE(SceneFromOptions(elsewhere).terrain.is_default) << "other mountains stand there";
   ASSERT_TRUE(scene.terrain.centre.has_value());
   EXPECT_DOUBLE_EQ(scene.terrain.centre->latitude_rad, 46.5 * kRadiansPerDegree);
   EXPECT_NE(scene.place.latitude_rad, scene.terrain.centre->latitude_rad);

@@ -95,6 +95,15 @@ void ExpectRefused(const fs::path& file, const std::string& fault) {
   }
 }
 
+TEST_F(ElevationFile, SaysWhichVerticalDatumItsHeightsCountFrom) {
+  Recipe recipe;
+  EXPECT_EQ(ReadElevation(Write(recipe), VoidPolicy::kFill).vertical_datum, "");
+  recipe.epsg = 9707;  // WGS 84 with heights over EGM96
+  EXPECT_EQ(ReadElevation(Write(recipe), VoidPolicy::kFill).vertical_datum, "EGM96 height");
+  recipe.epsg = 4979;  // WGS 84 with heights over the ellipsoid
+  EXPECT_EQ(ReadElevation(Write(recipe), VoidPolicy::kFill).vertical_datum, "");
+}
+
 TEST_F(ElevationFile, SamplesLieAtThePixelCentres) {
   const ElevationModel model = ReadElevation(Write({}), VoidPolicy::kFill);
   const ElevationGrid& grid = model.grid;
