@@ -16,7 +16,7 @@ std::string FaultAt(const Image& image, std::size_t pixel, std::string_view of, 
 }
 
 std::optional<std::string> FaultOf(const Image& image, const Channel& layer) {
-  const bool is_distance = layer.name.ends_with(".Z");
+  const bool is_distance = layer.name == kDepthChannel;
   const auto fault = std::find_if(layer.values.begin(), layer.values.end(), [&](float value) {
     return is_distance ? !(value >= 0.0F) : !std::isfinite(value);
   });

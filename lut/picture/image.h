@@ -15,8 +15,11 @@ namespace alpenglow {
 /// Pixels along one side of a picture, at most.
 inline constexpr int kLargestImageSide = 32768;
 
-/// A plane of floats, row 0 at the top. A channel whose name ends in ".Z" is of distances, as
-/// OpenEXR's depth channel Z: infinite where a ray meets nothing. Values of all others are finite.
+/// Name of the channel of distances, OpenEXR's depth channel Z in a layer.
+inline constexpr const char* kDepthChannel = "depth.Z";
+
+/// A plane of floats, row 0 at the top. Values of kDepthChannel are not negative, and infinite where
+/// a ray meets nothing; those of all other channels are finite.
 struct Channel {
   std::string name;  // as in the EXR file: "R", "depth.Z", ...
   std::vector<float> values;

@@ -5,6 +5,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
+#include "lut/picture/image.h"
 #include "lut/picture/night_vision.h"
 #include "renderer/ground/scene_geometry.h"
 
@@ -76,7 +77,7 @@ LayerKind InColour(PictureLayer layer, const std::string& name,
 const std::vector<LayerKind>& LayerKinds() {
   using enum PictureLayer;
   static const std::vector<LayerKind> kKinds{
-      {kDepth, "depth", {"depth.Z"}, Depth, nullptr},
+      {kDepth, "depth", {kDepthChannel}, Depth, nullptr},
       {kNormal, "normal", {"normal.X", "normal.Y", "normal.Z"}, Normal, nullptr},
       InColour(kAlbedo, "albedo", FactorOf<&Shaded::albedo>),
       InColour(kInscatter, "inscatter", LightOf<&Shaded::inscatter>),

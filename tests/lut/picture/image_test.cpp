@@ -87,11 +87,13 @@ TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
   image = TestImage();
   image.layers[0].values[5] = kNan;
   EXPECT_NE(fault_of(image).find("pixel (5, 0) of layer depth.Z is nan"), std::string::npos);
-  image.layers[0].name = "lamps.R";
+  image.layers[0].name = "normal.Z";
   image.layers[0].values[5] = 0.0F;
-  EXPECT_NE(fault_of(image).find("of layer lamps.R is inf"), std::string::npos)
+  EXPECT_NE(fault_of(image).find("of layer normal.Z is inf"), std::string::npos)
       << "only distances are infinite where there is nothing";
   EXPECT_EQ(FileCount(), 0U) << "nothing is left, under no name";
+  for (float& value : image.layers[0].values) value = -0.5F;
+  EXPECT_EQ(fault_of(image), "none") << "a ceiling looks down";
 }
 
 // Hard case 44.

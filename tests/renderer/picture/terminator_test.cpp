@@ -24,7 +24,8 @@ const glm::dvec3 kMiddle(0.0, 40.0, kEyeHeight_m);
 class Terminator : public TemporaryFolder {
  protected:
   /// A ball of triangles 12 degrees wide, 40 m north of the eye.
-  Terminator() {
+  void SetUp() override {
+    TemporaryFolder::SetUp();
     constexpr int kColumns = 30, kRows = 15;
     const auto vertex = [&](int row, int column) {
       if (row == 0 || row == kRows) return row == 0 ? 1 : 2;
