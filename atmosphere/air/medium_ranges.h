@@ -19,8 +19,8 @@ inline constexpr Range kCoefficient_per_m{0.0, 1e5};
 /// in float; below, what is allowed depends on the air (kLeastRadiusInScaleHeights and below).
 inline constexpr Range kPlanetRadius_m{1e3, 1e8};
 inline constexpr Range kAtmosphereTop_m{1.0, 1e7};
-/// In layers thinner than 100 m the nodes along a ray leave more than 0.1 % of what is scattered
-/// once (1 m: 3 %). Fog is a medium of its own in pictures.
+/// In a layer of 100 m sixteen nodes along a ray leave 0.2 % (rms) to 1 % of what is scattered once,
+/// and more in thinner ones. Fog is a medium of its own in pictures.
 inline constexpr Range kScaleHeight_m{100.0, 2e5};
 inline constexpr Range kDeficit{0.0, 1.0};
 inline constexpr Range kOzoneAltitude_m{0.0, 1e7};
