@@ -373,6 +373,7 @@ Bands<float> MissedPeak::PeakAt(std::size_t altitude, std::size_t sun) const {
 
 void MissedPeak::Add(std::size_t altitude, std::size_t first_band, Field& field) const {
   const Layout layout(marches_.grid());
+  if (altitude + 1 == marches_.grid().altitudes) return;  // no air lies above the top
   for (std::size_t sun = 0; sun < layout.suns; ++sun) {
     const ViewRay to_sun{1000.0 * marches_.altitude_km(altitude), marches_.mu_s(sun), 1.0, 1.0};
     const Medium& medium = marches_.air().medium();
