@@ -238,7 +238,7 @@ std::vector<HardAir> HardAirs() {
           {"dust", MediumPreset("mars", {450.0, 650.0})}};
 }
 
-// Traced anew: the paths' noise, 1 % at most, is less than what is estimated.
+// Traced anew: the noise of the paths, 1 to 3 %, counts beside the estimate.
 TEST_F(Eval, ErrorsOfLightOfAllOrdersAreTrueInHazeDustAndThickAir) {
   Comparison all;
   std::vector<double> shares;
@@ -252,7 +252,7 @@ TEST_F(Eval, ErrorsOfLightOfAllOrdersAreTrueInHazeDustAndThickAir) {
           RayFromAngles(3000.0, 120.0, 20.0, 40.0), RayFromAngles(10e3, 85.0, 90.0, 70.0),
           RayFromAngles(2.0, 60.0, 10.0, 65.0)}) {
       const auto truth =
-          judge::TraceRadiance(air.medium, ray, {.max_paths = 5000, .relative_error = 5e-3});
+          judge::TraceRadiance(air.medium, ray, {.max_paths = 3000, .relative_error = 1e-2});
       const Estimates found = evaluator->Evaluate({"", 0, Quantity::kTotal, ray});
       for (std::size_t band = 0; band < found.size(); ++band) {
         here.Add(air.name, found[band], truth.total[band], 2.0 * truth.standard_error[band]);
@@ -266,6 +266,28 @@ TEST_F(Eval, ErrorsOfLightOfAllOrdersAreTrueInHazeDustAndThickAir) {
   EXPECT_GE(all.honest, 0.95 * all.compared);
   std::nth_element(shares.begin(), shares.begin() + shares.size() / 2, shares.end());
   EXPECT_LT(shares[shares.size() / 2], 0.15) << "and are of use: the true errors are 4 % (rms)";
+}
+
+TEST_F(Eval, LightOfAllOrdersAgreesWithPathsOverTheSmallestAndTheLargestPlanet) {
+  for (const double radius_m : {25.0 * 8000.0, 1e8}) {
+    Medium medium = MediumPreset("bruneton2017");
+    medium.planet_radius_m = radius_m;
+    const auto evaluator = MakeIntegralEvaluator(medium);
+    const Case prepared{"", 0, Quantity::kTotal, {}};
+    evaluator->Prepare({&prepared, 1});
+    for (const ViewRay& ray :
+         {RayFromAngles(2.0, 40.0, 60.0, 30.0), RayFromAngles(2.0, 85.0, 100.0, 80.0),
+          RayFromAngles(2000.0, 110.0, 30.0, 60.0)}) {
+      const auto truth =
+          judge::TraceRadiance(medium, ray, {.max_paths = 20000, .relative_error = 2e-3});
+      const Estimates found = evaluator->Evaluate({"", 0, Quantity::kTotal, ray});
+      for (std::size_t band = 0; band < found.size(); ++band) {
+        EXPECT_NEAR(found[band].value, truth.total[band],
+                    4.0 * truth.standard_error[band] + 0.005 * truth.total[band])
+            << radius_m << ": four standard errors and twice the rms error over the earth";
+      }
+    }
+  }
 }
 
 std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
