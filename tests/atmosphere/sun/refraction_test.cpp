@@ -188,5 +188,17 @@ TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
   }
 }
 
+TEST(ApparentSun, StandsHigherThanTheSunByTheRefractionFromTheEyesHeight) {
+  const UtcInstant evening = ParseInstant("2026-06-21T18:50:00Z");
+  for (const double height_m : {0.0, 10e3}) {
+    const GeodeticPosition eye = PlaceFromDegrees(47.0, 8.0, height_m);
+    const SunPosition sun = SunAt(eye, evening), apparent = ApparentSunAt(eye, evening);
+    EXPECT_EQ(apparent.elevation_rad,
+              sun.elevation_rad + RefractionFromHeight(sun.elevation_rad, height_m));
+    EXPECT_GT(apparent.elevation_rad, sun.elevation_rad);
+    EXPECT_EQ(apparent.azimuth_rad, sun.azimuth_rad);
+  }
+}
+
 }  // namespace
 }  // namespace alpenglow
