@@ -111,7 +111,8 @@ double Ev100Of(const RenderedSky& sky, const ExposureRule& rule, const Look& loo
     case ExposureRule::Kind::kMetered:
       break;
   }
-  return MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2);
+  return MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2,
+                    Projection::kLatitudeLongitude);
 }
 
 /// Whatever would keep the picture from its files, before the picture is made.

@@ -129,7 +129,8 @@ int Run(const SkyseriesOptions& options) {
       MetadataOf(scene, path, settings, options),
       scene.place,
       scene.zone,
-      path};
+      path,
+      scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     if (summary.removed > 0) {

@@ -88,9 +88,12 @@ inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 
 /// EV100 that a histogram meter picks: mean log luminance between the 40th and 95th percentile
 /// mapped to middle grey by K = 12.5; pixels brighter than `ignore_above_cd_per_m2` (the sun's
-/// disk) and pixels without light do not count. Within [kDarkestEv100, kBrightestEv100]; a picture
+/// disk), pixels without light, and those that stay black beside the rest (from 10 stops below the
+/// 95th percentile on their weight fades, to nothing at 14: space) do not count. Pixels of a
+/// panorama weigh as their solid angle. Within [kDarkestEv100, kBrightestEv100]; a picture
 /// without light gives kDarkestEv100.
-[[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2);
+[[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2,
+                                Projection projection = Projection::kCamera);
 
 enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
 

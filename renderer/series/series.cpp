@@ -147,7 +147,8 @@ class Series {
       case ExposureRule::Kind::kMetered:
         break;
     }
-    return MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2);
+    return MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2,
+                      source_.ProjectionOf(frame));
   }
 
   void Write(const Frame& frame, const NotedPicture& picture, double ev100, bool rendered) {
@@ -239,6 +240,13 @@ std::size_t RemoveLeftovers(const SeriesOutput& output) {
 }
 
 }  // namespace
+
+Projection SeriesSource::ProjectionOf(const Frame& frame) const {
+  if (!path) return projection;
+  Camera camera;
+  camera.fov_rad = path->PoseAt(frame.path_s).fov_rad;
+  return camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera;
+}
 
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
                         const std::vector<Frame>& selected, const SeriesOutput& output) {

@@ -42,12 +42,14 @@ struct SeriesSource {
   Metadata settings;
   GeodeticPosition place;
   std::optional<std::string> zone;
-  std::optional<CameraPath> path;  // that Frame::path_s is on
+  std::optional<CameraPath> path;               // that Frame::path_s is on
+  Projection projection = Projection::kCamera;  // without a path
 
   /// Of the eye of a frame.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : place;
   }
+  [[nodiscard]] Projection ProjectionOf(const Frame& frame) const;
 };
 
 /// How the pictures are exposed and where they go.

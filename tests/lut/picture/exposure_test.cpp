@@ -62,6 +62,58 @@ TEST(Exposure, BlackSpaceDoesNotCount) {
   EXPECT_DOUBLE_EQ(MeterEv100(image, kNotTheDisk_cd_per_m2), uniform);
 }
 
+// The lower rows of a picture are lit ground, the others have a luminance of their own.
+Image GroundUnder(float sky_cd_per_m2, int rows_of_ground) {
+  Image image = Uniform(6000.0F);
+  for (int x = 0; x < 40; ++x) {
+    for (int y = 0; y < 40 - rows_of_ground; ++y) image.at(x, y).fill(sky_cd_per_m2);
+  }
+  return image;
+}
+
+TEST(Exposure, SpaceDoesNotCountThoughSomeAirIsLeftInIt) {
+  // From 100 km up the sky at noon has 0.003 to 0.1 cd/m^2, the ground 6000.
+  const double ground = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  for (const float sky : {0.003F, 0.1F}) {
+    EXPECT_DOUBLE_EQ(MeterEv100(GroundUnder(sky, 12), kNotTheDisk_cd_per_m2), ground) << sky;
+  }
+}
+
+TEST(Exposure, ShadeOnTheGroundCounts) {
+  const double even = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  // 70 % of the picture 9 stops darker: between shares of 40 and 95 % that is 30 of 55.
+  const double shaded = MeterEv100(GroundUnder(6000.0F / 512.0F, 12), kNotTheDisk_cd_per_m2);
+  EXPECT_NEAR(shaded, even - 9.0 * 30.0 / 55.0, 1.0 / 16.0) << "bins of a 16th of a stop";
+}
+
+TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
+  double before = MeterEv100(GroundUnder(100.0F, 18), kNotTheDisk_cd_per_m2);
+  for (double stops = 0.0; stops < 14.0; stops += 0.0625) {
+    const auto sky = static_cast<float>(100.0 * std::exp2(-stops));
+    const double now = MeterEv100(GroundUnder(sky, 18), kNotTheDisk_cd_per_m2);
+    EXPECT_NEAR(now, before, 0.2)
+        << "the sky fades by a 16th of a stop from picture to picture; a cut would be 4 stops";
+    before = now;
+  }
+}
+
+TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
+  // Beyond 30 degrees of latitude lies half of the sphere, on two thirds of the rows.
+  Image panorama(8, 96), half(8, 96);
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 96; ++y) {
+      panorama.at(x, y).fill(y < 32 || y >= 64 ? 100.0F : 1000.0F);
+      half.at(x, y).fill(y < 48 ? 100.0F : 1000.0F);
+    }
+  }
+  EXPECT_NEAR(MeterEv100(panorama, kNotTheDisk_cd_per_m2, Projection::kLatitudeLongitude),
+              MeterEv100(half, kNotTheDisk_cd_per_m2), 1e-3)
+      << "rows of 2 degrees are taken at their middles";
+  EXPECT_LT(MeterEv100(panorama, kNotTheDisk_cd_per_m2),
+            MeterEv100(half, kNotTheDisk_cd_per_m2) - 0.5)
+      << "as a picture of a camera two thirds are dark";
+}
+
 TEST(Exposure, TheMeterHasLimits) {
   EXPECT_EQ(MeterEv100(Uniform(0.0F), kNotTheDisk_cd_per_m2), kDarkestEv100);
   EXPECT_EQ(MeterEv100(Uniform(-1.0F), kNotTheDisk_cd_per_m2), kDarkestEv100);
