@@ -192,6 +192,7 @@ function(alpenglow_tests program)
     add_dependencies(${program} ${other})
   endforeach()
   target_precompile_headers(${program} REUSE_FROM alpenglow_test_headers)
+  set(cache "ALPENGLOW_CACHE=${PROJECT_BINARY_DIR}/cache")  # not the one of who tests
   set(whole "")
   foreach(source ${arg_WHOLE})
     get_filename_component(name ${source} NAME_WE)
@@ -202,11 +203,12 @@ function(alpenglow_tests program)
     string(APPEND whole ":${filter}")
     add_test(NAME ${arg_FOLDER}.${name} COMMAND ${program} --gtest_filter=${filter})
     # Long ones start first, so that no processor waits for them in the end.
-    set_tests_properties(${arg_FOLDER}.${name} PROPERTIES TIMEOUT 900 COST 100)
+    set_tests_properties(${arg_FOLDER}.${name} PROPERTIES
+      TIMEOUT 900 COST 100 ENVIRONMENT "${cache}")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
   endforeach()
   gtest_discover_tests(${program} TEST_PREFIX "${arg_FOLDER}." TEST_FILTER "-${whole}"
-    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${cache}")
 endfunction()
 
 # The package that find_package(alpenglow) reads.

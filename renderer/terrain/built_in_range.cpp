@@ -16,6 +16,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "renderer/terrain/erosion.h"
+#include "renderer/terrain/kept_heights.h"
 #include "renderer/terrain/land.h"
 #include "renderer/terrain/lattice_noise.h"
 #include "renderer/terrain/range_shape.h"
@@ -143,10 +144,15 @@ Land RangeLand() {
   return land;
 }
 
-// Made once a process: it is the same wherever it stands. Isolated, so that a thread that waits for
+// Found once a process: it is the same wherever it stands. Isolated, so that a thread that waits for
 // its parts does not take up another task that waits for the land.
 const Land& TheLand() {
-  static const Land kLand = tbb::this_task_arena::isolate([] { return RangeLand(); });
+  static const Land kLand = tbb::this_task_arena::isolate([] {
+    Land land = GridOf(kRangeSize);
+    land.height_m = KeptHeights({"range", kBuiltInRangeFingerprint, land.index(land.size, 0)},
+                                MadeRangeHeights);
+    return land;
+  });
   return kLand;
 }
 
@@ -281,6 +287,8 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
 }
 
 }  // namespace
+
+std::vector<float> MadeRangeHeights() { return RangeLand().height_m; }
 
 ElevationGrid BuiltInRange(const GeodeticPosition& centre) {
   RequireInRange(centre.latitude_rad, -0.5 * kPi, 0.5 * kPi, "latitude_rad");

@@ -2,6 +2,9 @@
 // A mountain range that needs no file: alpine chains of 70 km x 70 km, generated and eroded.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/terrain/elevation.h"
 
@@ -11,6 +14,12 @@ namespace alpenglow {
 /// southwards, one peak above all. Its heights are the same bytes on every machine with IEEE
 /// arithmetic, for any number of threads and any centre; it falls to 0 m at the rim.
 [[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre);
+
+/// Of its heights, see FingerprintOf (kept_heights.h). It changes with the range.
+inline constexpr std::uint64_t kBuiltInRangeFingerprint = 15784046122448507333ULL;
+
+/// Its heights, rows from the north, made anew: BuiltInRange keeps them between runs.
+[[nodiscard]] std::vector<float> MadeRangeHeights();
 
 /// An eye and where it looks.
 struct BuiltInView {
