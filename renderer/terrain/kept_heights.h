@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Heights that take a second to make and are always the same, kept between runs.
 //
-// One file of floats, as this machine has them, per name, NAME-FINGERPRINT.f32, in the folder that ALPENGLOW_CACHE names, else
-// in $XDG_CACHE_HOME/alpenglow, else in ~/.cache/alpenglow; an empty ALPENGLOW_CACHE keeps nothing.
-// The fingerprint of what is wanted is known to the program, so that nothing old, foreign or
-// damaged is ever taken for it. Files are written whole or not at all, so any number of processes
-// may share the folder; older ones of the same name are removed, which bounds its size.
+// One file a name, NAME-FINGERPRINT.f32 (floats as the machine has them), in the folder that
+// ALPENGLOW_CACHE names, else in $XDG_CACHE_HOME/alpenglow, else in ~/.cache/alpenglow; an empty
+// ALPENGLOW_CACHE keeps nothing. The fingerprint of what is wanted is known to the program, so that
+// nothing old, foreign or damaged is ever taken for it. Files are written whole or not at all, so
+// any number of processes may share the folder; older ones of the same name are removed, which
+// bounds its size.
 #pragma once
 
 #include <cstddef>
