@@ -56,6 +56,14 @@ class Skyseries : public BareSceneFolder {
   }
 };
 
+TEST_F(Skyseries, TellsWhatItPreparesAndHowMuchOfAFrameIsDone) {
+  const Outcome outcome = Run(SmallStill() + " --progress json");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error, HasSubstr("{\"label\":\"frames\",\"step\":\"air\","));
+  EXPECT_THAT(outcome.error, HasSubstr("{\"label\":\"frames\",\"done\":0,\"part\":0."));
+  EXPECT_THAT(outcome.error, HasSubstr("{\"label\":\"frames\",\"done\":1,\"total\":1,"));
+}
+
 TEST_F(Skyseries, HelpIsTheManual) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0);
