@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/text/error.h"
 
+#include <fmt/format.h>
+
 namespace alpenglow {
 
 double RequireInRange(double value, double low, double high, std::string_view name) {
@@ -8,6 +10,16 @@ double RequireInRange(double value, double low, double high, std::string_view na
     throw InputError(fmt::format("{} is {}; it must lie in [{}, {}]", name, value, low, high));
   }
   return value;
+}
+
+std::string EnsuredText(double value) { return fmt::format("{}", value); }
+std::string EnsuredText(long long value) { return fmt::format("{}", value); }
+std::string EnsuredText(unsigned long long value) { return fmt::format("{}", value); }
+
+void FailEnsured(const char* file, int line, const char* claim, const std::string& left,
+                 const std::string& right) {
+  throw InternalError(
+      fmt::format("{}:{}: expected {}, got {} and {}", file, line, claim, left, right));
 }
 
 }  // namespace alpenglow
