@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Headers that most files read, read once: compiling takes a third less time. Each file still includes what
-// it uses; CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows that it does.
+// Headers that most files read, read once. Each file still includes what it uses:
+// CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows that it does.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/build_command.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 #include <string>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // skyseries: pictures of a scene through the day. A still is a series of one.
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "renderer/report_command.h"

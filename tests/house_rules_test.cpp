@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rules of the house that no compiler knows.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -31,8 +31,8 @@ enum class Command {
 /// ..., -60, -1, 0, 1, 60, ...
 [[nodiscard]] double SteppedTimeRate(double rate, int step);
 
-/// Exposure that follows the meter like an eye: half way in 0.3 s. A first exposure is the
-/// metered one.
+/// Exposure that follows the meter like an eye: half
+/// way in 0.3 s. A first exposure is the metered one.
 [[nodiscard]] double AdaptedEv100(std::optional<double> before, double metered, double seconds);
 
 /// Throws InputError unless the file's name ends in .png or .exr.

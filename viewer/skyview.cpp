@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // skyview: a flight through a scene, on the graphics card.
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "atmosphere/number/constants.h"

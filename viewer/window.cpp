@@ -4,6 +4,7 @@
 // libepoxy has the functions of OpenGL; GLFW must not declare them again.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
 #include <utility>
 

@@ -34,6 +34,8 @@
 //   optical depth tau        tau / H_M
 // and (lambda / 550 nm)^-angstrom_exponent elsewhere, scattering keeping the preset's share; or the
 // mixture's own spectrum and share.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>

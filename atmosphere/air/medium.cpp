@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/air/medium.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

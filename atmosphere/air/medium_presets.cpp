@@ -5,6 +5,8 @@
 // one exponential layer; single scattering albedo and mean cosine of OPAC mixtures at 80 % relative
 // humidity (Hess, Koepke and Schult 1998, Bull. Amer. Meteor. Soc. 79, 831-844); the g of Cornette
 // and Shanks is the one whose mean cosine, 3 g (4 + g^2) / (5 (2 + g^2)), is the mixture's.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -15,19 +15,19 @@ inline constexpr Range kSolarIrradiance{0.0, 1e6};
 inline constexpr Range kAlbedo{0.0, 1.0};
 /// Up to an optical depth of 1e5 in a layer of 1 m.
 inline constexpr Range kCoefficient_per_m{0.0, 1e5};
-/// Beyond 1e8 m (40 % more than Jupiter) light along grazing rays is wrong by 0.1 % in double and 1 %
-/// in float; below, what is allowed depends on the air (kLeastRadiusInScaleHeights and below).
+/// Beyond 1e8 m (40 % more than Jupiter) light along grazing rays is wrong by 0.1 % in double and 1
+/// % in float; below, what is allowed depends on the air (kLeastRadiusInScaleHeights and below).
 inline constexpr Range kPlanetRadius_m{1e3, 1e8};
 inline constexpr Range kAtmosphereTop_m{1.0, 1e7};
-/// In a layer of 100 m sixteen nodes along a ray leave 0.2 % (rms) to 1 % of what is scattered once,
-/// and more in thinner ones. Fog is a medium of its own in pictures.
+/// In a layer of 100 m sixteen nodes along a ray leave 0.2 % (rms) to 1 % of what is scattered
+/// once, and more in thinner ones. Fog is a medium of its own in pictures.
 inline constexpr Range kScaleHeight_m{100.0, 2e5};
 inline constexpr Range kDeficit{0.0, 1.0};
 inline constexpr Range kOzoneAltitude_m{0.0, 1e7};
 
-/// Radius over scale height. Columns are two terms of a series in its inverse (optical_depth.glsl)
-/// that leave 0.19 of its square: 3e-4 of an optical depth here, at most 1e-3 of light scattered
-/// once.
+/// Radius over scale height. Columns are two terms of a series in its
+/// inverse (optical_depth.glsl) that leave 0.19 of its square: 3e-4
+/// of an optical depth here, at most 1e-3 of light scattered once.
 inline constexpr double kLeastRadiusInScaleHeights = 25.0;
 /// Radius over the top of a smooth layer of ozone, whose rule of nodes goes wrong by 5e-4 of its
 /// column here, by 1e-2 at half of it and by any amount beyond.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/air/medium_toml.h"
 
+#include <fmt/format.h>
+
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/text/error.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/air/phase.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,8 +43,8 @@ double MeanCosineOfSchlick(double k) {
   return (1.0 - (1.0 - k) * (1.0 + k) / k * std::atanh(k)) / k;
 }
 
-// Moments of the Henyey-Greenstein lobe are <c> = g, <c^2> = (1 + 2 g^2)/3, <c^3> = (3 g + 2
-// g^3)/5.
+// Moments of the Henyey-Greenstein lobe are <c> = g,
+// <c^2> = (1 + 2 g^2)/3, <c^3> = (3 g + 2 g^3)/5.
 double MeanCosineOfDraine(double g, double alpha) {
   return g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
 }
@@ -55,9 +57,9 @@ double HenyeyGreensteinQuantile(double s, double g) {
          (2.0 * x * x);
 }
 
-// Integral of HenyeyGreensteinQuantile(s, g)^2 from -1 to s, for g in [0, 1). The closed form
-// divides by g^3; below 0.1 eight Gauss points are exact to rounding (the integrand's pole is at
-// -1/g).
+// Integral of HenyeyGreensteinQuantile(s, g)^2 from -1 to s, for g in
+// [0, 1). The closed form divides by g^3; below 0.1 eight Gauss
+// points are exact to rounding (the integrand's pole is at -1/g).
 double IntegratedSquareOfQuantile(double s, double g) {
   if (g < 0.1) {
     constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290,

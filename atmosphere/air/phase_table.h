@@ -3,12 +3,12 @@
 //
 //   s = (theta / pi)^(1/3)
 //
-// The samples are joined by cubics in (theta, log p): positive, with the slopes of parabolas
-// through three neighbours, level at 0 and 180 degrees where symmetry asks for it. That curve is
-// taken at kNodes uniform s, which give a forward peak a hundredth of a degree wide as many nodes
-// as the rest, and scaled to an integral of 1. From then on the function *is* the broken line in s
-// through the nodes: values, moments and samples belong to the same function, here and on graphics
-// cards.
+// The samples are joined by cubics in (theta, log p): positive, with the slopes of
+// parabolas through three neighbours, level at 0 and 180 degrees where symmetry asks
+// for it. That curve is taken at kNodes uniform s, which give a forward peak a
+// hundredth of a degree wide as many nodes as the rest, and scaled to an integral of 1.
+// From then on the function *is* the broken line in s through the nodes: values,
+// moments and samples belong to the same function, here and on graphics cards.
 #pragma once
 
 #include <array>

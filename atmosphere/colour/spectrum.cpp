@@ -2,6 +2,8 @@
 // Published tables and the formulas on them. Colour is in colour.cpp and band_colour.cpp.
 #include "atmosphere/colour/spectrum.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>

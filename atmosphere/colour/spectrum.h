@@ -30,14 +30,13 @@ class SampledFunction {
 /// Numbers of bands that WavelengthSet knows.
 inline constexpr std::array<int, 7> kWavelengthSetSizes{3, 4, 5, 6, 8, 16, 40};
 
-/// Wavelengths [nm] of so many bands; throws InputError for a number that is not in
-/// kWavelengthSetSizes. 3 to 6 are optimised for colour (data/band_matrices.csv); 8, 16 and 40 are
-/// uniform.
+/// Wavelengths [nm] of so many bands; throws InputError for a
+/// number that is not in kWavelengthSetSizes. 3 to 6 are optimised
+/// for colour (data/band_matrices.csv); 8, 16 and 40 are uniform.
 [[nodiscard]] std::vector<double> WavelengthSet(int bands);
 
-/// Solar spectral irradiance at 1 au [W m^-2 nm^-1], mean over 10 nm around the wavelength.
-/// ASTM G173-03 (Gueymard). @param wavelength_nm in [300, 900], clamped to the ends of the table
-/// beyond.
+/// Solar spectral irradiance at 1 au [W m^-2 nm^-1], mean over 10 nm around the wavelength. ASTM
+/// G173-03 (Gueymard). @param wavelength_nm in [300, 900], clamped to the ends of the table beyond.
 [[nodiscard]] double SolarIrradiance(double wavelength_nm);
 
 /// Rayleigh scattering coefficient of dry air at sea level, 288.15 K, 1013.25 hPa [1/m].
@@ -45,12 +44,12 @@ inline constexpr std::array<int, 7> kWavelengthSetSizes{3, 4, 5, 6, 8, 16, 40};
 /// @param wavelength_nm in [250, 4000].
 [[nodiscard]] double RayleighScatteringAtSeaLevel(double wavelength_nm);
 
-/// Ozone absorption cross section at 233 K [m^2 per molecule], linear in a 10 nm table, 0 outside
-/// it.
+/// Ozone absorption cross section at 233 K [m^2 per molecule],
+/// linear in a 10 nm table, 0 outside it.
 [[nodiscard]] double OzoneCrossSection(double wavelength_nm);
 
-/// CIE 1931 2-degree colour-matching functions at a wavelength, linear in the 5 nm table, 0
-/// outside.
+/// CIE 1931 2-degree colour-matching functions at a
+/// wavelength, linear in the 5 nm table, 0 outside.
 [[nodiscard]] std::array<double, 3> ColourMatching(double wavelength_nm);
 
 /// CIE 1951 scotopic luminous efficiency, that of the rods, linear in the 10 nm table, 0 outside.
@@ -78,8 +77,8 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 /// 95th percentile: 3 bands 0.9 and 2.5, 4 bands 0.2 and 0.6, 5 bands 0.08 and 0.2, 6 bands 0.03
 /// and 0.08, 8 bands 0.03 and 0.1, 16 and 40 bands 0.02 and 0.05; of {450, 500, 590, 650}, which is
 /// not trained, 0.7 and 1.6. Against integration in 0.5 nm steps over 513 skies and suns of three
-/// atmospheres by single scattering (tests/atmosphere/colour/spectrum_test.cpp), and against 5 nm steps
-/// over skies of all orders, land, sun and ground from 60 degrees down to -10
+/// atmospheres by single scattering (tests/atmosphere/colour/spectrum_test.cpp), and against 5 nm
+/// steps over skies of all orders, land, sun and ground from 60 degrees down to -10
 /// (tests/lut/train/band_training_test.cpp).
 class BandColour {
  public:
@@ -117,8 +116,8 @@ class BandColour {
 [[nodiscard]] std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
                                                        std::span<const double> wavelengths_nm);
 
-/// Colour difference CIEDE2000 of two XYZ colours relative to `white` (CIE 142-2001; Sharma et al.
-/// 2005).
+/// Colour difference CIEDE2000 of two XYZ colours relative
+/// to `white` (CIE 142-2001; Sharma et al. 2005).
 [[nodiscard]] double Ciede2000(const std::array<double, 3>& xyz_a,
                                const std::array<double, 3>& xyz_b,
                                const std::array<double, 3>& white);

@@ -9,8 +9,9 @@ namespace alpenglow {
 /// end values beyond.
 [[nodiscard]] double WaterAbsorption(double wavelength_nm);
 
-/// Scattering coefficient of pure sea water [1/m], half of it backwards: 0.00288 (lambda /
-/// 500 nm)^-4.32, Morel (1974), Optical Properties of Pure Water and Pure Sea Water.
+/// Scattering coefficient of pure sea water [1/m], half of it backwards: 0.00288
+/// (lambda / 500 nm)^-4.32, Morel (1974), Optical Properties of Pure Water and
+/// Pure Sea Water.
 [[nodiscard]] double SeaWaterScattering(double wavelength_nm);
 
 /// Absorption coefficient of pure ice [1/m], 4 pi k / lambda: Warren, Brandt (2008), J. Geophys.

@@ -35,8 +35,8 @@ enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 /// "sse2", "neon" or "scalar" for the baseline, "avx2", "avx512".
 [[nodiscard]] std::string_view NameOf(InstructionSet set);
 
-/// The sets that this program was built for and this processor and its operating system have,
-/// ascending.
+/// The sets that this program was built for and this
+/// processor and its operating system have, ascending.
 [[nodiscard]] const std::vector<InstructionSet>& AvailableInstructionSets();
 
 /// The set that kernels use: the last available one, or the one that the environment variable

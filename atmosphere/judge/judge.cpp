@@ -54,9 +54,9 @@ Columns Densities(const Medium& medium, Extended altitude) {
   return {molecules, std::exp(-h / medium.mie_scale_height_m), ozone};
 }
 
-// Where the integrands along the line have a kink or bend hard: tent edges, perigee, and a ladder
-// of altitudes that brackets both scale heights so that no layer hides between the nodes of a first
-// panel.
+// Where the integrands along the line have a kink or bend hard: tent
+// edges, perigee, and a ladder of altitudes that brackets both scale
+// heights so that no layer hides between the nodes of a first panel.
 std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
   std::vector<double> points{begin, end};
   const Extended perigee = line.Perigee();
@@ -72,10 +72,10 @@ std::vector<double> Breakpoints(const Medium& medium, const Line& line, double b
   return points;
 }
 
-// Where the sunbeam that meets the view line at distance t has its perigee at altitude z: the line
-// leaves the cylinder of radius R + z around the axis from the planet's centre to the sun. The
-// tent's edges make the integrand there kink like (t - t0)^1.5, which no error estimate sees in
-// time.
+// Where the sunbeam that meets the view line at distance t has its perigee at
+// altitude z: the line leaves the cylinder of radius R + z around the axis
+// from the planet's centre to the sun. The tent's edges make the integrand
+// there kink like (t - t0)^1.5, which no error estimate sees in time.
 void AppendSunPerigees(const Line& line, const ViewRay& ray, Extended z, double begin, double end,
                        std::vector<double>& points) {
   const Extended nu = ray.nu;

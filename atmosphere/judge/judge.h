@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The judges: slow, plainly right answers that every fast method is held against.
 //
-// Optical depth and single scattering along any ray, by adaptive Gauss-Legendre quadrature in the
-// distance. Positions are taken in extended precision from the plain formula sqrt(r^2 + 2 r mu t +
-// t^2) - R; nothing here uses the shared texts, the closed forms or the tables.
+// Optical depth and single scattering along any ray, by adaptive Gauss-Legendre
+// quadrature in the distance. Positions are taken in extended precision from the plain
+// formula sqrt(r^2 + 2 r mu t + t^2) - R; nothing here uses the shared texts, the closed
+// forms or the tables.
 #pragma once
 
 #include <vector>
@@ -13,9 +14,9 @@
 
 namespace alpenglow::judge {
 
-/// Optical depth at every wavelength, from the observer to the end of the ray (ray.length_m, ground
-/// or top). Relative error below 1e-10 (asserted against stored cases to 1e-8 and against closed
-/// forms).
+/// Optical depth at every wavelength, from the observer to the end of the
+/// ray (ray.length_m, ground or top). Relative error below 1e-10
+/// (asserted against stored cases to 1e-8 and against closed forms).
 struct OpticalDepth {
   std::vector<double> tau;
   bool blocked = false;  // the ray meets the ground

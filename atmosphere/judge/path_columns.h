@@ -2,10 +2,10 @@
 // Columns of air along straight lines, for the path tracer: thousands of times faster than
 // judge.cpp, and as independent as it is of the shared texts and closed forms.
 //
-// A line is described by its perigee's distance p from the planet's centre; s is the distance along
-// it, counted from the perigee, mu = s / r its zenith cosine. With y = r (w^2 - mu^2) / 2, the
-// climb from radius r, nothing is singular at the perigee, and an exponential layer's column
-// outwards is
+// A line is described by its perigee's distance p from the planet's centre; s
+// is the distance along it, counted from the perigee, mu = s / r its zenith
+// cosine. With y = r (w^2 - mu^2) / 2, the climb from radius r, nothing is
+// singular at the perigee, and an exponential layer's column outwards is
 //
 //   exp(-h / H) F(r, mu),   F = integral over w >= mu of
 //                               exp(-y / H) (r + y) / sqrt(1 + ((w^2 - mu^2) / 2w)^2) dw

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/judge/path_tracer.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

@@ -126,8 +126,8 @@ class LampRay {
 
   [[nodiscard]] double XOf(double t) const { return std::asinh((t - nearest_m_) / approach_m_); }
 
-  // The tail beyond holds less than 1e-9 of the light: d has grown by as much, or 45 optical depths
-  // lie behind.
+  // The tail beyond holds less than 1e-9 of the light: d
+  // has grown by as much, or 45 optical depths lie behind.
   [[nodiscard]] double HomogeneousEnd() const {
     double extinction = 0.0;
     for (const LampLayer& layer : air_.layers) {

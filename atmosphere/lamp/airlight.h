@@ -41,8 +41,8 @@ struct LampSegment {
 inline constexpr int kFewestLampNodes = 2;
 inline constexpr int kMostLampNodes = 64;
 
-/// Radiance in-scattered along the segment towards its origin, for unit intensity [sr^-1 m^-2], in
-/// every band.
+/// Radiance in-scattered along the segment towards its
+/// origin, for unit intensity [sr^-1 m^-2], in every band.
 ///
 /// @param nodes  of all Gauss rules together, in [kFewestLampNodes, kMostLampNodes]; each lit piece
 ///               of the ray has at least two, so that a beam may need some more.

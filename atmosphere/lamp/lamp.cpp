@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/lamp/lamp.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>

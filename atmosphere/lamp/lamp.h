@@ -99,8 +99,8 @@ struct LampAir {
 [[nodiscard]] Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
                                                  const glm::dvec3& to);
 
-/// Column [m] over a length between points of relative densities rho_a and rho_b, rise_over_h =
-/// (z_b - z_a) / H scale heights apart.
+/// Column [m] over a length between points of relative densities rho_a and rho_b,
+/// rise_over_h = (z_b - z_a) / H scale heights apart.
 [[nodiscard]] double ExponentialColumn(double length_m, double rho_a, double rho_b,
                                        double rise_over_h);
 

@@ -5,8 +5,8 @@
 
 namespace alpenglow {
 
-/// Point number i >= 0 of the sequence of a base >= 2: the digits of i mirrored at the point, in
-/// [0, 1).
+/// Point number i >= 0 of the sequence of a base >= 2:
+/// the digits of i mirrored at the point, in [0, 1).
 [[nodiscard]] constexpr double Halton(int i, int base) {
   double value = 0.0, digit = 1.0;
   for (; i > 0; i /= base) value += (digit /= base) * (i % base);

@@ -19,9 +19,9 @@ struct GaussRule {
 
 inline constexpr int kMaxGaussNodes = 64;
 
-/// The rule of n nodes, 1 <= n <= kMaxGaussNodes, nodes ascending. Computed once by Newton's method
-/// on the Legendre recurrence (Abramowitz and Stegun 25.4.29); nodes and weights are right to
-/// 1e-15.
+/// The rule of n nodes, 1 <= n <= kMaxGaussNodes, nodes ascending.
+/// Computed once by Newton's method on the Legendre recurrence
+/// (Abramowitz and Stegun 25.4.29); nodes and weights are right to 1e-15.
 [[nodiscard]] const GaussRule& GaussLegendre(int n);
 
 /// Integral of a vector-valued function over consecutive panels, and an estimate of its error.

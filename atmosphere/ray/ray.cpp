@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/ray/ray.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -35,8 +35,8 @@ struct RayEntry {
   double altitude_km, mu, mu_s, nu;
 };
 
-/// A panel of a ray (ray_panels.h) and the Gauss rule for it, both rows padded with zeros to whole
-/// lanes.
+/// A panel of a ray (ray_panels.h) and the Gauss rule
+/// for it, both rows padded with zeros to whole lanes.
 template <typename Real>
 struct PanelRule {
   Real begin, end;

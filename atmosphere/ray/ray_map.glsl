@@ -6,9 +6,9 @@
 //
 //   t = length sinh(b v) / sinh(b),   b = 1.3 ln(2 length / half)
 //
-// where `half` is the distance to 10 km above the lower end, or 10 optical depths if less: beyond
-// it nodes thin out exponentially, as the air does. With g = exp(b v) this costs no further
-// exponential.
+// where `half` is the distance to 10 km above the lower end, or 10
+// optical depths if less: beyond it nodes thin out exponentially, as
+// the air does. With g = exp(b v) this costs no further exponential.
 //
 // A gentle stretch, 1.1 ln(2 length / half) and 12 km, has fewer nodes at the lower end: for panels
 // that get no more of them where that end is hard to integrate, and for those that begin behind an

@@ -61,8 +61,8 @@ enum class ViewColumns {
   kBetweenSamples
 };
 
-/// Points along a ray, structure of arrays. Lengths in km, measured from where the ray enters the
-/// air.
+/// Points along a ray, structure of arrays. Lengths
+/// in km, measured from where the ray enters the air.
 template <typename Real>
 struct alignas(64) RaySamples {
   using Row = std::array<Real, kMaxRaySamples>;

@@ -1,8 +1,8 @@
 // Rays in a spherical shell. Altitudes and distances in km, radius R of the planet in km.
 //
 // Every formula carries the altitude h, never the radius r = R + h, and never forms r^2: in single
-// precision sqrt(r^2 - R^2) at 2 m is wrong by 3 %, sqrt(h (2 R + h)) is not. Differences of squares are
-// factored and quadratic roots taken in conjugate form.
+// precision sqrt(r^2 - R^2) at 2 m is wrong by 3 %, sqrt(h (2 R + h)) is not. Differences of
+// squares are factored and quadratic roots taken in conjugate form.
 
 // Altitude at distance d along the ray from altitude h with zenith cosine mu:
 //   q = d (d + 2 r mu),   h + q / (sqrt(r^2 + q) + r).
@@ -18,8 +18,8 @@ SHARED Number ZenithCosineAlongRay(Length h, Number mu, Length d, Length h_d, Le
   return min(max(cosine, Number(-1.0)), Number(1.0));
 }
 
-// Cosine of the zenith angle of a fixed direction (the sun), mu_s at the origin of the ray, at distance d
-// along it; nu is the cosine between the ray and that direction.
+// Cosine of the zenith angle of a fixed direction (the sun), mu_s at the origin of the ray, at
+// distance d along it; nu is the cosine between the ray and that direction.
 SHARED Number SunCosineAlongRay(Length h, Number mu_s, Number nu, Length d, Length h_d, Length R) {
   Number cosine = ((R + h) * mu_s + d * nu) / (R + h_d);
   return min(max(cosine, Number(-1.0)), Number(1.0));
@@ -47,8 +47,9 @@ SHARED Length DistanceUpTo(Length h, Number mu, Length z, Length R) {
   return select(a > Length(0.0), b / max(a + root, Length(1e-30)), root - a);
 }
 
-// Distance to where a descending ray first reaches altitude z <= h; meaningful only if it does, that is
-// mu < 0 and the perigee lies below z. At a perigee within rounding of z the root is clamped to 0.
+// Distance to where a descending ray first reaches altitude z <= h; meaningful only if it does,
+// that is mu < 0 and the perigee lies below z. At a perigee within rounding of z the root is
+// clamped to 0.
 SHARED Length DistanceDownTo(Length h, Number mu, Length z, Length R) {
   Length a = (R + h) * mu;
   Length c = max((h - z) * (Number(2.0) * R + h + z), Length(0.0));

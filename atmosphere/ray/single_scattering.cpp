@@ -138,9 +138,9 @@ void PlaceSamples(const RayPanels& panels, RaySamples<Real>& samples) {
   CloseSamples(samples.count, samples);
 }
 
-// Column of a layer along [begin, end] km from the entry by 8 Gauss nodes: exact to 1e-7 relative
-// while the density is smooth and the altitudes span less than 6 scale heights, however short the
-// segment.
+// Column of a layer along [begin, end] km from the entry by 8 Gauss
+// nodes: exact to 1e-7 relative while the density is smooth and the
+// altitudes span less than 6 scale heights, however short the segment.
 template <typename Density>
 double ShortColumn(const RayEntry& entry, double begin, double end, double radius,
                    const Density& density) {

@@ -23,8 +23,8 @@
 
 namespace alpenglow {
 
-/// A medium made ready for evaluation in Real = float or double. Immutable, safe to share between
-/// threads.
+/// A medium made ready for evaluation in Real = float
+/// or double. Immutable, safe to share between threads.
 template <typename Real>
 class AirIntegrator {
  public:
@@ -41,8 +41,8 @@ class AirIntegrator {
   /// depth) for altitudes in [0, top]. The direction must not meet the ground.
   [[nodiscard]] std::array<Real, 3> ColumnsToSpace(double altitude_m, double mu) const;
 
-  /// The same for many points and directions, as many of the one as of the other: molecules,
-  /// aerosol, ozone.
+  /// The same for many points and directions, as many of
+  /// the one as of the other: molecules, aerosol, ozone.
   [[nodiscard]] std::array<std::vector<Real>, 3> ColumnsToSpace(std::span<const Real> altitudes_m,
                                                                 std::span<const Real> mu) const;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The rotation of the earth against atomic time, and leap seconds.
 //
-// Espenak, F. and Meeus, J. (2006), Five Millennium Canon of Solar Eclipses, NASA/TP-2006-214141,
-// section 2.3: polynomials of TT - UT1 in the year. Leap seconds are ERFA's table (IERS bulletin
-// C).
+// Espenak, F. and Meeus, J. (2006), Five Millennium Canon of Solar
+// Eclipses, NASA/TP-2006-214141, section 2.3: polynomials of TT - UT1
+// in the year. Leap seconds are ERFA's table (IERS bulletin C).
 #include <erfa.h>
 
 #include <algorithm>

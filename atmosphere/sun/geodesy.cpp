@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/sun/geodesy.h"
 
+#include <fmt/format.h>
+
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/Math.hpp>
 #include <algorithm>

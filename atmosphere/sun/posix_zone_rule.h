@@ -9,9 +9,9 @@
 
 namespace alpenglow {
 
-/// A change every year: the `week`-th `weekday` (0 Sunday) of `month`, 5 meaning the last, at
-/// `time` after midnight of local time as it was before the change; `time` may be negative or over
-/// a day.
+/// A change every year: the `week`-th `weekday` (0 Sunday) of `month`,
+/// 5 meaning the last, at `time` after midnight of local time as it
+/// was before the change; `time` may be negative or over a day.
 struct YearlyChange {
   unsigned month;
   unsigned week;

@@ -102,9 +102,9 @@ ValueAndSlope StandardRefraction(double elevation_rad) {
           -kA * (sine / outer + cosine * cosine * outer_slope / (outer * outer))};
 }
 
-// Refraction is observable down to the last ray of the sun's lower limb over a sea horizon, 34' +
-// 32' below the horizontal; the closed form goes there and a little beyond. Further down no ray
-// reaches the observer and refraction has no meaning, but a picture moves the sun by it
+// Refraction is observable down to the last ray of the sun's lower limb over a sea horizon,
+// 34' + 32' below the horizontal; the closed form goes there and a little beyond. Further down
+// no ray reaches the observer and refraction has no meaning, but a picture moves the sun by it
 // continuously. The light that remains, twilight, is that of air high up, which the geometric
 // direction describes: so the value fades to 0 until civil twilight ends.
 constexpr double kFadeBegins_rad = -1.0 * kRadiansPerDegree;

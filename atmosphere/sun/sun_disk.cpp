@@ -14,8 +14,8 @@ VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad) {
   const double x = (elevation - horizon) / radius_rad;  // centre over horizon, in radii
   if (x >= 1.0) return {1.0, mu_s};
   if (x <= -1.0) return {0.0, mu_s};
-  // Segment of the unit disk on the side of the centre's height over the chord at distance x below
-  // it.
+  // Segment of the unit disk on the side of the centre's
+  // height over the chord at distance x below it.
   const double chord = std::sqrt(1.0 - x * x);
   const double area = kPi - std::acos(x) + x * chord;
   const double centroid = 2.0 / 3.0 * chord * chord * chord / area;  // above the disk's centre

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/sun/time.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -9,8 +9,8 @@
 
 namespace alpenglow {
 
-/// An instant of UTC as a day and the second in it. Second 86400.x exists on days with a leap
-/// second.
+/// An instant of UTC as a day and the second in it.
+/// Second 86400.x exists on days with a leap second.
 struct UtcInstant {
   int modified_julian_day = 60000;  // day number, 0 on 1858-11-17
   double second_of_day = 0.0;       // [0, 86400), [0, 86401) on a day that ends in a leap second

@@ -2,6 +2,7 @@
 #include "atmosphere/sun/time_zone.h"
 
 #include <date/tz.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>

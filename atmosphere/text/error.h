@@ -3,16 +3,15 @@
 // (InternalError). Nothing is repaired in silence, and every check stays in release builds.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace alpenglow {
 
-/// The input is wrong. The message is one line: file, line or key, value, allowed range. Exit
-/// status 3.
+/// The input is wrong. The message is one line: file,
+/// line or key, value, allowed range. Exit status 3.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -36,21 +35,40 @@ class InternalError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-/// Returns `value`, or throws InputError naming `name` when it is not in [low, high]; NaN is never
-/// in.
+/// Returns `value`, or throws InputError naming `name`
+/// when it is not in [low, high]; NaN is never in.
 double RequireInRange(double value, double low, double high, std::string_view name);
+
+/// A number as ALPENGLOW_ENSURE shows it: in the fewest digits that give the same value back.
+[[nodiscard]] std::string EnsuredText(double value);
+[[nodiscard]] std::string EnsuredText(long long value);
+[[nodiscard]] std::string EnsuredText(unsigned long long value);
+template <typename Value>
+[[nodiscard]] std::string EnsuredText(Value value) {
+  static_assert(std::is_arithmetic_v<Value>);
+  if constexpr (std::is_floating_point_v<Value>)
+    return EnsuredText(static_cast<double>(value));
+  else if constexpr (std::is_signed_v<Value>)
+    return EnsuredText(static_cast<long long>(value));
+  else
+    return EnsuredText(static_cast<unsigned long long>(value));
+}
+
+/// Throws the InternalError of ALPENGLOW_ENSURE. `claim` is "left op right".
+[[noreturn]] void FailEnsured(const char* file, int line, const char* claim,
+                              const std::string& left, const std::string& right);
 
 }  // namespace alpenglow
 
-/// ALPENGLOW_ENSURE(row.size(), ==, width): throws InternalError with both values when it does not
-/// hold.
-#define ALPENGLOW_ENSURE(left, op, right)                                                     \
-  do {                                                                                        \
-    const auto& ensure_left = (left);                                                         \
-    const auto& ensure_right = (right);                                                       \
-    if (!(ensure_left op ensure_right)) {                                                     \
-      throw ::alpenglow::InternalError(fmt::format("{}:{}: expected {} {} {}, got {} and {}", \
-                                                   __FILE__, __LINE__, #left, #op, #right,    \
-                                                   ensure_left, ensure_right));               \
-    }                                                                                         \
+/// ALPENGLOW_ENSURE(row.size(), ==, width): throws
+/// InternalError with both values when it does not hold.
+#define ALPENGLOW_ENSURE(left, op, right)                                    \
+  do {                                                                       \
+    const auto& ensure_left = (left);                                        \
+    const auto& ensure_right = (right);                                      \
+    if (!(ensure_left op ensure_right)) {                                    \
+      ::alpenglow::FailEnsured(__FILE__, __LINE__, #left " " #op " " #right, \
+                               ::alpenglow::EnsuredText(ensure_left),        \
+                               ::alpenglow::EnsuredText(ensure_right));      \
+    }                                                                        \
   } while (false)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/text/toml_table.h"
 
+#include <fmt/format.h>
+
 #include <toml++/toml.h>
 
 #include <algorithm>

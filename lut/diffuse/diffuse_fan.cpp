@@ -63,8 +63,8 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float* position = &line.position[s * line.directions];
     const auto [least, most] = std::minmax_element(position, position + line.directions);
-    // The nodes that the taps read, at least four; node -1 and the one after the last are added
-    // below.
+    // The nodes that the taps read, at least four; node
+    // -1 and the one after the last are added below.
     const int low = std::clamp(static_cast<int>(*least) - 1, 0, options.sun_angles - 4);
     const int high = std::clamp(static_cast<int>(*most) + 2, low + 3, options.sun_angles - 1);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // DiffuseLight along one view ray under many azimuths of the sun, for the price of a few.
 //
-// All directions of one zenith angle share altitudes, columns and harmonics; only the sun's angles
-// differ. The moments are therefore interpolated in altitude, and summed over degree, once a
-// sample; what is left for each azimuth is a cubic interpolation between a few nodes of the sun's
-// angle.
+// All directions of one zenith angle share altitudes, columns and harmonics;
+// only the sun's angles differ. The moments are therefore interpolated in
+// altitude, and summed over degree, once a sample; what is left for each
+// azimuth is a cubic interpolation between a few nodes of the sun's angle.
 #pragma once
 
 #include <span>

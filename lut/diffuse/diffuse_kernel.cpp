@@ -474,8 +474,8 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
                chunk.sun_weight);
 }
 
-// Moments from vector kBegin on, summed over 16 nodes: spelled out, so that the sums stay in
-// registers.
+// Moments from vector kBegin on, summed over 16 nodes:
+// spelled out, so that the sums stay in registers.
 template <std::size_t... kIndex>
 void SumTaps(const float* const* node, const float* weight, float* moments,
              std::index_sequence<kIndex...>) {

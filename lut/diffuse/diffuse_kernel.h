@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The loops of multiple_scattering.h and successive_orders.h, one table an instruction set.
 //
-// Moments are packed for lanes in blocks of four bands: a node holds, for l = 0 ... degree,
-// vectors of eight floats, (m, band) for m = 2p and 2p + 1. The last vector of an even l is padded
-// with zeros.
+// Moments are packed for lanes in blocks of four bands: a node holds,
+// for l = 0 ... degree, vectors of eight floats, (m, band) for m = 2p
+// and 2p + 1. The last vector of an even l is padded with zeros.
 #pragma once
 
 #include <array>
@@ -115,9 +115,10 @@ struct LayerHeights {
 };
 
 struct DiffuseKernel {
-  /// Light of the previous order that arrives along a march: adds to arriving[((sun * azimuths) +
-  /// azimuth) * 8 + half * 4 + band]; the two halves are to be added. `rows` is room for
-  /// (suns + 2) * (degree / 2 + 1) * 8 floats. All begin at multiples of 64 bytes.
+  /// Light of the previous order that arrives along a march: adds to
+  /// arriving[((sun * azimuths) + azimuth) * 8 + half * 4 + band]; the two halves
+  /// are to be added. `rows` is room for (suns + 2) * (degree / 2 + 1) * 8 floats.
+  /// All begin at multiples of 64 bytes.
   void (*arrive)(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint* points,
                  const MarchLight* lights, std::size_t count, const BlockChi& chi,
                  const float* previous, float* rows, float* arriving);

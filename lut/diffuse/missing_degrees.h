@@ -10,8 +10,8 @@
 //   A(nu) = integral of sigma_M T sum over l > L of (2 l + 1) / (4 pi) chi_l (exp(chi_l tau) - 1)
 //           P_l(nu) ds
 //
-// beside what is scattered once. A alternates in sign with the angle, and real paths blur where: the
-// estimate is |A| plus the envelope of its first term. 0 where no aerosol is.
+// beside what is scattered once. A alternates in sign with the angle, and real paths blur where:
+// the estimate is |A| plus the envelope of its first term. 0 where no aerosol is.
 #pragma once
 
 #include <vector>

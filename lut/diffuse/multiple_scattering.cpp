@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/diffuse/multiple_scattering.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -12,14 +12,14 @@
 //
 //   J(w) = sigma_R sum_lm chi^R_l L_lm Y_lm(w) + sigma_M sum_lm chi^M_l L_lm Y_lm(w),
 //
-// exact for molecules (chi^R = 1, 0, 1/10) with l <= 2. The moments of all orders are found by
-// successive orders: radiance of one order along directions of a Gauss grid split at the horizon,
-// projected, gives the source of the next. Light reflected by the (Lambertian) ground is part of
-// every order.
+// exact for molecules (chi^R = 1, 0, 1/10) with l <= 2. The moments of all
+// orders are found by successive orders: radiance of one order along directions
+// of a Gauss grid split at the horizon, projected, gives the source of the
+// next. Light reflected by the (Lambertian) ground is part of every order.
 //
-// Per unit solar irradiance throughout. Successive orders: e.g. Herman, Ben-David, Thome (1994),
-// Appl. Opt. 33, 1760; the moments over (altitude, sun angle) as a rendering table are this
-// project's.
+// Per unit solar irradiance throughout. Successive orders: e.g.
+// Herman, Ben-David, Thome (1994), Appl. Opt. 33, 1760; the moments
+// over (altitude, sun angle) as a rendering table are this project's.
 #pragma once
 
 #include <array>
@@ -80,9 +80,9 @@ class DiffuseLight {
   [[nodiscard]] std::size_t bands() const { return bands_; }
   [[nodiscard]] std::size_t moments() const { return moments_; }
 
-  /// In-scattered light of orders two and up along a sampled ray [1/sr]. The samples must include
-  /// the dark ones (Sampling::dark_samples). Does not include light from the ground at the end of
-  /// the ray.
+  /// In-scattered light of orders two and up along a sampled ray [1/sr].
+  /// The samples must include the dark ones (Sampling::dark_samples).
+  /// Does not include light from the ground at the end of the ray.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu) const;
 
   /// Diffuse (sky and ground) irradiance on a surface [1], per unit solar irradiance.
@@ -97,9 +97,9 @@ class DiffuseLight {
   /// directions, not from the moments.
   [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
 
-  /// Node values, for files and graphics cards: index ((altitude * sun_angles + sun) * channels() +
-  /// channel) * bands() + band. Channels: the moments, l major (00, 10, 11, 20, ...), then
-  /// SkyIrradiance.
+  /// Node values, for files and graphics cards: index ((altitude *
+  /// sun_angles + sun) * channels() + channel) * bands() + band. Channels:
+  /// the moments, l major (00, 10, 11, 20, ...), then SkyIrradiance.
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] std::size_t channels() const { return moments_ + 1; }
 
@@ -109,8 +109,8 @@ class DiffuseLight {
   [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
                                             double sun_coordinate) const;
 
-  /// Node coordinates: altitude = top u^2; mu_s = centre + width sinh(a + (b - a) v), u and v in
-  /// [0, 1].
+  /// Node coordinates: altitude = top u^2; mu_s = centre + width
+  /// sinh(a + (b - a) v), u and v in [0, 1].
   static constexpr double kSunCentre = -0.05;
   static constexpr double kSunWidth = 0.10;
   static constexpr double kLowestMuS = -0.55;

@@ -77,9 +77,9 @@ float AzimuthCosine(float mu, float mu_s, float nu) {
 
 namespace {
 
-// Cosines, ascending, between which the phase function is smooth and as wide as the panel: the
-// nodes of a table; else panels that shrink towards the forward peak, so that g = 0.999 is
-// resolved.
+// Cosines, ascending, between which the phase function is smooth and
+// as wide as the panel: the nodes of a table; else panels that
+// shrink towards the forward peak, so that g = 0.999 is resolved.
 std::vector<double> PanelEdges(const PhaseFunction& phase) {
   std::vector<double> edges{-1.0};
   if (phase.kind == PhaseKind::kTable) {

@@ -33,8 +33,8 @@ using Moments = std::array<float, kMaxMoments>;
 /// norm_lm.
 [[nodiscard]] double HarmonicNorm(int l, int m);
 
-/// 2 pi integral of max(x, 0) P_l(x) dx: what a surface makes of moments of degree l (Ramamoorthi,
-/// Hanrahan 2001).
+/// 2 pi integral of max(x, 0) P_l(x) dx: what a surface makes
+/// of moments of degree l (Ramamoorthi, Hanrahan 2001).
 inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{
     kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
 

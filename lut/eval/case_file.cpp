@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/eval/case_file.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <map>
 #include <string_view>

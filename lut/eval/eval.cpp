@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/eval/eval.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>

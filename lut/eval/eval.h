@@ -70,8 +70,8 @@ inline constexpr double kSmallestMaxError = 1e-8;
 /// What is wrong with such a text, for the command line; empty when nothing is.
 [[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
 
-/// Relative error of closed-form optical depths (worst: rays that graze the top from outside), where
-/// the planet's radius is more than 120 times the scale heights; see medium_ranges.h.
+/// Relative error of closed-form optical depths (worst: rays that graze the top from outside),
+/// where the planet's radius is more than 120 times the scale heights; see medium_ranges.h.
 inline constexpr double kClosedFormError = 2e-5;
 
 /// The same over any planet.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/eval/lamp_cases.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Noise of the last bit of a picture (dither.h).
 
-// Where a repetition of the tile begins in it: column in the lowest bits, row eight bits up. 0 at
-// the origin.
+// Where a repetition of the tile begins in it: column in
+// the lowest bits, row eight bits up. 0 at the origin.
 SHARED_BITS Bits DitherHash(Bits tile_x, Bits tile_y) {
   Bits hash = tile_x * 73856093u ^ tile_y * 19349663u;
   hash = (hash ^ (hash >> 13)) * 0x85ebca6bu;

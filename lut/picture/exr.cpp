@@ -10,6 +10,7 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
+#include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <cerrno>

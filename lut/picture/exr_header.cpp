@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/picture/exr_header.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
 #include <fstream>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/picture/image.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>

@@ -18,8 +18,8 @@ inline constexpr int kLargestImageSide = 32768;
 /// Name of the channel of distances, OpenEXR's depth channel Z in a layer.
 inline constexpr const char* kDepthChannel = "depth.Z";
 
-/// A plane of floats, row 0 at the top. Values of kDepthChannel are not negative, and infinite where
-/// a ray meets nothing; those of all other channels are finite.
+/// A plane of floats, row 0 at the top. Values of kDepthChannel are not negative, and infinite
+/// where a ray meets nothing; those of all other channels are finite.
 struct Channel {
   std::string name;  // as in the EXR file: "R", "depth.Z", ...
   std::vector<float> values;
@@ -72,8 +72,8 @@ void WriteExr(const std::filesystem::path& file, const Image& image, const Metad
 /// The text attributes of the header. Throws InputError.
 [[nodiscard]] Metadata ReadExrMetadata(const std::filesystem::path& file);
 
-/// Exposure value at ISO 100. A luminance of 2^EV100 * 1.2 cd/m^2 saturates (Lagarde, de Rousiers
-/// 2014).
+/// Exposure value at ISO 100. A luminance of 2^EV100 * 1.2
+/// cd/m^2 saturates (Lagarde, de Rousiers 2014).
 [[nodiscard]] double ExposureScale(double ev100);
 
 /// K of reflected-light meters [cd s / (m^2 ISO)], ISO 2720: EV100 = log2(100 L / K).
@@ -107,8 +107,8 @@ struct DisplayImage {
 /// Throws InternalError for a pixel that is not finite.
 [[nodiscard]] DisplayImage Develop(const Image& image, double ev100, ToneCurve curve);
 
-/// Writes 8-bit RGB with an sRGB chunk and the metadata as text chunks, atomically. Throws
-/// OutputError.
+/// Writes 8-bit RGB with an sRGB chunk and the metadata
+/// as text chunks, atomically. Throws OutputError.
 void WritePng(const std::filesystem::path& file, const DisplayImage& image,
               const Metadata& metadata);
 /// Throws InputError for a file that is missing, truncated or no PNG.

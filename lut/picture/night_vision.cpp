@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/picture/night_vision.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>

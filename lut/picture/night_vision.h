@@ -6,11 +6,11 @@
 //   L_mes = (m L_p + (1 - m) L_s V'(l0)) / (m + (1 - m) V'(l0)),    V'(l0) = 683 / 1700
 //   m     = a + b log10(L_mes), in [0, 1],                          a = 0.7670, b = 0.3334
 //
-// from photopic luminance L_p and scotopic luminance L_s, so that m is 1 from 5 cd/m^2 up and 0
-// below 0.005 cd/m^2. Every pixel is taken as its own field of adaptation. Rods see no colour:
-// their share of the luminance appears as the bluish white of chromaticity (0.25, 0.25) that Jensen
-// et al. (2000), "Night rendering", took from paintings of the night; the cones' share keeps its
-// colour.
+// from photopic luminance L_p and scotopic luminance L_s, so that m is 1 from 5
+// cd/m^2 up and 0 below 0.005 cd/m^2. Every pixel is taken as its own field of
+// adaptation. Rods see no colour: their share of the luminance appears as the
+// bluish white of chromaticity (0.25, 0.25) that Jensen et al. (2000), "Night
+// rendering", took from paintings of the night; the cones' share keeps its colour.
 #pragma once
 
 #include "lut/picture/image.h"

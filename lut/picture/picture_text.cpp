@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/picture/picture_text.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 
 #include "atmosphere/text/error.h"

@@ -3,6 +3,7 @@
 //
 // libpng reports faults by longjmp. Nothing with a destructor lives in the functions that it jumps
 // out of: they are marked, and get plain pointers.
+#include <fmt/format.h>
 #include <png.h>
 
 #include <csetjmp>

@@ -7,9 +7,9 @@
 //
 // "linear" alone leaves PrintedChannel out: it shows what saturates.
 //
-// Colours outside the display's gamut (a negative channel) keep their luminance and are mixed with
-// the grey of that luminance until the smallest channel is 0. All curves are finite for every
-// finite input.
+// Colours outside the display's gamut (a negative channel) keep their
+// luminance and are mixed with the grey of that luminance until the
+// smallest channel is 0. All curves are finite for every finite input.
 
 // Relative luminance of linear sRGB. IEC 61966-2-1.
 SHARED Number Luminance(Number red, Number green, Number blue) {
@@ -29,8 +29,8 @@ SHARED Number InnerChannel(Number value, Number smallest, Number y) {
   return max(select(smallest < Number(0.0), mixed, value), Number(0.0));
 }
 
-// What the meter took for middle grey, 12.5/100 2^EV, is 0.104 of saturation, 1.2 2^EV. Curves with a
-// shoulder print it at 0.18, as cameras do (standard output sensitivity, ISO 12232):
+// What the meter took for middle grey, 12.5/100 2^EV, is 0.104 of saturation, 1.2 2^EV. Curves
+// with a shoulder print it at 0.18, as cameras do (standard output sensitivity, ISO 12232):
 // 0.18 * 1.2 * 100 / 12.5 = 1.728.
 SHARED Number PrintedChannel(Number exposed) { return Number(1.728) * exposed; }
 
@@ -55,8 +55,8 @@ SHARED Number AgxOutset(Number value, Number white_share) {
   return Number(1.25) * value - Number(0.25) * white_share;
 }
 
-// log2 of the channel over [-12.47393, 4.026069]: from 10 stops below to 6.5 above middle grey
-// 0.18.
+// log2 of the channel over [-12.47393, 4.026069]:
+// from 10 stops below to 6.5 above middle grey 0.18.
 SHARED Number AgxLogCode(Number value) {
   Number stops = log(max(value, Number(1.0e-6))) * Number(1.4426950408889634);
   Number code = (stops + Number(12.47393)) / Number(16.499999);
@@ -151,7 +151,8 @@ SHARED Number ReinhardLight(Number value, Number largest, Number y) {
   return min(max(inside, Number(0.0)), Number(1.0));
 }
 
-// ---- Khronos PBR Neutral tone mapper (2024), specification in KhronosGroup/ToneMapping -----------
+// ---- Khronos PBR Neutral tone mapper (2024), specification in
+// KhronosGroup/ToneMapping -----------
 //
 // Colours below 0.8 keep their hue and brightness but for the 0.04 that a dielectric reflects.
 
@@ -175,7 +176,8 @@ SHARED Number NeutralLight(Number value, Number largest, Number smallest) {
   return min(max(light, Number(0.0)), Number(1.0));
 }
 
-// ---- The display ---------------------------------------------------------------------------------
+// ---- The display
+// ---------------------------------------------------------------------------------
 
 // Code value in [0, 1] of linear light in [0, 1]. IEC 61966-2-1.
 SHARED Number SrgbCode(Number light) {

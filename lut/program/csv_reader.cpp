@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/program/csv_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/program/output_name.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <system_error>

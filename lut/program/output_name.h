@@ -23,8 +23,8 @@ void RequireNoInput(const NamedFile& output, const std::vector<NamedFile>& input
 /// for the command line; empty when nothing is. "-" is no file's name.
 [[nodiscard]] std::string FaultOfFileName(std::string_view name, std::string_view extension);
 
-/// The same for a folder of files: the name of a picture or a table file is no folder's, "-" is
-/// no folder's.
+/// The same for a folder of files: the name of a picture
+/// or a table file is no folder's, "-" is no folder's.
 [[nodiscard]] std::string FaultOfFolderName(std::string_view name);
 
 }  // namespace alpenglow

@@ -2,6 +2,7 @@
 #include "lut/program/program.h"
 
 #include <OpenEXR/OpenEXRConfig.h>
+#include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/version.h>
 
@@ -23,8 +24,8 @@ static_assert(std::atomic<int>::is_always_lock_free);
 
 void RememberSignal(int signal) { received_signal.store(signal); }
 
-/// Unwinds the stack to RunProgram. No std::exception, so that no handler on the way takes it for
-/// a fault.
+/// Unwinds the stack to RunProgram. No std::exception,
+/// so that no handler on the way takes it for a fault.
 struct Stopped {
   int signal;
 };

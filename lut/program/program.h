@@ -15,12 +15,11 @@ namespace alpenglow {
 
 /// Runs `body` and maps failures to exit statuses, one line on standard error each: InputError 3,
 /// OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else 70. Output
-/// that standard output did not take is an OutputError too.
-/// Installs handlers for SIGINT and SIGTERM that make Interrupted() true; the second signal of a
-/// kind ends the program at once. SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over the limit and
-/// a result that nobody reads are OutputErrors, and a terminal that goes away takes the messages
-/// with it, but not the work. Whoever closed standard error gets no messages, in no file either
-/// (OccupyStandardDescriptors).
+/// that standard output did not take is an OutputError too. Installs handlers for SIGINT and
+/// SIGTERM that make Interrupted() true; the second signal of a kind ends the program at once.
+/// SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over the limit and a result that nobody reads
+/// are OutputErrors, and a terminal that goes away takes the messages with it, but not the work.
+/// Whoever closed standard error gets no messages, in no file either (OccupyStandardDescriptors).
 int RunProgram(const std::string& name, const std::function<int()>& body);
 
 /// True once SIGINT or SIGTERM has arrived. Long loops ask it and call ThrowIfInterrupted between

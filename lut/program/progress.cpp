@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/program/progress.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -21,8 +21,8 @@ enum class ProgressStyle { kAuto, kPlain, kJson, kQuiet };
 ///   {"label":"frames","done":3,"part":0.25,"total":10,"elapsed_s":1.7,"eta_s":3.5}
 /// and where work is prepared
 ///   {"label":"frames","step":"terrain","elapsed_s":0.1}
-/// All but the first two may be called from any thread. What cannot be written is lost; the work
-/// goes on.
+/// All but the first two may be called from any thread.
+/// What cannot be written is lost; the work goes on.
 class Progress {
  public:
   Progress(std::string label, std::size_t total, ProgressStyle style);

@@ -7,8 +7,8 @@
 // the time to get ready, and the time of one answer on one thread. Methods of the literature,
 // written anew from their publications (report_baselines.h), stand beside this library's.
 //
-// What a topic asks, and of what, is the topic's own: those of pictures (renderer/report/report.h) are
-// written into folders of the same form.
+// What a topic asks, and of what, is the topic's own: those of pictures (renderer/report/report.h)
+// are written into folders of the same form.
 #pragma once
 
 #include <array>

@@ -30,8 +30,8 @@ struct ReportEffort {
   [[nodiscard]] static ReportEffort Quick() { return {true, 40, 6, 2000, 3, 0.0}; }
 };
 
-/// Time that `make` takes, and what it made. Short work is done up to three times; the shortest
-/// counts.
+/// Time that `make` takes, and what it made. Short work
+/// is done up to three times; the shortest counts.
 template <typename Make>
 [[nodiscard]] auto Built(const Make& make) {
   using Clock = std::chrono::steady_clock;

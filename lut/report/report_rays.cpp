@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/report/report_rays.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>

@@ -67,8 +67,8 @@ struct PanoramaSettings {
     const AirIntegrator<float>& air, const DiffuseLight& diffuse, const PanoramaSettings& settings,
     const std::function<void()>& row_done = [] {});
 
-/// Light [lx] of sun and sky on a horizontal plane at the observer, the sun's disk cut by the
-/// horizon.
+/// Light [lx] of sun and sky on a horizontal plane at
+/// the observer, the sun's disk cut by the horizon.
 [[nodiscard]] double HorizontalIlluminance(const AirIntegrator<float>& air,
                                            const DiffuseLight& diffuse, double altitude_m,
                                            const PanoramaSun& sun);

@@ -14,8 +14,8 @@ struct Angles {
   std::int32_t node[kAtOnce];
 };
 
-// asin(s) from s^2: s times a polynomial of degree 5 in s^2, Chebyshev's interpolation of asin(s) /
-// s on [0, 1/2], error below 1e-6; beyond, the complement.
+// asin(s) from s^2: s times a polynomial of degree 5 in s^2, Chebyshev's interpolation of
+// asin(s) / s on [0, 1/2], error below 1e-6; beyond, the complement.
 inline float ArcSineOfRoot(float s2) {
   const bool large = s2 > 0.5F;
   const float x2 = large ? 1.0F - s2 : s2;

@@ -35,8 +35,8 @@ struct SkyViewSize {
   int ray_nodes = 12;    // Gauss nodes on each smooth piece of a ray
 };
 
-/// What keeps the error that SkyView states: twilight and great heights need more than day on the
-/// ground.
+/// What keeps the error that SkyView states: twilight
+/// and great heights need more than day on the ground.
 [[nodiscard]] SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s);
 
 class SkyView;

@@ -14,8 +14,8 @@ double DipTo(double depth_m, double r_m) {
   return std::atan2(std::sqrt(depth_m * (2.0 * r_m - depth_m)), r_m - depth_m);
 }
 
-// v of w = v + v^2 - v^3 in [0, 1], where w never falls: Newton's method inside a shrinking
-// bracket.
+// v of w = v + v^2 - v^3 in [0, 1], where w never
+// falls: Newton's method inside a shrinking bracket.
 double CoordinateOfEdgedAir(double w) {
   double low = 0.0, high = 1.0, v = w;
   for (int i = 0; i < 60 && high - low > 1e-15; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/store/exchange_check.h"
 
+#include <fmt/format.h>
 #include <half.h>
 
 #include <algorithm>

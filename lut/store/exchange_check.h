@@ -43,9 +43,10 @@ struct ExchangeDescription {
 };
 
 /// Reads every texture of the folder's layout and checks it: size, every texel finite, not negative
-/// and no more than there is light for, and texels against our own (alpha where it is light), for
-/// a sun down to 102 or to 120 degrees, whichever they hold. Medians of up to 5 % pass: those of Bruneton's own files are up to
-/// 3 %. Throws InputError naming the file for a texture that is missing or fails.
+/// and no more than there is light for, and texels against our own (alpha where it is light), for a
+/// sun down to 102 or to 120 degrees, whichever they hold. Medians of up to 5 % pass: those of
+/// Bruneton's own files are up to 3 %. Throws InputError naming the file for a texture that is
+/// missing or fails.
 [[nodiscard]] ExchangeDescription DescribeExchangeTables(const std::filesystem::path& folder);
 
 /// The same for people: a line a fact.

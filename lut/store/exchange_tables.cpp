@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/store/exchange_tables.h"
 
+#include <fmt/format.h>
 #include <half.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -98,8 +99,8 @@ ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& ligh
   return texture;
 }
 
-/// Orders 2 to 4 over the molecules' phase function, one row (a view angle at an altitude) at a
-/// time.
+/// Orders 2 to 4 over the molecules' phase function,
+/// one row (a view angle at an altitude) at a time.
 class HigherOrders {
  public:
   HigherOrders(const ScatteringTable& rays, const DiffuseLight& light)

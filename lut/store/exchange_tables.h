@@ -2,11 +2,12 @@
 // Tables that other programs load: the files of Bruneton's demo (2017) and of three-atmosphere
 // (takram), texel for texel.
 //
-// The textures and what they hold, for red, green and blue = the three wavelengths of the medium,
-// longest first; the mapping is that of transmittance_map.glsl and scattering_map.glsl, the sun
-// down to mu_s_min, which the loading program has as a constant: cos 120 degrees in three-atmosphere;
-// in Bruneton's demo cos 102 degrees when compiled for half precision, as it stands, whatever the
-// files' own precision, and cos 120 degrees when compiled for single precision:
+// The textures and what they hold, for red, green and blue = the three wavelengths of the
+// medium, longest first; the mapping is that of transmittance_map.glsl and
+// scattering_map.glsl, the sun down to mu_s_min, which the loading program has as a constant:
+// cos 120 degrees in three-atmosphere; in Bruneton's demo cos 102 degrees when compiled for
+// half precision, as it stands, whatever the files' own precision, and cos 120 degrees when
+// compiled for single precision:
 //
 //   transmittance           256 x 64        mu, r               to the top of the air; A = 1
 //   irradiance              64 x 16         mu_s, r (linear)    of the sky on a horizontal plane,
@@ -58,8 +59,8 @@ struct ExchangeOptions {
   /// Without a value: takram half .exr, bruneton float .dat.
   std::optional<TexelType> type = {};
   std::optional<TexelFormat> format = {};
-  /// Zenith angle, kDemoLowestSun_deg or kLowestSun_deg; without a value what the program as it
-  /// stands assumes.
+  /// Zenith angle, kDemoLowestSun_deg or kLowestSun_deg;
+  /// without a value what the program as it stands assumes.
   std::optional<double> lowest_sun_deg = {};
 };
 inline constexpr double kDemoLowestSun_deg = 102.0;
@@ -100,8 +101,9 @@ inline constexpr ScatteringTableSize kExchangeScatteringSize{
 [[nodiscard]] Bands<float> HigherOrdersAlong(const AirIntegrator<float>& air,
                                              const DiffuseLight& light, const ViewRay& ray);
 
-/// One texture as those programs hold it: texel (x, y, z) is rgba[4 * ((z * height + y) * width +
-/// x)], 3-D textures stacked along the rows.
+/// One texture as those programs hold it: texel (x, y, z) is
+/// rgba[4 * ((z * height + y) * width + x)], 3-D textures stacked
+/// along the rows.
 struct ExchangeTexture {
   std::string name;
   std::size_t width, height, depth;

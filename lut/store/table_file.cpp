@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/store/table_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/store/table_folder.h"
 
+#include <fmt/format.h>
+
 #include <system_error>
 
 #include "atmosphere/text/error.h"

@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfVersion.h>
+#include <fmt/format.h>
 #include <half.h>
 
 #include <cstdint>

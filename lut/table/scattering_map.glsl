@@ -1,11 +1,13 @@
-// Where a view ray lies in the four-dimensional scattering table, and back. Lengths in km. Read after
-// transmittance_map.glsl, which has the coordinates of altitude and of rays to space.
+// Where a view ray lies in the four-dimensional scattering table, and back. Lengths in km. Read
+// after transmittance_map.glsl, which has the coordinates of altitude and of rays to space.
 //
 //   r     as in the transmittance map
-//   mu    two halves that meet at the horizon: below 1/2 rays that hit the ground, by the distance d to it,
-//         u = (d - h) / (rho - h), 0 straight down, 1 at the horizon; above 1/2 rays to space, as in the
-//         transmittance map. The halves run away from the middle of the axis, so that no look-up mixes them.
-//   mu_s  by the distance to the top along the sunbeam from the ground, a = (d - d_min) / (d_max - d_min):
+//   mu    two halves that meet at the horizon: below 1/2 rays that hit the ground, by the distance
+//         d to it, u = (d - h) / (rho - h), 0 straight down, 1 at the horizon; above 1/2 rays to
+//         space, as in the transmittance map. The halves run away from the middle of the axis, so
+//         that no look-up mixes them.
+//   mu_s  by the distance to the top along the sunbeam from the ground,
+//         a = (d - d_min) / (d_max - d_min):
 //         u = max(1 - a / A, 0) / (1 + a), A = a of the lowest sun of the table
 //   nu    (nu + 1) / 2
 //
@@ -18,7 +20,8 @@ SHARED Number UnitFromGroundCosine(Length h, Number mu, Length R) {
   return select(h > Length(0.0), min(max(x, Number(0.0)), Number(1.0)), Number(0.0));
 }
 
-// The law of cosines, -mu = (rho^2 + d^2) / (2 r d): nothing cancels. On the ground itself straight down.
+// The law of cosines, -mu = (rho^2 + d^2) / (2 r d): nothing cancels. On the ground
+// itself straight down.
 SHARED Number GroundCosineFromUnit(Number x, Length h, Length R) {
   Length rho = HorizonDistance(h, R);
   Length d = h + x * (rho - h);
@@ -26,7 +29,8 @@ SHARED Number GroundCosineFromUnit(Number x, Length h, Length R) {
   return select(h > Length(0.0), max(-down, Number(-1.0)), Number(-1.0));
 }
 
-// Texture coordinate on the mu axis of n texels (even, >= 4) from the unit of its half: 1 for ground.
+// Texture coordinate on the mu axis of n texels (even, >= 4) from the unit of its half:
+// 1 for ground.
 SHARED Number MuTexelFromUnit(Number x, Number ground, Number n) {
   Number half_axis = Number(0.5) * TexelFromUnit(x, Number(0.5) * n);
   return select(ground > Number(0.5), Number(0.5) - half_axis, Number(0.5) + half_axis);
@@ -38,7 +42,8 @@ SHARED Number UnitFromMuTexel(Number u, Number n) {
   return UnitFromTexel(abs(Number(2.0) * u - Number(1.0)), Number(0.5) * n);
 }
 
-// Length of the sunbeam that meets the ground, in units in which the vertical one is 0 and the horizontal 1.
+// Length of the sunbeam that meets the ground, in units in which the vertical one is 0 and
+// the horizontal 1.
 SHARED Number SunbeamExcess(Number mu_s, Length top, Length R) {
   return (DistanceUpTo(Length(0.0), mu_s, top, R) - top) / SkyDistanceRange(Length(0.0), top, R);
 }

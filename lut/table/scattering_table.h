@@ -3,9 +3,9 @@
 //
 //   texel = integral of sigma_s(h) T(observer to point) T(point to sun) ds   per unit irradiance
 //
-// for molecules and aerosol apart, per band, as float, without the phase functions: those are
-// applied at the look-up (AirIntegrator::Inscatter), which keeps the aureole sharp. Two sets of
-// axes:
+// for molecules and aerosol apart, per band, as float, without the phase
+// functions: those are applied at the look-up (AirIntegrator::Inscatter),
+// which keeps the aureole sharp. Two sets of axes:
 //
 //   Bruneton   those of scattering_map.glsl, quadrilinear; angles nu that are impossible for a
 //              texel's mu and mu_s are moved to the nearest possible, so that interpolation never

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/table/table_size.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "atmosphere/ray/single_scattering.h"

@@ -6,11 +6,11 @@
 //
 //   X_c = sum_j A_cj f(lambda_j)  over FineWavelengths(),     X'_c = sum_i M_ci f(band i),
 //
-// both with rows that sum to 1: the sun itself has the same colour on every set. For small errors
-// CIEDE2000 squared is a quadratic form in X' - X, with a metric G of each colour; summed over the
-// spectra it is a quadratic form in (A - M S), S choosing the bands, whose matrix of 3 n x 3 n is
-// made once. The best M of a set of bands is then a small linear system, and many sets can be
-// tried.
+// both with rows that sum to 1: the sun itself has the same colour on every set.
+// For small errors CIEDE2000 squared is a quadratic form in X' - X, with a metric
+// G of each colour; summed over the spectra it is a quadratic form in (A - M S),
+// S choosing the bands, whose matrix of 3 n x 3 n is made once. The best M of a
+// set of bands is then a small linear system, and many sets can be tried.
 //
 // The metric of CIEDE2000 as a quadratic form: Pant and Farup (2012), Color Res. Appl. 37, 396-406;
 // here by finite differences.

@@ -2,9 +2,9 @@
 // Spectra of simulated daylight: skies, distant land, sun and ground, from noon to deep twilight.
 // What the way from bands to colour is trained and tested on.
 //
-// Light is given relative to the sun above the air, f = L / E [1/sr] or E' / E [1], because f is
-// smooth over wavelengths where the sun is not. All orders of scattering (AirIntegrator and
-// DiffuseLight).
+// Light is given relative to the sun above the air, f = L / E [1/sr]
+// or E' / E [1], because f is smooth over wavelengths where the sun
+// is not. All orders of scattering (AirIntegrator and DiffuseLight).
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ struct SkyFamily {
 enum class SkyRegime { kDay, kSunset, kTwilight, kDirectSun };
 inline constexpr SkyRegime kSkyRegimes[] = {SkyRegime::kDay, SkyRegime::kSunset,
                                             SkyRegime::kTwilight, SkyRegime::kDirectSun};
-/// "day" (sun 6 to 60 degrees high), "sunset" (-2 to 6), "twilight" (-10 to -2), "direct sun" (0 to
-/// 60).
+/// "day" (sun 6 to 60 degrees high), "sunset" (-2 to
+/// 6), "twilight" (-10 to -2), "direct sun" (0 to 60).
 [[nodiscard]] const char* NameOf(SkyRegime regime);
 
 struct SkySpectrum {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/train/table_search.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

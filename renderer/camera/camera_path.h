@@ -91,8 +91,8 @@ class CameraPath {
 /// refuses.
 [[nodiscard]] CameraPath ReadCameraPath(const std::filesystem::path& file,
                                         const CameraPose& otherwise = {});
-/// All columns. Read back, a place is the same to a tenth of a millimetre, an angle to 1e-9
-/// degrees.
+/// All columns. Read back, a place is the same to a
+/// tenth of a millimetre, an angle to 1e-9 degrees.
 [[nodiscard]] std::string TextOf(const CameraPath& path);
 
 }  // namespace alpenglow

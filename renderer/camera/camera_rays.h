@@ -37,8 +37,8 @@ struct CameraStand {
   glm::dmat3 frame_from_enu{1.0};
 };
 
-/// A pinhole or a thin lens (perspective), or a panorama (latitude-longitude: centre = heading,
-/// left edge = behind).
+/// A pinhole or a thin lens (perspective), or a panorama
+/// (latitude-longitude: centre = heading, left edge = behind).
 class CameraRays {
  public:
   /// @param width, height  of the picture in pixels, >= 1. A panorama has no lens.

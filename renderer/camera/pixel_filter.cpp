@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/camera/pixel_filter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/effect/effect_choice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

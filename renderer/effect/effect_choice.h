@@ -14,10 +14,10 @@
 // looks random and is not. So nothing larger than a cell is missed; of smaller things that are
 // neither lamps nor near the sun, only as many as the pilot's pixels happen to meet.
 //
-// The decision depends on pixels alone. What the effects cost is measured beside, and told. Parts
-// of the air cost nothing to keep, and are kept (EffectText::is_free). Frames of a series decide
-// each for itself: between neighbours that decide differently the picture moves by the budget at
-// most.
+// The decision depends on pixels alone. What the effects cost is measured beside,
+// and told. Parts of the air cost nothing to keep, and are kept
+// (EffectText::is_free). Frames of a series decide each for itself: between
+// neighbours that decide differently the picture moves by the budget at most.
 #pragma once
 
 #include <array>
@@ -122,8 +122,8 @@ struct EffectChoice {
   std::vector<EffectEstimate> estimates;  // of what was asked for, in the order of Effect
   ChangeEstimate together;                // of all that is left out
   std::vector<RefinementEstimate> refinements;
-  // Time of all threads together: of the picture with everything, of the picture as chosen, and of
-  // choosing.
+  // Time of all threads together: of the picture with
+  // everything, of the picture as chosen, and of choosing.
   double all_s = 0.0, chosen_s = 0.0, pilot_s = 0.0;
   std::size_t pilot_pixels = 0;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/effect/effects.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 

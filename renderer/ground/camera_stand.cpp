@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground/camera_stand.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 

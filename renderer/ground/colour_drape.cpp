@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground/colour_drape.h"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 

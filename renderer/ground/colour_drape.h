@@ -38,9 +38,9 @@ class BandsOfColour {
 /// Colours on the terrain. Immutable; safe to ask from many threads.
 class ColourDrape {
  public:
-  /// The picture that a scene names, over its ground; null if it names none. Throws InputError
-  /// naming the file and the fault for what cannot be read, has over 2^26 pixels or no terrain
-  /// under it.
+  /// The picture that a scene names, over its ground; null if it names
+  /// none. Throws InputError naming the file and the fault for what
+  /// cannot be read, has over 2^26 pixels or no terrain under it.
   [[nodiscard]] static std::shared_ptr<const ColourDrape> Of(const Scene& scene,
                                                              const SceneGround& ground);
 

@@ -129,9 +129,9 @@ class Water {
   [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at) const;
   /// Share of an even sky that comes from under the surface.
   [[nodiscard]] Bands<float> BodyAlbedo(double mu) const;
-  /// What the waves show of the sky; light that meets a second wave counts as coming from the
-  /// horizon. TotalWeight() is the mean Fresnel reflectance of the faces that the eye sees, to 5 %
-  /// of it.
+  /// What the waves show of the sky; light that meets a second wave
+  /// counts as coming from the horizon. TotalWeight() is the mean
+  /// Fresnel reflectance of the faces that the eye sees, to 5 % of it.
   [[nodiscard]] MirroredRays Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const;
 
  private:

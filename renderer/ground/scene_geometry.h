@@ -14,8 +14,8 @@
 
 namespace alpenglow {
 
-/// Distance of a point from the sphere with its centre at (0, 0, -R) [m], to the rounding of its
-/// coordinates.
+/// Distance of a point from the sphere with its centre at
+/// (0, 0, -R) [m], to the rounding of its coordinates.
 [[nodiscard]] double AltitudeOverSphere(const glm::dvec3& point, double radius_m);
 
 /// What a ray of the camera meets first.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground/scene_ground.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

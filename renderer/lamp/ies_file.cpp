@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/lamp/ies_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>

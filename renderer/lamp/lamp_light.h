@@ -12,8 +12,8 @@
 //
 // What a pixel costs depends on the cut of the tree of lamps (lamp_tree.h, tile_cut.h), not on the
 // lamps that the scene has. Nodes that are far from a tile in angle shine smoothly over it: their
-// light in the air is computed on a lattice of every fourth pixel and interpolated where the ends of
-// the rays allow it.
+// light in the air is computed on a lattice of every fourth pixel and interpolated where the ends
+// of the rays allow it.
 #pragma once
 
 #include <functional>
@@ -70,9 +70,9 @@ class LampLight {
   /// Irradiance of a surface [W m^-2 nm^-1].
   [[nodiscard]] Bands<float> OnSurface(const LampNodes& lamps, const LitPoint& at) const;
 
-  /// Radiance of the lamps themselves. A lamp smaller than a pixel is drawn as a soft disk of that
-  /// size that has its light; a lens spreads it over the shape of its iris, where terrain does not
-  /// stand between.
+  /// Radiance of the lamps themselves. A lamp smaller than a pixel is
+  /// drawn as a soft disk of that size that has its light; a lens spreads
+  /// it over the shape of its iris, where terrain does not stand between.
   /// @param left  what but air and fog leaves of light from a distance; null: all.
   [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
                                   double pixel_angle_rad,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/lamp/placed_lamp.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>

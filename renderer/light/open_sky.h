@@ -7,10 +7,10 @@
 //
 //   n_z A(p, s) + n_h B(p, s),   A = integral of L s ds,   B = integral of L sqrt(1 - s^2) ds,
 //
-// both tabulated over s for kHorizonAzimuths sectors, L being the mean of a sector of the sky with
-// its aureole (SkyView). The lower end is the horizon or the surface's own plane, whichever is
-// higher. Between altitudes and places the sky keeps its shape and follows the irradiance of a
-// level plane.
+// both tabulated over s for kHorizonAzimuths sectors, L being the mean of a
+// sector of the sky with its aureole (SkyView). The lower end is the horizon
+// or the surface's own plane, whichever is higher. Between altitudes and
+// places the sky keeps its shape and follows the irradiance of a level plane.
 #pragma once
 
 #include <array>
@@ -39,8 +39,8 @@ struct SurfaceSectors {
 /// per radian of azimuth, to 1e-4.
 [[nodiscard]] float SectorIntegral(float up, float along, float low, float high);
 
-/// What each sector brings from the ground below its horizon, when that has radiance 1, per radian
-/// of azimuth.
+/// What each sector brings from the ground below its
+/// horizon, when that has radiance 1, per radian of azimuth.
 [[nodiscard]] Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons);
 
 /// The sky for one position of the sun. Immutable; safe to ask from many threads.

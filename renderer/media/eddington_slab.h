@@ -10,16 +10,16 @@
 //
 //   tau' = (1 - w f) tau,   w' = w (1 - f) / (1 - w f),   g' = (g - f) / (1 - f),   f = chi_2:
 //
-// Joseph, Wiscombe, Weinman (1976), "The delta-Eddington approximation for radiative flux
-// transfer", J. Atmos. Sci. 33, 2452. Shettle and Weinman (1970), J. Atmos. Sci. 27, 1048, for the
-// layer.
+// Joseph, Wiscombe, Weinman (1976), "The delta-Eddington approximation
+// for radiative flux transfer", J. Atmos. Sci. 33, 2452. Shettle and
+// Weinman (1970), J. Atmos. Sci. 27, 1048, for the layer.
 //
-// Radiances from it: the first order is exact but for light that the forward peak has taken along,
-// which is scattered as by a lobe of the same mean cosine; the orders beyond it are
-// w (I0 + chi_1 I1 mu). Against a path tracer, over layers of optical depth 0.5 to 8, g = 0.8, the
-// sun at 9 and 37 degrees, looking from outside: off by 0.35 of the value root mean square, between
-// 0.4 and 2.5 of it at worst (tests/renderer/media/eddington_slab_test.cpp). It is an approximation of
-// what single scattering leaves out, where that is most of the light.
+// Radiances from it: the first order is exact but for light that the forward peak has taken
+// along, which is scattered as by a lobe of the same mean cosine; the orders beyond it are w
+// (I0 + chi_1 I1 mu). Against a path tracer, over layers of optical depth 0.5 to 8, g = 0.8,
+// the sun at 9 and 37 degrees, looking from outside: off by 0.35 of the value root mean square,
+// between 0.4 and 2.5 of it at worst (tests/renderer/media/eddington_slab_test.cpp). It is an
+// approximation of what single scattering leaves out, where that is most of the light.
 #pragma once
 
 namespace alpenglow {

@@ -38,8 +38,8 @@ class FogLight {
   };
   [[nodiscard]] Look LookAlong(const glm::dvec3& look) const;
 
-  /// Scattered per unit of scattering [1/sr]: of the sun itself and its glow in the fog, and of the
-  /// sky.
+  /// Scattered per unit of scattering [1/sr]: of the sun
+  /// itself and its glow in the fog, and of the sky.
   /// @param sun  what air, terrain and volumes leave of sunlight; lit: without the air, in [0, 1].
   /// @param slant_depth  of the fog towards the sun.
   struct Scattered {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/media/local_media.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -68,8 +68,8 @@ class MediaLight {
 /// What light from behind is dimmed by.
 enum class Behind { kAll, kVolumes };
 
-/// What of light from the air itself arrives, which is scattered in front of media, in them, behind
-/// them.
+/// What of light from the air itself arrives, which is
+/// scattered in front of media, in them, behind them.
 ///
 /// @param upto  light of the air up to a distance, rising; @param whole  of the whole ray.
 /// Exact in front and behind. Within stretches of media over which transmittance falls by 0.15 at

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/picture_layers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "atmosphere/colour/spectrum.h"
@@ -31,10 +33,10 @@ LayerValues LightOf(const BandColour& colour, Rays rays) {
   return Rgb(colour, MeanOf(kPart, rays));
 }
 
-// Colour of a factor (albedo, transmittance) as it looks under the sun above the air, within [0, 1].
-// Red light that has come far through air is more saturated than sRGB's red: its blue is negative,
-// down to -0.002 beside a red of 0.1. As light that is right (image.h); as a factor it would turn
-// light that it dims into its negative.
+// Colour of a factor (albedo, transmittance) as it looks under the sun above the air, within [0,
+// 1]. Red light that has come far through air is more saturated than sRGB's red: its blue is
+// negative, down to -0.002 beside a red of 0.1. As light that is right (image.h); as a factor it
+// would turn light that it dims into its negative.
 template <BandLight Shaded::*kPart>
 LayerValues FactorOf(const BandColour& colour, Rays rays) {
   const BandLight factor = MeanOf(kPart, rays);

@@ -31,8 +31,8 @@ struct ChosenPicture {
   EffectChoice choice;
 };
 
-/// A scene ready to be rendered at any time: terrain loaded, light of higher orders solved.
-/// Immutable.
+/// A scene ready to be rendered at any time: terrain
+/// loaded, light of higher orders solved. Immutable.
 class SceneRenderer {
  public:
   /// Throws InputError for what the scene names and cannot be read, or an eye below the ground.

@@ -33,11 +33,11 @@ struct Shot {
   Shot(const UtcInstant& at) : instant(at) {}  // NOLINT: by the scene's camera
 
   UtcInstant instant;
-  /// Another camera with the scene's lens: of one pose, or of several that it takes at even steps
-  /// of time while its shutter is open. Terrain stays where it is; light and air are as at the
-  /// middle pose. The air stays on the sphere that osculates the ellipsoid at the scene's place,
-  /// which the ellipsoid leaves by 3 m at 100 km and by 70 m at 500 km, the farthest that an eye
-  /// may be.
+  /// Another camera with the scene's lens: of one pose, or of several that it takes
+  /// at even steps of time while its shutter is open. Terrain stays where it is;
+  /// light and air are as at the middle pose. The air stays on the sphere that
+  /// osculates the ellipsoid at the scene's place, which the ellipsoid leaves by 3
+  /// m at 100 km and by 70 m at 500 km, the farthest that an eye may be.
   std::vector<CameraPose> poses;
 
   [[nodiscard]] std::optional<CameraPose> middle() const {

@@ -73,8 +73,8 @@ struct SharedAir {
 void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
             SharedAir& rays);
 
-/// Light of lamps on the way, of pixel (x, y); and what fog leaves that only lamps light. After
-/// AddAir.
+/// Light of lamps on the way, of pixel (x, y); and what
+/// fog leaves that only lamps light. After AddAir.
 void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays);
 
 }  // namespace alpenglow

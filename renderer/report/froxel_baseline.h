@@ -14,8 +14,9 @@
 
 namespace alpenglow {
 
-/// The slices of a volume of froxels that one ray goes through: what the air does up to each, linear
-/// between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched to from the eye in 2 k steps.
+/// The slices of a volume of froxels that one ray goes through: what the air does up to each,
+/// linear between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched to from the eye in
+/// 2 k steps.
 class FroxelColumn {
  public:
   static constexpr int kSlices = 32;

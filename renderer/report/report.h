@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Speed and accuracy of pictures held against each other, in one run: `skyseries report`.
 //
-// Topics: aerial perspective and transmittance before terrain, shafts, one lamp in fog, many lamps,
-// whole pictures. Rows, folders and pages are those of lut/report/report.h; WriteReport writes them.
+// Topics: aerial perspective and transmittance before terrain, shafts, one lamp in fog, many
+// lamps, whole pictures. Rows, folders and pages are those of lut/report/report.h;
+// WriteReport writes them.
 #pragma once
 
 #include "lut/report/report.h"

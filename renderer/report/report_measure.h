@@ -7,8 +7,8 @@
 
 namespace alpenglow {
 
-/// The air in front of terrain, in unbroken sunlight: light scattered on the way, and
-/// transmittance.
+/// The air in front of terrain, in unbroken sunlight:
+/// light scattered on the way, and transmittance.
 [[nodiscard]] ReportTopic MeasureAerialPerspective(const Medium& medium,
                                                    const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureTransmittanceToTerrain(const Medium& medium,

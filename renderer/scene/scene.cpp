@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <initializer_list>
 #include <limits>

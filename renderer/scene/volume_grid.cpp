@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/volume_grid.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/frame_name.h"
 
+#include <fmt/format.h>
+
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {

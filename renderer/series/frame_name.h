@@ -10,8 +10,8 @@ namespace alpenglow {
 /// A pattern with at most one integer conversion, %d, %4d or %04d; %% is a per cent sign.
 class FrameName {
  public:
-  /// Throws InputError for other conversions, for more than one, and for names that do not end in
-  /// .exr.
+  /// Throws InputError for other conversions, for more
+  /// than one, and for names that do not end in .exr.
   explicit FrameName(const std::string& pattern);
 
   /// Whether frames of different numbers have different names.

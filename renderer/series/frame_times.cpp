@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/frame_times.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>

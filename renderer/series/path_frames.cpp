@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/path_frames.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "atmosphere/text/error.h"

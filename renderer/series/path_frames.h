@@ -24,9 +24,9 @@ struct PathRate {
 /// `count` below 1 and a rate that is not positive.
 [[nodiscard]] double FrameInterval(const CameraPath& path, const PathRate& rate);
 
-/// Frames from the first point of the path on. Their instants are the path's; where it has none,
-/// `start` is that of the first point. Throws InputError as FrameInterval and for more than
-/// kMostFrames.
+/// Frames from the first point of the path on. Their instants are the
+/// path's; where it has none, `start` is that of the first point.
+/// Throws InputError as FrameInterval and for more than kMostFrames.
 [[nodiscard]] std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
                                              const UtcInstant& start);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/provenance.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <vector>
 

@@ -13,9 +13,9 @@
 
 namespace alpenglow {
 
-/// Program, air, place, camera, ground and lamps of a scene; numbers are written so that they read
-/// back exactly. The content of the terrain's file is hashed: throws InputError when it cannot be
-/// read.
+/// Program, air, place, camera, ground and lamps of a scene; numbers
+/// are written so that they read back exactly. The content of the
+/// terrain's file is hashed: throws InputError when it cannot be read.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene);
 
 /// Place, height and angles of a camera, over those of SceneMetadata.

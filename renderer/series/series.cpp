@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/series.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <system_error>
 

@@ -30,9 +30,9 @@ using SunlitPath = std::vector<SunlitPiece>;
 /// Sunlight at a distance along the ray, in [0, 1].
 [[nodiscard]] double SunlightAt(const SunlitPath& path, double distance_m);
 
-/// Joins small pieces, given in order, to long ones: those of full light, and those of half shade
-/// as long as no joint is moved by more than kTolerance radii of the disk (Bristol 1990, swinging
-/// doors).
+/// Joins small pieces, given in order, to long ones: those of full
+/// light, and those of half shade as long as no joint is moved by more
+/// than kTolerance radii of the disk (Bristol 1990, swinging doors).
 class SunlitPathBuilder {
  public:
   static constexpr double kTolerance = 0.02;

@@ -144,8 +144,8 @@ Land RangeLand() {
   return land;
 }
 
-// Found once a process: it is the same wherever it stands. Isolated, so that a thread that waits for
-// its parts does not take up another task that waits for the land.
+// Found once a process: it is the same wherever it stands. Isolated, so that a thread that waits
+// for its parts does not take up another task that waits for the land.
 const Land& TheLand() {
   static const Land kLand = tbb::this_task_arena::isolate([] {
     Land land = GridOf(kRangeSize);
@@ -156,8 +156,8 @@ const Land& TheLand() {
   return kLand;
 }
 
-// From here on a box of longitudes and latitudes is too much of a wedge: the grid goes around the
-// pole instead.
+// From here on a box of longitudes and latitudes is too
+// much of a wedge: the grid goes around the pole instead.
 constexpr double kPolarLatitude_rad = 89.3 * kRadiansPerDegree;
 
 bool IsPolar(const GeodeticPosition& centre) {

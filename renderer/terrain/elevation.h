@@ -33,8 +33,8 @@ struct ElevationGrid {
   [[nodiscard]] double LongitudeOfColumn(int column) const {
     return west_rad + column * step_lon_rad;
   }
-  /// Whether the columns go once around the earth, so that the last one is the first one's
-  /// neighbour.
+  /// Whether the columns go once around the earth, so
+  /// that the last one is the first one's neighbour.
   [[nodiscard]] bool ClosesAroundTheEarth() const;
   /// Whether a place lies among the samples, void or not.
   [[nodiscard]] bool Covers(double latitude_rad, double longitude_rad) const;
@@ -55,13 +55,13 @@ struct ElevationModel {
 
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
 /// earth (resampled to geographic WGS84 unless its samples already lie on such a grid), metres or
-/// feet. Heights are taken as above the ellipsoid, whatever vertical datum is declared. Voids are the declared nodata value, NaN, and
-/// the values that are nodata by custom: -32768, -32767, -9999, the lowest float. kFill closes them
-/// with a membrane (Laplace's equation) spanned over their rims; places outside the footprint of a
-/// resampled file stay open.
-/// Throws InputError naming the file and the fault for no or a foreign coordinate system, a rotated
-/// or missing geotransform, several bands, complex samples, latitudes over 90, one row or column,
-/// no valid sample, heights that no ground on earth has, damaged or truncated files.
+/// feet. Heights are taken as above the ellipsoid, whatever vertical datum is declared. Voids are
+/// the declared nodata value, NaN, and the values that are nodata by custom: -32768, -32767, -9999,
+/// the lowest float. kFill closes them with a membrane (Laplace's equation) spanned over their
+/// rims; places outside the footprint of a resampled file stay open. Throws InputError naming the
+/// file and the fault for no or a foreign coordinate system, a rotated or missing geotransform,
+/// several bands, complex samples, latitudes over 90, one row or column, no valid sample, heights
+/// that no ground on earth has, damaged or truncated files.
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids);
 
 }  // namespace alpenglow

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/elevation_raster.h"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include <algorithm>

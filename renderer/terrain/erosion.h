@@ -26,8 +26,8 @@ struct Rock {
   std::vector<float> steepest_slope;        // tangent of the angle of repose
 };
 
-/// The samples of a square grid, each moved by up to a third of the spacing when distances are taken,
-/// so that rivers do not follow the axes of the grid.
+/// The samples of a square grid, each moved by up to a third of the spacing when distances are
+/// taken, so that rivers do not follow the axes of the grid.
 class ScatteredSamples {
  public:
   /// @param size  samples a side.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any projection to a grid of latitudes and longitudes.
+#include <fmt/format.h>
 #include <ogr_spatialref.h>
 
 #include <algorithm>

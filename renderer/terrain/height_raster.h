@@ -36,9 +36,9 @@ struct GridCell {
 };
 [[nodiscard]] GridCell CellAt(const HeightRaster& raster, double x_m, double y_m);
 
-/// The uppermost surface of a mesh, at most `most_nodes` >= 4 nodes and none finer than the mesh
-/// itself (of a few large triangles: than a 512th of its extent). The same for any number of
-/// threads.
+/// The uppermost surface of a mesh, at most `most_nodes` >= 4 nodes
+/// and none finer than the mesh itself (of a few large triangles:
+/// than a 512th of its extent). The same for any number of threads.
 [[nodiscard]] HeightRaster RasterOf(const TriangleMesh& mesh, std::size_t most_nodes);
 
 }  // namespace alpenglow

@@ -20,9 +20,9 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
 };
 
-/// Every sample becomes a vertex, placed through ECEF, so curvature and ellipsoid are right. Beside
-/// a void triangles are left out. A grid that goes once around the earth is closed, and over a
-/// pole too.
+/// Every sample becomes a vertex, placed through ECEF, so curvature and
+/// ellipsoid are right. Beside a void triangles are left out. A grid
+/// that goes once around the earth is closed, and over a pole too.
 [[nodiscard]] TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame);
 
 /// Reads a Wavefront OBJ whose coordinates are ENU metres around the place of the scene. Polygons

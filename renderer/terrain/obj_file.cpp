@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Wavefront OBJ. tinyobjloader cuts the polygons; it takes wrong numbers and indices as they come,
 // so every v and f line is judged here first.
+#include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
 #include <algorithm>

@@ -17,8 +17,8 @@ inline constexpr double kRangeHalfWidth_km = 0.5 * kRangeSpacing_km * (kRangeSiz
 /// Erodibility relative to the mean, about 0.5 to 2.
 [[nodiscard]] double RelativeErodibility(double x_km, double y_km);
 
-/// Tangent of the angle at which the rock slides, 0.35 to 1.3: rock that rises fast is fresh and
-/// stands steeper.
+/// Tangent of the angle at which the rock slides, 0.35 to
+/// 1.3: rock that rises fast is fresh and stands steeper.
 [[nodiscard]] double SteepestSlope(double x_km, double y_km, double relative_uplift);
 
 /// Height of the outlets [m]: the foreland, which falls to 0 at the rim.

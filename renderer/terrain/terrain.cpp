@@ -2,6 +2,7 @@
 #include "renderer/terrain/terrain.h"
 
 #include <embree3/rtcore.h>
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 

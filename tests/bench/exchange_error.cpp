@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Two sets of Bruneton's .dat files held against each other, table by table.
 //   exchange_error OURS STOCK [LOWEST_SUN]
-// OURS of `skylut build --layout bruneton`, STOCK of the `precompute` of his demo, both for a lowest
-// sun of 102 (default) or 120 degrees from the zenith. Relative differences from STOCK, of texels
-// that hold more than a thousandth of the largest value of their row in the report.
+// OURS of `skylut build --layout bruneton`, STOCK of the `precompute` of his demo, both for a
+// lowest sun of 102 (default) or 120 degrees from the zenith. Relative differences from STOCK, of
+// texels that hold more than a thousandth of the largest value of their row in the report.
 #include <fmt/core.h>
 
 #include <algorithm>

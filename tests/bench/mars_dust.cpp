@@ -31,9 +31,9 @@ constexpr SizeDistribution kSizes{.effective_radius_um = 1.7, .effective_varianc
 constexpr double kRealIndex = 1.5;
 constexpr double kJoint_deg = 30.0;
 
-/// Single scattering albedo: ferric iron takes the blue. Representative of what the Pathfinder
-/// camera showed (Tomasko et al. 1999, J. Geophys. Res. 104, 8987-9007; Markiewicz et al. 1999),
-/// within 0.03.
+/// Single scattering albedo: ferric iron takes the blue. Representative
+/// of what the Pathfinder camera showed (Tomasko et al. 1999, J.
+/// Geophys. Res. 104, 8987-9007; Markiewicz et al. 1999), within 0.03.
 struct Albedo {
   double wavelength_nm, albedo;
 };

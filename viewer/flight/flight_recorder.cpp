@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/flight/flight_recorder.h"
 
+#include <fmt/format.h>
+
 #include "atmosphere/text/error.h"
 #include "lut/program/atomic_file.h"
 #include "renderer/series/frame_name.h"

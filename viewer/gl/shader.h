@@ -3,8 +3,8 @@
 //
 // GLSL has no #include. Every piece starts with `#line 100000 N + 1`, N counting the pieces, and
 // such a line in the driver's log is turned back into our file and line, so a message reads
-// "atmosphere/ray/shell.glsl:12: ...". (The second number that #line may have, the source string, is no
-// use: Mesa 22 forgets it in most messages.)
+// "atmosphere/ray/shell.glsl:12: ...". (The second number that #line may have, the source string,
+// is no use: Mesa 22 forgets it in most messages.)
 #pragma once
 
 #include <span>

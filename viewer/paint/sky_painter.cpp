@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/sky_painter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>

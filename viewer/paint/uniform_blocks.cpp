@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/uniform_blocks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 

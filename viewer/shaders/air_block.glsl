@@ -81,8 +81,8 @@ vec3 ColumnsToSun(float h, float mu_s) {
   return max(2.0 * ColumnsFromPerigee(h, mu_s) - up, vec3(0.0));
 }
 
-// Columns between the origin of a ray and a point on it, from the upward columns at both and at the
-// perigee.
+// Columns between the origin of a ray and a point on it,
+// from the upward columns at both and at the perigee.
 vec3 ColumnsBetween(float mu_origin, float mu_point, vec3 origin, vec3 point, vec3 perigee) {
   return vec3(ColumnBetween(mu_origin, mu_point, origin.x, point.x, perigee.x),
               ColumnBetween(mu_origin, mu_point, origin.y, point.y, perigee.y),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The sun as a disk: what stands of it over the horizon, and how bright it is (sun_disk.h).
 
-// The angle of a sine in [-1, 1]: asin() and acos() of some drivers are good to 1e-4, a fiftieth of
-// the disk.
+// The angle of a sine in [-1, 1]: asin() and acos() of
+// some drivers are good to 1e-4, a fiftieth of the disk.
 float AngleOfSine(float sine) { return atan(sine, sqrt(max((1.0 - sine) * (1.0 + sine), 0.0))); }
 
 // Fraction of the disk over the horizon, and zenith cosine of the visible part's centre.

@@ -164,8 +164,8 @@ TEST(Medium, OnePhaseFunctionForAllIsTheSameAirAsItsCopies) {
 }
 
 TEST(Medium, HashIsTheSameOnEveryMachine) {
-  // A medium of literals only, so that no library's pow can change it; the value is from a separate
-  // program.
+  // A medium of literals only, so that no library's pow
+  // can change it; the value is from a separate program.
   EXPECT_EQ(MediumHash(MediumPreset("bruneton2017")), 3681725893479617410U)
       << "a new value here makes every table on every disk stale";
   Medium negative_zero = MediumPreset("bruneton2017");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/air/phase.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,8 +35,8 @@ PhaseFunction MakeDouble(double g, double g_back, double back_weight) {
   return phase;
 }
 
-// The lobe of Henyey and Greenstein, as somebody would tabulate it: every half degree, finer in the
-// peak.
+// The lobe of Henyey and Greenstein, as somebody would
+// tabulate it: every half degree, finer in the peak.
 std::shared_ptr<const PhaseTable> TabulatedLobe(double g) {
   std::vector<double> angle_deg, per_sr;
   for (int i = 0; i <= 400; ++i) {
@@ -142,8 +143,8 @@ TEST(Phase, DraineSpansHenyeyGreensteinCornetteShanksAndRayleigh) {
 }
 
 TEST(Phase, AgreesWithTheFormulasAsPublished) {
-  // Written out once more from the papers, in the form that cancels, at points where that is
-  // harmless.
+  // Written out once more from the papers, in the form
+  // that cancels, at points where that is harmless.
   const double g = 0.6;
   const double c = 0.3;
   const double d = std::pow(1.0 + g * g - 2.0 * g * c, 1.5);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/colour/spectrum.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -258,9 +259,9 @@ TEST(Ciede2000, PublishedPairsHaveTheirDifferences) {
   }
 }
 
-// Sunlight and skylight that the training family does not know: the judge's single scattering
-// through three atmospheres at 95 wavelengths, as it is and with more blue as from light scattered
-// again.
+// Sunlight and skylight that the training family does not know: the
+// judge's single scattering through three atmospheres at 95 wavelengths,
+// as it is and with more blue as from light scattered again.
 struct TestLight {
   SampledFunction relative_to_sun;
   Triple xyz;

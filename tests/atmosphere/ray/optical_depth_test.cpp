@@ -22,8 +22,8 @@ namespace {
 
 using Columns = std::array<double, 3>;
 
-// A column [m] whose optical depth is below 1e-16: aerosol at 80 km, which float holds as a
-// subnormal.
+// A column [m] whose optical depth is below 1e-16:
+// aerosol at 80 km, which float holds as a subnormal.
 constexpr double kNothing_m = 1e-12;
 
 Medium Earth() { return MediumPreset("earth", WavelengthSet(4)); }

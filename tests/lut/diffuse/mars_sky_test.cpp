@@ -16,8 +16,8 @@ namespace {
 
 class MarsSky : public testing::Test {
  protected:
-  // Linear sRGB of the sky, sun included in no pixel. Angles in degrees: elevations, azimuth from
-  // the sun.
+  // Linear sRGB of the sky, sun included in no pixel.
+  // Angles in degrees: elevations, azimuth from the sun.
   std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) const {
     const SkyView view(air_, diffuse_, 2.0, std::sin(sun_deg * kRadiansPerDegree));
     const Bands<float> sky =

@@ -2,11 +2,11 @@
 // Light of the twilight sky against the published illuminances of the U.S. Naval Observatory
 // (Brown 1952; shared/tables), average clear sky at sea level.
 //
-// Deep twilight is light scattered at 20 to 80 km, where the air is thinner than an exponential of
-// 8 km says: by a factor of 2 at 40 km in the U.S. Standard Atmosphere 1976. With the scale height
-// that the standard atmosphere has there, and the same column, illuminance is right within a
-// quarter from sunset to the end of nautical twilight; with 8 km it is twice too bright from -6
-// degrees on.
+// Deep twilight is light scattered at 20 to 80 km, where the air is thinner than
+// an exponential of 8 km says: by a factor of 2 at 40 km in the U.S. Standard
+// Atmosphere 1976. With the scale height that the standard atmosphere has there,
+// and the same column, illuminance is right within a quarter from sunset to the
+// end of nautical twilight; with 8 km it is twice too bright from -6 degrees on.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lut/eval/eval.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -301,8 +302,8 @@ std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
        .ray_nodes = quality.ray_nodes});
 }
 
-// What skylut build --max-error makes of a percent: moments, and rays integrated where they are
-// asked for.
+// What skylut build --max-error makes of a percent:
+// moments, and rays integrated where they are asked for.
 std::unique_ptr<Evaluator> MomentsAlone(const Medium& medium) {
   const TableQuality quality = TableQualityFromName("standard");
   return MakeTableEvaluator(

@@ -210,8 +210,8 @@ TEST(Develop, LinearCurveReproducesTheSrgbCodeOnAverage) {
 
 // Hard case 35.
 TEST(Develop, ASlowGradientHasNoBands) {
-  // One code over 256 columns: without dither two flat bands, with it every 64-column block
-  // differs.
+  // One code over 256 columns: without dither two flat
+  // bands, with it every 64-column block differs.
   Image image(256, 64);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 256; ++x) {

@@ -3,6 +3,7 @@
 // Nothing here asks how long anything takes.
 #include "lut/report/report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -43,8 +43,8 @@ TEST(SkyViewMap, CoordinatesAndAnglesAreInverse) {
       // At the air's upper edge the angle is quadratic in v: 1e-16 of it are 1e-8 of v.
       EXPECT_NEAR(map.SkyCoordinate(map.SkyZenithAngle(v)), v, map.sees_upper_edge() ? 1e-7 : 1e-9)
           << altitude_m;
-      // Next to the horizon the angle is quadratic in v: 1e-16 of it are 1e-7 of v at the least
-      // dip.
+      // Next to the horizon the angle is quadratic in
+      // v: 1e-16 of it are 1e-7 of v at the least dip.
       EXPECT_NEAR(map.GroundCoordinate(map.GroundZenithAngle(v)), v, 1e-6) << altitude_m;
       EXPECT_NEAR(map.AzimuthCoordinate(map.Azimuth(v)), v, 1e-9) << altitude_m;
     }

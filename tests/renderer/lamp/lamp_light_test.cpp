@@ -212,8 +212,8 @@ TEST(LampLight, AHeadlampLightsTheAirBeforeItAndIsNotSeenByItsEye) {
   EXPECT_GT(seen(-north), 0.0) << "looking into it";
 }
 
-/// Illuminance of the eye by lamps near the middle of a picture of 320 x 180 pixels, from 64 rays a
-/// pixel.
+/// Illuminance of the eye by lamps near the middle of a
+/// picture of 320 x 180 pixels, from 64 rays a pixel.
 double IlluminanceInPicture(const Stage& stage, const LampLight& light, const CameraRays& camera) {
   constexpr int kSub = 8;
   double sum = 0.0;

@@ -198,8 +198,8 @@ TEST(MarchMedia, EmptyGridIsNotEvenAsked) {
 }
 
 TEST(MarchMedia, FogFarBelowItsBaseIsAWallThatIsQuicklyFound) {
-  // 2026-11-21: the density at the far end, e^15 of that at the base, once set the step of the
-  // whole.
+  // 2026-11-21: the density at the far end, e^15 of
+  // that at the base, once set the step of the whole.
   const LocalMedia fog({FogBody(900.0, 60.0, 0.02)}, 1);
   const glm::dvec3 way = glm::normalize(glm::dvec3(1.0, 0.0, -0.1));
   const MarchedLight light = MarchMedia(fog, {0.0, 0.0, 1900.0}, way, 18500.0, Glowing(fog, 1.0));

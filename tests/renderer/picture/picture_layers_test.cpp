@@ -49,8 +49,8 @@ TEST(PictureLayers, FactorsOfTheReddestLightAreNotNegative) {
       << "red stays what it is";
 }
 
-/// The sky of a medium from 100 km up, towards 8.5 degrees below the horizontal and 84 degrees beside
-/// the sun, which is 15 degrees down: what ozone leaves in the planet's shadow.
+/// The sky of a medium from 100 km up, towards 8.5 degrees below the horizontal and 84 degrees
+/// beside the sun, which is 15 degrees down: what ozone leaves in the planet's shadow.
 std::vector<double> DeepTwilight(const Medium& medium) {
   const AirIntegrator<float> air(medium);
   const DiffuseLight diffuse(medium);

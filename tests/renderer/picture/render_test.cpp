@@ -178,8 +178,8 @@ TEST(Render, AnEyeBelowTheGroundOrTooFarAwayIsRefused) {
 
 // Hard case 20.
 TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
-  // Without refraction of the line of sight the sea horizon lies acos(R / (R + h)) below the
-  // horizontal.
+  // Without refraction of the line of sight the sea
+  // horizon lies acos(R / (R + h)) below the horizontal.
   constexpr double kHeight_m = 10000.0;
   const SceneRenderer renderer(BareScene(kHeight_m, 0.0, -3.0, 2.0));
   RenderSettings settings{.width = 8,
@@ -245,8 +245,8 @@ TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
   Scene scene = BareScene(0.0, 0.0, 0.0, 8.0);
   scene.place = PlaceFromDegrees(35.50, 138.76, 0.0);
   scene.terrain = {TerrainSource::Kind::kElevationModel, dem, VoidPolicy::kFill, std::nullopt};
-  // Mount Fuji (35.3606, 138.7274) stands 15.7 km off, heading 191 degrees, its summit 10.5 degrees
-  // up.
+  // Mount Fuji (35.3606, 138.7274) stands 15.7 km off,
+  // heading 191 degrees, its summit 10.5 degrees up.
   scene.camera = CameraFromDegrees({20.0, true}, 190.8, 7.0, 0.0, 12.0);
   const SceneRenderer renderer(scene);
   const RenderSettings settings{.width = 60,

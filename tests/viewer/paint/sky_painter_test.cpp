@@ -2,6 +2,7 @@
 // Pictures of the graphics card against those of the renderer, pixel by pixel.
 #include "viewer/paint/sky_painter.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -22,8 +23,8 @@ namespace {
 constexpr int kWidth = 96;
 constexpr int kHeight = 54;
 
-/// Relative differences of the pixels of some rows, ascending; dark ones against a millionth of the
-/// brightest.
+/// Relative differences of the pixels of some rows,
+/// ascending; dark ones against a millionth of the brightest.
 std::vector<double> Differences(const Image& judge, const Image& other, int first_row = 0,
                                 int last_row = kHeight - 1) {
   float brightest = 0.0F;

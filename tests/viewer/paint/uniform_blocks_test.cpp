@@ -2,6 +2,7 @@
 // C++ and the driver agree on where every member of a uniform block lies.
 #include "viewer/paint/uniform_blocks.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
