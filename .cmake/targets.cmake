@@ -85,7 +85,11 @@ function(alpenglow_kernels target)
         ALPENGLOW_KERNEL_SET=k${set})
       target_compile_options(${objects} PRIVATE
         $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
-        $<$<CONFIG:Debug>:-O2> ${ALPENGLOW_OPTIONS_${set}})
+        $<$<CONFIG:Debug,Sanitize>:-O2> ${ALPENGLOW_OPTIONS_${set}}
+        # Batches are passed by reference: checking each of them for null and alignment, which processors
+        # trap anyway, and for its scope makes kernels 14 times slower and 5 times longer to compile.
+        "$<$<CONFIG:Sanitize>:-fno-sanitize=null,alignment,object-size>"
+        $<$<CONFIG:Sanitize>:-fno-sanitize-address-use-after-scope>)
       target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
       set_property(GLOBAL APPEND PROPERTY ALPENGLOW_KERNEL_OBJECTS ${objects})
     endforeach()

@@ -6,18 +6,16 @@
 namespace alpenglow {
 
 DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
-  const double low =
-      std::asinh((DiffuseLight::kLowestMuS - DiffuseLight::kSunCentre) / DiffuseLight::kSunWidth);
-  const double high = std::asinh((1.0 - DiffuseLight::kSunCentre) / DiffuseLight::kSunWidth);
+  const SunAxis& sun = DiffuseLight::SunNodes();
   DiffuseGrid grid{};
   grid.altitudes = static_cast<std::size_t>(options.altitudes);
   grid.suns = static_cast<std::size_t>(options.sun_angles);
   grid.degree = static_cast<std::size_t>(options.degree);
   grid.top_km = static_cast<float>(medium.atmosphere_height_m / 1000.0);
-  grid.sun_centre = static_cast<float>(DiffuseLight::kSunCentre);
-  grid.sun_width = static_cast<float>(DiffuseLight::kSunWidth);
-  grid.first_asinh = static_cast<float>(low);
-  grid.cells_a_unit = static_cast<float>((options.sun_angles - 1) / (high - low));
+  grid.sun_centre = static_cast<float>(sun.centre());
+  grid.sun_width = static_cast<float>(sun.width());
+  grid.first_asinh = static_cast<float>(sun.low());
+  grid.cells_a_unit = static_cast<float>((options.sun_angles - 1) / (sun.high() - sun.low()));
   // By a factor e a 1.25 degrees on earth; in proportion to radius over scale height elsewhere, but
   // by 1e-6 at most.
   const double fall = 46.0 / 796.0 * medium.planet_radius_m / medium.rayleigh_scale_height_m;

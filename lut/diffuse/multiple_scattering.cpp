@@ -13,17 +13,16 @@
 
 namespace alpenglow {
 
-double DiffuseLight::SunCoordinate(double mu_s) {
-  const double low = std::asinh((kLowestMuS - kSunCentre) / kSunWidth);
-  const double high = std::asinh((1.0 - kSunCentre) / kSunWidth);
-  return std::clamp((std::asinh((mu_s - kSunCentre) / kSunWidth) - low) / (high - low), 0.0, 1.0);
+const SunAxis& DiffuseLight::SunNodes() {
+  static const SunAxis axis(-0.05, 0.10, -0.55);
+  return axis;
 }
 
-double DiffuseLight::MuSFromCoordinate(double v) {
-  const double low = std::asinh((kLowestMuS - kSunCentre) / kSunWidth);
-  const double high = std::asinh((1.0 - kSunCentre) / kSunWidth);
-  return std::clamp(kSunCentre + kSunWidth * std::sinh(low + (high - low) * v), -1.0, 1.0);
+double DiffuseLight::SunCoordinate(double mu_s) {
+  return std::clamp(SunNodes().Coordinate(mu_s), 0.0, 1.0);
 }
+
+double DiffuseLight::MuSFromCoordinate(double v) { return SunNodes().MuS(v); }
 
 namespace {
 
@@ -150,7 +149,7 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
 Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double normal_mu,
                                       double normal_cos_azimuth) const {
   const CubicTaps row = TapsAt(AltitudeCoordinate(altitude_m), options_.altitudes);
-  const double x = (mu_s - kSunCentre) / kSunWidth;
+  const double x = (mu_s - SunNodes().centre()) / SunNodes().width();
   const double cell = (std::asinh(x) - static_cast<double>(grid_.first_asinh)) *
                       static_cast<double>(grid_.cells_a_unit);
   const CubicTaps column = TapsAt(cell / (options_.sun_angles - 1), options_.sun_angles);

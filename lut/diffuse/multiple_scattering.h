@@ -31,6 +31,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/diffuse_kernel.h"
 #include "lut/diffuse/spherical_harmonics.h"
+#include "lut/table/sun_axis.h"
 
 namespace alpenglow {
 
@@ -109,11 +110,8 @@ class DiffuseLight {
   [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
                                             double sun_coordinate) const;
 
-  /// Node coordinates: altitude = top u^2; mu_s = centre + width
-  /// sinh(a + (b - a) v), u and v in [0, 1].
-  static constexpr double kSunCentre = -0.05;
-  static constexpr double kSunWidth = 0.10;
-  static constexpr double kLowestMuS = -0.55;
+  /// Node coordinates: altitude = top u^2, u in [0, 1]; the sun's zenith cosine on SunNodes().
+  [[nodiscard]] static const SunAxis& SunNodes();
   [[nodiscard]] static double SunCoordinate(double mu_s);
   [[nodiscard]] static double MuSFromCoordinate(double v);
 

@@ -13,6 +13,7 @@
 #include "lut/program/program.h"
 #include "lut/table/cubic_taps.h"
 #include "lut/table/scattering_map.h"
+#include "lut/table/sun_axis.h"
 #include "lut/table/table_size.h"
 
 namespace alpenglow {
@@ -47,11 +48,8 @@ double RequireLowestSun(const Medium& medium, const std::optional<double>& lowes
 
 constexpr double kNoLength_km = 1e-9;
 
-// The axis of the sun in the azimuth table: mu_s = centre + width sinh, dense at the terminator.
-constexpr double kSunCentre = -0.05;
-constexpr double kSunWidth = 0.04;
-
-double StretchedSun(double mu_s) { return std::asinh((mu_s - kSunCentre) / kSunWidth); }
+// Of the azimuth table.
+SunAxis AxisFrom(double lowest_mu_s) { return {-0.05, 0.04, lowest_mu_s}; }
 
 // Fourth root and fourth power.
 float Root(float value) { return std::sqrt(std::sqrt(std::max(value, 0.0F))); }
@@ -153,8 +151,7 @@ double ScatteringTable::SunCosineOfTexel(std::size_t mu_s) const {
   if (axes_ == ScatteringAxes::kBruneton) {
     return shared::SunCosineFromUnit<double>(unit, lowest_mu_s_, top_km_, radius_km_);
   }
-  const double low = StretchedSun(lowest_mu_s_), high = StretchedSun(1.0);
-  return std::clamp(kSunCentre + kSunWidth * std::sinh(low + (high - low) * unit), -1.0, 1.0);
+  return AxisFrom(lowest_mu_s_).MuS(unit);
 }
 
 ScatteringTable::AxisTaps ScatteringTable::SunTaps(double mu_s) const {
@@ -163,9 +160,8 @@ ScatteringTable::AxisTaps ScatteringTable::SunTaps(double mu_s) const {
         shared::UnitFromSunCosine<double>(mu_s, lowest_mu_s_, top_km_, radius_km_), size_.mu_s);
     return {{at.low, at.low + 1}, {at.Weight(0), at.Weight(1)}};
   }
-  const double low = StretchedSun(lowest_mu_s_), high = StretchedSun(1.0);
   const CubicTaps taps =
-      TapsAt((StretchedSun(mu_s) - low) / (high - low), static_cast<int>(size_.mu_s));
+      TapsAt(AxisFrom(lowest_mu_s_).Coordinate(mu_s), static_cast<int>(size_.mu_s));
   return {taps.node, taps.weight};
 }
 

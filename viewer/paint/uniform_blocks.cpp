@@ -106,10 +106,8 @@ MomentBlock MomentBlockOf(const Medium& medium, int degree) {
     const auto row = mie.begin() + l * bands;
     block.insert(block.end(), static_cast<std::size_t>(l) + 1, GpuBandsOf({row, row + bands}));
   }
-  const double centre = DiffuseLight::kSunCentre;
-  const double width = DiffuseLight::kSunWidth;
-  block.emplace_back(centre, width, std::asinh((DiffuseLight::kLowestMuS - centre) / width),
-                     std::asinh((1.0 - centre) / width));
+  const SunAxis& sun = DiffuseLight::SunNodes();
+  block.emplace_back(sun.centre(), sun.width(), sun.low(), sun.high());
   return block;
 }
 
