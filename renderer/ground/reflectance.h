@@ -49,7 +49,9 @@ struct MirroredRays {
   std::array<MirroredRay, kMost> rays;
   std::size_t count = 0;
 
-  [[nodiscard]] std::span<const MirroredRay> All() const { return {rays.data(), count}; }
+  /// They live as long as this.
+  [[nodiscard]] std::span<const MirroredRay> All() const& { return {rays.data(), count}; }
+  std::span<const MirroredRay> All() const&& = delete;
   [[nodiscard]] double TotalWeight() const;
 };
 

@@ -316,7 +316,8 @@ TEST(TerrainLight, ASeaMirrorsAFarCoastWithoutEdges) {
     const glm::dvec3 to_eye = glm::normalize(glm::dvec3(0.0, 0.0, kEye_m) - point);
     const SlopePoint at = Mountains::At(point, kUp, to_sun.z);
     double shown = 0.0, sky = 0.0;
-    for (const MirroredRay& ray : water.Mirrored(kUp, to_eye).All()) {
+    const MirroredRays mirrored = water.Mirrored(kUp, to_eye);
+    for (const MirroredRay& ray : mirrored.All()) {
       shown += ray.weight * static_cast<double>(light.Radiance(at, ray.direction, ray.spread)[1]);
       sky += ray.weight * static_cast<double>(light.SkyRadiance(at, ray.direction)[1]);
     }
