@@ -9,7 +9,7 @@ target_compile_options(alpenglow_warnings INTERFACE
   -fno-math-errno -fno-trapping-math -ffp-contract=off)
 
 # Not cache variables: project() has put empty ones of these names into the cache, which would win. -O2
-# takes twice as long to compile and finds nothing more.
+# takes up to twice as long to compile.
 set(CMAKE_CXX_FLAGS_SANITIZE
   "-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
 set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}")
