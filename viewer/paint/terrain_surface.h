@@ -8,7 +8,7 @@
 #include "renderer/terrain/mesh.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/paint/uniform_blocks.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/paint/uniform_blocks.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // C++ and the driver agree on where every member of a uniform block lies.
-#include "viewer/paint/uniform_blocks.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
