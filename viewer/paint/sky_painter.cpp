@@ -11,12 +11,11 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
-#include "lut/picture/dither.h"
 #include "renderer/ground/surface.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/picture/render.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/paint/full_screen.h"
 
 namespace alpenglow {
 namespace {
@@ -33,7 +32,6 @@ enum TextureUnit {
   kDiffuseSkyUnit,
   kSunShadowUnit,
   kPictureUnit,
-  kDitherUnit,
 };
 
 constexpr int kSkyNodes = AerialPerspective::Nodes{}.sky;  // Gauss nodes of a panel of a ray
@@ -41,13 +39,6 @@ constexpr int kNearNodes = 4;                              // of one to terrain 
 constexpr int kDiffuseSkySide = 96;   // texels of the map of diffuse light, azimuth and elevation
 constexpr int kMomentSuns = 512;      // finer than DiffuseLight's nodes: bilinear for its cubic, in
 constexpr int kMomentAltitudes = 96;  // twilight, where light falls by e a degree, to 5e-4
-
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
-
-ShaderProgram FullScreenProgram(std::vector<ShaderPiece> texts, const char* stage) {
-  texts.push_back(Piece(stage));
-  return ShaderProgram({Piece("viewer/shaders/full_screen.vert.glsl")}, texts);
-}
 
 void UploadRules(const ShaderProgram& program) {
   std::vector<float> pairs;
@@ -91,27 +82,9 @@ void UploadMoments(const DiffuseLight& diffuse) {
   ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
 }
 
-void UploadDither() {
-  std::vector<float> noise;
-  for (int y = 0; y < kDitherTileSize; ++y) {
-    for (int x = 0; x < kDitherTileSize; ++x) {
-      for (int channel = 0; channel < 3; ++channel) noise.push_back(DitherNoise(x, y, channel));
-    }
-  }
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, kDitherTileSize, kDitherTileSize, 0, GL_RGB, GL_FLOAT,
-               noise.data());
-  ClampAndFilter(GL_TEXTURE_2D, false);
-}
-
 void BindTexture(TextureUnit unit, GLenum target, const GlTexture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(target, texture.id());
-}
-
-void DrawFullScreen(const ShaderProgram& program, const GlVertexArray& no_vertices) {
-  program.Use();
-  glBindVertexArray(no_vertices.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 // (Re)makes a target when it is missing or of another size.
@@ -132,7 +105,7 @@ std::vector<ShaderPiece> LightTexts(int degree) {
                            "viewer/shaders/air_ray.glsl", "viewer/shaders/diffuse_light.glsl",
                            "viewer/shaders/air_light.glsl", "viewer/shaders/diffuse_sky_map.glsl",
                            "viewer/shaders/sun_light.glsl", "viewer/shaders/ground.glsl"}) {
-    pieces.push_back(Piece(name));
+    pieces.push_back(ViewerPiece(name));
   }
   return pieces;
 }
@@ -147,7 +120,6 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
       picture_program_(FullScreenProgram(LightTexts(diffuse.options().degree),
                                          "viewer/shaders/picture.frag.glsl")),
       average_program_(FullScreenProgram({}, "viewer/shaders/average.frag.glsl")),
-      develop_program_(FullScreenProgram(SharedTexts(), "viewer/shaders/develop.frag.glsl")),
       relief_(relief) {
   const MomentBlock moments = MomentBlockOf(medium, diffuse.options().degree);
   UploadBlock(moment_block_, kMomentBinding, moments.data(), moments.size() * sizeof(moments[0]));
@@ -155,8 +127,6 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
   UploadBlock(phase_block_, kPhaseBinding, phase.data(), sizeof(phase));
   BindTexture(kDiffuseMomentsUnit, GL_TEXTURE_2D_ARRAY, diffuse_moments_);
   UploadMoments(diffuse);
-  BindTexture(kDitherUnit, GL_TEXTURE_2D, dither_noise_);
-  UploadDither();
   BindTexture(kDiffuseSkyUnit, GL_TEXTURE_2D_ARRAY, diffuse_sky_);
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kDiffuseSkySide, kDiffuseSkySide, 2, 0, GL_RGBA,
                GL_FLOAT, nullptr);
@@ -174,8 +144,6 @@ SkyPainter::SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const 
   picture_program_.BindSampler("diffuse_sky", kDiffuseSkyUnit);
   picture_program_.BindSampler("sun_shadow", kSunShadowUnit);
   average_program_.BindSampler("larger", kPictureUnit);
-  develop_program_.BindSampler("linear_picture", kPictureUnit);
-  develop_program_.BindSampler("dither_noise", kDitherUnit);
   CheckGl("SkyPainter");
 }
 
@@ -311,14 +279,7 @@ double SkyPainter::MeteredEv100() {
 
 void SkyPainter::Develop(double ev100, GLuint framebuffer) const {
   ALPENGLOW_ENSURE(picture_.has_value(), ==, true);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, picture_->width(), picture_->height());
-  picture_->BindTexture(kPictureUnit);
-  BindTexture(kDitherUnit, GL_TEXTURE_2D, dither_noise_);
-  develop_program_.Use();
-  glUniform1f(develop_program_.Uniform("exposure"), static_cast<float>(ExposureScale(ev100)));
-  DrawFullScreen(develop_program_, no_vertices_);
-  CheckGl("SkyPainter::Develop");
+  developer_.Develop(*picture_, ev100, {framebuffer, picture_->width(), picture_->height()});
 }
 
 }  // namespace alpenglow

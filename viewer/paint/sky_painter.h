@@ -17,6 +17,7 @@
 #include "viewer/flight/flight.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
+#include "viewer/paint/developer.h"
 #include "viewer/paint/terrain_surface.h"
 
 namespace alpenglow {
@@ -53,8 +54,9 @@ class SkyPainter {
   TerrainSurface terrain_;
   GlVertexArray no_vertices_;
   GlBuffer air_block_, view_block_, moment_block_, phase_block_, ground_block_;
-  ShaderProgram diffuse_sky_program_, picture_program_, average_program_, develop_program_;
-  GlTexture diffuse_moments_, dither_noise_, diffuse_sky_;
+  ShaderProgram diffuse_sky_program_, picture_program_, average_program_;
+  GlTexture diffuse_moments_, diffuse_sky_;
+  Developer developer_{ToneCurve::kAgx};
   GlFramebuffer diffuse_sky_target_;
   std::optional<RenderTarget> surface_, samples_, picture_, meter_;
   bool relief_;

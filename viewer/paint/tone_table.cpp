@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/tone_table.h"
+
+#include <cmath>
+
+#include "lut/picture/tone_curve.h"
+
+namespace alpenglow {
+namespace {
+
+std::array<float, ToneTable::kSide> Nodes() {
+  std::array<float, ToneTable::kSide> nodes{};
+  constexpr double kRange = ToneTable::kHighestStop - ToneTable::kLowestStop;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(nodes.size() - 1);
+    nodes[i] = static_cast<float>(std::exp2(ToneTable::kLowestStop + kRange * share));
+  }
+  return nodes;
+}
+
+}  // namespace
+
+ToneTable::ToneTable() {
+  const auto nodes = Nodes();
+  codes_.reserve(std::size_t{kSide} * kSide * kSide);
+  for (const float blue : nodes) {
+    for (const float green : nodes) {
+      for (const float red : nodes) {
+        const Rgb<float> light = DisplayLight<float>(ToneCurve::kAgx, {red, green, blue}, 1.0F);
+        codes_.push_back(
+            {shared::SrgbCode(light[0]), shared::SrgbCode(light[1]), shared::SrgbCode(light[2])});
+      }
+    }
+  }
+}
+
+}  // namespace alpenglow
