@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/auto_quality.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/fixtures/fault_of.h"
+
+namespace alpenglow {
+namespace {
+
+/// A machine on which a frame takes so long at full resolution and high quality; low costs 0.4 of
+/// that, medium 0.6, and pixels weigh as their number.
+double FrameOf(const PaintedQuality& painted, double full_s) {
+  const std::map<Quality, double> cost{
+      {Quality::kLow, 0.4}, {Quality::kMedium, 0.6}, {Quality::kHigh, 1.0}};
+  return full_s * cost.at(painted.quality) * (0.15 + 0.85 * painted.scale * painted.scale);
+}
+
+struct Outcome {
+  PaintedQuality last;
+  double frame_s;
+  int changes;  // in the second half of the run
+};
+Outcome RunFor(double full_s, int frames) {
+  AutoQuality quality(1.0 / 30.0);
+  Outcome run{};
+  for (int frame = 0; frame < frames; ++frame) {
+    const PaintedQuality before = quality.painted();
+    run.frame_s = FrameOf(before, full_s);
+    quality.Note(run.frame_s);
+    if (frame > frames / 2 && !(quality.painted() == before)) ++run.changes;
+  }
+  run.last = quality.painted();
+  return run;
+}
+
+TEST(AutoQuality, AFastMachineDrawsAtHighQuality) {
+  EXPECT_EQ(RunFor(0.005, 2000).last, (PaintedQuality{Quality::kHigh, 1.0}));
+}
+
+TEST(AutoQuality, FramesTakeAsLongAsWantedWhereAnyQualityDoes) {
+  for (const double full_s : {0.02, 0.04, 0.06, 0.1, 0.2, 0.3}) {
+    const Outcome run = RunFor(full_s, 6000);
+    EXPECT_LT(run.frame_s, 1.16 / 30.0) << full_s;
+    EXPECT_LE(run.changes, 4) << "it settles: a step up that fails is tried ever more rarely";
+  }
+}
+
+TEST(AutoQuality, ASlowMachineGetsTheCheapestPicture) {
+  EXPECT_EQ(RunFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.33}));
+}
+
+TEST(AutoQuality, AHugeFrameIsAnsweredAtOnce) {
+  AutoQuality quality(1.0 / 30.0);
+  quality.Note(0.6);
+  EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.33}));
+}
+
+TEST(QualityRule, IsReadFromItsName) {
+  EXPECT_EQ(QualityRuleFromText("auto").fixed, std::nullopt);
+  EXPECT_EQ(QualityRuleFromText("reference").fixed, Quality::kReference);
+  EXPECT_NE(tests::FaultOf([] { return QualityRuleFromText("best"); }).find("--quality"),
+            std::string::npos);
+  EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.7}), "low at 0.7x");
+}
+
+}  // namespace
+}  // namespace alpenglow

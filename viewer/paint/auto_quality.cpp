@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/auto_quality.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::array<const char*, 4> kNames{"low", "medium", "high", "reference"};
+
+/// A way to paint, and about what it costs beside the first.
+struct Step {
+  PaintedQuality painted;
+  double cost;
+};
+
+// Measured with llvmpipe over the built-in range at 1280x720 (--benchmark).
+constexpr std::array<Step, 8> kSteps{{{{Quality::kHigh, 1.0}, 1.0},
+                                      {{Quality::kMedium, 1.0}, 0.62},
+                                      {{Quality::kMedium, 0.85}, 0.48},
+                                      {{Quality::kMedium, 0.7}, 0.36},
+                                      {{Quality::kLow, 0.7}, 0.28},
+                                      {{Quality::kLow, 0.58}, 0.21},
+                                      {{Quality::kLow, 0.45}, 0.15},
+                                      {{Quality::kLow, 0.33}, 0.11}}};
+constexpr int kFirstStep = 1;
+
+const Step& StepAt(int index) { return kSteps[static_cast<std::size_t>(index)]; }
+
+constexpr double kTooLong = 1.15;
+constexpr double kRoom = 0.85;
+constexpr double kDown_s = 0.5;
+constexpr double kUp_s = 2.0;
+constexpr double kLongestWait_s = 64.0;
+
+}  // namespace
+
+std::string NameOf(Quality quality) { return kNames[static_cast<std::size_t>(quality)]; }
+
+QualityRule QualityRuleFromText(const std::string& text) {
+  if (text == "auto") return {};
+  const auto* const at = std::find(kNames.begin(), kNames.end(), text);
+  if (at == kNames.end()) {
+    throw InputError(
+        fmt::format("--quality is \"{}\"; it is one of auto, low, medium, high, reference", text));
+  }
+  return {static_cast<Quality>(at - kNames.begin())};
+}
+
+std::string TextOf(const PaintedQuality& painted) {
+  return painted.scale < 1.0 ? fmt::format("{} at {:.2g}x", NameOf(painted.quality), painted.scale)
+                             : NameOf(painted.quality);
+}
+
+AutoQuality::AutoQuality(double wanted_frame_s) : wanted_s_(wanted_frame_s), step_(kFirstStep) {}
+
+const PaintedQuality& AutoQuality::painted() const { return StepAt(step_).painted; }
+
+void AutoQuality::Note(double frame_s) {
+  constexpr double kMemory_s = 0.25;
+  const double share = std::clamp(frame_s / kMemory_s, 0.05, 1.0);
+  mean_s_ = since_change_s_ == 0.0 ? frame_s : mean_s_ + share * (frame_s - mean_s_);
+  since_change_s_ += std::max(frame_s, wanted_s_);
+  const int last = static_cast<int>(kSteps.size()) - 1;
+  int next = step_;
+  if (mean_s_ > kTooLong * wanted_s_ && since_change_s_ >= kDown_s) {
+    const auto expected_s = [&](int step) {
+      return mean_s_ * StepAt(step).cost / StepAt(step_).cost;
+    };
+    while (next < last && expected_s(next) > wanted_s_) ++next;
+    // A step up that was a mistake is not soon tried again.
+    if (since_change_s_ < wait_up_s_) wait_up_s_ = std::min(2.0 * wait_up_s_, kLongestWait_s);
+  } else if (step_ > 0 && since_change_s_ >= wait_up_s_ &&
+             mean_s_ * StepAt(step_ - 1).cost / StepAt(step_).cost < kRoom * wanted_s_) {
+    next = step_ - 1;
+  }
+  if (since_change_s_ > 2.0 * kLongestWait_s) wait_up_s_ = kUp_s;
+  if (next == step_) return;
+  step_ = next;
+  since_change_s_ = 0.0;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// How well a picture is drawn, and who chooses it by the time that frames take.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace alpenglow {
+
+/// Sizes of tables, meshes and passes, smallest first; kReference is the renderer's own picture,
+/// made beside drawing while the eye stands still.
+enum class Quality { kLow, kMedium, kHigh, kReference };
+
+[[nodiscard]] std::string NameOf(Quality quality);
+
+/// What a user asks for: a quality, or to choose one by time.
+struct QualityRule {
+  std::optional<Quality> fixed;  // nothing: automatic
+
+  bool operator==(const QualityRule&) const = default;
+};
+/// "low", "medium", "high", "reference" or "auto"; throws InputError for another text.
+[[nodiscard]] QualityRule QualityRuleFromText(const std::string& text);
+
+/// A quality, and the share of the window's width and height that is painted; the rest is scaled.
+struct PaintedQuality {
+  Quality quality = Quality::kHigh;
+  double scale = 1.0;
+
+  bool operator==(const PaintedQuality&) const = default;
+};
+/// "high", or "low at 0.7x".
+[[nodiscard]] std::string TextOf(const PaintedQuality& painted);
+
+/// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a third of it, so
+/// that frames take about as long as wanted. It goes down a step after half a second of frames that
+/// take 1.15 times too long, several at once if they take much longer, and up after two seconds of
+/// frames of which the next step would still take less than 0.85 of the time; a step that was too
+/// slow is not tried again before a time that doubles with each failure.
+class AutoQuality {
+ public:
+  /// @param wanted_frame_s  > 0
+  explicit AutoQuality(double wanted_frame_s);
+
+  /// @param frame_s  the work of the frame just drawn, without waiting for the screen.
+  void Note(double frame_s);
+  [[nodiscard]] const PaintedQuality& painted() const;
+
+ private:
+  double wanted_s_;
+  int step_;
+  double mean_s_ = 0.0;  // of frames since the last change
+  double since_change_s_ = 0.0;
+  double wait_up_s_ = 2.0;
+};
+
+}  // namespace alpenglow
