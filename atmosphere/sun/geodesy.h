@@ -45,6 +45,8 @@ struct GeodeticPosition {
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
   double height_m = 0.0;
+
+  bool operator==(const GeodeticPosition&) const = default;
 };
 
 /// The same meridian in (-pi, pi]: -pi becomes pi, everything inside is returned unchanged. Throws

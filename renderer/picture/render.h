@@ -23,6 +23,7 @@
 
 namespace alpenglow {
 
+struct SceneGround;
 struct SceneState;
 
 /// A picture of what a scene needs.
@@ -38,10 +39,13 @@ class SceneRenderer {
   /// Throws InputError for what the scene names and cannot be read, or an eye below the ground.
   /// @param progress  told what is prepared, if not null; not kept.
   explicit SceneRenderer(const Scene& scene, Progress* progress = nullptr);
+  /// On ground that is there already, in the frame of the scene's place, instead of the scene's own.
+  SceneRenderer(const Scene& scene, std::shared_ptr<const SceneGround> ground);
   ~SceneRenderer();
 
   /// Linear sRGB in cd/m^2. The same bytes for any number of threads. Throws InputError for a size
-  /// out of [1, 16384] and an eye that cannot be where it is; stops early when Interrupted().
+  /// out of [1, 16384] and an eye that cannot be where it is, RenderingStopped when
+  /// settings.stop asks for it; stops early when Interrupted().
   [[nodiscard]] Image Render(const Shot& shot, const RenderSettings& settings) const;
 
   /// Render() with those of settings.effects that the picture needs (effect_choice.h). The choice

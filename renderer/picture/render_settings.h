@@ -2,7 +2,9 @@
 // What is asked of a picture: its size and care, when and from where it is taken.
 #pragma once
 
+#include <exception>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "atmosphere/sun/time.h"
@@ -26,6 +28,13 @@ struct RenderSettings {
   std::vector<PictureLayer> layers;
   LampSettings lamps = {};
   Progress* progress = nullptr;  // told of steps, and of the rows of pixels that are done
+  std::stop_token stop = {};     // asked between pixels whether anybody still wants the picture
+};
+
+/// Nobody wants the picture any more (RenderSettings::stop).
+class RenderingStopped : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override { return "rendering was stopped"; }
 };
 
 /// When a picture is taken, and from where.

@@ -104,8 +104,8 @@ Image SceneState::Picture(const PictureFrame& frame) const {
   ThrowIfInterrupted();
   std::atomic<int> rows{0};
   tbb::parallel_for(0, frame.settings.height, [&](int y) {
-    if (Interrupted()) return;
     for (int x = 0; x < frame.settings.width; ++x) {
+      if (Interrupted() || frame.settings.stop.stop_requested()) return;
       writer.Write(x, y, Pixel(frame, x, y));
       if (!writer.AsksForMiddle()) continue;
       writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
@@ -114,6 +114,7 @@ Image SceneState::Picture(const PictureFrame& frame) const {
       frame.settings.progress->Part(static_cast<double>(++rows) / frame.settings.height);
   });
   ThrowIfInterrupted();
+  if (frame.settings.stop.stop_requested()) throw RenderingStopped();
   return writer.Take();
 }
 

@@ -15,6 +15,8 @@ struct Eye {
   double pitch_rad = 0.0;               // up is positive
   double roll_rad = 0.0;                // clockwise seen from behind
   double fov_rad = 1.0471975511965976;  // horizontal
+
+  bool operator==(const Eye&) const = default;
 };
 
 /// Where an eye is put, as people type it; what is left out stays as it is.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The exposure meter beside drawing: reads small copies of pictures without waiting for them.
+#pragma once
+
+#include <optional>
+
+#include "lut/picture/image.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/render_target.h"
+
+namespace alpenglow {
+
+class ExposureMeter {
+ public:
+  ExposureMeter() = default;
+  ~ExposureMeter();
+  ExposureMeter(const ExposureMeter&) = delete;
+  ExposureMeter& operator=(const ExposureMeter&) = delete;
+
+  /// Copies every so-manieth pixel, at most kLongSide a row, and begins to read them; nothing while
+  /// an earlier copy is still being read.
+  void Look(const RenderTarget& picture);
+  /// What MeterEv100 makes of the copy, once it has arrived.
+  [[nodiscard]] std::optional<double> Take();
+  /// The same at once, waiting for the graphics card.
+  [[nodiscard]] double Read(const RenderTarget& picture);
+
+  static constexpr int kLongSide = 160;
+
+ private:
+  void Copy(const RenderTarget& picture);
+
+  std::optional<RenderTarget> small_;
+  GlBuffer pixels_;
+  GLsync arrives_ = nullptr;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/reference_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "viewer/flight/flight_recorder.h"
+
+namespace alpenglow {
+namespace {
+
+struct Stage {
+  int reduction;  // of width and height
+  int samples;
+};
+constexpr std::array<Stage, 5> kStages{{{4, 1}, {1, 1}, {1, 4}, {1, 16}, {1, 64}}};
+
+bool IsSame(const ReferencePicture::View& a, const ReferencePicture::View& b) {
+  return a.of == b.of && a.eye == b.eye && a.width == b.width && a.height == b.height &&
+         std::abs(SecondsBetween(a.now, b.now)) < ReferencePicture::kSameTime_s;
+}
+
+}  // namespace
+
+/// The renderer of the scene shown last.
+class ReferencePicture::Renderers {
+ public:
+  const SceneRenderer& Of(const std::shared_ptr<const ReferenceScene>& of) {
+    if (of_ != of) {
+      renderer_.reset();  // before the next one takes its memory
+      renderer_ = of->ground ? std::make_unique<SceneRenderer>(of->scene, of->ground())
+                             : std::make_unique<SceneRenderer>(of->scene);
+      of_ = of;
+    }
+    return *renderer_;
+  }
+
+ private:
+  std::shared_ptr<const ReferenceScene> of_;
+  std::unique_ptr<SceneRenderer> renderer_;
+};
+
+ReferencePicture::ReferencePicture()
+    : renderers_(std::make_shared<Renderers>()),
+      job_([renderers = renderers_](const Request& request) -> std::optional<Made> {
+        const View& view = request.view;
+        RenderSettings settings;
+        settings.width = std::max(view.width / request.reduction, 1);
+        settings.height = std::max(view.height / request.reduction, 1);
+        settings.samples_per_pixel = request.samples;
+        settings.stop = request.stop;
+        Shot shot(view.now);
+        shot.poses = {PoseOf(view.eye)};
+        try {
+          const SceneRenderer& renderer = renderers->Of(view.of);
+          return Made{renderer.Render(shot, settings), request.samples, request.stop};
+        } catch (const RenderingStopped&) {
+          return std::nullopt;
+        }
+      }) {}
+
+ReferencePicture::~ReferencePicture() { stop_.request_stop(); }
+
+void ReferencePicture::AskFor(std::size_t stage) {
+  stage_ = stage;
+  job_.Ask({*view_, kStages[stage].reduction, kStages[stage].samples, stop_.get_token()});
+}
+
+void ReferencePicture::Show(const View& view) {
+  if (view_ && IsSame(*view_, view)) return;
+  stop_.request_stop();
+  stop_ = std::stop_source();
+  view_ = view;
+  samples_ = 0;
+  AskFor(0);
+}
+
+std::optional<Image> ReferencePicture::Take() {
+  std::optional<std::optional<Made>> taken = job_.Take();
+  if (!taken || !*taken || (*taken)->stop.stop_requested()) return std::nullopt;
+  samples_ = (*taken)->samples;
+  if (stage_ + 1 < kStages.size()) AskFor(stage_ + 1);
+  return std::move((*taken)->image);
+}
+
+}  // namespace alpenglow

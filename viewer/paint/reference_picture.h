@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// The renderer's own picture of a view, made beside drawing and refined while the view stays.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "lut/picture/image.h"
+#include "renderer/picture/render.h"
+#include "renderer/scene/scene.h"
+#include "viewer/flight/flight.h"
+#include "viewer/work/latest_job.h"
+
+namespace alpenglow {
+
+/// What the renderer renders for a viewer.
+struct ReferenceScene {
+  Scene scene;
+  /// The terrain, made when it is first needed; nothing: as the scene says.
+  std::function<std::shared_ptr<const SceneGround>()> ground;
+};
+
+/// A renderer is prepared when a scene is first shown (seconds) and kept. Of a view there come a
+/// small picture of a ray a pixel, then full ones of 1, 4, 16 and 64. A view that changes stops
+/// what is being made of the old one.
+class ReferencePicture {
+ public:
+  struct View {
+    std::shared_ptr<const ReferenceScene> of;
+    Eye eye;
+    UtcInstant now;
+    int width, height;  // of the full picture [pixels]
+  };
+
+  ReferencePicture();
+  /// Stops what is being made.
+  ~ReferencePicture();
+
+  /// The picture wanted. Two instants within `kSameTime_s` are one.
+  void Show(const View& view);
+  /// A new picture of the view shown last, if one is ready. Throws what rendering threw.
+  [[nodiscard]] std::optional<Image> Take();
+
+  /// Rays a pixel of the best picture of this view so far; 0: none yet.
+  [[nodiscard]] int samples() const { return samples_; }
+
+  static constexpr double kSameTime_s = 20.0;  // the sun moves by a third of its radius
+
+ private:
+  struct Request {
+    View view;
+    int reduction, samples;
+    std::stop_token stop;
+  };
+  struct Made {
+    Image image;
+    int samples;
+    std::stop_token stop;
+  };
+  class Renderers;
+  void AskFor(std::size_t stage);
+
+  std::optional<View> view_;
+  std::stop_source stop_;
+  std::size_t stage_ = 0;
+  int samples_ = 0;
+  std::shared_ptr<Renderers> renderers_;  // used by the job alone
+  LatestJob<Request, std::optional<Made>> job_;
+};
+
+}  // namespace alpenglow
