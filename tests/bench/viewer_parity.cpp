@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Pictures of the graphics card against the renderer's in seven views, edges aside. Run by hand;
+// results are in README.md.
+//   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES]]
+// Pictures of both go into the folder; those of the renderer that are there already are read.
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "renderer/picture/render.h"
+#include "tests/fixtures/seven_views.h"
+#include "viewer/paint/view_difference.h"
+
+namespace alpenglow {
+namespace {
+
+Image JudgeOf(const SevenView& view, const RenderSettings& settings,
+              const std::filesystem::path& file) {
+  if (std::filesystem::exists(file)) return ReadExr(file);
+  Image judge = SceneRenderer(view.scene).Render(view.instant, settings);
+  WriteExr(file, judge, {});
+  return judge;
+}
+
+void Run(const std::filesystem::path& folder, const RenderSettings& settings) {
+  std::filesystem::create_directories(folder);
+  int number = 0;
+  for (const SevenView& view : SevenViews()) {
+    const std::filesystem::path file = folder / fmt::format("judge-{}.exr", ++number);
+    const Image judge = JudgeOf(view, settings, file);
+    WritePng(folder / fmt::format("judge-{}.png", number),
+             Develop(judge, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+    fmt::print("{}\n", view.name);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main(int count, char** arguments) {
+  if (count < 2) {
+    fmt::print(stderr, "usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES]]\n");
+    return 2;
+  }
+  alpenglow::RenderSettings settings;
+  settings.width = count > 3 ? std::atoi(arguments[2]) : 640;
+  settings.height = count > 3 ? std::atoi(arguments[3]) : 360;
+  settings.samples_per_pixel = count > 4 ? std::atoi(arguments[4]) : 64;
+  settings.filter = alpenglow::PixelFilter::Kind::kBox;
+  settings.layers = alpenglow::LayersOfEdges();
+  alpenglow::Run(arguments[1], settings);
+  return 0;
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/view_difference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/text/error.h"
+#include "renderer/effect/picture_change.h"
+
+namespace alpenglow {
+namespace {
+
+const std::vector<float>& LayerOf(const Image& image, const std::string& name) {
+  for (const Channel& channel : image.layers) {
+    if (channel.name == name) return channel.values;
+  }
+  throw InternalError("the renderer's picture has no layer " + name);
+}
+
+/// Extremes of a layer around a pixel.
+struct Range {
+  float least, most;
+};
+Range RangeAround(const Image& image, const std::vector<float>& layer, int x, int y) {
+  Range range{INFINITY, -INFINITY};
+  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, image.height - 1); ++row) {
+    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, image.width - 1); ++column) {
+      const float value = layer[static_cast<std::size_t>(row * image.width + column)];
+      range = {std::min(range.least, value), std::max(range.most, value)};
+    }
+  }
+  return range;
+}
+
+}  // namespace
+
+std::vector<PictureLayer> LayersOfEdges() {
+  return {PictureLayer::kDepth, PictureLayer::kSunVisibility};
+}
+
+std::vector<bool> EdgesOf(const Image& judge) {
+  constexpr float kNearer = 1.1F;
+  constexpr float kShade = 0.1F;
+  const std::vector<float>& depth = LayerOf(judge, kDepthChannel);
+  const std::vector<float>& sun = LayerOf(judge, "sun_visibility.Y");
+  std::vector<bool> edges;
+  edges.reserve(judge.rgb.size());
+  for (int y = 0; y < judge.height; ++y) {
+    for (int x = 0; x < judge.width; ++x) {
+      const Range distance = RangeAround(judge, depth, x, y);
+      const Range light = RangeAround(judge, sun, x, y);
+      const bool is_sky = std::isinf(distance.least);
+      const bool is_even = is_sky || distance.most <= kNearer * distance.least;
+      edges.push_back(!is_even || light.most - light.least > kShade);
+    }
+  }
+  return edges;
+}
+
+ViewDifference DifferenceOf(const Image& judge, const Image& painted) {
+  ALPENGLOW_ENSURE(judge.rgb.size(), ==, painted.rgb.size());
+  const std::vector<bool> edges = EdgesOf(judge);
+  const double floor = ChangeFloor(judge);
+  std::vector<double> changes;
+  for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
+    if (!edges[i]) changes.push_back(PixelChange(judge.rgb[i], painted.rgb[i], floor));
+  }
+  ALPENGLOW_ENSURE(changes.size(), >, 0U);
+  std::sort(changes.begin(), changes.end());
+  double sum = 0.0;
+  for (const double change : changes) sum += change;
+  const auto count = static_cast<double>(changes.size());
+  const auto quantile = [&](double share) {
+    return changes[static_cast<std::size_t>(share * (count - 1.0))];
+  };
+  return {sum / count, quantile(0.99), quantile(0.999), changes.back(),
+          1.0 - count / static_cast<double>(judge.rgb.size())};
+}
+
+}  // namespace alpenglow
