@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// The tables of one eye's air as a graphics card would read them: linear between texels.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "lut/table/transmittance_map.h"
+#include "viewer/air/air_tables.h"
+
+namespace alpenglow::tests {
+
+/// Between texels, places counted in texels from the first.
+inline glm::dvec4 Linear(const AirTexels& texels, double x, double y = 0.0, double z = 0.0) {
+  glm::dvec4 sum(0.0);
+  const auto cell = [](double at, int n) {
+    const int first = std::clamp(static_cast<int>(std::floor(at)), 0, std::max(n - 2, 0));
+    return std::pair(first, std::clamp(at - first, 0.0, 1.0));
+  };
+  const auto [i, u] = cell(x, texels.width);
+  const auto [j, v] = cell(y, texels.height);
+  const auto [k, w] = cell(z, texels.depth);
+  for (int corner = 0; corner < 8; ++corner) {
+    const int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+    const double weight = (a ? u : 1.0 - u) * (b ? v : 1.0 - v) * (c ? w : 1.0 - w);
+    if (weight > 0.0) sum += weight * glm::dvec4(texels.At(i + a, j + b, k + c));
+  }
+  return sum;
+}
+
+struct AirToPoint {
+  glm::dvec4 single, diffuse, transmittance;
+};
+
+class AirReading {
+ public:
+  AirReading(const AirTables& tables, const MediumTables& medium)
+      : tables_(tables), medium_(medium), sun_(std::acos(std::clamp(tables.eye.mu_s, -1.0, 1.0))) {}
+
+  [[nodiscard]] const AirTables& tables() const { return tables_; }
+
+  /// @param angle  over the horizon [rad]; azimuth from the sun's, in [0, pi].
+  [[nodiscard]] glm::dvec4 Sky(double angle, double azimuth) const {
+    const AirMap& map = tables_.map;
+    if (map.altitude > map.top && angle > map.sky_range) return glm::dvec4(0.0);
+    const AirTablesSize& size = tables_.size;
+    return Mix(angle, azimuth, tables_.sky_mix[0], tables_.sky_mix[1], tables_.sky_mix[2]) *
+           Linear(tables_.sky, Column(azimuth, size.sky_columns),
+                  Row(angle, map.sky_range, size.sky_rows, size.sky_ground_rows));
+  }
+
+  [[nodiscard]] glm::dvec4 ToSpace(double angle) const {
+    const AirMap& map = tables_.map;
+    if (map.altitude > map.top && angle > map.sky_range) return glm::dvec4(1.0);
+    return Linear(tables_.to_space, Row(angle, map.sky_range, tables_.size.through_rows,
+                                        tables_.size.through_ground_rows));
+  }
+
+  [[nodiscard]] AirToPoint To(double angle, double azimuth, double distance_km) const {
+    using namespace shared;
+    const AirMap& map = tables_.map;
+    const AirTablesSize& size = tables_.size;
+    const bool ground = angle < 0.0;
+    const double mu = std::sin(angle - map.horizon_dip);
+    const double begin = AirEntry<double>(map.altitude, mu, map.top, map.radius);
+    const double end = ground ? AirEndDown<double>(map.altitude, mu, map.radius)
+                              : AirEndUp<double>(map.altitude, mu, map.ceiling, map.radius);
+    const double reach = std::max(end - begin, 1e-3);
+    const double way = std::clamp(distance_km - begin, 0.0, reach);
+    const double w =
+        AirNodeFromShare<double>(way / reach, ground ? map.ground_crowding : map.sky_crowding);
+    const glm::dvec4 tau = way * Linear(tables_.extinction, w * (size.extinction_distances - 1),
+                                        Row(angle, map.air_sky_range, size.extinction_rows,
+                                            size.extinction_ground_rows));
+    const double x = Column(azimuth, size.columns);
+    const double y = Row(angle, map.air_sky_range, size.rows, size.ground_rows);
+    const double z = w * (size.distances - 1);
+    glm::dvec4 absorbed;
+    for (int band = 0; band < 4; ++band) absorbed[band] = -std::expm1(-tau[band]);
+    return {Mix(angle, azimuth, tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)) *
+                absorbed * Linear(tables_.single, x, y, z),
+            absorbed * Linear(tables_.diffuse, x, y, z), glm::exp(-tau)};
+  }
+
+ private:
+  [[nodiscard]] static double Column(double azimuth, int columns) {
+    return shared::AirColumnFromAzimuth<double>(azimuth) * (columns - 1);
+  }
+  [[nodiscard]] double Row(double angle, double sky_range, int sky, int ground) const {
+    const double range = angle < 0.0 ? tables_.map.ground_range : sky_range;
+    const double v = shared::AirRowFromAngle<double>(std::abs(angle), range);
+    return angle < 0.0 ? sky + v * (ground - 1) : v * (sky - 1);
+  }
+  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const glm::vec4& molecules,
+                               const glm::vec4& aerosol, const glm::vec4& rest) const {
+    const double zenith = 0.5 * kPi + tables_.map.horizon_dip - angle;
+    const double nu = std::clamp(
+        std::cos(zenith) * std::cos(sun_) + std::sin(zenith) * std::sin(sun_) * std::cos(azimuth),
+        -1.0, 1.0);
+    const double node = std::sqrt(std::acos(nu) / kPi) * (medium_.phase.width - 1);
+    return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(molecules) +
+           Linear(medium_.phase, node) * glm::dvec4(aerosol) + glm::dvec4(rest);
+  }
+
+  const AirTables& tables_;
+  const MediumTables& medium_;
+  double sun_;
+};
+
+}  // namespace alpenglow::tests

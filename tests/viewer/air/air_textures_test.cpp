@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// The tables of the air as shaders read them, against their reading on the processor.
+#include "viewer/air/air_textures.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "atmosphere/number/halton.h"
+#include "tests/fixtures/lit_air.h"
+#include "tests/viewer/air/air_reading.h"
+#include "tests/viewer/shaders/gpu_values.h"
+#include "tests/viewer/shaders/headless.h"
+
+namespace alpenglow {
+namespace {
+
+using AirTexturesOnGpu = tests::Headless;
+
+constexpr int kFirstUnit = 3;
+constexpr GLuint kBinding = 5;
+
+/// Tables on both processors, and an eye whose sun stands in the south west.
+struct Both {
+  Both(double altitude_m, double mu_s)
+      : medium(MakeMediumTables(tests::Earth().air)),
+        tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, {altitude_m, mu_s}, {})),
+        reading(tables, medium) {
+    textures.Upload(medium);
+    textures.Upload(tables);
+    const double sine = std::sqrt((1.0 - mu_s) * (1.0 + mu_s));
+    textures.SetView(altitude_m, {-0.6 * sine, -0.8 * sine, mu_s});
+  }
+
+  /// Unit vector, by the angle over the horizon and the azimuth from the sun's.
+  [[nodiscard]] glm::dvec3 Direction(double angle, double azimuth) const {
+    const double elevation = angle - tables.map.horizon_dip;
+    const double c = std::cos(azimuth), s = std::sin(azimuth);
+    return {std::cos(elevation) * (-0.6 * c + 0.8 * s), std::cos(elevation) * (-0.8 * c - 0.6 * s),
+            std::sin(elevation)};
+  }
+
+  [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
+                                         const std::vector<tests::Arguments<float>>& points) const {
+    std::vector<ShaderPiece> pieces = SharedTexts();
+    for (ShaderPiece& piece : AirTableTexts()) pieces.push_back(std::move(piece));
+    return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
+      AirTextures::Prepare(program, kFirstUnit, kBinding);
+      textures.Bind(kFirstUnit, kBinding);
+      program.Use();
+    });
+  }
+
+  MediumTables medium;
+  AirTables tables;
+  tests::AirReading reading;
+  AirTextures textures;
+};
+
+struct Look {
+  double angle, azimuth, distance_km;
+};
+
+/// All over the sphere, every other one near the horizon.
+std::vector<Look> Looks(const AirMap& map, double sky_range) {
+  std::vector<Look> looks;
+  for (int i = 1; i <= 400; ++i) {
+    const double u = 2.0 * Halton(i, 2) - 1.0;
+    const double v = i % 2 == 0 ? u : u * u * u;
+    const double angle = v * (v > 0.0 ? sky_range : map.ground_range) * 0.9999;
+    const double entry = shared::AirEntry<double>(map.altitude, std::sin(angle - map.horizon_dip),
+                                                  map.top, map.radius);
+    looks.push_back({angle, kPi * Halton(i, 3), entry + 200.0 * Halton(i, 5) * Halton(i, 7)});
+  }
+  return looks;
+}
+
+std::vector<tests::Arguments<float>> ArgumentsOf(const Both& both, const std::vector<Look>& looks) {
+  std::vector<tests::Arguments<float>> points;
+  for (const Look& look : looks) {
+    const glm::vec3 d(both.Direction(look.angle, look.azimuth));
+    points.push_back({d.x, d.y, d.z, static_cast<float>(look.distance_km)});
+  }
+  return points;
+}
+
+// --- what the driver interpolates ---
+
+void ExpectSkyOfCpu(double altitude_m, double mu_s, double tolerance) {
+  SCOPED_TRACE(fmt::format("{} m, sun {}", altitude_m, mu_s));
+  const Both both(altitude_m, mu_s);
+  const std::vector<Look> looks = Looks(both.tables.map, both.tables.map.sky_range);
+  const auto points = ArgumentsOf(both, looks);
+  const auto sky = both.OnGpu("SkyRadiance(vec3(a[0], a[1], a[2])).y", points);
+  const auto through = both.OnGpu("TransmittanceToSpace(vec3(a[0], a[1], a[2])).y", points);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double exact = both.reading.Sky(looks[i].angle, looks[i].azimuth)[1];
+    EXPECT_NEAR(sky[i], exact, tolerance * exact + 1e-12)
+        << "angle " << looks[i].angle << ", azimuth " << looks[i].azimuth;
+    EXPECT_NEAR(through[i], both.reading.ToSpace(looks[i].angle)[1], tolerance);
+  }
+}
+
+void ExpectWaysOfCpu(double altitude_m, double mu_s, double tolerance) {
+  SCOPED_TRACE(fmt::format("{} m, sun {}", altitude_m, mu_s));
+  const Both both(altitude_m, mu_s);
+  const std::vector<Look> looks = Looks(both.tables.map, both.tables.map.air_sky_range);
+  const auto points = ArgumentsOf(both, looks);
+  const auto value = [&](const char* member) {
+    return both.OnGpu(fmt::format("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).{}.y", member), points);
+  };
+  const auto single = value("single"), diffuse = value("diffuse"), left = value("transmittance");
+  const auto single_to = both.OnGpu("SingleTo(vec3(a[0], a[1], a[2]), a[3]).y", points);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const tests::AirToPoint exact =
+        both.reading.To(looks[i].angle, looks[i].azimuth, looks[i].distance_km);
+    const double light = exact.single[1] + exact.diffuse[1];
+    EXPECT_NEAR(single[i], exact.single[1], tolerance * light + 1e-12)
+        << "angle " << looks[i].angle << ", azimuth " << looks[i].azimuth << ", "
+        << looks[i].distance_km << " km";
+    EXPECT_NEAR(diffuse[i], exact.diffuse[1], tolerance * light + 1e-12);
+    EXPECT_NEAR(left[i], exact.transmittance[1], tolerance);
+    EXPECT_EQ(single_to[i], single[i]);
+  }
+}
+
+TEST_F(AirTexturesOnGpu, SkyIsThatOfTheProcessor) {
+  ExpectSkyOfCpu(0.0, 0.5, 2e-3);
+  ExpectSkyOfCpu(1500.0, 0.02, 2e-3);
+  ExpectSkyOfCpu(9000.0, -0.08, 2e-3);
+  ExpectSkyOfCpu(400e3, 0.4, 2e-3);
+}
+
+TEST_F(AirTexturesOnGpu, WaysAreThoseOfTheProcessor) {
+  ExpectWaysOfCpu(2.0, 0.5, 2e-3);
+  ExpectWaysOfCpu(1500.0, 0.02, 2e-3);
+  ExpectWaysOfCpu(9000.0, -0.08, 2e-3);
+  ExpectWaysOfCpu(400e3, 0.4, 2e-3);
+}
+
+TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
+  const Both both(0.0, 0.5);
+  std::vector<tests::Arguments<float>> points;
+  for (int i = 1; i <= 300; ++i) {
+    const double h = 9.0 * Halton(i, 2);
+    const double least = shared::HorizonCosine<double>(h, both.tables.map.radius);
+    points.push_back({static_cast<float>(h),
+                      static_cast<float>(least + (1.0 - least) * std::pow(Halton(i, 3), 3.0))});
+  }
+  const auto on_gpu = both.OnGpu("TransmittanceToSun(a[0], a[1]).y", points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Bands<float> exact = tests::Earth().air.TransmittanceToSpace(
+        1000.0 * static_cast<double>(points[i][0]), static_cast<double>(points[i][1]));
+    EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Where a direction and a distance lie in the tables of one eye's air. Lengths in km; h is the
+// altitude of the eye, R the radius of the planet.
+//
+// Rows count from the horizon, quadratic in the angle from it, and those above it end where rays
+// meet no land any more; columns from the sun's azimuth, quadratic in the angle between. Distances
+// are shares t of a ray's reach: from where it enters the air to the ground or, above the horizon,
+// to where it leaves the altitude that no land exceeds (the ceiling). With crowding k > -1
+//
+//   w = t (1 + k) / (1 + k t)
+//
+// crowds nodes near the eye (k > 0) or at the far end (k < 0).
+
+// Angle from the horizon over its range, and back.
+SHARED Number AirRowFromAngle(Number angle, Number range) {
+  return sqrt(min(max(angle / range, Number(0.0)), Number(1.0)));
+}
+SHARED Number AirAngleFromRow(Number v, Number range) { return range * v * v; }
+
+// Azimuth from the sun's, 0 to pi.
+SHARED Number AirColumnFromAzimuth(Number azimuth) {
+  return sqrt(azimuth * Number(0.31830988618379067));
+}
+SHARED Number AirAzimuthFromColumn(Number x) { return Number(3.1415926535897932) * x * x; }
+
+SHARED Number AirNodeFromShare(Number t, Number crowding) {
+  return t * (Number(1.0) + crowding) / (Number(1.0) + crowding * t);
+}
+SHARED Number AirShareFromNode(Number w, Number crowding) {
+  return w / (Number(1.0) + crowding * (Number(1.0) - w));
+}
+
+// Distance at which a ray that meets air comes into it.
+SHARED Length AirEntry(Length h, Number mu, Length top, Length R) {
+  return select(h > top, DistanceDownTo(h, mu, top, R), Length(0.0));
+}
+
+// Distance to the far end of a ray above the horizon, from the eye.
+SHARED Length AirEndUp(Length h, Number mu, Length ceiling, Length R) {
+  Length through = Number(-2.0) * (R + h) * mu - DistanceDownTo(h, mu, ceiling, R);
+  return select(h < ceiling, DistanceUpTo(h, mu, ceiling, R), through);
+}
+
+// And of one below it.
+SHARED Length AirEndDown(Length h, Number mu, Length R) {
+  return DistanceDownTo(h, mu, Length(0.0), R);
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// The air of one eye and one sun as tables that a graphics card interpolates: sky, light scattered
+// into a ray up to any distance on it, and transmittance. Per unit solar irradiance [1/sr]; texels
+// of four floats hold one value a band.
+//
+// What is stored changes little from texel to texel. Light of the sky is divided by a mix of phase
+// functions with the shares that they have near the sun,
+//
+//   L(direction) = sky(direction) [p_R(nu) m_R + p_M(nu) m_M + m_0],
+//
+// so that an aureole is as sharp as the phase function at the pixel. Light on the way to a point is
+// divided by 1 - T as well, T the transmittance on that way: a mean source, which hardly changes
+// with distance,
+//
+//   S(direction, d) = single (1 - T) [p_R(nu) a_R + p_M(nu) a_M],   D(direction, d) = diffuse (1 - T),
+//   T = exp(-d extinction)
+//
+// S is sunlight scattered once where the planet's own shadow lets it in, terrain left out; D all
+// light scattered more than once. Axes: air_map.glsl.
+#pragma once
+
+#include <array>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "viewer/air/air_map.h"
+
+namespace alpenglow {
+
+struct AirTablesSize {
+  int sky_columns = 96, sky_rows = 96, sky_ground_rows = 64;  // of the sky
+  int columns = 32, rows = 16, ground_rows = 16, distances = 16;
+  int extinction_rows = 64, extinction_ground_rows = 64, extinction_distances = 32;
+  int through_rows = 512, through_ground_rows = 256;  // of TransmittanceToSpace
+};
+
+/// Texels of four floats, x fastest.
+struct AirTexels {
+  AirTexels(int width_, int height_, int depth_ = 1)
+      : width(width_),
+        height(height_),
+        depth(depth_),
+        texel(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+              static_cast<std::size_t>(depth)) {}
+
+  int width, height, depth;
+  std::vector<glm::vec4> texel;
+
+  [[nodiscard]] glm::vec4& At(int x, int y, int z = 0) {
+    return texel[static_cast<std::size_t>((z * height + y) * width + x)];
+  }
+  [[nodiscard]] const glm::vec4& At(int x, int y, int z = 0) const {
+    return texel[static_cast<std::size_t>((z * height + y) * width + x)];
+  }
+};
+
+/// Eye and sun that tables are for.
+struct AirEye {
+  double altitude_m = 0.0;    // below 0: as at 0
+  double mu_s = 1.0;          // cosine of the sun's zenith angle at the eye
+  double ceiling_m = 9000.0;  // no land is higher
+};
+
+/// Plain data; never changed once made.
+struct AirTables {
+  AirTablesSize size;
+  AirEye eye;
+  AirMap map;
+  std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
+  std::array<glm::vec4, 2> single_mix;  // a_R, a_M
+  AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
+  AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
+  AirTexels extinction;  // [distance, row]: mean on the way [1/km]
+  AirTexels single;      // [azimuth, row, distance]
+  AirTexels diffuse;
+};
+
+/// On the calling thread alone. `air` and `diffuse` must be of one medium; neither is kept. Throws
+/// InputError for a medium of more than four bands.
+[[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                                      const AirEye& eye, const AirTablesSize& size);
+
+/// What depends on the medium alone.
+struct MediumTables {
+  /// Of the aerosol, [node]: scattering angles pi (k / (n - 1))^2.
+  AirTexels phase;
+  /// Transmittance to space, [zenith cosine, altitude] on the map of transmittance_map.glsl.
+  AirTexels to_sun;
+};
+
+[[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air);
+
+}  // namespace alpenglow

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/air/air_textures.h"
+
+#include <cmath>
+
+#include "viewer/embedded_text.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/gl/render_target.h"
+
+namespace alpenglow {
+namespace {
+
+enum Table : std::size_t { kSky, kThrough, kExtinction, kSingle, kDiffuse, kPhase, kToSun };
+
+struct Slot {
+  const char* sampler;
+  GLenum target;
+};
+constexpr std::array<Slot, AirTextures::kUnits> kSlots{{{"air_sky", GL_TEXTURE_2D},
+                                                        {"air_through", GL_TEXTURE_1D},
+                                                        {"air_extinction", GL_TEXTURE_2D},
+                                                        {"air_single", GL_TEXTURE_3D},
+                                                        {"air_diffuse", GL_TEXTURE_3D},
+                                                        {"air_phase", GL_TEXTURE_1D},
+                                                        {"air_to_sun", GL_TEXTURE_2D}}};
+
+void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texels) {
+  glBindTexture(target, texture.id());
+  const void* data = texels.texel.data();
+  if (target == GL_TEXTURE_1D) {
+    glTexImage1D(target, 0, GL_RGBA32F, texels.width, 0, GL_RGBA, GL_FLOAT, data);
+  } else if (target == GL_TEXTURE_2D) {
+    glTexImage2D(target, 0, GL_RGBA32F, texels.width, texels.height, 0, GL_RGBA, GL_FLOAT, data);
+  } else {
+    glTexImage3D(target, 0, GL_RGBA32F, texels.width, texels.height, texels.depth, 0, GL_RGBA,
+                 GL_FLOAT, data);
+  }
+  ClampAndFilter(target, true);
+  glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+}
+
+/// First texel of an axis and the width of all, in texture coordinates: n nodes from `first` on of
+/// `all`.
+struct Axis {
+  Axis(int first, int n, int all)
+      : begin((static_cast<float>(first) + 0.5F) / static_cast<float>(all)),
+        width(static_cast<float>(n - 1) / static_cast<float>(all)) {}
+  float begin, width;
+};
+
+glm::vec4 RowsOf(int sky, int ground) {
+  const Axis up(0, sky, sky + ground);
+  const Axis down(sky, ground, sky + ground);
+  return {up.begin, up.width, down.begin, down.width};
+}
+
+glm::vec4 AxesOf(int one, int other) {
+  const Axis a(0, one, one);
+  const Axis b(0, other, other);
+  return {a.begin, a.width, b.begin, b.width};
+}
+
+}  // namespace
+
+std::vector<ShaderPiece> AirTableTexts() {
+  std::vector<ShaderPiece> pieces;
+  for (const char* name : {"viewer/air/air_map.glsl", "viewer/shaders/air_tables.glsl"})
+    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  return pieces;
+}
+
+AirTextures::AirTextures() = default;
+
+void AirTextures::Upload(const MediumTables& tables) {
+  UploadTexels(texture_[kPhase], kSlots[kPhase].target, tables.phase);
+  UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun);
+  const Axis phase(0, tables.phase.width, tables.phase.width);
+  values_.phase_nodes = {phase.begin, phase.width, 0.0F, 0.0F};
+  CheckGl("AirTextures::Upload");
+}
+
+void AirTextures::Upload(const AirTables& tables) {
+  const auto upload = [&](Table table, const AirTexels& texels) {
+    UploadTexels(texture_[table], kSlots[table].target, texels);
+  };
+  upload(kSky, tables.sky);
+  upload(kThrough, tables.to_space);
+  upload(kExtinction, tables.extinction);
+  upload(kSingle, tables.single);
+  upload(kDiffuse, tables.diffuse);
+  const AirMap& map = tables.map;
+  const AirTablesSize& size = tables.size;
+  values_.shell = {map.altitude, map.ceiling, map.top, map.radius};
+  values_.ranges = {map.sky_range, map.air_sky_range, map.ground_range,
+                    map.altitude > map.top ? 1.0 : 0.0};
+  values_.crowding = {map.sky_crowding, map.ground_crowding, 0.0, 0.0};
+  values_.columns = AxesOf(size.sky_columns, size.columns);
+  values_.sky_rows = RowsOf(size.sky_rows, size.sky_ground_rows);
+  values_.through_rows = RowsOf(size.through_rows, size.through_ground_rows);
+  values_.way_rows = RowsOf(size.rows, size.ground_rows);
+  values_.extinction_rows = RowsOf(size.extinction_rows, size.extinction_ground_rows);
+  values_.distances = AxesOf(size.distances, size.extinction_distances);
+  values_.sky_mix = tables.sky_mix;
+  values_.single_mix = tables.single_mix;
+  CheckGl("AirTextures::Upload");
+}
+
+void AirTextures::SetView(double altitude_m, const glm::dvec3& sun) {
+  const double h = std::max(altitude_m, 0.0) / 1000.0;
+  const auto radius = static_cast<double>(values_.shell.w);
+  const double horizon = shared::HorizonCosine<double>(h, radius);
+  const double flat = std::hypot(sun.x, sun.y);
+  const glm::dvec2 azimuth = flat > 1e-9 ? glm::dvec2(sun) / flat : glm::dvec2(0.0, 1.0);
+  values_.shell.x = static_cast<float>(h);
+  values_.sun = {sun, 0.0};
+  values_.frame = {azimuth, -horizon, std::sqrt((1.0 - horizon) * (1.0 + horizon))};
+}
+
+void AirTextures::Prepare(const ShaderProgram& program, int first_unit, GLuint binding) {
+  for (std::size_t i = 0; i < kSlots.size(); ++i)
+    program.BindSampler(kSlots[i].sampler, first_unit + static_cast<int>(i));
+  program.BindBlock("AirTables", binding);
+}
+
+void AirTextures::Bind(int first_unit, GLuint binding) const {
+  for (std::size_t i = 0; i < kSlots.size(); ++i) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit) + static_cast<GLenum>(i));
+    glBindTexture(kSlots[i].target, texture_[i].id());
+  }
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, block_.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(values_), &values_, GL_DYNAMIC_DRAW);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// The air of one eye and one sun, read from the tables of air_tables.h. Per unit solar irradiance
+// [1/sr]; one band a component; directions are unit vectors in the frame of the eye, east, north,
+// up; distances are kilometres from the eye.
+
+// AirTablesBlock of air_textures.h.
+layout(std140) uniform AirTables {
+  vec4 air_sun;       // unit vector to the sun
+  vec4 air_frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
+  vec4 air_shell;     // altitude of the eye, ceiling of land, top of the air, radius [km]
+  vec4 air_ranges;    // of rows: sky, ways above the horizon, below it [rad]; 1: eye above the air
+  vec4 air_crowding;  // of distances, above and below the horizon
+  vec4 air_columns;   // first texel and texels of columns: sky; ways
+  vec4 air_sky_rows;  // the same of rows, above the horizon; below it
+  vec4 air_through_rows;
+  vec4 air_way_rows;
+  vec4 air_extinction_rows;
+  vec4 air_distances;    // of distances: ways; extinction
+  vec4 air_phase_nodes;  // of the aerosol's phase function
+  vec4 air_sky_mix[3];   // what PhaseRayleigh, the aerosol's and 1 are multiplied by
+  vec4 air_single_mix[2];
+};
+
+uniform sampler2D air_sky;
+uniform sampler1D air_through;
+uniform sampler2D air_extinction;
+uniform sampler3D air_single;
+uniform sampler3D air_diffuse;
+uniform sampler1D air_phase;
+uniform sampler2D air_to_sun;
+
+struct AirTo {
+  vec4 single;   // sunlight scattered once, terrain left out
+  vec4 diffuse;  // all other light that the air scatters
+  vec4 transmittance;
+};
+
+// asin(sqrt(x)), x in [0, 1]: asin(s) = s times a polynomial in s^2, Chebyshev's interpolation on
+// [0, 1/2], error below 1e-6; beyond, the complement.
+float ArcSineOfRoot(float x) {
+  float y = min(x, 1.0 - x);
+  float series = 0.999999316 +
+                 y * (0.166760939 +
+                      y * (0.072926353 + y * (0.060887368 + y * (-0.024216352 + y * 0.096353908))));
+  float angle = sqrt(max(y, 0.0)) * series;
+  return x > 0.5 ? 1.57079633 - angle : angle;
+}
+
+// sin^2 of half the angle to the sun.
+float HalfSineSquared(vec3 direction) {
+  vec3 between = direction - air_sun.xyz;
+  return min(0.25 * dot(between, between), 1.0);
+}
+
+vec4 AerosolPhase(float half_sine_squared) {
+  float angle = 2.0 * ArcSineOfRoot(half_sine_squared);
+  float node = sqrt(angle * 0.318309886);
+  return texture(air_phase, air_phase_nodes.x + air_phase_nodes.y * node);
+}
+
+// Angle over the horizon.
+float AngleOverHorizon(vec3 direction) {
+  float flat_length = length(direction.xy);
+  return atan(direction.z * air_frame.w + flat_length * air_frame.z,
+              flat_length * air_frame.w - direction.z * air_frame.z);
+}
+
+float ColumnOf(vec3 direction) {
+  float along = dot(direction.xy, air_frame.xy);
+  float across = abs(air_frame.x * direction.y - air_frame.y * direction.x);
+  return AirColumnFromAzimuth(atan(across + 1e-12, along));
+}
+
+// Texture coordinate of a row: `rows` as in the block.
+float RowOf(float angle, float sky_range, vec4 rows) {
+  bool ground = angle < 0.0;
+  float v = AirRowFromAngle(abs(angle), ground ? air_ranges.z : sky_range);
+  return ground ? rows.z + rows.w * v : rows.x + rows.y * v;
+}
+
+// Whether a direction passes above all air.
+bool AboveAir(float angle) { return air_ranges.w > 0.5 && angle > air_ranges.x; }
+
+// The whole ray: to space, or to the bare planet with its lit ground.
+vec4 SkyRadiance(vec3 direction) {
+  float angle = AngleOverHorizon(direction);
+  vec2 at = vec2(air_columns.x + air_columns.y * ColumnOf(direction),
+                 RowOf(angle, air_ranges.x, air_sky_rows));
+  float h2 = HalfSineSquared(direction);
+  vec4 mix = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] + AerosolPhase(h2) * air_sky_mix[1] +
+             air_sky_mix[2];
+  return AboveAir(angle) ? vec4(0.0) : mix * texture(air_sky, at);
+}
+
+// Of the whole view ray, to space or to the bare ground.
+vec4 TransmittanceToSpace(vec3 direction) {
+  float angle = AngleOverHorizon(direction);
+  float at = RowOf(angle, air_ranges.x, air_through_rows);
+  return AboveAir(angle) ? vec4(1.0) : texture(air_through, at);
+}
+
+// From a point at or above the ground [km] towards a sun that the planet does not hide.
+vec4 TransmittanceToSun(float altitude_km, float mu_s) {
+  float h = clamp(altitude_km, 0.0, air_shell.z);
+  float x =
+      UnitFromSkyCosine(h, max(mu_s, HorizonCosine(h, air_shell.w)), air_shell.z, air_shell.w);
+  float y = UnitFromAltitude(h, air_shell.z, air_shell.w);
+  vec2 size = vec2(textureSize(air_to_sun, 0));
+  return texture(air_to_sun, vec2(TexelFromUnit(x, size.x), TexelFromUnit(y, size.y)));
+}
+
+// Where a point lies in the tables of ways, and what reaches the eye from there.
+struct AirWay {
+  vec3 at;        // in the 3-D tables
+  vec4 absorbed;  // 1 - transmittance
+  vec4 transmittance;
+};
+
+AirWay WayTo(vec3 direction, float distance_km) {
+  float angle = AngleOverHorizon(direction);
+  bool ground = angle < 0.0;
+  float h = air_shell.x;
+  float radius = air_shell.w;
+  float begin = AirEntry(h, direction.z, air_shell.z, radius);
+  float end =
+      ground ? AirEndDown(h, direction.z, radius) : AirEndUp(h, direction.z, air_shell.y, radius);
+  float reach = max(end - begin, 1e-3);
+  float way = clamp(distance_km - begin, 0.0, reach);
+  float w = AirNodeFromShare(way / reach, ground ? air_crowding.y : air_crowding.x);
+  vec2 distances = air_distances.xz + air_distances.yw * w;
+  float row = RowOf(angle, air_ranges.y, air_extinction_rows);
+  vec4 tau = way * texture(air_extinction, vec2(distances.y, row));
+  AirWay found;
+  found.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
+                  RowOf(angle, air_ranges.y, air_way_rows), distances.x);
+  found.transmittance = exp(-tau);
+  // 1 - exp(-tau) where it cancels: error below 1e-7 of it.
+  vec4 series = tau * (1.0 - tau * (0.5 - tau * (0.166666667 - tau * 0.0416666667)));
+  found.absorbed = mix(1.0 - found.transmittance, series, lessThan(tau, vec4(0.06)));
+  return found;
+}
+
+vec4 SingleOf(AirWay way, vec3 direction) {
+  float h2 = HalfSineSquared(direction);
+  vec4 mix =
+      PhaseRayleigh(1.0 - 2.0 * h2) * air_single_mix[0] + AerosolPhase(h2) * air_single_mix[1];
+  return mix * way.absorbed * texture(air_single, way.at);
+}
+
+// From the eye to a point.
+AirTo AirToPoint(vec3 direction, float distance_km) {
+  AirWay way = WayTo(direction, distance_km);
+  return AirTo(SingleOf(way, direction), way.absorbed * texture(air_diffuse, way.at),
+               way.transmittance);
+}
+
+// AirToPoint(direction, distance_km).single alone: light that comes from before a distance.
+vec4 SingleTo(vec3 direction, float distance_km) {
+  return SingleOf(WayTo(direction, distance_km), direction);
+}
