@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "atmosphere/number/constants.h"
+#include "lut/program/growing_file.h"
 #include "lut/program/output_name.h"
 #include "renderer/scene/scene_files.h"
 #include "renderer/series/frame_times.h"
@@ -102,7 +103,10 @@ std::vector<NamedFile> InputsOf(const SkyviewOptions& options, const Scene& scen
 
 std::vector<NamedFile> OutputsOf(const SkyviewOptions& options) {
   std::vector<NamedFile> outputs;
-  if (options.record) outputs.push_back({"--record", *options.record});
+  if (options.record) {
+    outputs.push_back({"--record", *options.record});
+    outputs.push_back({"--record", GrowingFile::PartOf(*options.record)});
+  }
   if (!options.screenshot) return outputs;
   const bool many = options.replay && options.headless;
   for (const std::filesystem::path& file :
@@ -129,7 +133,7 @@ int Run(const SkyviewOptions& options) {
   const Scene scene = SceneOf(options);
   const UtcInstant start = StartOf(options, scene);
   std::optional<CameraPath> path;
-  if (options.replay) path = ReadCameraPath(*options.replay);
+  if (options.replay) path = ReadFlight(*options.replay);
   RequireOutputs(options, scene);
   // The context outlives what was made in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
@@ -141,7 +145,7 @@ int Run(const SkyviewOptions& options) {
   flight.Place(PlacementOf(options));
   if (!flight.terrain_message().empty())
     Say(fmt::format("skyview: {}\n", flight.terrain_message()));
-  FlightRecorder recorder;
+  FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
   if (window) {
     Fly(options, path, flight, *window, recorder);
   } else if (path) {
@@ -149,7 +153,7 @@ int Run(const SkyviewOptions& options) {
   } else {
     PaintHeadless(options, flight, size, recorder);
   }
-  if (options.record) recorder.Write(*options.record);
+  recorder.Finish();
   return 0;
 }
 

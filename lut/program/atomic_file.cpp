@@ -17,6 +17,7 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/descriptor.h"
 
 namespace alpenglow {
 namespace {
@@ -28,23 +29,6 @@ namespace fs = std::filesystem;
 }
 
 std::string LastSystemError() { return std::generic_category().message(errno); }
-
-/// A descriptor that is closed whatever happens.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  [[nodiscard]] bool valid() const { return number_ >= 0; }
-  [[nodiscard]] int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 // FNV-1a (Fowler, Noll and Vo): names of machines as eight digits, whatever they are made of.
 std::uint32_t Hash(std::string_view text) {
@@ -129,20 +113,6 @@ void FlushToDisk(const fs::path& file, const fs::path& target) {
   }
 }
 
-/// The name the content goes to: the end of a symbolic link, and never a folder or a device.
-fs::path RealTarget(const fs::path& target) {
-  constexpr int kMostLinks = 40;  // as the kernel
-  std::error_code error;
-  fs::path real = target;
-  for (int links = 0; links < kMostLinks && fs::is_symlink(real, error); ++links) {
-    real = real.parent_path() / fs::read_symlink(real, error);
-  }
-  if (real.filename().empty()) Fail(target, "is not the name of a file");
-  const fs::file_status status = fs::status(real, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) Fail(target, "is not a regular file");
-  return real;
-}
-
 void CallWriter(const fs::path& target, const fs::path& temporary,
                 const std::function<void(const fs::path&)>& write) {
   const auto rethrow = [&](std::string fault) {
@@ -163,9 +133,22 @@ void CallWriter(const fs::path& target, const fs::path& temporary,
 
 }  // namespace
 
+fs::path FinalName(const fs::path& target) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  std::error_code error;
+  fs::path real = target;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(real, error); ++links) {
+    real = real.parent_path() / fs::read_symlink(real, error);
+  }
+  if (real.filename().empty()) Fail(target, "is not the name of a file");
+  const fs::file_status status = fs::status(real, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) Fail(target, "is not a regular file");
+  return real;
+}
+
 void WriteFileAtomically(const fs::path& target,
                          const std::function<void(const fs::path&)>& write) {
-  const fs::path real = RealTarget(target);
+  const fs::path real = FinalName(target);
   const Temporary temporary(real);
   CallWriter(target, temporary.name(), write);
   FlushToDisk(temporary.name(), target);
@@ -188,7 +171,7 @@ void WriteTextAtomically(const fs::path& target, std::string_view text) {
   });
 }
 
-void RequireWritable(const fs::path& target) { const Temporary probe(RealTarget(target)); }
+void RequireWritable(const fs::path& target) { const Temporary probe(FinalName(target)); }
 
 std::size_t RemoveAbandonedTemporaries(const fs::path& folder) {
   std::size_t removed = 0;

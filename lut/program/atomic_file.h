@@ -26,6 +26,10 @@ void WriteTextAtomically(const std::filesystem::path& target, std::string_view t
 /// that name): before the work, so that it is not lost.
 void RequireWritable(const std::filesystem::path& target);
 
+/// The name that content for `target` goes to: the end of a symbolic link. Throws OutputError for
+/// what exists and is no regular file.
+[[nodiscard]] std::filesystem::path FinalName(const std::filesystem::path& target);
+
 /// Removes the temporaries in a folder whose writers were killed, and no others: of this machine,
 /// by their names (a farm shares folders), and locked by nobody, as their writers keep them until
 /// they are done. File systems without locks keep theirs. Returns how many were removed.

@@ -66,18 +66,19 @@ void CsvReader::Fail(std::size_t line, const std::string& fault) const {
 bool CsvReader::ReadLine() {
   line_.clear();
   using Traits = std::ifstream::traits_type;
-  bool any = false;
+  bool any = false, ended = false;
   std::streambuf* buffer = stream_.rdbuf();
   for (auto c = buffer->sbumpc(); !Traits::eq_int_type(c, Traits::eof()); c = buffer->sbumpc()) {
     any = true;
     ++bytes_read_;
-    if (Traits::to_char_type(c) == '\n') break;
+    ended = Traits::to_char_type(c) == '\n';
+    if (ended) break;
     line_ += Traits::to_char_type(c);
     if (line_.size() > kLongestLine) {
       Fail(line_number_ + 1, fmt::format("is longer than {} characters", kLongestLine));
     }
   }
-  if (!any) return false;
+  if (!any || (rules_.cut_short && !ended)) return false;
   ++line_number_;
   if (!line_.empty() && line_.back() == '\r') line_.pop_back();
   return true;

@@ -28,8 +28,9 @@ class CsvReader {
       : CsvReader(file, columns, {columns.size(), false}) {}
 
   struct Rules {
-    std::size_t needed;  // the first so many columns must be there, the others may
-    bool comments;       // lines that are blank and what follows a `#` are passed over
+    std::size_t needed;      // the first so many columns must be there, the others may
+    bool comments;           // lines that are blank and what follows a `#` are passed over
+    bool cut_short = false;  // a last line without its end is passed over: its writer was killed
   };
   CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
             const Rules& rules);

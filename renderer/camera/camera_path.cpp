@@ -178,7 +178,7 @@ std::vector<CameraPose> CameraPath::PosesBetween(double from_s, double to_s, int
 }
 
 CameraPath ReadCameraPath(const std::filesystem::path& file, const CameraPose& otherwise) {
-  CsvReader lines(file, kColumns, {.needed = kNeeded, .comments = true});
+  CsvReader lines(file, kColumns, {kNeeded, true, file.extension() == ".part"});
   const auto degrees = [&](Column column, double low, double high, double radians) {
     return lines.Has(column) ? lines.Number(column, low, high) : Degrees(radians);
   };
@@ -210,19 +210,24 @@ CameraPath ReadCameraPath(const std::filesystem::path& file, const CameraPose& o
   return CameraPath(std::move(points));
 }
 
+std::string HeaderOfCameraPath(bool has_utc) {
+  return fmt::format("{}\n", fmt::join(kColumns.begin(), kColumns.end() - (has_utc ? 0 : 1), ","));
+}
+
+std::string LineOf(const CameraPathPoint& point) {
+  const CameraPose& pose = point.pose;
+  const std::string line =
+      fmt::format("{},{:.10f},{:.10f},{:.4f},{:.10f},{:.10f},{:.10f},{:.10f}", point.time_s,
+                  Degrees(pose.place.latitude_rad), Degrees(pose.place.longitude_rad),
+                  pose.place.height_m, Degrees(pose.heading_rad), Degrees(pose.pitch_rad),
+                  Degrees(pose.roll_rad), Degrees(pose.fov_rad));
+  return point.utc ? fmt::format("{},{}\n", line, FormatUtc(*point.utc, 6)) : line + "\n";
+}
+
 std::string TextOf(const CameraPath& path) {
-  const bool has_utc = path.points().front().utc.has_value();
-  std::string text =
-      fmt::format("{}", fmt::join(kColumns.begin(), kColumns.end() - (has_utc ? 0 : 1), ","));
-  for (const CameraPathPoint& point : path.points()) {
-    const CameraPose& pose = point.pose;
-    text += fmt::format("\n{},{:.10f},{:.10f},{:.4f},{:.10f},{:.10f},{:.10f},{:.10f}", point.time_s,
-                        Degrees(pose.place.latitude_rad), Degrees(pose.place.longitude_rad),
-                        pose.place.height_m, Degrees(pose.heading_rad), Degrees(pose.pitch_rad),
-                        Degrees(pose.roll_rad), Degrees(pose.fov_rad));
-    if (has_utc) text += fmt::format(",{}", FormatUtc(*point.utc, 6));
-  }
-  return text + "\n";
+  std::string text = HeaderOfCameraPath(path.points().front().utc.has_value());
+  for (const CameraPathPoint& point : path.points()) text += LineOf(point);
+  return text;
 }
 
 }  // namespace alpenglow

@@ -88,11 +88,15 @@ class CameraPath {
 
 /// Reads a path; `otherwise` is what columns left out say. Throws InputError "file:line: ..." for
 /// unknown columns and missing ones, values out of range, and what CameraPath
-/// refuses.
+/// refuses. Of a file that ends in .part, which a flight is written into until it ends, a last line
+/// without its end is passed over.
 [[nodiscard]] CameraPath ReadCameraPath(const std::filesystem::path& file,
                                         const CameraPose& otherwise = {});
 /// All columns. Read back, a place is the same to a
 /// tenth of a millimetre, an angle to 1e-9 degrees.
 [[nodiscard]] std::string TextOf(const CameraPath& path);
+/// The first line of such a text, and the line of a point; each with its end.
+[[nodiscard]] std::string HeaderOfCameraPath(bool has_utc);
+[[nodiscard]] std::string LineOf(const CameraPathPoint& point);
 
 }  // namespace alpenglow

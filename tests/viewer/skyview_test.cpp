@@ -76,6 +76,21 @@ TEST_F(Skyview, AFlightIsRecordedAndAReplayIsTheSameFlight) {
   EXPECT_NEAR(ReadCameraPath(InFolder("again.csv")).end_s(), path.end_s(), 1e-9);
 }
 
+TEST_F(Skyview, ARecordedFlightIsRenderedBySkyseries) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  Outcome outcome = Run(InFolder("s.toml") +
+                        " --headless --size 8x4 --heading 350 --altitude 2000 --frames 31 "
+                        "--record " +
+                        InFolder("flight.csv") + " --screenshot " + InFolder("end.png"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  outcome = RunCommand("'" ALPENGLOW_SKYSERIES "' " + InFolder("s.toml") + " --path " +
+                       InFolder("flight.csv") + " --count 2 --size 8x4 --effects sky --out " +
+                       InFolder("f.%d.exr"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const Metadata metadata = ReadExrMetadata(InFolder("f.1.exr"));
+  EXPECT_THAT(metadata.at("alpenglow.camera_height"), HasSubstr("2000"));
+}
+
 TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
   if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "p.csv",

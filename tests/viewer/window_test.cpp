@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lut/picture/image.h"
+#include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -87,6 +88,42 @@ TEST_F(SkyviewWindow, ADisplayWithOpenGl21IsRefusedWithStatusFiveAndAClearMessag
   }
   const Outcome old = Run("ALPENGLOW_DISPLAY=64x36 ALPENGLOW_DISPLAY_GL=3.3", "");
   EXPECT_EQ(old.status, 0) << "3.3 is enough; " << old.error;
+}
+
+/// A display of so many equal pictures, with a word before the last one.
+std::string DisplayWith(const std::string& word) {
+  std::string script;
+  for (int i = 0; i < 12; ++i) script += "16x9 ";
+  return "ALPENGLOW_DISPLAY='" + script + word + " 16x9'";
+}
+
+TEST_F(SkyviewWindow, ASignalEndsTheFlightAndItsRecordIsWhole) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const std::pair<const char*, int> signals[] = {
+      {"raise:2", 130}, {"raise:15", 143}, {"raise:1", 0}};  // SIGINT, SIGTERM, SIGHUP
+  for (const auto& [word, status] : signals) {
+    std::filesystem::remove(folder_ / "f.csv");
+    const Outcome outcome = Run(DisplayWith(word), "--record f.csv");
+    EXPECT_EQ(outcome.status, status) << outcome.error;
+    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 2U) << word;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part")) << word;
+  }
+}
+
+TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome killed = Run(DisplayWith("raise:9"), "--record f.csv");
+  EXPECT_NE(killed.status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
+  const std::string replay = "--headless --size 16x9 --screenshot last.png --replay ";
+  const Outcome missing = Run("ALPENGLOW_DISPLAY=8x8", replay + "f.csv");
+  EXPECT_EQ(missing.status, 3);
+  EXPECT_THAT(missing.error, HasSubstr("f.csv.part"));
+  const Outcome replayed = Run("ALPENGLOW_DISPLAY=8x8", replay + "f.csv.part");
+  EXPECT_EQ(replayed.status, 0) << replayed.error;
+  EXPECT_THAT(replayed.error, HasSubstr("cut short"));
+  const Outcome again = Run("ALPENGLOW_DISPLAY=8x8", replay + "f.csv.part --record f.csv");
+  EXPECT_EQ(again.status, 3) << "the record would be written over what is replayed";
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include "atmosphere/text/error.h"
-#include "lut/program/atomic_file.h"
+#include "lut/program/growing_file.h"
+#include "lut/program/messages.h"
 #include "renderer/series/frame_name.h"
+#include "viewer/work/latest_job.h"
 
 namespace alpenglow {
 
@@ -17,15 +19,80 @@ Eye EyeOf(const CameraPose& pose) {
   return {pose.place, pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad};
 }
 
+struct FlightRecorder::State {
+  GrowingFile file;
+  std::optional<double> last_s;  // of the last point
+  double synced_s = 0.0;
+  std::optional<std::string> fault;
+  // A disk may take longer than a frame; the lines are in the system's hands already.
+  LatestJob<int, int> sync{[this](const int& request) {
+    file.Sync();
+    return request;
+  }};
+
+  explicit State(const std::filesystem::path& name) : file(name) {
+    if (!file.kept()) return;
+    Say(fmt::format("skyview: {} is a flight that was cut short; it is {} now\n",
+                    file.part().string(), file.kept()->string()));
+  }
+
+  void Append(const CameraPathPoint& point) {
+    constexpr double kUnsynced_s = 2.0;
+    if (!last_s) file.Append(HeaderOfCameraPath(point.utc.has_value()));
+    file.Append(LineOf(point));
+    if (point.time_s < synced_s + kUnsynced_s) return;
+    sync.Ask(0);
+    synced_s = point.time_s;
+  }
+};
+
+FlightRecorder::FlightRecorder() = default;
+
+FlightRecorder::FlightRecorder(const std::filesystem::path& file)
+    : state_(std::make_unique<State>(file)) {}
+
+FlightRecorder::~FlightRecorder() {
+  try {
+    Finish();
+  } catch (const std::exception& error) {
+    Say(fmt::format("skyview: {}\n", error.what()));
+  }
+}
+
 void FlightRecorder::Note(double elapsed_s, const Eye& eye, const UtcInstant& now) {
   // Frames of a sixtieth of a second come in threes, so that half of one is no reason to wait.
   constexpr double kEarly_s = 0.005;
-  if (!points_.empty() && elapsed_s < points_.back().time_s + kInterval_s - kEarly_s) return;
-  points_.push_back({elapsed_s, PoseOf(eye), now});
+  if (!state_ || state_->fault) return;
+  if (state_->last_s && elapsed_s < *state_->last_s + kInterval_s - kEarly_s) return;
+  try {
+    state_->Append({elapsed_s, PoseOf(eye), now});
+    state_->last_s = elapsed_s;
+  } catch (const OutputError& error) {
+    state_->fault = error.what();
+    Say(fmt::format("skyview: {}; the flight is recorded no further\n", error.what()));
+  }
 }
 
-void FlightRecorder::Write(const std::filesystem::path& file) const {
-  if (!points_.empty()) WriteTextAtomically(file, TextOf(CameraPath(points_)));
+void FlightRecorder::Finish() {
+  const std::unique_ptr<State> state = std::move(state_);
+  if (!state) return;
+  state->sync.Wait();
+  if (state->fault) throw OutputError(*state->fault);
+  state->file.Finish();
+}
+
+CameraPath ReadFlight(const std::filesystem::path& file) {
+  const std::filesystem::path part = GrowingFile::PartOf(file);
+  if (!std::filesystem::exists(file) && std::filesystem::exists(part)) {
+    throw InputError(fmt::format("{}: is not there; {} is, of a flight that was cut short",
+                                 file.string(), part.string()));
+  }
+  CameraPath path = ReadCameraPath(file);
+  if (file.extension() == part.extension()) {
+    Say(fmt::format("skyview: {} is unfinished: a flight that was cut short after {:.1f} s\n",
+                    file.string(), path.end_s()));
+  }
+  return path;
 }
 
 ReplayFrame ReplayAt(const CameraPath& path, double path_s) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "atmosphere/sun/time.h"
@@ -15,20 +17,40 @@ namespace alpenglow {
 [[nodiscard]] CameraPose PoseOf(const Eye& eye);
 [[nodiscard]] Eye EyeOf(const CameraPose& pose);
 
-/// Takes down where the eye is, 25 times a second at most.
+/// Takes down where the eye is, 25 times a second at most, as it flies: FILE.part has every line
+/// before the next frame is drawn and becomes FILE when the flight ends, however it ends. After a
+/// SIGKILL FILE.part stays with all that was flown, after a loss of power with all but the last two
+/// seconds. Takes as much memory for a day as for a minute.
 class FlightRecorder {
  public:
   static constexpr double kInterval_s = 0.04;
 
-  /// @param elapsed_s  since the flight began; passed over when the last point is too near.
+  /// Takes nothing down.
+  FlightRecorder();
+  /// Begins FILE.part; says so when it finds one, of a flight that was cut short, and keeps that
+  /// under another name. Throws OutputError, also when another process records into the file.
+  explicit FlightRecorder(const std::filesystem::path& file);
+  /// Finishes what is not finished; says what fails.
+  ~FlightRecorder();
+  FlightRecorder(const FlightRecorder&) = delete;
+  FlightRecorder& operator=(const FlightRecorder&) = delete;
+
+  /// @param elapsed_s  since the flight began; passed over when the last point is too near. Of a
+  /// file that takes no more is told once, and the flight goes on without it.
   void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
 
-  /// Throws OutputError when the file cannot be written. Nothing is written before the first Note.
-  void Write(const std::filesystem::path& file) const;
+  /// Gives the file its name; nothing before the first Note. Throws OutputError, also for lines
+  /// that the file has not taken.
+  void Finish();
 
  private:
-  std::vector<CameraPathPoint> points_;
+  struct State;
+  std::unique_ptr<State> state_;  // none: takes nothing down
 };
+
+/// A recorded flight, or any camera path. A FILE.part is one that was cut short, and so is said.
+/// Throws InputError as ReadCameraPath; names FILE.part where that is there and FILE is not.
+[[nodiscard]] CameraPath ReadFlight(const std::filesystem::path& file);
 
 /// What a frame of a replay shows.
 struct ReplayFrame {
