@@ -9,9 +9,11 @@
 #include "lut/program/output_name.h"
 #include "renderer/scene/scene_files.h"
 #include "renderer/series/frame_times.h"
+#include "viewer/benchmark.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/gl/render_target.h"
 #include "viewer/skyview_options.h"
 #include "viewer/window.h"
 
@@ -94,6 +96,25 @@ void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, F
   }
 }
 
+// The scripted flight, drawn into a window or, without one, into a picture of its size.
+void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
+  const Eye start = flight.eye();
+  const UtcInstant begin = flight.now();
+  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
+  Benchmark benchmark(seconds);
+  for (double before_s = 0.0; benchmark.NextFrame(); before_s = benchmark.elapsed_s()) {
+    ThrowIfInterrupted();
+    if (window != nullptr && window->Poll().close) break;
+    flight.Show(BenchmarkFlight(start, begin, benchmark.elapsed_s()));
+    benchmark.timer().Begin("picture");
+    flight.Paint(size.width, size.height, window == nullptr ? picture.framebuffer() : 0,
+                 benchmark.elapsed_s() - before_s);
+    benchmark.timer().End();
+    if (window != nullptr) window->Swap();
+  }
+  Print(benchmark.Text());
+}
+
 std::vector<NamedFile> InputsOf(const SkyviewOptions& options, const Scene& scene) {
   std::vector<NamedFile> inputs = FilesOf(scene);
   if (!options.scene_file.empty()) inputs.push_back({"the scene", options.scene_file});
@@ -146,7 +167,11 @@ int Run(const SkyviewOptions& options) {
   if (!flight.terrain_message().empty())
     Say(fmt::format("skyview: {}\n", flight.terrain_message()));
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
-  if (window) {
+  if (options.benchmark) {
+    const bool shown = window && window->width() > 0 && window->height() > 0;
+    const ImageSize drawn = shown ? ImageSize{window->width(), window->height()} : size;
+    RunBenchmark(*options.benchmark, flight, drawn, window.get());
+  } else if (window) {
     Fly(options, path, flight, *window, recorder);
   } else if (path) {
     flight.WriteReplay(*path, ReplayPictures(*options.screenshot, options.frames), size, recorder);

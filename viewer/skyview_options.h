@@ -25,6 +25,7 @@ struct SkyviewOptions {
   std::string scene_file, size = "1280x720";
   std::optional<double> latitude, longitude, altitude, heading, pitch;
   std::optional<std::string> dem, time, screenshot, record, replay;
+  std::optional<double> benchmark;  // seconds
   int frames = 1;
   bool fullscreen = false, headless = false;
 };
@@ -53,14 +54,27 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
       ->check(CLI::Range(1, 1000000))
       ->needs(picture)
       ->capture_default_str();
-  app.add_flag("--headless", options.headless, "Needs no display; only with --screenshot")
-      ->needs(picture);
+  CLI::Option* benchmark =
+      app.add_option("--benchmark", options.benchmark,
+                     "Fly for so many seconds, with time running x60, and print frame times: one "
+                     "line a pass, \"name median_ms p95_ms p99_ms\" (name.cpu: of the thread that "
+                     "draws), and the whole frame as \"frame\"; 0.1 to 3600")
+          ->check(CLI::Range(0.1, 3600.0))
+          ->excludes(picture);
+  app.add_flag("--headless", options.headless,
+               "Needs no display; only with --screenshot or --benchmark");
   app.add_option("--record", options.record,
                  "Write the flight to this file, for --replay and skyseries --path");
   app.add_option("--replay", options.replay,
                  "Fly along this path; without a display, --screenshot out.%04d.png --frames N "
                  "writes pictures along it");
+  benchmark->excludes("--replay")->excludes("--record");
   AddCommonOptions(app, "skyview", options.common);
+  app.callback([&options] {
+    if (options.headless && !options.screenshot && !options.benchmark) {
+      throw CLI::RequiresError("--headless", "--screenshot or --benchmark");
+    }
+  });
   app.footer(kSkyviewFooter);
 }
 

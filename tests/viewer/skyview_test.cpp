@@ -91,6 +91,16 @@ TEST_F(Skyview, ARecordedFlightIsRenderedBySkyseries) {
   EXPECT_THAT(metadata.at("alpenglow.camera_height"), HasSubstr("2000"));
 }
 
+TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 16x9 --benchmark 0.2");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, ::testing::MatchesRegex("([a-z._]+ [0-9.]+ [0-9.]+ [0-9.]+\n)+"));
+  EXPECT_THAT(outcome.out, HasSubstr("\nframe "));
+  EXPECT_EQ(Run("--benchmark 0").status, 2);
+  EXPECT_EQ(Run("--headless --benchmark 1 --screenshot a.png").status, 2);
+}
+
 TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
   if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "p.csv",
@@ -184,8 +194,8 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   for (const char* option :
        {"--latitude", "--longitude", "--altitude", "--heading", "--pitch", "--time", "--dem",
-        "--record", "--replay", "--size", "--fullscreen", "--screenshot", "--frames", "--headless",
-        "--threads", "--version", "Example"}) {
+        "--record", "--replay", "--benchmark", "--size", "--fullscreen", "--screenshot", "--frames",
+        "--headless", "--threads", "--version", "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }

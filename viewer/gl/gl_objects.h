@@ -66,6 +66,15 @@ struct Framebuffer {
   static void Free(GLuint id) { glDeleteFramebuffers(1, &id); }
 };
 
+struct Query {
+  static GLuint Make() {
+    GLuint id = 0;
+    glGenQueries(1, &id);
+    return id;
+  }
+  static void Free(GLuint id) { glDeleteQueries(1, &id); }
+};
+
 struct Program {
   static GLuint Make() { return glCreateProgram(); }
   static void Free(GLuint id) { glDeleteProgram(id); }
@@ -77,6 +86,7 @@ using GlBuffer = GlObject<gl_kind::Buffer>;
 using GlVertexArray = GlObject<gl_kind::VertexArray>;
 using GlTexture = GlObject<gl_kind::Texture>;
 using GlFramebuffer = GlObject<gl_kind::Framebuffer>;
+using GlQuery = GlObject<gl_kind::Query>;
 using GlProgram = GlObject<gl_kind::Program>;
 
 }  // namespace alpenglow
