@@ -418,10 +418,14 @@ class WayBuilder {
 
 }  // namespace
 
+void RequireFourBands(const Medium& medium) {
+  RequireInRange(static_cast<double>(medium.wavelengths_nm.size()), 1.0,
+                 static_cast<double>(kBands), "number of spectrum.wavelengths_nm");
+}
+
 AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                         const AirEye& eye, const AirTablesSize& size) {
-  RequireInRange(static_cast<double>(air.bands()), 1.0, static_cast<double>(kBands),
-                 "number of spectrum.wavelengths_nm");
+  RequireFourBands(air.medium());
   const SkyView view(air, diffuse, eye.altitude_m, eye.mu_s);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m);
   const std::array<glm::vec4, 3> mix = SkyMix(air, view, map, eye);
@@ -443,6 +447,7 @@ AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& dif
 
 MediumTables MakeMediumTables(const AirIntegrator<float>& air) {
   using namespace shared;
+  RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, kSunAltitudes)};
   for (int k = 0; k < kPhaseNodes; ++k) {
     const double share = Unit(k, kPhaseNodes);

@@ -77,6 +77,9 @@ struct AirTables {
   AirTexels diffuse;
 };
 
+/// Throws InputError for a medium of more bands than a texel has.
+void RequireFourBands(const Medium& medium);
+
 /// On the calling thread alone. `air` and `diffuse` must be of one medium; neither is kept. Throws
 /// InputError for a medium of more than four bands.
 [[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,

@@ -111,7 +111,6 @@ void AirTextures::SetView(double altitude_m, const glm::dvec3& sun) {
   const double horizon = shared::HorizonCosine<double>(h, radius);
   const double flat = std::hypot(sun.x, sun.y);
   const glm::dvec2 azimuth = flat > 1e-9 ? glm::dvec2(sun) / flat : glm::dvec2(0.0, 1.0);
-  values_.shell.x = static_cast<float>(h);
   values_.sun = {sun, 0.0};
   values_.frame = {azimuth, -horizon, std::sqrt((1.0 - horizon) * (1.0 + horizon))};
 }

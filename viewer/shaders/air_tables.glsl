@@ -7,7 +7,7 @@
 layout(std140) uniform AirTables {
   vec4 air_sun;       // unit vector to the sun
   vec4 air_frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
-  vec4 air_shell;     // altitude of the eye, ceiling of land, top of the air, radius [km]
+  vec4 air_shell;     // altitude that tables are for, ceiling of land, top of the air, radius [km]
   vec4 air_ranges;    // of rows: sky, ways above the horizon, below it [rad]; 1: eye above the air
   vec4 air_crowding;  // of distances, above and below the horizon
   vec4 air_columns;   // first texel and texels of columns: sky; ways

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Tables that follow an eye and a sun.
+#include "viewer/air/air_follower.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "tests/viewer/shaders/headless.h"
+
+namespace alpenglow {
+namespace {
+
+using AirFollowerOnGpu = tests::Headless;
+
+const std::shared_ptr<const SolvedAir>& Earth() {
+  static const auto earth = SolveAir(MediumPreset("earth"));
+  return earth;
+}
+
+AirView ViewAt(double altitude_m, double elevation_deg) {
+  const double e = elevation_deg * kRadiansPerDegree;
+  return {altitude_m, 0.8, {0.0, std::cos(e), std::sin(e)}};
+}
+
+// Frames with the same view until the tables shown are for it, or a hundred.
+void Frames(AirFollower& follower, const AirView& view) {
+  for (int i = 0; i < 100 && follower.eye().altitude_m != view.altitude_m; ++i) {
+    follower.Follow(view);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+TEST_F(AirFollowerOnGpu, HasTablesForTheFirstFrame) {
+  const AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  EXPECT_EQ(follower.eye().altitude_m, 2.0);
+  EXPECT_EQ(follower.air(), Earth());
+  EXPECT_EQ(follower.making_s(), 0.0) << "made before drawing, not beside it";
+}
+
+TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  Frames(follower, ViewAt(2.5, 30.0));
+  EXPECT_EQ(follower.eye().altitude_m, 2.5) << "however small the change";
+  EXPECT_GT(follower.making_s(), 0.0);
+}
+
+TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(1000.0, 30.0));
+  follower.Settle(ViewAt(1000.0, 30.0));
+  for (int i = 1; i <= 10; ++i) {
+    follower.Follow(ViewAt(1000.0 + 0.01 * i, 30.0));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(follower.eye().altitude_m, 1000.0);
+}
+
+TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  follower.Follow(ViewAt(500.0, 20.0));
+  follower.Settle(ViewAt(9000.0, -3.0));
+  EXPECT_EQ(follower.eye().altitude_m, 9000.0);
+  EXPECT_NEAR(follower.eye().mu_s, std::sin(-3.0 * kRadiansPerDegree), 1e-12);
+}
+
+TEST_F(AirFollowerOnGpu, AnotherMediumIsShownWhenItIsSolved) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  follower.Replace(MediumPreset("hazy"));
+  follower.Follow(ViewAt(2.0, 30.0));
+  EXPECT_EQ(follower.air()->medium.name, "earth") << "until then the last one";
+  follower.Settle(ViewAt(2.0, 30.0));
+  EXPECT_EQ(follower.air()->medium.name, "hazy");
+}
+
+TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  EXPECT_THROW(follower.Replace(MediumPreset("earth", WavelengthSet(8))), InputError);
+  Medium broken = MediumPreset("earth");
+  broken.mie_scale_height_m = -1.0;
+  EXPECT_THROW(follower.Replace(broken), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/air/air_follower.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMostChange = 5e-4;  // that is left alone while eye or sun move
+constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
+
+constexpr AirTablesSize kFirst{.sky_columns = 48,
+                               .sky_rows = 64,
+                               .sky_ground_rows = 32,
+                               .columns = 12,
+                               .rows = 8,
+                               .ground_rows = 8,
+                               .distances = 8,
+                               .extinction_rows = 32,
+                               .extinction_ground_rows = 32,
+                               .extinction_distances = 16,
+                               .through_rows = 256,
+                               .through_ground_rows = 64};
+
+AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z}; }
+
+AirTables TablesOf(const SolvedAir& air, const AirView& view, const AirTablesSize& size) {
+  const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
+  return MakeAirTables(here, air.diffuse, EyeOf(view), size);
+}
+
+}  // namespace
+
+AirTablesSize AirTablesSizeOf(AirQuality quality) {
+  switch (quality) {
+    case AirQuality::kLow:
+      return {};
+    case AirQuality::kMedium:
+      return {.sky_columns = 128,
+              .sky_rows = 128,
+              .sky_ground_rows = 96,
+              .columns = 48,
+              .rows = 24,
+              .ground_rows = 24,
+              .distances = 24,
+              .extinction_rows = 96,
+              .extinction_ground_rows = 96,
+              .extinction_distances = 48};
+    case AirQuality::kHigh:
+      break;
+  }
+  return {.sky_columns = 192,
+          .sky_rows = 192,
+          .sky_ground_rows = 128,
+          .columns = 64,
+          .rows = 32,
+          .ground_rows = 32,
+          .distances = 32,
+          .extinction_rows = 128,
+          .extinction_ground_rows = 128,
+          .extinction_distances = 64};
+}
+
+double AirChange(const AirEye& made, const AirEye& now) {
+  const double elevation = std::asin(std::clamp(now.mu_s, -1.0, 1.0)) / kRadiansPerDegree;
+  const double turned =
+      std::abs(std::asin(std::clamp(made.mu_s, -1.0, 1.0)) / kRadiansPerDegree - elevation);
+  // Light falls by e a degree in twilight.
+  const double per_degree = elevation < 0.0 ? 1.5 : 0.01 + 0.5 / (1.0 + elevation);
+  const double rise = std::abs(now.altitude_m - made.altitude_m);
+  const double layer = std::max(3000.0, 0.3 * now.altitude_m);
+  return turned * per_degree + rise / layer;
+}
+
+AirFollower::Made AirFollower::Make(const Request& request) {
+  const auto start = Clock::now();
+  AirTables tables = TablesOf(*request.air, request.view, AirTablesSizeOf(request.quality));
+  return {request, std::move(tables), std::chrono::duration<double>(Clock::now() - start).count()};
+}
+
+AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality,
+                         const AirView& first)
+    : air_(std::move(air)),
+      quality_(quality),
+      eye_(EyeOf(first)),
+      last_view_(first),
+      solver_(SolveAir),
+      maker_(Make) {
+  textures_.Upload(air_->tables);
+  shown_ = air_;
+  textures_.Upload(TablesOf(*air_, first, kFirst));
+  textures_.SetView(first.altitude_m, first.sun);
+}
+
+void AirFollower::Replace(const Medium& medium) {
+  Validate(medium);
+  RequireFourBands(medium);
+  solver_.Ask(medium);
+}
+
+void AirFollower::SetQuality(AirQuality quality) { quality_ = quality; }
+
+void AirFollower::Show(const Made& made) {
+  if (shown_ != made.request.air) {
+    shown_ = made.request.air;
+    textures_.Upload(shown_->tables);
+  }
+  textures_.Upload(made.tables);
+  eye_ = made.tables.eye;
+  making_s_ = made.making_s;
+  rests_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                    std::chrono::duration<double>(kRest * making_s_));
+}
+
+void AirFollower::TakeFinished() {
+  if (auto solved = solver_.Take()) air_ = std::move(*solved);
+  if (const auto made = maker_.Take()) Show(*made);
+}
+
+// Whether tables as wanted should be made now: at once for another medium or size, when they are
+// due while something moves, and exact ones when all stands still.
+bool AirFollower::Asks(const Request& wanted) const {
+  if (asked_ == wanted) return false;
+  if (!asked_ || asked_->air != wanted.air || asked_->quality != wanted.quality) return true;
+  if (maker_.Busy() || Clock::now() < rests_until_) return false;
+  return wanted.view == last_view_ ||
+         AirChange(EyeOf(asked_->view), EyeOf(wanted.view)) > kMostChange;
+}
+
+void AirFollower::Follow(const AirView& view) {
+  TakeFinished();
+  const Request wanted{air_, view, quality_};
+  if (Asks(wanted)) {
+    asked_ = wanted;
+    maker_.Ask(wanted);
+  }
+  last_view_ = view;
+  textures_.SetView(view.altitude_m, view.sun);
+}
+
+void AirFollower::Settle(const AirView& view) {
+  solver_.Wait();
+  TakeFinished();
+  const Request wanted{air_, view, quality_};
+  if (asked_ != wanted) {
+    asked_ = wanted;
+    maker_.Ask(wanted);
+  }
+  maker_.Wait();
+  Follow(view);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Keeps the tables of the air up with an eye that moves and a sun that does: made on a thread beside
+// drawing, asked for anew when they would be wrong by more than a shortcut may be, shown as soon as
+// they are there. Meanwhile the last ones serve, from the eye's own horizon and under its own sun.
+#pragma once
+
+#include <chrono>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+
+#include "viewer/air/air_textures.h"
+#include "viewer/air/solved_air.h"
+#include "viewer/work/latest_job.h"
+
+namespace alpenglow {
+
+/// Sizes of the tables.
+enum class AirQuality { kLow, kMedium, kHigh };
+[[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality);
+
+/// What a frame sees of the air.
+struct AirView {
+  double altitude_m;    // of the eye over the sphere that osculates the ellipsoid below it
+  double latitude_rad;  // of the eye
+  glm::dvec3 sun;       // unit vector to the apparent sun: east, north, up
+  bool operator==(const AirView&) const = default;
+};
+
+/// How wrong tables made for one eye are for another, roughly and relative to the light.
+[[nodiscard]] double AirChange(const AirEye& made, const AirEye& now);
+
+/// To be used on the thread of the context that is current when it is made.
+class AirFollower {
+ public:
+  /// Makes small tables for the first frame before it returns, some milliseconds later.
+  AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first);
+
+  /// Another medium, solved beside drawing; shown when it is ready. Throws InputError at once for
+  /// one that Validate refuses or of more than four bands.
+  void Replace(const Medium& medium);
+  void SetQuality(AirQuality quality);
+
+  /// Once a frame, before drawing: shows what is ready and asks for what is missing. Never waits.
+  void Follow(const AirView& view);
+  /// The same, but what Follow would show in the end is there when it returns: for pictures that
+  /// are kept.
+  void Settle(const AirView& view);
+
+  /// What is shown.
+  [[nodiscard]] const AirTextures& textures() const { return textures_; }
+  [[nodiscard]] const std::shared_ptr<const SolvedAir>& air() const { return shown_; }
+  [[nodiscard]] const AirEye& eye() const { return eye_; }
+  /// Time that the tables shown took to make; 0 before the first that were made beside drawing.
+  [[nodiscard]] double making_s() const { return making_s_; }
+
+ private:
+  struct Request {
+    std::shared_ptr<const SolvedAir> air;
+    AirView view;
+    AirQuality quality;
+    bool operator==(const Request&) const = default;
+  };
+  struct Made {
+    Request request;
+    AirTables tables;
+    double making_s;
+  };
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] static Made Make(const Request& request);
+  void Show(const Made& made);
+  void TakeFinished();
+  [[nodiscard]] bool Asks(const Request& wanted) const;
+
+  std::shared_ptr<const SolvedAir> air_;  // to be shown next
+  std::shared_ptr<const SolvedAir> shown_;
+  AirQuality quality_;
+  AirTextures textures_;
+  AirEye eye_;
+  std::optional<Request> asked_;  // last
+  AirView last_view_;
+  double making_s_ = 0.0;
+  Clock::time_point rests_until_{};
+  LatestJob<Medium, std::shared_ptr<const SolvedAir>> solver_;
+  LatestJob<Request, Made> maker_;
+};
+
+}  // namespace alpenglow
