@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // skyview: a flight through a scene, on the graphics card.
+// The numbers of keys alone.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
 #include <chrono>
+#include <set>
 
 #include "atmosphere/number/constants.h"
 #include "lut/program/growing_file.h"
@@ -64,21 +68,82 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
   flight.WritePicture(*options.screenshot, size.width, size.height);
 }
 
+/// Keys and mouse, as the flight understands them.
+class PilotHands {
+ public:
+  void Take(const WindowEvents& events) {
+    for (const KeyEvent& key : events.keys) {
+      if (key.change == GLFW_RELEASE) {
+        held_.erase(key.key);
+      } else {
+        held_.insert(key.key);
+      }
+    }
+    const bool drags = events.buttons[0] && pointer_ && events.pointer;
+    drag_right_px_ = drags ? events.pointer->right - pointer_->right : 0.0;
+    drag_down_px_ = drags ? events.pointer->down - pointer_->down : 0.0;
+    pointer_ = events.pointer;
+  }
+  [[nodiscard]] Steering steering() const {
+    return {Axis(GLFW_KEY_W, GLFW_KEY_S), Axis(GLFW_KEY_D, GLFW_KEY_A),
+            Axis(GLFW_KEY_R, GLFW_KEY_F), Axis(GLFW_KEY_RIGHT, GLFW_KEY_LEFT),
+            Axis(GLFW_KEY_UP, GLFW_KEY_DOWN)};
+  }
+  [[nodiscard]] double drag_right_px() const { return drag_right_px_; }
+  [[nodiscard]] double drag_down_px() const { return drag_down_px_; }
+
+  static std::optional<Command> CommandOf(const KeyEvent& key) {
+    if (key.change == GLFW_RELEASE) return std::nullopt;
+    const bool shift = (key.modifiers & GLFW_MOD_SHIFT) != 0;
+    switch (key.key) {
+      case GLFW_KEY_T:
+        return shift ? Command::kSlowerTime : Command::kFasterTime;
+      case GLFW_KEY_X:
+        return shift ? Command::kWiderView : Command::kNarrowerView;
+      case GLFW_KEY_F3:
+        return Command::kScreenshot;
+      case GLFW_KEY_H:
+        return Command::kHud;
+      case GLFW_KEY_ESCAPE:
+        return Command::kQuit;
+      default:
+        return std::nullopt;
+    }
+  }
+
+ private:
+  [[nodiscard]] double Axis(int positive, int negative) const {
+    return (held_.contains(positive) ? 1.0 : 0.0) - (held_.contains(negative) ? 1.0 : 0.0);
+  }
+
+  std::set<int> held_;
+  std::optional<PointerPlace> pointer_;
+  double drag_right_px_ = 0.0, drag_down_px_ = 0.0;
+};
+
+bool IsFullscreenKey(const KeyEvent& key) {
+  return key.key == GLFW_KEY_F10 && key.change == GLFW_PRESS &&
+         (key.modifiers & GLFW_MOD_SHIFT) != 0;
+}
+
 void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, Flythrough& flight,
          Window& window, FlightRecorder& recorder) {
   using Clock = std::chrono::steady_clock;
   int frames = 0;
   double elapsed_s = 0.0;
+  PilotHands hands;
   for (Clock::time_point before = Clock::now(); !flight.quit();) {
     ThrowIfInterrupted();
-    const Window::Events events = window.Poll();
+    const WindowEvents events = window.Poll();
     if (events.close) return;
+    hands.Take(events);
     const Clock::time_point now = Clock::now();
     const double seconds = std::min(std::chrono::duration<double>(now - before).count(), 0.25);
     before = now;
-    if (window.width() == 0 || window.height() == 0) continue;
-    flight.Turn(-events.drag_right * flight.eye().fov_rad, -events.drag_up * flight.eye().fov_rad);
-    flight.Advance(events.steering, seconds);
+    if (events.minimised) continue;
+    const double angle_of_pixel = flight.eye().fov_rad / window.width();
+    flight.Turn(-hands.drag_right_px() * angle_of_pixel, hands.drag_down_px() * angle_of_pixel);
+    flight.Advance(hands.steering(), seconds);
     // The pilot has the controls again when the path ends.
     if (path && path->begin_s() + elapsed_s <= path->end_s()) {
       flight.Show(ReplayAt(*path, path->begin_s() + elapsed_s));
@@ -88,7 +153,10 @@ void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, F
     flight.Paint(window.width(), window.height(), 0, seconds);
     window.SetTitle(flight.HudText());
     window.Swap();
-    for (const Command command : events.commands) flight.Do(command);
+    for (const KeyEvent& key : events.keys) {
+      if (IsFullscreenKey(key)) window.SetFullscreen(!window.fullscreen());
+      if (const auto command = PilotHands::CommandOf(key)) flight.Do(*command);
+    }
     if (options.screenshot && ++frames == options.frames) {
       flight.WritePicture(*options.screenshot, window.width(), window.height());
       return;
@@ -158,15 +226,18 @@ int Run(const SkyviewOptions& options) {
   RequireOutputs(options, scene);
   // The context outlives what was made in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
-  const auto window = options.headless
-                          ? nullptr
-                          : std::make_unique<Window>(size.width, size.height, options.fullscreen);
+  const auto window =
+      options.headless
+          ? nullptr
+          : std::make_unique<Window>(WindowSettings{size.width, size.height, options.fullscreen,
+                                                    options.vsync == "on" && !options.benchmark});
   if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
   Flythrough flight(scene, start);
   flight.Place(PlacementOf(options));
   if (!flight.terrain_message().empty())
     Say(fmt::format("skyview: {}\n", flight.terrain_message()));
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
+  if (window) window->AtLostDisplay([&recorder] { recorder.Finish(); });
   if (options.benchmark) {
     const bool shown = window && window->width() > 0 && window->height() > 0;
     const ImageSize drawn = shown ? ImageSize{window->width(), window->height()} : size;

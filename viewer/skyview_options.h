@@ -14,7 +14,8 @@ namespace alpenglow {
 inline constexpr char kSkyviewFooter[] =
     "Keys: W A S D fly along and across the view, R F up and down, arrows turn, a drag with the "
     "left button looks; t T change the rate of time, x X the field of view, F3 writes a "
-    "screenshot, h hides the numbers in the title, Esc quits. Speed grows with the height over "
+    "screenshot, Shift-F10 fills the screen, h hides the numbers in the title, Esc quits. Speed "
+    "grows with the height over "
     "the ground.\n\n"
     "Example: sunrise over the built-in range, without a display\n"
     "  skyview --time sunrise+15m --headless --screenshot dawn.png";
@@ -27,6 +28,7 @@ struct SkyviewOptions {
   std::optional<std::string> dem, time, screenshot, record, replay;
   std::optional<double> benchmark;  // seconds
   int frames = 1;
+  std::string vsync = "on";
   bool fullscreen = false, headless = false;
 };
 
@@ -46,6 +48,9 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
       ->capture_default_str();
   app.add_flag("--fullscreen", options.fullscreen, "Use the whole screen");
+  app.add_option("--vsync", options.vsync, "Frames wait for the display: on or off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
   CLI::Option* picture = app.add_option("--screenshot", options.screenshot,
                                         "Write this PNG or EXR after --frames frames and end");
   app.add_option("--frames", options.frames,

@@ -5,14 +5,21 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/messages.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/window_icon.h"
 
 namespace alpenglow {
 namespace {
+
+constexpr double kWait_s = 0.1;  // for events, while nothing is seen
 
 std::string LastGlfwError() {
   const char* text = nullptr;
@@ -32,34 +39,90 @@ struct Glfw {
   Glfw& operator=(const Glfw&) = delete;
 };
 
+// A driver that cannot tell of its resets may refuse to be asked for it.
 GLFWwindow* NewestWindow(int width, int height, GLFWmonitor* monitor) {
   for (const GlVersion& version : kGlVersions) {
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version.major);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version.minor);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    GLFWwindow* window = glfwCreateWindow(width, height, "skyview", monitor, nullptr);
-    if (window != nullptr) return window;
+    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
+      glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version.major);
+      glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version.minor);
+      glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+      glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+      glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
+      GLFWwindow* window = glfwCreateWindow(width, height, "skyview", monitor, nullptr);
+      if (window != nullptr) return window;
+    }
   }
   throw DisplayError(
       fmt::format("the display gives no OpenGL 3.3 core context: {}", LastGlfwError()));
 }
 
-std::optional<Command> CommandOf(int key, bool shift) {
-  switch (key) {
-    case GLFW_KEY_T:
-      return shift ? Command::kSlowerTime : Command::kFasterTime;
-    case GLFW_KEY_X:
-      return shift ? Command::kWiderView : Command::kNarrowerView;
-    case GLFW_KEY_F3:
-      return Command::kScreenshot;
-    case GLFW_KEY_H:
-      return Command::kHud;
-    case GLFW_KEY_ESCAPE:
-      return Command::kQuit;
-    default:
-      return std::nullopt;
+void SetIcon(GLFWwindow* window) {
+  std::vector<std::vector<std::uint8_t>> pixels;
+  std::vector<GLFWimage> images;
+  for (const int side : {16, 32, 48, 128}) {
+    pixels.push_back(WindowIcon(side));
+    images.push_back({side, side, pixels.back().data()});
   }
+  glfwSetWindowIcon(window, static_cast<int>(images.size()), images.data());
+}
+
+/// A rectangle of the desktop, in its units.
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+  [[nodiscard]] bool Holds(int right, int down) const {
+    return right >= x && right < x + width && down >= y && down < y + height;
+  }
+};
+
+Rectangle PlaceOf(GLFWwindow* window) {
+  Rectangle place;
+  glfwGetWindowPos(window, &place.x, &place.y);
+  glfwGetWindowSize(window, &place.width, &place.height);
+  return place;
+}
+
+Rectangle PlaceOf(GLFWmonitor* monitor) {
+  Rectangle place;
+  glfwGetMonitorPos(monitor, &place.x, &place.y);
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+  if (mode != nullptr) place.width = mode->width, place.height = mode->height;
+  return place;
+}
+
+/// The monitor that the window's middle is on; else the first one. Null where there is none.
+GLFWmonitor* MonitorUnder(GLFWwindow* window) {
+  const Rectangle place = PlaceOf(window);
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  for (int i = 0; i < count; ++i) {
+    if (PlaceOf(monitors[i]).Holds(place.x + place.width / 2, place.y + place.height / 2)) {
+      return monitors[i];
+    }
+  }
+  return glfwGetPrimaryMonitor();
+}
+
+std::optional<GamepadReading> FirstGamepad() {
+  for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; ++id) {
+    GLFWgamepadstate state = {};
+    if (glfwGetGamepadState(id, &state) != GLFW_TRUE) continue;
+    GamepadReading reading;
+    const char* name = glfwGetGamepadName(id);
+    reading.name = name == nullptr ? "" : name;
+    std::copy(std::begin(state.buttons), std::end(state.buttons), reading.buttons.begin());
+    std::copy(std::begin(state.axes), std::end(state.axes), reading.axes.begin());
+    return reading;
+  }
+  return std::nullopt;
+}
+
+void AppendUtf8(std::string& text, unsigned codepoint) {
+  const auto put = [&](unsigned byte) { text += static_cast<char>(byte); };
+  if (codepoint < 0x80) return put(codepoint);
+  const int more = codepoint < 0x800 ? 1 : codepoint < 0x10000 ? 2 : 3;
+  constexpr unsigned kFirst[] = {0, 0xC0, 0xE0, 0xF0};
+  put(kFirst[more] | codepoint >> (6 * more));
+  for (int i = more - 1; i >= 0; --i) put(0x80 | (codepoint >> (6 * i) & 0x3F));
 }
 
 }  // namespace
@@ -67,88 +130,211 @@ std::optional<Command> CommandOf(int key, bool shift) {
 struct Window::State {
   Glfw glfw;
   GLFWwindow* window = nullptr;
-  Events events;
-  double mouse_x = 0.0, mouse_y = 0.0;
+  WindowEvents events;             // since the last Poll, but for what follows
+  std::array<bool, 3> held{};      // buttons
+  bool pointer_is_inside = false;  // and not captured
+  bool captured = false;
+  bool vsync = true;
+  std::optional<Rectangle> before_fullscreen;
+  std::function<void()> at_lost_display;
 
+  State() { Existing() = this; }
   ~State() {
+    Existing() = nullptr;
     if (window != nullptr) glfwDestroyWindow(window);
   }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
+  // The window that exists, for a program that is being ended.
+  static State*& Existing() {
+    static State* existing = nullptr;
+    return existing;
+  }
   static State& Of(GLFWwindow* window) {
     return *static_cast<State*>(glfwGetWindowUserPointer(window));
   }
-  static void OnKey(GLFWwindow* window, int key, int, int action, int modifiers) {
-    if (action == GLFW_RELEASE) return;
-    const auto command = CommandOf(key, (modifiers & GLFW_MOD_SHIFT) != 0);
-    if (command) Of(window).events.commands.push_back(*command);
+
+  static void OnKey(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+    const char* printed = glfwGetKeyName(key, scancode);
+    Of(window).events.keys.push_back(
+        {key, scancode, action, modifiers, printed == nullptr ? "" : printed});
   }
-  static void OnMouse(GLFWwindow* window, double x, double y) {
+  static void OnCharacter(GLFWwindow* window, unsigned codepoint) {
+    AppendUtf8(Of(window).events.text, codepoint);
+  }
+  static void OnButton(GLFWwindow* window, int button, int action, int) {
     State& state = Of(window);
-    if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
-      int width = 1, height = 1;
-      glfwGetWindowSize(window, &width, &height);
-      state.events.drag_right += (x - state.mouse_x) / std::max(width, 1);
-      state.events.drag_up -= (y - state.mouse_y) / std::max(width, 1);
-    }
-    state.mouse_x = x;
-    state.mouse_y = y;
+    if (button < 0 || button >= static_cast<int>(state.held.size())) return;
+    const auto index = static_cast<std::size_t>(button);
+    state.held[index] = action == GLFW_PRESS;
+    state.events.buttons[index] = state.events.buttons[index] || state.held[index];
+  }
+  static void OnWheel(GLFWwindow* window, double, double steps) {
+    Of(window).events.wheel += steps;
+  }
+  static void OnPointer(GLFWwindow* window, double, double) { Of(window).pointer_is_inside = true; }
+  static void OnEnter(GLFWwindow* window, int entered) {
+    Of(window).pointer_is_inside = entered == GLFW_TRUE;
+  }
+  static void OnFocus(GLFWwindow* window, int focused) {
+    Of(window).events.focused = focused == GLFW_TRUE;
+  }
+  static void OnMinimise(GLFWwindow* window, int minimised) {
+    Of(window).events.minimised = minimised == GLFW_TRUE;
   }
 
-  // -1, 0 or 1 from two keys that oppose each other.
-  [[nodiscard]] double Axis(int positive, int negative) const {
-    return (glfwGetKey(window, positive) == GLFW_PRESS ? 1.0 : 0.0) -
-           (glfwGetKey(window, negative) == GLFW_PRESS ? 1.0 : 0.0);
+  void Listen() {
+    glfwSetWindowUserPointer(window, this);
+    glfwSetKeyCallback(window, OnKey);
+    glfwSetCharCallback(window, OnCharacter);
+    glfwSetMouseButtonCallback(window, OnButton);
+    glfwSetScrollCallback(window, OnWheel);
+    glfwSetCursorPosCallback(window, OnPointer);
+    glfwSetCursorEnterCallback(window, OnEnter);
+    glfwSetWindowFocusCallback(window, OnFocus);
+    glfwSetWindowIconifyCallback(window, OnMinimise);
+  }
+
+  [[nodiscard]] std::pair<int, int> PictureSize() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    return {width, height};
+  }
+  [[nodiscard]] bool HasPicture() const {
+    const auto [width, height] = PictureSize();
+    return width > 0 && height > 0;
+  }
+
+  // Where the pointer was told to be is in the desktop's units, which may be larger than pixels.
+  [[nodiscard]] std::optional<PointerPlace> Pointer() const {
+    const bool is_held = held[0] || held[1] || held[2];
+    if (!pointer_is_inside && !captured && !is_held) return std::nullopt;
+    const auto [width, height] = PictureSize();
+    const Rectangle place = PlaceOf(window);
+    if (place.width == 0 || place.height == 0) return std::nullopt;
+    PointerPlace pointer;
+    glfwGetCursorPos(window, &pointer.right, &pointer.down);
+    pointer.right *= static_cast<double>(width) / place.width;
+    pointer.down *= static_cast<double>(height) / place.height;
+    return pointer;
+  }
+
+  // A desktop that counts in larger units has made the picture larger than was asked for.
+  void FitPicture(int width, int height) const {
+    const auto [picture_width, picture_height] = PictureSize();
+    if (picture_width == 0 || picture_height == 0) return;
+    if (picture_width == width && picture_height == height) return;
+    const Rectangle place = PlaceOf(window);
+    const auto fitted = [](int units, int pixels, int wanted) {
+      return std::max(1, static_cast<int>(std::lround(1.0 * units * wanted / pixels)));
+    };
+    glfwSetWindowSize(window, fitted(place.width, picture_width, width),
+                      fitted(place.height, picture_height, height));
+  }
+
+  // Xlib ends the program when its display has gone, and nothing can stop it but this.
+  static void AtExit() {
+    constexpr int kLostDisplay = 5;
+    if (Existing() == nullptr) return;
+    Say("skyview: the display has gone\n");
+    const std::function<void()> last = std::move(Existing()->at_lost_display);
+    try {
+      if (last) last();
+    } catch (const std::exception& error) {
+      Say(fmt::format("skyview: {}\n", error.what()));
+    }
+    _exit(kLostDisplay);
   }
 };
 
-Window::Window(int width, int height, bool fullscreen) : state_(std::make_unique<State>()) {
-  GLFWmonitor* monitor = fullscreen ? glfwGetPrimaryMonitor() : nullptr;
-  if (monitor != nullptr) {
-    const GLFWvidmode* mode = glfwGetVideoMode(monitor);
-    width = mode->width;
-    height = mode->height;
-  }
-  state_->window = NewestWindow(width, height, monitor);
-  glfwSetWindowUserPointer(state_->window, state_.get());
-  glfwSetKeyCallback(state_->window, State::OnKey);
-  glfwSetCursorPosCallback(state_->window, State::OnMouse);
+Window::Window(const WindowSettings& settings) : state_(std::make_unique<State>()) {
+  static const int registered = std::atexit(State::AtExit);
+  static_cast<void>(registered);
+  GLFWmonitor* monitor = settings.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
+  const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+  const bool fills = mode != nullptr;
+  state_->window = NewestWindow(fills ? mode->width : settings.width,
+                                fills ? mode->height : settings.height, fills ? monitor : nullptr);
+  state_->Listen();
+  SetIcon(state_->window);
+  if (!fills) state_->FitPicture(settings.width, settings.height);
   glfwMakeContextCurrent(state_->window);
-  glfwSwapInterval(1);
+  SetVsync(settings.vsync);
 }
 
 Window::~Window() = default;
 
-Window::Events Window::Poll() {
-  if (width() == 0 || height() == 0) {
-    glfwWaitEvents();
+WindowEvents Window::Poll() {
+  if (state_->events.minimised || !state_->HasPicture()) {
+    glfwWaitEventsTimeout(kWait_s);
   } else {
     glfwPollEvents();
   }
-  Events events = std::exchange(state_->events, {});
+  WindowEvents events = state_->events;
+  state_->events.keys.clear();
+  state_->events.text.clear();
+  state_->events.buttons = state_->held;
+  state_->events.wheel = 0.0;
+  events.pointer = state_->Pointer();
+  events.gamepad = FirstGamepad();
+  events.minimised = events.minimised || !state_->HasPicture();
   events.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
-  events.steering = {state_->Axis(GLFW_KEY_W, GLFW_KEY_S), state_->Axis(GLFW_KEY_D, GLFW_KEY_A),
-                     state_->Axis(GLFW_KEY_R, GLFW_KEY_F),
-                     state_->Axis(GLFW_KEY_RIGHT, GLFW_KEY_LEFT),
-                     state_->Axis(GLFW_KEY_UP, GLFW_KEY_DOWN)};
   return events;
 }
 
-int Window::width() const {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(state_->window, &width, &height);
-  return width;
-}
+int Window::width() const { return state_->PictureSize().first; }
+int Window::height() const { return state_->PictureSize().second; }
 
-int Window::height() const {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(state_->window, &width, &height);
-  return height;
+double Window::content_scale() const {
+  float right = 1.0F, down = 1.0F;
+  glfwGetWindowContentScale(state_->window, &right, &down);
+  return right > 0.0F ? static_cast<double>(right) : 1.0;
 }
 
 void Window::SetTitle(const std::string& title) {
   glfwSetWindowTitle(state_->window, title.c_str());
 }
 
-void Window::Swap() { glfwSwapBuffers(state_->window); }
+bool Window::fullscreen() const { return glfwGetWindowMonitor(state_->window) != nullptr; }
+
+void Window::SetFullscreen(bool fullscreen) {
+  if (fullscreen == this->fullscreen()) return;
+  if (fullscreen) {
+    GLFWmonitor* monitor = MonitorUnder(state_->window);
+    const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    if (mode == nullptr) return;
+    state_->before_fullscreen = PlaceOf(state_->window);
+    glfwSetWindowMonitor(state_->window, monitor, 0, 0, mode->width, mode->height,
+                         mode->refreshRate);
+  } else {
+    const Rectangle place = state_->before_fullscreen.value_or(Rectangle{60, 60, 1280, 720});
+    glfwSetWindowMonitor(state_->window, nullptr, place.x, place.y, place.width, place.height,
+                         GLFW_DONT_CARE);
+  }
+  SetVsync(state_->vsync);  // some drivers forget it
+}
+
+void Window::SetVsync(bool vsync) {
+  state_->vsync = vsync;
+  glfwSwapInterval(vsync ? 1 : 0);
+}
+
+void Window::CapturePointer(bool captured) {
+  state_->captured = captured;
+  glfwSetInputMode(state_->window, GLFW_CURSOR,
+                   captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+}
+
+void Window::Swap() {
+  glfwSwapBuffers(state_->window);
+  RequireContext();
+}
+
+void Window::AtLostDisplay(std::function<void()> last) {
+  state_->at_lost_display = std::move(last);
+}
+
+GLFWwindow* Window::handle() const { return state_->window; }
 
 }  // namespace alpenglow

@@ -93,7 +93,7 @@ TEST_F(SkyviewWindow, ADisplayWithOpenGl21IsRefusedWithStatusFiveAndAClearMessag
 /// A display of so many equal pictures, with a word before the last one.
 std::string DisplayWith(const std::string& word) {
   std::string script;
-  for (int i = 0; i < 12; ++i) script += "16x9 ";
+  for (int i = 0; i < 4; ++i) script += "16x9 ";
   return "ALPENGLOW_DISPLAY='" + script + word + " 16x9'";
 }
 
@@ -105,7 +105,7 @@ TEST_F(SkyviewWindow, ASignalEndsTheFlightAndItsRecordIsWhole) {
     std::filesystem::remove(folder_ / "f.csv");
     const Outcome outcome = Run(DisplayWith(word), "--record f.csv");
     EXPECT_EQ(outcome.status, status) << outcome.error;
-    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 2U) << word;
+    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 1U) << word;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part")) << word;
   }
 }
@@ -124,6 +124,26 @@ TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
   EXPECT_THAT(replayed.error, HasSubstr("cut short"));
   const Outcome again = Run("ALPENGLOW_DISPLAY=8x8", replay + "f.csv.part --record f.csv");
   EXPECT_EQ(again.status, 3) << "the record would be written over what is replayed";
+}
+
+TEST_F(SkyviewWindow, OfADisplayThatGoesTheRecordIsWholeAndTheStatusFive) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  for (const auto& [word, said] : {std::pair{"gone", "display has gone"}, {"reset", "was reset"}}) {
+    std::filesystem::remove(folder_ / "f.csv");
+    const Outcome outcome = Run(DisplayWith(word), "--record f.csv");
+    EXPECT_EQ(outcome.status, 5) << word;
+    EXPECT_THAT(outcome.error, HasSubstr(said));
+    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 1U) << word;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part")) << word;
+  }
+}
+
+TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9 key:299,1 16x9 key:299,1 16x9'", "");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("screen 200x100\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("window 8x4\n")) << "in units of the desktop, as before";
 }
 
 }  // namespace

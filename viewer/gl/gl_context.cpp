@@ -120,11 +120,23 @@ std::string GlDescription() {
   return fmt::format("OpenGL {} on {}", text(GL_VERSION), text(GL_RENDERER));
 }
 
+void RequireContext() {
+  // libepoxy ends the process for a function that is not there.
+  const bool tells = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
+  if (tells && glGetGraphicsResetStatus() != GL_NO_ERROR) {
+    throw DisplayError(
+        "the graphics card or its driver was reset, and the window's OpenGL is lost");
+  }
+}
+
 void CheckGl(const char* where) {
   const GLenum error = glGetError();
-  if (error != GL_NO_ERROR) {
-    throw InternalError(fmt::format("{}: OpenGL error 0x{:04x}", where, error));
+  if (error == GL_NO_ERROR) return;
+  if (error == GL_OUT_OF_MEMORY) {
+    throw DisplayError(fmt::format("{}: the graphics card has no memory left", where));
   }
+  if (error == GL_CONTEXT_LOST) throw DisplayError(fmt::format("{}: OpenGL is lost", where));
+  throw InternalError(fmt::format("{}: OpenGL error 0x{:04x}", where, error));
 }
 
 }  // namespace alpenglow

@@ -40,7 +40,12 @@ class HeadlessContext {
 /// "OpenGL 4.5 (Core Profile) Mesa 22.3.6 on llvmpipe (...)" of the current context.
 [[nodiscard]] std::string GlDescription();
 
-/// Throws InternalError naming `where` when GL has recorded an error since the last call.
+/// Throws DisplayError when the context is lost: its graphics card or driver was reset. Only where
+/// the context was made to tell (OpenGL 4.5 or KHR_robustness).
+void RequireContext();
+
+/// Throws InternalError naming `where` when GL has recorded an error since the last call;
+/// DisplayError when that is a lack of memory or a lost context.
 void CheckGl(const char* where);
 
 }  // namespace alpenglow
