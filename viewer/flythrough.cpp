@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
@@ -15,8 +14,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,  0.0,
-                                            1.0,     10.0,   60.0,  600.0, 3600.0};
 constexpr double kClearance_m = 1.5;  // of the eye over the ground
 constexpr double kZoomStep = 1.1;
 
@@ -50,14 +47,6 @@ double Azimuth(double radians) {
 }
 
 }  // namespace
-
-double SteppedTimeRate(double rate, int step) {
-  const auto* at = std::lower_bound(kTimeRates.begin(), kTimeRates.end(), rate);
-  const auto index = std::min<std::ptrdiff_t>(at - kTimeRates.begin(), kTimeRates.size() - 1);
-  const std::ptrdiff_t next =
-      std::clamp<std::ptrdiff_t>(index + step, 0, std::ptrdiff_t{kTimeRates.size()} - 1);
-  return kTimeRates[static_cast<std::size_t>(next)];
-}
 
 double AdaptedEv100(std::optional<double> before, double metered, double seconds) {
   constexpr double kHalfTime_s = 0.3;

@@ -10,6 +10,7 @@
 #include "lut/picture/picture_text.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene.h"
+#include "viewer/flight/clock.h"
 #include "viewer/flight/flight.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/paint/sky_painter.h"
@@ -26,10 +27,6 @@ enum class Command {
   kHud,
   kQuit
 };
-
-/// Seconds of the scene per second of the pilot, one step faster (+1) or slower (-1) than `rate`:
-/// ..., -60, -1, 0, 1, 60, ...
-[[nodiscard]] double SteppedTimeRate(double rate, int step);
 
 /// Exposure that follows the meter like an eye: half
 /// way in 0.3 s. A first exposure is the metered one.

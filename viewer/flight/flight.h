@@ -2,11 +2,15 @@
 // An eye that flies: where it is, where it looks, how keys and mouse move it.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "atmosphere/sun/geodesy.h"
 
 namespace alpenglow {
+
+/// Who moves the eye: the pilot freely, wings and engine, or a track that is followed.
+enum class FlightMode { kFree, kAircraft, kTrack };
 
 /// The eye. Angles in radians.
 struct Eye {
@@ -18,6 +22,9 @@ struct Eye {
 
   bool operator==(const Eye&) const = default;
 };
+
+/// Height of the ground [m] over the ellipsoid, under a place.
+using GroundHeight = std::function<double(const GeodeticPosition&)>;
 
 /// Where an eye is put, as people type it; what is left out stays as it is.
 struct EyePlacement {
@@ -37,6 +44,7 @@ struct Steering {
   double up = 0.0;
   double turn_right = 0.0;
   double pitch_up = 0.0;
+  double roll_right = 0.0;
 };
 
 /// Unit vectors of the view in the frame (east, north, up) at the eye.

@@ -86,14 +86,6 @@ TEST(Flight, TheEyeStaysOverTheGround) {
   EXPECT_EQ(KeptAbove(EyeAt(0.0, 0.0, 900.0), 500.0, 2.0).place.height_m, 900.0);
 }
 
-TEST(Flight, TimeRatesStepThroughRealTimeAndStandstill) {
-  EXPECT_EQ(SteppedTimeRate(1.0, 1), 10.0);
-  EXPECT_EQ(SteppedTimeRate(1.0, -1), 0.0);
-  EXPECT_EQ(SteppedTimeRate(0.0, -1), -1.0);
-  EXPECT_EQ(SteppedTimeRate(3600.0, 1), 3600.0);
-  EXPECT_EQ(SteppedTimeRate(-3600.0, -1), -3600.0);
-}
-
 TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
   EXPECT_EQ(AdaptedEv100(std::nullopt, 12.0, 0.0), 12.0);
   EXPECT_NEAR(AdaptedEv100(10.0, 12.0, 0.3), 11.0, 1e-12);

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/aircraft.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "viewer/flight/standard_air.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kStep_s = 1.0 / 120.0;
+constexpr double kG = kStandardGravity_m_per_s2;
+
+double NoGround(const GeodeticPosition&) { return -1e5; }
+double SeaLevel(const GeodeticPosition&) { return 0.0; }
+
+struct Flown {
+  AircraftKind kind = kLightAircraft;
+  AircraftState state;
+  GroundHeight ground = NoGround;
+
+  explicit Flown(double height_m = 1000.0, const AircraftKind& of = kLightAircraft,
+                 double heading_rad = 0.0)
+      : kind(of),
+        state(LevelFlight(of, kWgs84, PlaceFromDegrees(46.0, 8.0, height_m), heading_rad)) {}
+
+  void Fly(double seconds, const Stick& stick = {}) {
+    const int steps = static_cast<int>(std::lround(seconds / kStep_s));
+    for (int i = 0; i < steps; ++i) state = Stepped(state, kind, kWgs84, stick, ground, kStep_s);
+  }
+  [[nodiscard]] AircraftReadout Read() const { return ReadoutOf(state, kind, kWgs84); }
+  [[nodiscard]] GeodeticPosition Place() const { return GeodeticFromEcef(kWgs84, state.place); }
+};
+
+double Degrees(double radians) { return radians / kRadiansPerDegree; }
+
+TEST(Aircraft, HandsOffItFliesStraightAndLevelForTenMinutes) {
+  for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
+    Flown flown(1000.0, kind, 1.0);
+    flown.Fly(600.0);
+    EXPECT_NEAR(flown.Place().height_m, 1000.0, 5.0) << kind.name;
+    EXPECT_NEAR(flown.Read().speed_m_per_s, CruiseSpeed(kind, 1000.0), 0.5) << kind.name;
+    EXPECT_NEAR(Degrees(flown.Read().bank_rad), 0.0, 0.1) << kind.name;
+    EXPECT_NEAR(flown.Read().load, 1.0, 0.005) << kind.name;
+  }
+}
+
+TEST(Aircraft, ItsPathBendsWithTheEarth) {
+  // Eastwards from 46 N along a great circle: the sine rule says how far south it comes.
+  Flown flown(3000.0, kSmallJet, 0.5 * kPi);
+  const GeodeticPosition start = flown.Place();
+  flown.Fly(600.0);
+  const double along = 600.0 * CruiseSpeed(kSmallJet, 3000.0) /
+                       (OsculatingRadius(kWgs84, start.latitude_rad) + 3000.0);
+  const double latitude = std::asin(std::sin(start.latitude_rad) * std::cos(along));
+  EXPECT_NEAR(Degrees(flown.Place().latitude_rad - start.latitude_rad),
+              Degrees(latitude - start.latitude_rad), 0.002)
+      << "the ellipsoid differs from a sphere by 1/300 of 0.5 degrees";
+  EXPECT_GT(flown.Read().heading_rad, 0.5 * kPi) << "north has turned under it";
+}
+
+TEST(Aircraft, ATurnHasTheRadiusOfSpeedSquaredOverGTangentOfBank) {
+  Flown flown;
+  while (flown.Read().bank_rad < 30.0 * kRadiansPerDegree) flown.Fly(kStep_s, {.roll_right = 0.5});
+  flown.Fly(5.0);
+  const AircraftReadout before = flown.Read();
+  EXPECT_NEAR(Degrees(before.bank_rad), 30.0, 0.5) << "as when it was let go";
+  flown.Fly(1.0);
+  const AircraftReadout after = flown.Read();
+  const double rate = std::remainder(after.heading_rad - before.heading_rad, 2.0 * kPi);
+  const double speed = 0.5 * (before.speed_m_per_s + after.speed_m_per_s);
+  const double bank = 0.5 * (before.bank_rad + after.bank_rad);
+  const double radius = speed / rate;
+  EXPECT_NEAR(radius / (speed * speed / (kG * std::tan(bank))), 1.0, 0.01)
+      << "gravity at 1 km is 3e-4 weaker, speed falls by 1 % in the turn";
+  EXPECT_NEAR(after.load * std::cos(after.bank_rad), 1.0, 0.01) << "wings carry the weight";
+  EXPECT_NEAR(flown.Place().height_m, 1000.0, 15.0) << "and the height is kept";
+}
+
+TEST(Aircraft, BankIsHeldAfterTheStickIsLetGoLevelledWhenSmallAndLimitedWhenLarge) {
+  Flown small;
+  small.Fly(0.2, {.roll_right = 0.2});
+  small.Fly(6.0);
+  EXPECT_NEAR(Degrees(small.Read().bank_rad), 0.0, 0.5);
+  Flown steep;
+  steep.Fly(1.2, {.roll_right = -1.0});
+  EXPECT_LT(Degrees(steep.Read().bank_rad), -60.0);
+  steep.Fly(6.0);
+  EXPECT_NEAR(Degrees(steep.Read().bank_rad), -45.0, 1.0);
+}
+
+TEST(Aircraft, StalledWingsCarryTheWeightAtTheStallSpeedAndNotBelow) {
+  const double stall = StallSpeed(kLightAircraft, 1000.0);
+  const double q = 0.5 * StandardAirAt(1000.0).density_kg_per_m3 * stall * stall;
+  EXPECT_NEAR(q * kLightAircraft.wing_area_m2 * kLightAircraft.most_lift,
+              kLightAircraft.mass_kg * kG, 1e-6);
+  Flown flown;
+  flown.state.throttle = 0.0;
+  // Held level by the stick until the wings give up.
+  while (flown.Read().path_rad > -0.02) {
+    flown.Fly(kStep_s, {.pitch_up = flown.Read().path_rad < 0.0 ? 0.025 : -0.025});
+  }
+  EXPECT_NEAR(flown.Read().speed_m_per_s, stall, 0.05 * stall)
+      << "the path has bent down by a degree since";
+  EXPECT_TRUE(flown.Read().stalled);
+  EXPECT_LT(flown.Place().height_m, 1000.0);
+}
+
+TEST(Aircraft, WithoutPowerAndHandsItSettlesInAGlideAtTheAngleOfDragOverLift) {
+  Flown flown(3000.0);
+  flown.state.throttle = 0.0;
+  flown.Fly(180.0);
+  const AircraftReadout glide = flown.Read();
+  const double q = 0.5 * StandardAirAt(flown.Place().height_m).density_kg_per_m3 *
+                   glide.speed_m_per_s * glide.speed_m_per_s;
+  const double lift = glide.load * kLightAircraft.mass_kg * kG / (q * kLightAircraft.wing_area_m2);
+  const double drag = kLightAircraft.zero_lift_drag + kLightAircraft.induced_drag * lift * lift;
+  EXPECT_NEAR(std::tan(-glide.path_rad), drag / lift, 0.005) << "a steady glide";
+  EXPECT_GT(glide.indicated_m_per_s, 1.15 * StallSpeed(kLightAircraft, 0.0)) << "not stalled";
+  EXPECT_FALSE(glide.stalled);
+  // The best glide of a parabolic polar is 1 / (2 sqrt(k C_D0)) = 12.2.
+  EXPECT_GT(1.0 / std::tan(-glide.path_rad), 8.0);
+  EXPECT_LT(1.0 / std::tan(-glide.path_rad), 12.3);
+}
+
+TEST(Aircraft, ClimbsAsFastAsTheSpareThrustSays) {
+  Flown flown(500.0);
+  flown.Fly(2.0, {.throttle_up = 1.0});
+  flown.state.held_path_rad = 3.0 * kRadiansPerDegree;
+  flown.Fly(120.0);
+  const AircraftReadout climb = flown.Read();
+  const StandardAir air = StandardAirAt(flown.Place().height_m);
+  const double v = climb.speed_m_per_s;
+  const double q_area = 0.5 * air.density_kg_per_m3 * v * v * kLightAircraft.wing_area_m2;
+  const double weight = kLightAircraft.mass_kg * kG;
+  const double lift = climb.load * weight / q_area;
+  const double drag_N =
+      q_area * (kLightAircraft.zero_lift_drag + kLightAircraft.induced_drag * lift * lift);
+  const double power = kLightAircraft.power_W * (1.132 * air.density_kg_per_m3 / 1.225 - 0.132);
+  EXPECT_NEAR(climb.vertical_speed_m_per_s, (power - drag_N * v) / weight, 0.15)
+      << "climb = (power - drag x speed) / weight, once the speed is steady";
+  EXPECT_NEAR(Degrees(climb.path_rad), 3.0, 0.1);
+}
+
+TEST(Aircraft, EnergyWithoutDragAndThrustIsKeptThroughDivesAndTurns) {
+  Flown flown(4000.0);
+  flown.kind.zero_lift_drag = 0.0;
+  flown.kind.induced_drag = 0.0;
+  flown.state.throttle = 0.0;
+  const auto energy = [&] {
+    const double h = flown.Place().height_m;
+    const double r = OsculatingRadius(kWgs84, flown.Place().latitude_rad);
+    return 0.5 * std::pow(flown.Read().speed_m_per_s, 2) + kG * h * r / (r + h);
+  };
+  const double before = energy();
+  flown.Fly(5.0, {.pitch_up = -0.4});
+  flown.Fly(4.0, {.pitch_up = 0.5, .roll_right = 0.2});
+  flown.Fly(10.0);
+  EXPECT_NEAR(energy() / before, 1.0, 2e-4)
+      << "lift does no work: midpoint steps of 1/120 s, g of the osculating sphere";
+}
+
+TEST(Aircraft, ThinAirTakesPowerAndTheCeilingIsThere) {
+  Flown low(500.0), high(7500.0);
+  for (Flown* flown : {&low, &high}) {
+    flown->state.throttle = 1.0;
+    flown->state.held_path_rad = 2.0 * kRadiansPerDegree;
+    flown->Fly(180.0);
+  }
+  EXPECT_GT(low.Read().vertical_speed_m_per_s, 1.0);
+  EXPECT_LT(high.Read().vertical_speed_m_per_s, 0.0) << "over its ceiling it sinks";
+  EXPECT_FALSE(high.Read().stalled);
+}
+
+TEST(Aircraft, LoadsStayWithinTheLimitsHoweverTheStickIsPulled) {
+  for (const double pull : {1.0, -1.0}) {
+    Flown flown(3000.0);
+    flown.state.velocity.xyz *= 1.5;
+    for (int i = 0; i < 10 * 120; ++i) {
+      flown.Fly(kStep_s, {.pitch_up = pull, .roll_right = 0.3});
+      ASSERT_LE(flown.Read().load, kLightAircraft.most_load + 1e-9);
+      ASSERT_GE(flown.Read().load, kLightAircraft.least_load - 1e-9);
+    }
+  }
+}
+
+TEST(Aircraft, ALoopIsFlownThroughTheVertical) {
+  Flown flown(1000.0);
+  flown.state.velocity.xyz *= 1.5;
+  bool was_inverted = false;
+  for (int i = 0; i < 60 * 120 && !(was_inverted && flown.Read().path_rad > -0.05 &&
+                                    std::abs(flown.Read().bank_rad) < 0.5);
+       ++i) {
+    flown.Fly(kStep_s, {.pitch_up = 1.0, .throttle_up = 1.0});
+    was_inverted |= std::abs(flown.Read().bank_rad) > 2.5;
+    ASSERT_NEAR(glm::length(flown.state.ahead.xyz), 1.0, 1e-9);
+    ASSERT_NEAR(glm::dot(flown.state.ahead.xyz, flown.state.up.xyz), 0.0, 1e-9);
+  }
+  EXPECT_TRUE(was_inverted);
+  EXPECT_NEAR(Degrees(flown.Read().bank_rad), 0.0, 5.0) << "wings are where they were";
+  EXPECT_NEAR(Degrees(flown.Read().heading_rad), 0.0, 2.0);
+}
+
+TEST(Aircraft, RudderTurnsALittleWithoutBank) {
+  Flown flown;
+  flown.Fly(10.0, {.yaw_right = 1.0});
+  EXPECT_GT(Degrees(flown.Read().heading_rad), 3.0);
+  EXPECT_LT(Degrees(flown.Read().heading_rad), 30.0);
+  EXPECT_NEAR(Degrees(flown.Read().bank_rad), 0.0, 1.0);
+}
+
+TEST(Aircraft, LandsSoftlyRollsAndStandsWithBrakes) {
+  Flown flown(30.0);
+  flown.ground = SeaLevel;
+  flown.state.throttle = 0.13;  // a path of 3 degrees at 1.3 times the stall speed
+  flown.state.velocity.xyz *= 0.6;
+  flown.state.held_path_rad = -3.0 * kRadiansPerDegree;
+  bool rolled = false;
+  for (int i = 0; i < 60 * 120; ++i) {
+    flown.Fly(kStep_s, rolled ? Stick{.throttle_up = -1.0, .brake = 1.0} : Stick{});
+    rolled |= flown.Read().contact == GroundContact::kRolling;
+    ASSERT_NE(flown.Read().contact, GroundContact::kScraping);
+    ASSERT_GE(flown.Place().height_m, 1.49);
+  }
+  EXPECT_TRUE(rolled);
+  EXPECT_EQ(flown.Read().contact, GroundContact::kStanding);
+  EXPECT_EQ(flown.Read().speed_m_per_s, 0.0);
+}
+
+TEST(Aircraft, TakesOffAgainWithFullThrottle) {
+  Flown flown(1.0);
+  flown.ground = SeaLevel;
+  flown.state.velocity.xyz *= 0.0;
+  flown.state.throttle = 0.0;
+  flown.Fly(2.0);
+  EXPECT_EQ(flown.Read().contact, GroundContact::kStanding);
+  flown.Fly(40.0, {.throttle_up = 1.0});
+  flown.Fly(20.0, {.pitch_up = 0.08});
+  EXPECT_EQ(flown.Read().contact, GroundContact::kNone);
+  EXPECT_GT(flown.Place().height_m, 20.0);
+}
+
+TEST(Aircraft, AMountainStopsItAndItIsNeverInTheGround) {
+  // A wall of 45 degrees to the north of the start.
+  const double foot = 46.02 * kRadiansPerDegree;
+  const GroundHeight wall = [&](const GeodeticPosition& place) {
+    return std::max(0.0, (place.latitude_rad - foot) * 6.37e6);
+  };
+  for (const double height_m : {50.0, 1000.0}) {
+    Flown flown(height_m);
+    flown.ground = wall;
+    bool scraped = false;
+    for (int i = 0; i < 200 * 120; ++i) {
+      flown.Fly(kStep_s);
+      scraped |= flown.Read().contact == GroundContact::kScraping;
+      ASSERT_GE(flown.Place().height_m, wall(flown.Place()) + 1.49);
+      ASSERT_LT(flown.Read().speed_m_per_s, 90.0) << "the wall gives no energy";
+    }
+    EXPECT_TRUE(scraped);
+  }
+}
+
+TEST(Aircraft, DropsFromRestOutOfThinAirAndFliesWhereItIsThick) {
+  Flown flown(18000.0, kSmallJet);
+  flown.state.velocity.xyz *= 0.01;
+  flown.Fly(240.0);
+  EXPECT_FALSE(flown.Read().stalled);
+  EXPECT_GT(flown.Place().height_m, 2000.0) << "it has caught itself";
+  EXPECT_NEAR(flown.Read().load, 1.0, 0.5);
+}
+
+TEST(Aircraft, TheEyeLooksAlongTheNoseWithTheWingsOfTheAircraft) {
+  Flown flown(1000.0, kLightAircraft, 1.2);
+  Eye eye = EyeIn(flown.state, flown.kind, kWgs84, 0.0, 0.0, 1.0);
+  EXPECT_NEAR(eye.heading_rad, 1.2, 1e-9);
+  EXPECT_NEAR(Degrees(eye.pitch_rad), 0.0, 0.1) << "cruising, the nose points along the path";
+  EXPECT_NEAR(eye.roll_rad, 0.0, 1e-9);
+  EXPECT_EQ(eye.fov_rad, 1.0);
+  flown.Fly(1.0, {.roll_right = 0.5});
+  eye = EyeIn(flown.state, flown.kind, kWgs84, 0.0, 0.0, 1.0);
+  EXPECT_NEAR(eye.roll_rad, flown.Read().bank_rad, 0.02);
+  const Eye aside = EyeIn(flown.state, flown.kind, kWgs84, 0.5 * kPi, 0.0, 1.0);
+  EXPECT_NEAR(aside.pitch_rad, -flown.Read().bank_rad, 0.02) << "the right wing points down";
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/aircraft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "viewer/flight/standard_air.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kWheels_m = 1.5;   // of the pilot's eye over the ground, standing
+constexpr double kHandsOff = 0.02;  // of the stick's way
+constexpr double kSeaDensity_kg_per_m3 = 1.225;
+
+/// Where and in what air it flies.
+struct Surroundings {
+  GeodeticPosition place;
+  glm::dvec3 up, north, east;  // of the ellipsoid, earth-fixed
+  double gravity_m_per_s2, radius_m;
+  StandardAir air;
+};
+
+Surroundings SurroundingsAt(const Ellipsoid& ellipsoid, const Point<Ecef>& point) {
+  const GeodeticPosition place = GeodeticFromEcef(ellipsoid, point);
+  const double sin_lat = std::sin(place.latitude_rad), cos_lat = std::cos(place.latitude_rad);
+  const double sin_lon = std::sin(place.longitude_rad), cos_lon = std::cos(place.longitude_rad);
+  const double radius_m = OsculatingRadius(ellipsoid, place.latitude_rad) + place.height_m;
+  const double share = 1.0 - place.height_m / radius_m;  // of the distance from the centre
+  return {place,
+          {cos_lat * cos_lon, cos_lat * sin_lon, sin_lat},
+          {-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat},
+          {-sin_lon, cos_lon, 0.0},
+          kStandardGravity_m_per_s2 * share * share,
+          radius_m,
+          StandardAirAt(place.height_m)};
+}
+
+/// `vector` without its part along a unit vector, at length 1; `otherwise` where nothing is left.
+glm::dvec3 UnitAcross(const glm::dvec3& vector, const glm::dvec3& along,
+                      const glm::dvec3& otherwise) {
+  const glm::dvec3 across = vector - glm::dot(vector, along) * along;
+  const double length = glm::length(across);
+  return length < 1e-9 ? otherwise : across / length;
+}
+
+glm::dvec3 DirectionOf(const AircraftState& state) {
+  const double speed = glm::length(state.velocity.xyz);
+  return speed < 1e-6 ? state.ahead.xyz : state.velocity.xyz / speed;
+}
+
+double PathOf(const AircraftState& state, const Surroundings& here) {
+  return std::asin(std::clamp(glm::dot(state.ahead.xyz, here.up), -1.0, 1.0));
+}
+
+double BankOf(const AircraftState& state, const Surroundings& here) {
+  const glm::dvec3 right = glm::cross(state.ahead.xyz, state.up.xyz);
+  return std::atan2(-glm::dot(right, here.up), glm::dot(state.up.xyz, here.up));
+}
+
+double ThrustAt(const AircraftKind& kind, const Surroundings& here, double speed) {
+  const double sigma = here.air.density_kg_per_m3 / kSeaDensity_kg_per_m3;
+  if (kind.power_W == 0.0) return kind.thrust_N * sigma;
+  const double share = std::max(1.132 * sigma - 0.132, 0.0);
+  return share * std::min(kind.thrust_N, kind.power_W / std::max(speed, 1.0));
+}
+
+double DragCoefficient(const AircraftKind& kind, double lift_coefficient, double mach) {
+  const double over = std::max(mach - kind.critical_mach, 0.0);
+  return kind.zero_lift_drag + kind.induced_drag * lift_coefficient * lift_coefficient +
+         20.0 * over * over * over * over;
+}
+
+/// Dynamic pressure times the wing's area [N], as far as the air comes from ahead.
+double PressureOnWing(const AircraftState& state, const AircraftKind& kind,
+                      const Surroundings& here) {
+  const double speed = glm::length(state.velocity.xyz);
+  const double straight = std::max(glm::dot(DirectionOf(state), state.ahead.xyz), 0.0);
+  return 0.5 * here.air.density_kg_per_m3 * speed * speed * kind.wing_area_m2 * straight;
+}
+
+double LiftCoefficient(const AircraftState& state, const AircraftKind& kind,
+                       const Surroundings& here) {
+  const double pressure_N = PressureOnWing(state, kind, here);
+  const double lift_N = state.load * kind.mass_kg * kStandardGravity_m_per_s2;
+  if (pressure_N < 1.0) return 0.0;
+  return std::clamp(lift_N / pressure_N, kind.least_lift, kind.most_lift);
+}
+
+glm::dvec3 Acceleration(const AircraftState& state, const AircraftKind& kind,
+                        const Ellipsoid& ellipsoid) {
+  const Surroundings here = SurroundingsAt(ellipsoid, state.place);
+  const double speed = glm::length(state.velocity.xyz);
+  const glm::dvec3 direction = DirectionOf(state);
+  const glm::dvec3 lift = UnitAcross(state.up.xyz, direction, state.up.xyz);
+  const double pressure_N = PressureOnWing(state, kind, here);
+  const double coefficient = LiftCoefficient(state, kind, here);
+  const double drag = DragCoefficient(kind, coefficient, speed / here.air.sound_m_per_s);
+  // Drag is there from whichever side the air comes.
+  const double drag_N = 0.5 * here.air.density_kg_per_m3 * speed * speed * kind.wing_area_m2 * drag;
+  const glm::dvec3 force =
+      state.throttle * ThrustAt(kind, here, speed) * state.ahead.xyz +
+      pressure_N * coefficient * lift - drag_N * direction +
+      pressure_N * kind.side_force_per_rad * state.slip_rad * glm::cross(direction, lift);
+  return force / kind.mass_kg - here.gravity_m_per_s2 * here.up;
+}
+
+double Followed(double value, double target, double time_s, double step_s) {
+  return target + (value - target) * std::exp(-step_s / time_s);
+}
+
+/// Load that keeps the path as steep as it is. At more than 60 degrees of bank wings would have to
+/// carry more than twice the weight: there the path bends down.
+double LoadOfSteadyPath(const AircraftState& state, const Surroundings& here) {
+  const double cos_bank = std::cos(BankOf(state, here));
+  const double cos_path = std::cos(PathOf(state, here));
+  const double speed = glm::length(state.velocity.xyz) * cos_path;
+  const double weight =
+      (here.gravity_m_per_s2 * cos_path - speed * speed / here.radius_m * cos_path) /
+      kStandardGravity_m_per_s2;
+  const double share = cos_bank > 0.5 ? 1.0 / cos_bank : std::max(4.0 * cos_bank, -1.0);
+  return weight * share;
+}
+
+/// The computer between stick and wings.
+struct Demand {
+  double load, roll_rate_rad_per_s, held_path_rad, held_bank_rad;
+  bool stalled;
+};
+
+/// The path that is held, and one that is steeper by so much as the speed lacks to 1.25 times the
+/// stall speed: what has no power glides.
+double PathToHold(const AircraftState& state, double speed_in_stall_speeds) {
+  constexpr double kSlowest = 1.25, kSteeper_rad = 1.5;
+  return std::max(
+      state.held_path_rad - kSteeper_rad * std::max(kSlowest - speed_in_stall_speeds, 0.0),
+      -0.45 * kPi);
+}
+
+void HoldPath(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
+              double wing_limit, Demand& demand) {
+  constexpr double kLevel_rad = 1.0 * kRadiansPerDegree;
+  constexpr double kPerSecond = 0.8;
+  const double speed = glm::length(state.velocity.xyz);
+  const double in_stall_speeds = std::sqrt(wing_limit / std::max(demand.load, 0.5));
+  const double back = kPerSecond * (PathToHold(state, in_stall_speeds) - PathOf(state, here)) *
+                      speed / kStandardGravity_m_per_s2;
+  demand.load = std::clamp(demand.load + std::clamp(back, -1.0, 1.0), kind.least_load,
+                           std::min(kind.most_load, wing_limit));
+  demand.held_path_rad = std::abs(state.held_path_rad) < kLevel_rad ? 0.0 : state.held_path_rad;
+}
+
+void DemandLoad(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
+                double pitch_up, Demand& demand) {
+  const double wing_limit = PressureOnWing(state, kind, here) * kind.most_lift /
+                            (kind.mass_kg * kStandardGravity_m_per_s2);
+  demand.load = LoadOfSteadyPath(state, here);
+  if (std::abs(pitch_up) < kHandsOff) {
+    HoldPath(state, kind, here, wing_limit, demand);
+    demand.stalled = false;
+    return;
+  }
+  const double end = pitch_up > 0.0 ? kind.most_load : kind.least_load;
+  demand.load += std::abs(pitch_up) * (end - demand.load);
+  demand.stalled = demand.load > wing_limit;
+  demand.load = std::min(demand.load, wing_limit);
+  demand.held_path_rad = PathOf(state, here);
+}
+
+void DemandRoll(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
+                const Stick& stick, Demand& demand) {
+  constexpr double kLevel_rad = 5.0 * kRadiansPerDegree, kMost_rad = 45.0 * kRadiansPerDegree;
+  constexpr double kSteepest_rad = 75.0 * kRadiansPerDegree;
+  constexpr double kPerSecond = 1.5;
+  const double bank = BankOf(state, here);
+  const double roll_right = std::clamp(stick.roll_right, -1.0, 1.0);
+  demand.roll_rate_rad_per_s = roll_right * kind.roll_rate_rad_per_s;
+  demand.held_bank_rad = std::clamp(bank, -kMost_rad, kMost_rad);
+  if (std::abs(roll_right) >= kHandsOff) return;
+  demand.held_bank_rad = std::abs(state.held_bank_rad) < kLevel_rad ? 0.0 : state.held_bank_rad;
+  // There is no bank about a vertical path, and who pulls hard flies a figure.
+  constexpr double kFigure = 0.5;
+  if (std::abs(PathOf(state, here)) > kSteepest_rad || std::abs(stick.pitch_up) > kFigure) return;
+  const double most = 0.5 * kind.roll_rate_rad_per_s;
+  demand.roll_rate_rad_per_s =
+      std::clamp(kPerSecond * std::remainder(demand.held_bank_rad - bank, 2.0 * kPi), -most, most);
+}
+
+/// Hands, computer, servos and engine: what is asked for comes a little later.
+AircraftState Commanded(const AircraftState& state, const AircraftKind& kind,
+                        const Surroundings& here, const Stick& stick, double step_s) {
+  constexpr double kThrottlePerSecond = 0.5, kMostSlip_rad = 10.0 * kRadiansPerDegree;
+  Demand demand{};
+  DemandLoad(state, kind, here, std::clamp(stick.pitch_up, -1.0, 1.0), demand);
+  DemandRoll(state, kind, here, stick, demand);
+  AircraftState next = state;
+  next.load = Followed(state.load, demand.load, 0.25, step_s);
+  next.roll_rate_rad_per_s =
+      Followed(state.roll_rate_rad_per_s, demand.roll_rate_rad_per_s, 0.15, step_s);
+  next.slip_rad = Followed(state.slip_rad, kMostSlip_rad * stick.yaw_right, 0.4, step_s);
+  next.throttle =
+      std::clamp(state.throttle + kThrottlePerSecond * stick.throttle_up * step_s, 0.0, 1.0);
+  next.held_path_rad = demand.held_path_rad;
+  next.held_bank_rad = demand.held_bank_rad;
+  next.stalled = demand.stalled;
+  return next;
+}
+
+/// Midpoint rule: the error of a second's way is (step)^2 times the third derivative / 24.
+AircraftState Moved(const AircraftState& state, const AircraftKind& kind,
+                    const Ellipsoid& ellipsoid, double step_s) {
+  AircraftState middle = state;
+  middle.place.xyz += 0.5 * step_s * state.velocity.xyz;
+  middle.velocity.xyz += 0.5 * step_s * Acceleration(state, kind, ellipsoid);
+  AircraftState next = state;
+  next.place.xyz += step_s * middle.velocity.xyz;
+  next.velocity.xyz += step_s * Acceleration(middle, kind, ellipsoid);
+  return next;
+}
+
+glm::dvec3 TurnedAbout(const glm::dvec3& axis, double angle_rad, const glm::dvec3& vector) {
+  return std::cos(angle_rad) * vector + std::sin(angle_rad) * glm::cross(axis, vector) +
+         (1.0 - std::cos(angle_rad)) * glm::dot(axis, vector) * axis;
+}
+
+/// The nose goes after the path, like a weathercock; the wings come along without rolling
+/// (parallel transport), and roll as asked.
+AircraftState Pointed(const AircraftState& state, double step_s) {
+  constexpr double kFastest_rad_per_s = 2.5, kSlowest_m_per_s = 1.0;
+  AircraftState next = state;
+  const glm::dvec3 path = DirectionOf(state);
+  if (glm::length(state.velocity.xyz) > kSlowest_m_per_s) {
+    const double apart = std::acos(std::clamp(glm::dot(state.ahead.xyz, path), -1.0, 1.0));
+    const glm::dvec3 toward = UnitAcross(path, state.ahead.xyz, state.up.xyz);
+    const double turn = std::min(apart, kFastest_rad_per_s * step_s);
+    const glm::dvec3 axis = glm::cross(state.ahead.xyz, toward);
+    next.ahead.xyz = glm::normalize(TurnedAbout(axis, turn, state.ahead.xyz));
+    next.up.xyz = TurnedAbout(axis, turn, state.up.xyz);
+  }
+  next.up.xyz = UnitAcross(next.up.xyz, next.ahead.xyz, state.up.xyz);
+  next.up.xyz =
+      glm::normalize(TurnedAbout(next.ahead.xyz, state.roll_rate_rad_per_s * step_s, next.up.xyz));
+  return next;
+}
+
+/// Upwards from the slope under a place.
+glm::dvec3 SlopeNormal(const Ellipsoid& ellipsoid, const Surroundings& here,
+                       const GroundHeight& ground) {
+  constexpr double kStep_m = 5.0;
+  const LocalFrame frame(ellipsoid, here.place);
+  const auto at = [&](double east_m, double north_m) {
+    return ground(frame.GeodeticFromEnu(Point<Enu>{{east_m, north_m, 0.0}}));
+  };
+  const double east = (at(kStep_m, 0.0) - at(-kStep_m, 0.0)) / (2.0 * kStep_m);
+  const double north = (at(0.0, kStep_m) - at(0.0, -kStep_m)) / (2.0 * kStep_m);
+  return glm::normalize(here.up - east * here.east - north * here.north);
+}
+
+/// What the ground leaves of a velocity: a hard touch bounces, friction brakes, what is slow and
+/// has no power stands.
+glm::dvec3 Braked(const AircraftState& state, const glm::dvec3& normal, bool hard, double brake,
+                  double step_s) {
+  constexpr double kBounce = 0.25, kRolling = 0.03, kBraking = 0.4, kScraping = 0.6;
+  constexpr double kStanding_m_per_s = 0.3, kIdle = 0.05;
+  const double inward = glm::dot(state.velocity.xyz, normal);
+  const glm::dvec3 along = state.velocity.xyz - inward * normal;
+  const double outward = inward < 0.0 && hard ? -kBounce * inward : std::max(inward, 0.0);
+  const double speed = glm::length(along);
+  const bool idle = state.throttle < kIdle;
+  if (idle && speed < kStanding_m_per_s && outward < kStanding_m_per_s) return glm::dvec3(0.0);
+  const double friction = hard ? kScraping : kRolling + kBraking * brake;
+  const double lost = friction * kStandardGravity_m_per_s2 * step_s;
+  return along * (std::max(speed - lost, 0.0) / std::max(speed, 1e-9)) + outward * normal;
+}
+
+AircraftState OnGround(const AircraftState& state, const Ellipsoid& ellipsoid,
+                       const Surroundings& here, double ground_m, const GroundHeight& ground,
+                       double brake, double step_s) {
+  constexpr double kHard_m_per_s = 3.0, kUpright = 0.87;  // 30 degrees
+  const glm::dvec3 normal = SlopeNormal(ellipsoid, here, ground);
+  const bool hard = glm::dot(state.velocity.xyz, normal) < -kHard_m_per_s ||
+                    glm::dot(state.up.xyz, normal) < kUpright ||
+                    glm::dot(here.up, normal) < kUpright;
+  AircraftState next = state;
+  GeodeticPosition lifted = here.place;
+  lifted.height_m = ground_m + kWheels_m;
+  next.place = EcefFromGeodetic(ellipsoid, lifted);
+  next.velocity.xyz = Braked(state, normal, hard, brake, step_s);
+  // It settles on its wheels, and a new path begins level with the slope.
+  next.ahead.xyz = UnitAcross(state.ahead.xyz, normal, state.ahead.xyz);
+  const double share = 1.0 - std::exp(-step_s / 0.3);
+  next.up.xyz = UnitAcross(state.up.xyz + share * normal, next.ahead.xyz, state.up.xyz);
+  next.held_path_rad = std::max(state.held_path_rad, 0.0);
+  next.held_bank_rad = 0.0;
+  next.contact = glm::length(next.velocity.xyz) == 0.0 ? GroundContact::kStanding
+                 : hard                                ? GroundContact::kScraping
+                                                       : GroundContact::kRolling;
+  return next;
+}
+
+}  // namespace
+
+double StallSpeed(const AircraftKind& kind, double height_m) {
+  return std::sqrt(
+      2.0 * kind.mass_kg * kStandardGravity_m_per_s2 /
+      (StandardAirAt(height_m).density_kg_per_m3 * kind.wing_area_m2 * kind.most_lift));
+}
+
+double CruiseSpeed(const AircraftKind& kind, double height_m) {
+  return std::min(StallSpeed(kind, height_m) * std::sqrt(kind.most_lift / kind.cruise_lift),
+                  kind.critical_mach * StandardAirAt(height_m).sound_m_per_s);
+}
+
+AircraftState LevelFlight(const AircraftKind& kind, const Ellipsoid& ellipsoid,
+                          const GeodeticPosition& place, double heading_rad) {
+  AircraftState state;
+  state.place = EcefFromGeodetic(ellipsoid, place);
+  const Surroundings here = SurroundingsAt(ellipsoid, state.place);
+  state.ahead.xyz = std::cos(heading_rad) * here.north + std::sin(heading_rad) * here.east;
+  state.up.xyz = here.up;
+  const double speed = CruiseSpeed(kind, place.height_m);
+  state.velocity.xyz = speed * state.ahead.xyz;
+  state.load = LoadOfSteadyPath(state, here);
+  const double drag_N =
+      PressureOnWing(state, kind, here) *
+      DragCoefficient(kind, LiftCoefficient(state, kind, here), speed / here.air.sound_m_per_s);
+  state.throttle = std::clamp(drag_N / std::max(ThrustAt(kind, here, speed), 1e-3), 0.0, 1.0);
+  return state;
+}
+
+AircraftState Stepped(const AircraftState& state, const AircraftKind& kind,
+                      const Ellipsoid& ellipsoid, const Stick& stick, const GroundHeight& ground,
+                      double step_s) {
+  const Surroundings before = SurroundingsAt(ellipsoid, state.place);
+  const AircraftState commanded = Commanded(state, kind, before, stick, step_s);
+  AircraftState next = Pointed(Moved(commanded, kind, ellipsoid, step_s), step_s);
+  const Surroundings here = SurroundingsAt(ellipsoid, next.place);
+  const double ground_m = ground(here.place);
+  next.contact = GroundContact::kNone;
+  if (here.place.height_m >= ground_m + kWheels_m) return next;
+  return OnGround(next, ellipsoid, here, ground_m, ground, std::clamp(stick.brake, 0.0, 1.0),
+                  step_s);
+}
+
+AircraftReadout ReadoutOf(const AircraftState& state, const AircraftKind& kind,
+                          const Ellipsoid& ellipsoid) {
+  const Surroundings here = SurroundingsAt(ellipsoid, state.place);
+  const double speed = glm::length(state.velocity.xyz);
+  const double weight_N = kind.mass_kg * kStandardGravity_m_per_s2;
+  return {speed,
+          speed * std::sqrt(here.air.density_kg_per_m3 / kSeaDensity_kg_per_m3),
+          glm::dot(state.velocity.xyz, here.up),
+          std::atan2(glm::dot(state.ahead.xyz, here.east), glm::dot(state.ahead.xyz, here.north)),
+          PathOf(state, here),
+          BankOf(state, here),
+          PressureOnWing(state, kind, here) * LiftCoefficient(state, kind, here) / weight_N,
+          speed / here.air.sound_m_per_s,
+          state.throttle,
+          state.stalled,
+          state.contact};
+}
+
+Eye EyeIn(const AircraftState& state, const AircraftKind& kind, const Ellipsoid& ellipsoid,
+          double look_right_rad, double look_up_rad, double fov_rad) {
+  const Surroundings here = SurroundingsAt(ellipsoid, state.place);
+  const double attack_rad =
+      (LiftCoefficient(state, kind, here) - kind.cruise_lift) / kind.lift_slope_per_rad;
+  const bool flies = state.contact == GroundContact::kNone;
+  const glm::dvec3 right = glm::cross(state.ahead.xyz, state.up.xyz);
+  const double up_rad = look_up_rad + (flies ? attack_rad : 0.0);
+  const glm::dvec3 turned =
+      TurnedAbout(state.up.xyz, -(look_right_rad + state.slip_rad), state.ahead.xyz);
+  const glm::dvec3 side = TurnedAbout(state.up.xyz, -(look_right_rad + state.slip_rad), right);
+  const glm::dvec3 forward = TurnedAbout(side, up_rad, turned);
+  const glm::dvec3 up = glm::cross(side, forward);
+  Eye eye{here.place};
+  eye.fov_rad = fov_rad;
+  eye.heading_rad = std::atan2(glm::dot(forward, here.east), glm::dot(forward, here.north));
+  eye.pitch_rad = std::asin(std::clamp(glm::dot(forward, here.up), -1.0, 1.0));
+  const glm::dvec3 level_right =
+      std::cos(eye.heading_rad) * here.east - std::sin(eye.heading_rad) * here.north;
+  eye.roll_rad =
+      std::atan2(glm::dot(up, level_right), glm::dot(up, glm::cross(level_right, forward)));
+  return eye;
+}
+
+}  // namespace alpenglow

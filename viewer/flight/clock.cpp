@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/text/error.h"
+#include "renderer/series/frame_times.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,  0.0,
+                                            1.0,     10.0,   60.0,  600.0, 3600.0};
+constexpr double kDay_s = 86400.0;
+
+const UtcInstant& FirstInstant() {
+  static const UtcInstant first = ParseInstant("1900-01-01T00:00:00Z");
+  return first;
+}
+const UtcInstant& LastInstant() {
+  static const UtcInstant last = ParseInstant("2100-12-31T23:59:59Z");
+  return last;
+}
+
+std::optional<SunEvent> SunEventOf(SkyEvent event) {
+  switch (event) {
+    case SkyEvent::kDawn:
+      return SunEvent::kCivilDawn;
+    case SkyEvent::kSunrise:
+      return SunEvent::kSunrise;
+    case SkyEvent::kNoon:
+      return SunEvent::kNoon;
+    case SkyEvent::kSunset:
+      return SunEvent::kSunset;
+    case SkyEvent::kDusk:
+      return SunEvent::kCivilDusk;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// "04:30" and "04:30:15" begin like this; a date has four digits.
+bool IsTimeOfDay(const std::string& text) {
+  return text.size() >= 5 && text[2] == ':' && (text.size() == 5 || text.size() == 8);
+}
+
+}  // namespace
+
+double SteppedTimeRate(double rate, int step) {
+  const auto* at = std::lower_bound(kTimeRates.begin(), kTimeRates.end(), rate);
+  const auto index = std::min<std::ptrdiff_t>(at - kTimeRates.begin(), kTimeRates.size() - 1);
+  const std::ptrdiff_t next =
+      std::clamp<std::ptrdiff_t>(index + step, 0, std::ptrdiff_t{kTimeRates.size()} - 1);
+  return kTimeRates[static_cast<std::size_t>(next)];
+}
+
+const char* NameOf(SkyEvent event) {
+  constexpr std::array<const char*, 7> kNames{"dawn", "sunrise",  "noon",   "sunset",
+                                              "dusk", "moonrise", "moonset"};
+  return kNames[static_cast<std::size_t>(event)];
+}
+
+std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& place,
+                                    const UtcInstant& after, const MoonEventAfter& moon) {
+  const std::optional<SunEvent> of_sun = SunEventOf(event);
+  if (!of_sun) return moon ? moon(event, place, after) : std::nullopt;
+  constexpr int kDays = 366;
+  constexpr double kSame_s = 1.0;
+  for (int day = 0; day <= kDays; ++day) {
+    const auto found = FindSunEvent(*of_sun, place, AddSeconds(after, day * kDay_s));
+    if (found && SecondsBetween(after, *found) > kSame_s) return found;
+  }
+  return std::nullopt;
+}
+
+void SceneClock::Advance(double seconds) {
+  if (!paused_) Shift(rate_ * seconds);
+}
+
+void SceneClock::SetRate(double rate) {
+  rate_ = RequireInRange(rate, -3600.0, 3600.0, "time rate");
+}
+
+void SceneClock::Shift(double seconds) { Set(AddSeconds(now_, seconds)); }
+
+void SceneClock::Set(const UtcInstant& instant) {
+  const bool early = SecondsBetween(FirstInstant(), instant) < 0.0;
+  const bool late = SecondsBetween(instant, LastInstant()) < 0.0;
+  now_ = early ? FirstInstant() : late ? LastInstant() : instant;
+}
+
+bool SceneClock::JumpToNext(SkyEvent event, const GeodeticPosition& place,
+                            const MoonEventAfter& moon) {
+  const std::optional<UtcInstant> next = NextEvent(event, place, now_, moon);
+  if (next) Set(*next);
+  return next.has_value();
+}
+
+void SceneClock::Type(const std::string& text, const GeodeticPosition& place,
+                      const std::string& zone) {
+  const std::string today = FormatInZone(now_, zone).substr(0, 11);  // "2026-06-21T"
+  const std::string full = !IsTimeOfDay(text) ? text
+                           : text.size() == 5 ? today + text + ":00"
+                                              : today + text;
+  Set(InstantFromText(full, {place, zone, now_}));
+}
+
+}  // namespace alpenglow

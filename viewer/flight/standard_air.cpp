@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/standard_air.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace alpenglow {
+namespace {
+
+constexpr double kGasConstant_J_per_kmol_K = 8314.32;  // as the standard has it
+constexpr double kMolarMass_kg_per_kmol = 28.9644;
+constexpr double kGas_J_per_kg_K = kGasConstant_J_per_kmol_K / kMolarMass_kg_per_kmol;
+constexpr double kHydrostatic_K_per_m = kStandardGravity_m_per_s2 / kGas_J_per_kg_K;
+constexpr double kHeatRatio = 1.4;
+constexpr double kRadius_m = 6356766.0;
+
+struct Layer {
+  double base_m, lapse_K_per_m;
+  double temperature_K = 288.15, pressure_Pa = 101325.0;  // at the base
+};
+
+double TemperatureIn(const Layer& layer, double above_base_m) {
+  return layer.temperature_K + layer.lapse_K_per_m * above_base_m;
+}
+
+double PressureIn(const Layer& layer, double above_base_m) {
+  if (layer.lapse_K_per_m == 0.0) {
+    return layer.pressure_Pa * std::exp(-kHydrostatic_K_per_m * above_base_m / layer.temperature_K);
+  }
+  return layer.pressure_Pa * std::pow(layer.temperature_K / TemperatureIn(layer, above_base_m),
+                                      kHydrostatic_K_per_m / layer.lapse_K_per_m);
+}
+
+using Layers = std::array<Layer, 8>;
+
+/// The last one has no lapse, so that the air thins out for ever.
+Layers LayersFromTheGround() {
+  Layers layers{{{0.0, -0.0065},
+                 {11000.0, 0.0},
+                 {20000.0, 0.001},
+                 {32000.0, 0.0028},
+                 {47000.0, 0.0},
+                 {51000.0, -0.0028},
+                 {71000.0, -0.002},
+                 {84852.0, 0.0}}};
+  for (std::size_t i = 1; i < layers.size(); ++i) {
+    const double thickness_m = layers[i].base_m - layers[i - 1].base_m;
+    layers[i].temperature_K = TemperatureIn(layers[i - 1], thickness_m);
+    layers[i].pressure_Pa = PressureIn(layers[i - 1], thickness_m);
+  }
+  return layers;
+}
+
+}  // namespace
+
+StandardAir StandardAirAt(double height_m) {
+  static const Layers layers = LayersFromTheGround();
+  const double geopotential_m = kRadius_m * height_m / (kRadius_m + height_m);
+  const auto above =
+      std::upper_bound(layers.begin() + 1, layers.end(), geopotential_m,
+                       [](double height, const Layer& layer) { return height < layer.base_m; });
+  const Layer& layer = *(above - 1);
+  const double temperature_K = TemperatureIn(layer, geopotential_m - layer.base_m);
+  const double gas = kGas_J_per_kg_K * temperature_K;
+  return {PressureIn(layer, geopotential_m - layer.base_m) / gas, std::sqrt(kHeatRatio * gas)};
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/input/action.h"
+
+// The names of keys alone.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
+              kAltKey == GLFW_MOD_ALT);
+
+constexpr Modes kAll{true, true, true}, kFree{true, false, false}, kAircraft{false, true, false},
+    kTrack{false, false, true}, kCockpit{false, true, true}, kNotAircraft{true, false, true};
+constexpr Press kOnce = Press::kOnce, kAgain = Press::kRepeating, kHeld = Press::kHeld;
+constexpr std::string_view kCameraKeys = "Free camera", kAircraftKeys = "Aircraft",
+                           kModeKeys = "Modes and speed", kAutopilotKeys = "Autopilot",
+                           kTimeKeys = "Time", kPictureKeys = "Picture", kProgramKeys = "Program";
+
+constexpr ActionRow kTable[] = {
+    {Action::kForward, kHeld, kFree, kCameraKeys, "fly forward", "W", ""},
+    {Action::kBack, kHeld, kFree, kCameraKeys, "fly back", "S", ""},
+    {Action::kLeft, kHeld, kFree, kCameraKeys, "fly to the left", "A", ""},
+    {Action::kRight, kHeld, kFree, kCameraKeys, "fly to the right", "D", ""},
+    {Action::kUp, kHeld, kFree, kCameraKeys, "rise", "R, Page Up", ""},
+    {Action::kDown, kHeld, kFree, kCameraKeys, "sink", "F, Page Down", ""},
+    {Action::kRollLeft, kHeld, kFree, kCameraKeys, "roll to the left", "Q", ""},
+    {Action::kRollRight, kHeld, kFree, kCameraKeys, "roll to the right", "E", ""},
+    {Action::kTurnLeft, kHeld, kFree, kCameraKeys, "turn to the left", "Left, Keypad 4", ""},
+    {Action::kTurnRight, kHeld, kFree, kCameraKeys, "turn to the right", "Right, Keypad 6", ""},
+    {Action::kLookUp, kHeld, kFree, kCameraKeys, "look up", "Up, Keypad 8", ""},
+    {Action::kLookDown, kHeld, kFree, kCameraKeys, "look down", "Down, Keypad 2", ""},
+    {Action::kNoseDown, kHeld, kAircraft, kAircraftKeys, "stick forward: nose down", "Up, Keypad 8",
+     ""},
+    {Action::kNoseUp, kHeld, kAircraft, kAircraftKeys, "stick back: nose up", "Down, Keypad 2", ""},
+    {Action::kBankLeft, kHeld, kAircraft, kAircraftKeys, "bank to the left", "Left, Keypad 4", ""},
+    {Action::kBankRight, kHeld, kAircraft, kAircraftKeys, "bank to the right", "Right, Keypad 6",
+     ""},
+    {Action::kRudderLeft, kHeld, kAircraft, kAircraftKeys, "rudder to the left",
+     "0, Keypad 0, Insert", ""},
+    {Action::kRudderRight, kHeld, kAircraft, kAircraftKeys, "rudder to the right",
+     "Enter, Keypad Enter", ""},
+    {Action::kThrottleUp, kHeld, kAircraft, kAircraftKeys, "more throttle", "Page Up, Keypad 9, 9",
+     ""},
+    {Action::kThrottleDown, kHeld, kAircraft, kAircraftKeys, "less throttle", "Page Down, Keypad 3",
+     ""},
+    {Action::kBrake, kHeld, kAircraft, kAircraftKeys, "brakes of the wheels", "B", ""},
+    {Action::kFaster, kAgain, kNotAircraft, kModeKeys, "fly faster; the mouse wheel too",
+     "+, Keypad +", ""},
+    {Action::kSlower, kAgain, kNotAircraft, kModeKeys, "fly slower; the mouse wheel too",
+     "-, Keypad -", ""},
+    {Action::kFasterFlight, kOnce, kAircraft, kModeKeys, "flight twice as fast, up to 32 times",
+     "A", ""},
+    {Action::kSlowerFlight, kOnce, kAircraft, kModeKeys, "flight half as fast, down to real time",
+     "Shift+A", ""},
+    {Action::kTrackAhead, kAgain, kTrack, kModeKeys, "ten seconds on along the track", "Right", ""},
+    {Action::kTrackBack, kAgain, kTrack, kModeKeys, "ten seconds back along the track", "Left", ""},
+    {Action::kCentre, kOnce, kAll, kModeKeys, "centre the stick and look ahead, level",
+     "5, Keypad 5", ""},
+    {Action::kHigher, kOnce, kAll, kModeKeys, "1000 ft higher", "Ctrl+U", ""},
+    {Action::kFreeMode, kOnce, kAll, kModeKeys, "free camera", "1", ""},
+    {Action::kAircraftMode, kOnce, kAll, kModeKeys, "aircraft", "2", ""},
+    {Action::kTrackMode, kOnce, kAll, kModeKeys, "follow the track", "3", ""},
+    {Action::kNextMode, kOnce, kAll, kModeKeys, "next of the three", "V", ""},
+    {Action::kPreviousMode, kOnce, kAll, kModeKeys, "previous of the three", "Shift+V", ""},
+    {Action::kFirstMode, kOnce, kAll, kModeKeys, "back to the free camera", "Ctrl+V", ""},
+    {Action::kHoldHeading, kOnce, kAircraft, kAutopilotKeys,
+     "hold the heading; banking moves what is held", "Ctrl+H", ""},
+    {Action::kHoldAltitude, kOnce, kAircraft, kAutopilotKeys,
+     "hold the height; the stick moves what is held", "Ctrl+A", ""},
+    {Action::kHoldClimb, kOnce, kAircraft, kAutopilotKeys,
+     "hold the vertical speed; the stick moves what is held", "Ctrl+P", ""},
+    {Action::kHoldSpeed, kOnce, kAircraft, kAutopilotKeys,
+     "hold the speed; the throttle moves what is held", "Ctrl+S", ""},
+    {Action::kLevelWings, kOnce, kAircraft, kAutopilotKeys, "keep the wings level", "Ctrl+W", ""},
+    {Action::kAutopilotOff, kOnce, kAircraft, kAutopilotKeys, "let go of everything", "Backspace",
+     ""},
+    {Action::kPause, kOnce, kAll, kTimeKeys, "pause: time and flight stand", "P", ""},
+    {Action::kFasterTime, kAgain, kAll, kTimeKeys, "rate of time up: -3600 to 3600", "T", ""},
+    {Action::kSlowerTime, kAgain, kAll, kTimeKeys, "rate of time down, and backwards", "Shift+T",
+     ""},
+    {Action::kRealTime, kOnce, kAll, kTimeKeys, "real time", "Shift+P", ""},
+    {Action::kLaterMinute, kAgain, kAll, kTimeKeys, "a minute later", "]", "W"},
+    {Action::kEarlierMinute, kAgain, kAll, kTimeKeys, "a minute earlier", "[", "Shift+W"},
+    {Action::kLaterHour, kAgain, kAll, kTimeKeys, "an hour later", "Shift+]", ""},
+    {Action::kEarlierHour, kAgain, kAll, kTimeKeys, "an hour earlier", "Shift+[", ""},
+    {Action::kLaterDay, kAgain, kAll, kTimeKeys, "a day later", "Ctrl+]", ""},
+    {Action::kEarlierDay, kAgain, kAll, kTimeKeys, "a day earlier", "Ctrl+[", ""},
+    {Action::kToDawn, kOnce, kAll, kTimeKeys, "on to dawn", "Shift+F5", ""},
+    {Action::kToSunrise, kOnce, kAll, kTimeKeys, "on to sunrise", "F5", ""},
+    {Action::kToNoon, kOnce, kAll, kTimeKeys, "on to noon", "F6", ""},
+    {Action::kToSunset, kOnce, kAll, kTimeKeys, "on to sunset", "F7", ""},
+    {Action::kToDusk, kOnce, kAll, kTimeKeys, "on to dusk", "F8", ""},
+    {Action::kToMoonrise, kOnce, kAll, kTimeKeys, "on to moonrise", "F9", ""},
+    {Action::kToMoonset, kOnce, kAll, kTimeKeys, "on to moonset", "Shift+F9", ""},
+    {Action::kNarrowerView, kAgain, kAll, kPictureKeys, "narrower view", "X", ""},
+    {Action::kWiderView, kAgain, kAll, kPictureKeys, "wider view", "Shift+X", ""},
+    {Action::kResetView, kOnce, kAll, kPictureKeys, "the view that the scene began with", "Ctrl+X",
+     ""},
+    {Action::kClearer, kAgain, kAll, kPictureKeys, "see farther", "Z", ""},
+    {Action::kHazier, kAgain, kAll, kPictureKeys, "see less far", "Shift+Z", ""},
+    {Action::kResetVisibility, kOnce, kAll, kPictureKeys, "the visibility of the scene", "Ctrl+Z",
+     ""},
+    {Action::kExposureLock, kOnce, kAll, kPictureKeys, "lock the exposure", "L", ""},
+    {Action::kBrighter, kAgain, kAll, kPictureKeys, "a third of a stop brighter", "K", ""},
+    {Action::kDarker, kAgain, kAll, kPictureKeys, "a third of a stop darker", "Shift+K", ""},
+    {Action::kResetExposure, kOnce, kAll, kPictureKeys, "as the meter says", "Ctrl+K", ""},
+    {Action::kNextQuality, kOnce, kAll, kPictureKeys, "next quality", "O", ""},
+    {Action::kHud, kOnce, kAll, kProgramKeys, "hide everything but the picture", "H", ""},
+    {Action::kNightTheme, kOnce, kAll, kProgramKeys, "colours for the night", "Shift+H", ""},
+    {Action::kMouseMode, kOnce, kAll, kProgramKeys, "mouse: cursor, look, fly", "Tab", ""},
+    {Action::kPanels, kOnce, kAll, kProgramKeys, "panels", "F10", ""},
+    {Action::kFullScreen, kOnce, kAll, kProgramKeys, "full screen", "Shift+F10", ""},
+    {Action::kScreenshot, kOnce, kAll, kProgramKeys, "screenshot, PNG", "F3", ""},
+    {Action::kScreenshotExr, kOnce, kAll, kProgramKeys, "screenshot, linear EXR", "Shift+F3", ""},
+    {Action::kReplay, kOnce, kAll, kProgramKeys, "fly this flight again", "Ctrl+R", ""},
+    {Action::kSaveFlight, kOnce, kAll, kProgramKeys, "write down the flight so far", "Shift+F2",
+     ""},
+    {Action::kHelp, kOnce, kAll, kProgramKeys, "this table", "?, F1", ""},
+    {Action::kQuit, kOnce, kAll, kProgramKeys, "quit", "Esc", ""},
+};
+
+constexpr std::pair<std::string_view, int> kKeyNames[] = {
+    {"Up", GLFW_KEY_UP},
+    {"Down", GLFW_KEY_DOWN},
+    {"Left", GLFW_KEY_LEFT},
+    {"Right", GLFW_KEY_RIGHT},
+    {"Page Up", GLFW_KEY_PAGE_UP},
+    {"Page Down", GLFW_KEY_PAGE_DOWN},
+    {"Insert", GLFW_KEY_INSERT},
+    {"Enter", GLFW_KEY_ENTER},
+    {"Backspace", GLFW_KEY_BACKSPACE},
+    {"Tab", GLFW_KEY_TAB},
+    {"Esc", GLFW_KEY_ESCAPE},
+    {"Keypad Enter", GLFW_KEY_KP_ENTER},
+    {"Keypad +", GLFW_KEY_KP_ADD},
+    {"Keypad -", GLFW_KEY_KP_SUBTRACT},
+    {"[", GLFW_KEY_LEFT_BRACKET},
+    {"]", GLFW_KEY_RIGHT_BRACKET},
+    {"-", GLFW_KEY_MINUS},
+};
+
+bool IsLetterOrDigit(char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
+
+/// "F3" and "Keypad 9": a word and a number.
+std::optional<int> NumberedKey(std::string_view name) {
+  const auto number = [&](std::string_view word) -> std::optional<int> {
+    if (!name.starts_with(word) || name.size() == word.size()) return std::nullopt;
+    int value = 0;
+    for (const char c : name.substr(word.size())) {
+      if (c < '0' || c > '9') return std::nullopt;
+      value = 10 * value + (c - '0');
+    }
+    return value;
+  };
+  if (const auto digit = number("Keypad "); digit && *digit <= 9) return GLFW_KEY_KP_0 + *digit;
+  if (const auto f = number("F"); f && *f >= 1 && *f <= 25) return GLFW_KEY_F1 + *f - 1;
+  return std::nullopt;
+}
+
+std::optional<int> KeyFromName(std::string_view name) {
+  // GLFW counts letters and digits as ASCII does.
+  if (name.size() == 1 && IsLetterOrDigit(name[0])) return name[0];
+  for (const auto& [known, key] : kKeyNames) {
+    if (known == name) return key;
+  }
+  return NumberedKey(name);
+}
+
+std::vector<std::string_view> SplitAtCommas(std::string_view keys) {
+  std::vector<std::string_view> parts;
+  while (!keys.empty()) {
+    const std::size_t comma = std::min(keys.find(", "), keys.size());
+    parts.push_back(keys.substr(0, comma));
+    keys.remove_prefix(std::min(comma + 2, keys.size()));
+  }
+  return parts;
+}
+
+struct Binding {
+  KeyChord chord;
+  const ActionRow* row;
+  Modes modes;
+};
+
+std::vector<Binding> AllBindings() {
+  std::vector<Binding> bindings;
+  for (const ActionRow& row : kTable) {
+    for (const std::string_view key : SplitAtCommas(row.keys))
+      bindings.push_back({KeyChordFromText(key), &row, row.modes});
+    for (const std::string_view key : SplitAtCommas(row.keys_in_cockpit))
+      bindings.push_back({KeyChordFromText(key), &row, kCockpit});
+  }
+  return bindings;
+}
+
+bool Fits(const Binding& binding, int key, int modifiers, FlightMode mode) {
+  if (binding.chord.key != key || !binding.modes.Has(mode)) return false;
+  const bool any_shift = binding.chord.any_shift || binding.row->press == Press::kHeld;
+  const int counted = any_shift ? modifiers & ~kShiftKey : modifiers;
+  return counted == binding.chord.modifiers;
+}
+
+}  // namespace
+
+bool Modes::Has(FlightMode mode) const {
+  return mode == FlightMode::kFree ? free : mode == FlightMode::kAircraft ? aircraft : track;
+}
+
+std::span<const ActionRow> ActionTable() { return kTable; }
+
+const ActionRow& RowOf(Action action) {
+  const ActionRow& row = kTable[static_cast<std::size_t>(action)];
+  ALPENGLOW_ENSURE(static_cast<int>(row.action), ==, static_cast<int>(action));
+  return row;
+}
+
+KeyChord KeyChordFromText(std::string_view text) {
+  if (text == "+") return {GLFW_KEY_EQUAL, 0, true};
+  if (text == "?") return {GLFW_KEY_SLASH, kShiftKey};
+  int modifiers = 0;
+  std::string_view name = text;
+  for (const auto& [word, modifier] : {std::pair<std::string_view, int>{"Ctrl+", kControlKey},
+                                       {"Shift+", kShiftKey},
+                                       {"Alt+", kAltKey}}) {
+    if (!name.starts_with(word)) continue;
+    modifiers |= modifier;
+    name.remove_prefix(word.size());
+  }
+  const std::optional<int> key = KeyFromName(name);
+  if (!key) throw InputError(fmt::format("\"{}\" is no key", text));
+  return {*key, modifiers};
+}
+
+std::optional<Action> ActionOfKey(int key, int modifiers, FlightMode mode) {
+  static const std::vector<Binding> bindings = AllBindings();
+  // Locks of capitals and of numbers are modifiers too.
+  const int counted = modifiers & (kShiftKey | kControlKey | kAltKey);
+  for (const Binding& binding : bindings) {
+    if (Fits(binding, key, counted, mode)) return binding.row->action;
+  }
+  return std::nullopt;
+}
+
+int PrintedKey(int key, const char* name) {
+  if (name == nullptr || name[0] == '\0' || name[1] != '\0') return key;
+  const char c =
+      name[0] >= 'a' && name[0] <= 'z' ? static_cast<char>(name[0] - 'a' + 'A') : name[0];
+  const bool keypad = key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_EQUAL;
+  return !keypad && IsLetterOrDigit(c) ? c : key;
+}
+
+std::string KeysText(const ActionRow& row) {
+  if (row.keys_in_cockpit.empty()) return std::string(row.keys);
+  return fmt::format("{}; not in the free camera {}", row.keys, row.keys_in_cockpit);
+}
+
+std::string ControlsMarkdown() {
+  std::string text = "| | keys | what they do |\n|---|---|---|\n";
+  std::string_view section;
+  for (const ActionRow& row : kTable) {
+    text += fmt::format("| {} | {} | {} |\n", row.section == section ? "" : row.section,
+                        KeysText(row), row.does);
+    section = row.section;
+  }
+  return text;
+}
+
+std::string ControlsText() {
+  std::string text;
+  std::string_view section;
+  for (const ActionRow& row : kTable) {
+    if (row.section != section)
+      text += fmt::format("{}{}\n", text.empty() ? "" : "\n", row.section);
+    section = row.section;
+    text += fmt::format("  {:<24} {}\n", KeysText(row), row.does);
+  }
+  return text;
+}
+
+}  // namespace alpenglow
