@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/hud/day_strip.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "lut/picture/image.h"
+#include "lut/sky/sky_view.h"
+
+namespace alpenglow {
+namespace {
+
+/// Air of four bands with all of its light, solved once.
+struct Air {
+  std::shared_ptr<const AirIntegrator<float>> air =
+      std::make_shared<AirIntegrator<float>>(MediumPreset("earth"));
+  std::shared_ptr<const DiffuseLight> diffuse =
+      std::make_shared<DiffuseLight>(MediumPreset("earth"));
+};
+const Air& Earth() {
+  static const Air earth;
+  return earth;
+}
+
+DayStripRequest Alps() {
+  DayStripRequest request{Earth().air, Earth().diffuse, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
+  request.begin =
+      SolarMidnightBefore(ParseInstant("2026-03-20T12:00:00Z"), request.place.longitude_rad);
+  return request;
+}
+
+TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
+  const DayStrip strip = MakeDayStrip(Alps());
+  const auto& noon = strip.at(11, 0);
+  EXPECT_GT(noon[2], noon[0]) << "the zenith at noon";
+  EXPECT_GT(noon[2], 0.3F);
+  for (int row = 0; row < strip.rows; ++row) {
+    for (const float channel : strip.at(0, row)) EXPECT_LT(channel, 0.02F) << "midnight";
+  }
+  const auto& dusk = strip.at(18, strip.rows - 1);  // half past six of solar time, at an equinox
+  EXPECT_GT(dusk[0], 1.3F * dusk[2]) << "the horizon under which the sun has gone";
+}
+
+// The judge: the table of the sky, and a day's exposure from its definition.
+TEST(DayStrip, ColoursAreThoseOfTheSky) {
+  const DayStripRequest request = Alps();
+  const DayStrip strip = MakeDayStrip(request);
+  const Medium& medium = request.air->medium();
+  for (const int column : {7, 12, 18}) {
+    const SunPosition sun =
+        ApparentSunAt(request.place, AddSeconds(request.begin, 3600.0 * (column + 0.5)));
+    const SkyView view(*request.air, *request.diffuse, request.place.height_m,
+                       std::sin(sun.elevation_rad));
+    const double dip =
+        std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));
+    Image sky(1, strip.rows);
+    double mean = 0.0;
+    constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
+    for (int row = 0; row < strip.rows; ++row) {
+      const double elevation = kElevations_deg[static_cast<std::size_t>(row)] * kRadiansPerDegree;
+      const Bands<float> seen = view.Radiance(0.5 * kPi - elevation + dip, 0.0);
+      std::vector<double> radiance;
+      for (std::size_t band = 0; band < seen.count; ++band) {
+        radiance.push_back(static_cast<double>(seen[band]) * medium.solar_irradiance[band] /
+                           (sun.distance_au * sun.distance_au));
+      }
+      const auto rgb = BandColour(medium.wavelengths_nm).LinearSrgb(radiance);
+      mean += (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]) / strip.rows;
+      sky.at(0, row) = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
+                        static_cast<float>(rgb[2])};
+    }
+    const double ev100 = 0.8 * std::log2(mean * 100.0 / 12.5) + 0.2 * 14.0;
+    const DisplayImage developed = Develop(sky, ev100, ToneCurve::kAgx);
+    for (int row = 0; row < strip.rows; ++row) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t at = static_cast<std::size_t>(row) * 3 + c;
+        EXPECT_NEAR(strip.at(column, row)[c], developed.rgb[at] / 255.0, 2.5 / 255.0)
+            << "column " << column << " row " << row
+            << ": pictures are dithered by up to a code, and rounded; the table has 0.3 %";
+      }
+    }
+  }
+}
+
+TEST(DayStrip, TheDayBeginsAtMidnightOfTheSun) {
+  for (const double longitude_deg : {-179.0, -74.0, 0.0, 8.0, 139.0, 180.0}) {
+    const GeodeticPosition place = PlaceFromDegrees(30.0, longitude_deg, 0.0);
+    const UtcInstant now = ParseInstant("2026-11-03T16:00:00Z");
+    const UtcInstant begin = SolarMidnightBefore(now, place.longitude_rad);
+    const double fraction = FractionInStrip(begin, now);
+    EXPECT_GE(fraction, 0.0);
+    EXPECT_LT(fraction, 1.0);
+    const auto noon = FindSunEvent(SunEvent::kNoon, place, now);
+    ASSERT_TRUE(noon.has_value());
+    EXPECT_NEAR(FractionInStrip(begin, *noon), 0.5, 17.0 / 1440.0)
+        << "the equation of time is at most 16.5 minutes";
+  }
+}
+
+TEST(DayStrip, AShareOfTheDayIsAnInstantAndBack) {
+  const UtcInstant begin = ParseInstant("2026-06-20T23:28:00Z");
+  for (const double share : {0.0, 0.01, 0.5, 0.999, 1.0})
+    EXPECT_NEAR(FractionInStrip(begin, InstantInStrip(begin, share)), share, 1e-9);
+}
+
+TEST(DayStrip, AStripIsMadeAnewOnlyForWhatItWouldShow) {
+  DayStrips strips;
+  EXPECT_EQ(strips.Newest(), nullptr);
+  DayStripRequest request = Alps();
+  strips.Want(request);
+  strips.Wait();
+  ASSERT_NE(strips.Newest(), nullptr);
+  EXPECT_EQ(strips.Newest()->begin, request.begin);
+  request.place.latitude_rad += 0.002;
+  request.place.height_m += 50.0;
+  strips.Want(request);
+  EXPECT_FALSE(strips.Busy()) << "a tenth of a degree is not seen";
+  request.begin = AddSeconds(request.begin, 86400.0);
+  strips.Want(request);
+  strips.Wait();
+  EXPECT_EQ(strips.Newest()->begin, request.begin) << "another day is";
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Instruments and panels as a whole: hidden, scaled, clicked on.
+#include "viewer/hud/hud.h"
+
+#include <gtest/gtest.h>
+
+#include "atmosphere/text/error.h"
+#include "tests/viewer/hud/hud_picture.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 720;
+
+class HudTest : public tests::HudPicture {
+ protected:
+  /// A frame with the pointer there.
+  HudRequest At(Hud& hud, double x, double y, bool pressed) {
+    HudInput input = Still(kWidth, kHeight);
+    input.pointer = HudPointer{x, y};
+    input.buttons[0] = pressed;
+    return hud.Update(model_, choices_, nullptr, input);
+  }
+  /// Moves there, presses, and lets go: what was asked for while the button was held.
+  HudRequest Click(Hud& hud, double x, double y) {
+    static_cast<void>(At(hud, x, y, false));
+    HudRequest request = At(hud, x, y, true);
+    const HudRequest released = At(hud, x, y, false);
+    if (released.capture) request.capture = released.capture;
+    if (released.lamp) request.lamp = released.lamp;
+    return request;
+  }
+  /// The first place of a column of the picture where a click asks for something.
+  template <typename Asked>
+  std::optional<HudPointer> Find(Hud& hud, double x, int from_y, int to_y, const Asked& asked) {
+    const int step = from_y < to_y ? 4 : -4;
+    for (int y = from_y; y != to_y; y += step) {
+      if (asked(Click(hud, x, y))) return HudPointer{x, static_cast<double>(y)};
+    }
+    return std::nullopt;
+  }
+
+  HudModel model_ = tests::Flying();
+  HudChoices choices_;
+};
+
+TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
+  Hud hud;
+  hud.Toggle(HudPanel::kHelp);
+  hud.ToggleMenu();
+  const Image shown = Drawn(hud, model_, kWidth, kHeight);
+  hud.ToggleVisible();
+  const Image hidden = Drawn(hud, model_, kWidth, kHeight);
+  const Image grey = [] {
+    Image image(kWidth, kHeight);
+    for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
+    return image;
+  }();
+  EXPECT_FALSE(Difference(grey, shown).empty());
+  EXPECT_TRUE(Difference(grey, hidden).empty());
+  EXPECT_FALSE(hud.WantsMouse());
+  hud.ToggleVisible();
+  EXPECT_TRUE(Difference(shown, Drawn(hud, model_, kWidth, kHeight)).empty())
+      << "and it comes back as it was";
+}
+
+TEST_F(HudTest, HidingWorksBetweenLayoutAndPaint) {
+  Hud hud;
+  static_cast<void>(hud.Update(model_, choices_, nullptr, Still(64, 48)));
+  hud.ToggleVisible();
+  const RenderTarget target(64, 48, RenderTarget::Depth::kNone);
+  target.Bind();
+  glClearColor(0.25F, 0.5F, 0.75F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  hud.Paint(target.framebuffer());
+  for (const auto& pixel : target.Read().rgb) {
+    ASSERT_EQ(pixel, (std::array<float, 3>{0.25F, 0.5F, 0.75F}));
+  }
+}
+
+TEST_F(HudTest, PaintingLeavesTheStateThatPassesExpect) {
+  Hud hud;
+  static_cast<void>(Drawn(hud, model_, 320, 240));
+  EXPECT_FALSE(glIsEnabled(GL_BLEND));
+  EXPECT_FALSE(glIsEnabled(GL_SCISSOR_TEST));
+  EXPECT_FALSE(glIsEnabled(GL_DEPTH_TEST));
+  GLint layout = -1;
+  glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &layout);
+  EXPECT_EQ(layout, 0);
+}
+
+TEST_F(HudTest, APictureWithoutPixelsIsNotDrawnOn) {
+  Hud hud;
+  static_cast<void>(hud.Update(model_, choices_, nullptr, Still(0, 0)));
+  hud.Paint(0);
+  EXPECT_FALSE(hud.WantsMouse());
+}
+
+TEST_F(HudTest, RefusesAScaleOutOfRangeAndAFontThatIsNone) {
+  EXPECT_THROW(Hud({.scale = 0.4}), InputError);
+  EXPECT_THROW(Hud({.scale = std::nan("")}), InputError);
+  HudSettings settings;
+  settings.font = "/nowhere/letters.ttf";
+  EXPECT_THROW(Hud{settings}, InputError);
+}
+
+TEST_F(HudTest, TheMouseIsThePanelsWhereTheyAreAndTheFlightsElsewhere) {
+  Hud hud;
+  hud.Toggle(HudPanel::kHelp);  // in the middle
+  choices_.help = {{"h", "hides all of this"}, {"F10", "shows the menu"}};
+  for (int frame = 0; frame < 3; ++frame)
+    static_cast<void>(At(hud, 0.5 * kWidth, 0.5 * kHeight, false));
+  EXPECT_TRUE(hud.WantsMouse());
+  static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, false));
+  EXPECT_FALSE(hud.WantsMouse());
+  static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, true));
+  static_cast<void>(At(hud, 0.5 * kWidth, 0.5 * kHeight, true));
+  EXPECT_FALSE(hud.WantsMouse()) << "a drag that began in the picture stays the flight's";
+}
+
+TEST_F(HudTest, AClickIntoTheStripOfTheDayIsAShareOfTheDay) {
+  Hud hud;
+  hud.Toggle(HudPanel::kPlaceAndTime);
+  const auto found = Find(hud, 200.0, 40, 300, [](const HudRequest& request) {
+    return request.time.day_fraction.has_value();
+  });
+  ASSERT_TRUE(found.has_value());
+  static_cast<void>(At(hud, found->x, found->y + 4.0, false));
+  const double here = At(hud, found->x, found->y + 4.0, true).time.day_fraction.value();
+  const double there = At(hud, found->x + 110.0, found->y + 4.0, true).time.day_fraction.value();
+  EXPECT_NEAR(there - here, 110.0 / 440.0, 1e-6) << "the strip is 440 pixels wide";
+  EXPECT_EQ(At(hud, 0.0, found->y, true).time.day_fraction, 0.0) << "midnight, while held";
+  EXPECT_EQ(At(hud, 900.0, found->y, true).time.day_fraction, 1.0);
+  EXPECT_EQ(At(hud, 900.0, found->y, false).time.day_fraction, std::nullopt);
+}
+
+TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
+  Hud hud;
+  hud.Toggle(HudPanel::kAir);
+  const double x = kWidth - 10.0 - 200.0;
+  // From below: the ground's albedo, then ozone; lists are above them.
+  const auto found = Find(
+      hud, x, 300, 60, [](const HudRequest& request) { return request.air.ozone_du.has_value(); });
+  ASSERT_TRUE(found.has_value());
+  static_cast<void>(At(hud, x, found->y, false));
+  static_cast<void>(At(hud, x, found->y, true));
+  EXPECT_EQ(At(hud, x - 500.0, found->y, true).air.ozone_du, 0.0);
+  EXPECT_EQ(At(hud, x + 500.0, found->y, true).air.ozone_du, 600.0);
+  const HudRequest none = At(hud, x + 500.0, found->y, false);
+  EXPECT_EQ(none.air.ozone_du, std::nullopt) << "nothing is asked for once it is let go";
+  EXPECT_EQ(none.air.visibility_km, std::nullopt);
+}
+
+TEST_F(HudTest, ALampIsSwitchedWhereItsNameStands) {
+  Hud hud;
+  choices_.lamps = {{"landing light", true}, {"runway 26", false}};
+  hud.Toggle(HudPanel::kLights);
+  std::vector<HudLampRequest> asked;
+  for (int y = 250; y < 480; y += 3) {
+    if (const auto lamp = Click(hud, kWidth - 10.0 - 90.0, y).lamp) asked.push_back(*lamp);
+  }
+  ASSERT_GE(asked.size(), 2U);
+  EXPECT_EQ(asked.front().lamp, 0U);
+  EXPECT_FALSE(asked.front().is_on) << "it was on";
+  EXPECT_EQ(asked.back().lamp, 1U);
+  EXPECT_TRUE(asked.back().is_on) << "it was off";
+}
+
+TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
+  Hud hud;
+  hud.Toggle(HudPanel::kPlaceAndTime);
+  std::optional<double> field_y;
+  for (int y = 150; y < 400 && !field_y; y += 4) {
+    static_cast<void>(Click(hud, 120.0, y));
+    static_cast<void>(At(hud, 120.0, y, false));
+    if (hud.WantsKeyboard()) field_y = y;
+  }
+  ASSERT_TRUE(field_y.has_value()) << "a field that takes letters";
+  HudInput typing = Still(kWidth, kHeight);
+  typing.text = "2026-06-21T04:00:00Z";
+  static_cast<void>(hud.Update(model_, choices_, nullptr, typing));
+  typing.text.clear();
+  typing.keys = {HudKey::kEnter};
+  EXPECT_EQ(hud.Update(model_, choices_, nullptr, typing).time.instant, "2026-06-21T04:00:00Z");
+}
+
+TEST_F(HudTest, KeysClosePanelsFirst) {
+  Hud hud;
+  EXPECT_FALSE(hud.ClosePanels());
+  hud.Toggle(HudPanel::kTables);
+  EXPECT_TRUE(hud.IsOpen(HudPanel::kTables));
+  EXPECT_TRUE(hud.ClosePanels());
+  EXPECT_FALSE(hud.IsOpen(HudPanel::kTables));
+}
+
+TEST_F(HudTest, EveryPanelFitsIntoTheSmallestPicture) {
+  for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
+    Hud hud;
+    choices_.help.assign(30, {"PageUp PageDown", "a line that is longer than the window is wide"});
+    choices_.moments = {"now", "sunrise", "noon", "sunset", "dusk", "moonrise"};
+    const Image bare = Drawn(hud, model_, 320, 240);
+    hud.Toggle(static_cast<HudPanel>(panel));
+    for (int frame = 0; frame < 4; ++frame)
+      static_cast<void>(hud.Update(model_, choices_, nullptr, Still(320, 240)));
+    const Image with = Drawn(hud, model_, 320, 240);
+    const Box box = Difference(bare, with);
+    ASSERT_FALSE(box.empty()) << panel;
+    EXPECT_GT(box.left, 0) << panel;
+    EXPECT_GT(box.top, 0) << panel;
+    EXPECT_LT(box.right, 320) << panel;
+    EXPECT_LT(box.bottom, 240) << panel;
+  }
+}
+
+TEST_F(HudTest, ItIsDimAtNight) {
+  Hud hud;
+  HudModel night = model_;
+  night.exposure.ev100 = -4.0;
+  const auto brightest = [](const Image& image) {
+    float most = 0.0F;
+    for (const auto& pixel : image.rgb) most = std::max(most, pixel[2]);
+    return most;
+  };
+  EXPECT_GT(brightest(Drawn(hud, model_, kWidth, kHeight)), 0.9F);
+  EXPECT_LE(brightest(Drawn(hud, night, kWidth, kHeight)), 0.5F + 1e-4F)
+      << "the grey behind has that; blending rounds";
+  EXPECT_EQ(hud.theme(), HudTheme::kNight);
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/hud/canvas.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace alpenglow {
+namespace {
+
+constexpr double kLineWidth = 2.0;    // units
+constexpr double kShadowWidth = 1.0;  // units, on each side
+constexpr double kRounding = 3.0;     // units
+
+ImVec2 At(const glm::dvec2& point) {
+  return {static_cast<float>(point.x), static_cast<float>(point.y)};
+}
+// Letters are sharp where they stand on whole pixels.
+ImVec2 OnPixel(const glm::dvec2& point) { return At({std::round(point.x), std::round(point.y)}); }
+
+}  // namespace
+
+ImU32 Packed(const HudColour& colour) {
+  return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], colour[3]});
+}
+
+HudColour Faded(const HudColour& colour, double opacity) {
+  HudColour faded = colour;
+  faded[3] *= static_cast<float>(std::clamp(opacity, 0.0, 1.0));
+  return faded;
+}
+
+double Canvas::LineHeight() const { return static_cast<double>(ImGui::GetFontSize()) * 1.2; }
+
+double Canvas::WidthOf(const std::string& text) const {
+  return static_cast<double>(ImGui::CalcTextSize(text.c_str()).x);
+}
+
+void Canvas::Line(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const {
+  const auto wide = static_cast<float>(Pixels(kLineWidth + 2.0 * kShadowWidth));
+  list_.AddLine(At(from), At(to), Packed(Faded(colours_.shadow, static_cast<double>(colour[3]))),
+                wide);
+  list_.AddLine(At(from), At(to), Packed(colour), static_cast<float>(Pixels(kLineWidth)));
+}
+
+void Canvas::Ring(const glm::dvec2& centre, double radius_px, const HudColour& colour) const {
+  const auto radius = static_cast<float>(radius_px);
+  list_.AddCircle(At(centre), radius, Packed(colours_.shadow), 0,
+                  static_cast<float>(Pixels(kLineWidth + 2.0 * kShadowWidth)));
+  list_.AddCircle(At(centre), radius, Packed(colour), 0, static_cast<float>(Pixels(kLineWidth)));
+}
+
+void Canvas::Arc(const glm::dvec2& centre, double radius_px, double from_rad, double to_rad,
+                 const HudColour& colour) const {
+  constexpr double kUp = -1.5707963267948966;  // Dear ImGui counts from the right
+  const auto stroke = [&](const HudColour& with, double width) {
+    list_.PathArcTo(At(centre), static_cast<float>(radius_px), static_cast<float>(from_rad + kUp),
+                    static_cast<float>(to_rad + kUp));
+    list_.PathStroke(Packed(with), 0, static_cast<float>(Pixels(width)));
+  };
+  stroke(colours_.shadow, kLineWidth + 2.0 * kShadowWidth);
+  stroke(colour, kLineWidth);
+}
+
+void Canvas::Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
+                      const HudColour& colour) const {
+  list_.AddTriangle(At(a), At(b), At(c), Packed(colours_.shadow),
+                    static_cast<float>(Pixels(2.0 * kShadowWidth)));
+  list_.AddTriangleFilled(At(a), At(b), At(c), Packed(colour));
+}
+
+void Canvas::Letters(const glm::dvec2& at, HudAlign align, const std::string& text,
+                     const HudColour& colour, std::span<const glm::dvec2> shadows) const {
+  const double share = align == HudAlign::kLeft ? 0.0 : align == HudAlign::kMiddle ? 0.5 : 1.0;
+  const glm::dvec2 corner{at.x - share * WidthOf(text), at.y};
+  const double step = std::max(1.0, Pixels(0.9));
+  const ImU32 shadow = Packed(Faded(colours_.shadow, static_cast<double>(colour[3])));
+  for (const glm::dvec2& side : shadows)
+    list_.AddText(OnPixel(corner + step * side), shadow, text.c_str());
+  list_.AddText(OnPixel(corner), Packed(colour), text.c_str());
+}
+
+void Canvas::Text(const glm::dvec2& at, HudAlign align, const std::string& text,
+                  const HudColour& colour) const {
+  static constexpr std::array<glm::dvec2, 4> kAround{
+      {{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, {0.0, 1.0}}};
+  Letters(at, align, text, colour, kAround);
+}
+
+void Canvas::TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
+                         const HudColour& colour) const {
+  static constexpr std::array<glm::dvec2, 1> kBelow{{{1.0, 1.0}}};
+  Letters(at, align, text, colour, kBelow);
+}
+
+void Canvas::Plate(const glm::dvec2& from, const glm::dvec2& to) const {
+  list_.AddRectFilled(At(from), At(to), Packed(colours_.plate),
+                      static_cast<float>(Pixels(kRounding)));
+}
+
+void Canvas::Fill(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const {
+  list_.AddRectFilled(At(from), At(to), Packed(colour));
+}
+
+Canvas::Clip::Clip(const Canvas& canvas, const glm::dvec2& from, const glm::dvec2& to)
+    : list_(canvas.list_) {
+  list_.PushClipRect(At(from), At(to), true);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// What instruments are drawn with: lines, letters and plates over a picture of any brightness.
+#pragma once
+
+#include <imgui.h>
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <string>
+
+#include "viewer/hud/hud_theme.h"
+
+namespace alpenglow {
+
+enum class HudAlign { kLeft, kMiddle, kRight };
+
+/// Lengths in units, which are pixels of a display of 96 dots an inch; places in pixels.
+class Canvas {
+ public:
+  /// @param scale  pixels a unit.
+  Canvas(ImDrawList& list, const HudColours& colours, double scale)
+      : list_(list), colours_(colours), scale_(static_cast<float>(scale)) {}
+
+  [[nodiscard]] const HudColours& colours() const { return colours_; }
+  [[nodiscard]] double Pixels(double units) const { return units * static_cast<double>(scale_); }
+  /// Height of a line of text [pixels].
+  [[nodiscard]] double LineHeight() const;
+  [[nodiscard]] double WidthOf(const std::string& text) const;
+
+  /// With a shadow around it, so that it is seen on snow and on forest.
+  void Line(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;
+  void Ring(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
+  /// Part of a ring, angles clockwise from up [rad].
+  void Arc(const glm::dvec2& centre, double radius_px, double from_rad, double to_rad,
+           const HudColour& colour) const;
+  void Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
+                const HudColour& colour) const;
+  /// @param at  its upper left corner, upper middle, or upper right corner.
+  void Text(const glm::dvec2& at, HudAlign align, const std::string& text,
+            const HudColour& colour) const;
+  /// The same where a plate is behind it: cheaper.
+  void TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
+                   const HudColour& colour) const;
+  void Plate(const glm::dvec2& from, const glm::dvec2& to) const;
+  void Fill(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;
+
+  /// Nothing is drawn outside of a rectangle while this lives.
+  class Clip {
+   public:
+    Clip(const Canvas& canvas, const glm::dvec2& from, const glm::dvec2& to);
+    ~Clip() { list_.PopClipRect(); }
+    Clip(const Clip&) = delete;
+    Clip& operator=(const Clip&) = delete;
+
+   private:
+    ImDrawList& list_;
+  };
+
+ private:
+  void Letters(const glm::dvec2& at, HudAlign align, const std::string& text,
+               const HudColour& colour, std::span<const glm::dvec2> shadows) const;
+
+  ImDrawList& list_;
+  const HudColours& colours_;
+  float scale_;
+};
+
+/// The colour as Dear ImGui packs it.
+[[nodiscard]] ImU32 Packed(const HudColour& colour);
+
+/// The same, less opaque.
+[[nodiscard]] HudColour Faded(const HudColour& colour, double opacity);
+
+}  // namespace alpenglow

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/hud/corner_texts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+#include "viewer/hud/hud_text.h"
+
+namespace alpenglow {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+std::string ModeText(const HudModel& model) {
+  return model.flight.mode + (model.recording ? "  REC" : "") +
+         (model.time.paused ? "  PAUSED" : "");
+}
+
+std::string AutopilotText(const HudModel& model) {
+  std::string text = "holds";
+  if (model.autopilot.heading_rad) text += " heading " + HeadingText(*model.autopilot.heading_rad);
+  if (model.autopilot.height_m)
+    text += " height " + Joined(HeightText(*model.autopilot.height_m, model.units));
+  return text;
+}
+
+Lines FlightLines(const HudModel& model) {
+  Lines lines{ModeText(model)};
+  if (model.autopilot.heading_rad || model.autopilot.height_m)
+    lines.push_back(AutopilotText(model));
+  if (model.flight.throttle)
+    lines.push_back(fmt::format("throttle {:.0f} %", 100.0 * *model.flight.throttle));
+  if (model.flight.load_factor) lines.push_back(fmt::format("{:.1f} g", *model.flight.load_factor));
+  return lines;
+}
+
+std::string AtText(double elevation_rad, double azimuth_rad) {
+  return fmt::format("{} at {}", DegreesText(elevation_rad), HeadingText(azimuth_rad));
+}
+
+Lines TimeLines(const HudModel& model) {
+  Lines lines{model.time.utc, model.time.local + " " + model.time.zone,
+              "time " + RateText(model.time.rate, model.time.paused),
+              "sun " + AtText(model.sky.sun_elevation_rad, model.sky.sun_azimuth_rad)};
+  if (model.sky.moon) {
+    lines.push_back(fmt::format("moon {}, {:.0f} % lit",
+                                AtText(model.sky.moon->elevation_rad, model.sky.moon->azimuth_rad),
+                                100.0 * model.sky.moon->lit_share));
+  }
+  return lines;
+}
+
+Lines PlaceLines(const HudModel& model) {
+  const HudUnits units = model.units;
+  return {LatitudeText(model.latitude_rad) + "  " + LongitudeText(model.longitude_rad),
+          "over the sea " + Joined(HeightText(model.flight.height_m, units)),
+          "over ground " + Joined(HeightText(model.flight.above_ground_m, units)),
+          "ground speed " + Joined(SpeedText(model.flight.ground_speed_m_per_s, units))};
+}
+
+std::string ExposureText(const HudExposure& exposure) {
+  const std::string how = exposure.locked ? "locked" : "auto";
+  const std::string more =
+      exposure.compensation_ev == 0.0 ? "" : fmt::format(" {:+.1f}", exposure.compensation_ev);
+  return fmt::format("EV {:.1f} {}{}", exposure.ev100, how, more);
+}
+
+std::string FrameText(const HudSpeed& speed) {
+  return fmt::format("{:.1f} ms  {:.0f}/s", speed.frame_ms, 1000.0 / speed.frame_ms);
+}
+
+Lines LightLines(const HudModel& model) {
+  Lines lines;
+  if (model.exposure.cursor_luminance_cd_per_m2)
+    lines.push_back("cursor " + LuminanceText(*model.exposure.cursor_luminance_cd_per_m2));
+  lines.push_back(ExposureText(model.exposure));
+  lines.push_back(fmt::format("visibility {:.3g} km", model.air.visibility_km));
+  lines.push_back(fmt::format("view {:.3g}°", model.flight.fov_rad / kRadiansPerDegree));
+  lines.push_back(model.speed.quality);
+  lines.push_back(FrameText(model.speed));
+  return lines;
+}
+
+double WidestOf(const Canvas& canvas, const Lines& lines) {
+  double widest = 0.0;
+  for (const std::string& line : lines) widest = std::max(widest, canvas.WidthOf(line));
+  return widest;
+}
+
+/// A corner: where its plate's own corner is, and which.
+struct Corner {
+  glm::dvec2 at;
+  bool right, lower;
+};
+
+void DrawBlock(const Canvas& canvas, const Corner& corner, const Lines& lines) {
+  if (lines.empty()) return;
+  const double margin = canvas.Pixels(4.0);
+  const glm::dvec2 size{WidestOf(canvas, lines) + 2.0 * margin,
+                        static_cast<double>(lines.size()) * canvas.LineHeight() + 2.0 * margin};
+  const glm::dvec2 from{corner.at.x - (corner.right ? size.x : 0.0),
+                        corner.at.y - (corner.lower ? size.y : 0.0)};
+  canvas.Plate(from, from + size);
+  const double x = corner.right ? from.x + size.x - margin : from.x + margin;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    canvas.TextOnPlate({x, from.y + margin + static_cast<double>(i) * canvas.LineHeight()},
+                       corner.right ? HudAlign::kRight : HudAlign::kLeft, lines[i],
+                       canvas.colours().text);
+  }
+}
+
+void DrawLineOfMessage(const Canvas& canvas, const HudFrame& frame, double y,
+                       const HudMessage& message) {
+  const double opacity = MessageOpacity(message.age_s);
+  const HudColour& colour = message.is_warning ? canvas.colours().warning : canvas.colours().text;
+  const double half = 0.5 * canvas.WidthOf(message.text) + canvas.Pixels(6.0);
+  const double middle = frame.middle().x;
+  if (opacity == 1.0) canvas.Plate({middle - half, y}, {middle + half, y + canvas.LineHeight()});
+  canvas.TextOnPlate({middle, y}, HudAlign::kMiddle, message.text, Faded(colour, opacity));
+}
+
+constexpr double kBarHeight = 5.0;  // units
+
+void DrawProgress(const Canvas& canvas, const HudFrame& frame, double y,
+                  const HudProgress& progress) {
+  const std::string text = fmt::format("{} {:.0f} %", progress.text, 100.0 * progress.share);
+  DrawLineOfMessage(canvas, frame, y, {text, 0.0, false});
+  const double half = std::min(canvas.Pixels(140.0), 0.3 * frame.width);
+  const double left = frame.middle().x - half;
+  const double top = y + canvas.LineHeight();
+  const double bottom = top + canvas.Pixels(kBarHeight);
+  canvas.Fill({left, top}, {left + 2.0 * half, bottom}, canvas.colours().panel);
+  canvas.Fill({left, top}, {left + 2.0 * half * std::clamp(progress.share, 0.0, 1.0), bottom},
+              canvas.colours().accent);
+}
+
+}  // namespace
+
+CornerTexts CornerTextsOf(const HudModel& model) {
+  return {FlightLines(model), TimeLines(model), PlaceLines(model), LightLines(model)};
+}
+
+CornerTexts ShortCornerTextsOf(const HudModel& model) {
+  return {{ModeText(model)},
+          {model.time.local, RateText(model.time.rate, model.time.paused)},
+          {LatitudeText(model.latitude_rad), LongitudeText(model.longitude_rad)},
+          {ExposureText(model.exposure), FrameText(model.speed)}};
+}
+
+void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts) {
+  const double edge = canvas.Pixels(3.0);
+  const double left = edge, right = frame.width - edge;
+  const double top = frame.top + edge, bottom = frame.height - edge;
+  DrawBlock(canvas, {{left, top}, false, false}, texts.upper_left);
+  DrawBlock(canvas, {{right, top}, true, false}, texts.upper_right);
+  DrawBlock(canvas, {{left, bottom}, false, true}, texts.lower_left);
+  DrawBlock(canvas, {{right, bottom}, true, true}, texts.lower_right);
+}
+
+double MessageOpacity(double age_s) {
+  constexpr double kFadesFrom_s = 6.0, kGone_s = 8.0;
+  return std::clamp((kGone_s - age_s) / (kGone_s - kFadesFrom_s), 0.0, 1.0);
+}
+
+void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
+  constexpr double kLinesBelow = 3.8;  // the corners' texts of small pictures are lower
+  double y = std::min(0.86 * frame.height, frame.height - kLinesBelow * canvas.LineHeight());
+  if (model.flight.stall) {
+    DrawLineOfMessage(canvas, frame, 0.36 * frame.height, {"STALL", 0.0, true});
+  }
+  if (model.progress) {
+    DrawProgress(canvas, frame, y - canvas.Pixels(kBarHeight), *model.progress);
+    y -= canvas.LineHeight() + canvas.Pixels(kBarHeight);
+  }
+  for (std::size_t i = model.messages.size(); i-- > 0;) {
+    if (MessageOpacity(model.messages[i].age_s) == 0.0) continue;
+    DrawLineOfMessage(canvas, frame, y, model.messages[i]);
+    y -= canvas.LineHeight();
+  }
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/hud/day_strip.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/text/error.h"
+#include "lut/picture/image.h"
+#include "lut/picture/tone_curve.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kDay_s = 86400.0;
+constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
+constexpr int kRows = kElevations_deg.size();
+
+/// Light along rays, in cd/m^2.
+class Sky {
+ public:
+  explicit Sky(const DayStripRequest& request)
+      : request_(request),
+        medium_(request.air->medium()),
+        colour_(medium_.wavelengths_nm),
+        altitude_m_(std::max(request.place.height_m, 0.0)) {}
+
+  /// @param elevation_deg  over the edge of the sea.
+  [[nodiscard]] std::array<double, 3> LinearSrgb(double elevation_deg,
+                                                 const SunPosition& sun) const {
+    const ViewRay ray = RayFromAngles(altitude_m_, 90.0 - elevation_deg + Dip_deg(), 0.0,
+                                      90.0 - sun.elevation_rad / kRadiansPerDegree);
+    const RaySamples<float> samples = request_.air->Sample(ray, {.dark_samples = true});
+    const Bands<float> once = request_.air->Inscatter(request_.air->Scatter(samples), ray.nu);
+    const Bands<float> more = request_.diffuse->InscatterAlong(samples, ray.nu);
+    std::vector<double> radiance(once.count);
+    for (std::size_t band = 0; band < once.count; ++band) {
+      radiance[band] = static_cast<double>(once[band] + more[band]) *
+                       medium_.solar_irradiance[band] / (sun.distance_au * sun.distance_au);
+    }
+    return colour_.LinearSrgb(radiance);
+  }
+
+ private:
+  [[nodiscard]] double Dip_deg() const {
+    return std::acos(medium_.planet_radius_m / (medium_.planet_radius_m + altitude_m_)) /
+           kRadiansPerDegree;
+  }
+
+  const DayStripRequest& request_;
+  const Medium& medium_;
+  BandColour colour_;
+  double altitude_m_;
+};
+
+using Column = std::array<std::array<double, 3>, kRows>;
+
+double ShownEv100(const Column& column) {
+  constexpr double kShareOfMeter = 0.8, kBrightDayEv100 = 14.0;
+  double mean = 0.0;
+  for (const auto& rgb : column) mean += shared::Luminance(rgb[0], rgb[1], rgb[2]) / kRows;
+  const double darkest = std::exp2(kDarkestEv100) * kMeterConstant / 100.0;
+  const double metered = std::log2(100.0 * std::max(mean, darkest) / kMeterConstant);
+  return kShareOfMeter * metered + (1.0 - kShareOfMeter) * kBrightDayEv100;
+}
+
+std::array<float, 3> DisplayCode(const std::array<double, 3>& rgb, double ev100) {
+  const Rgb<double> light = DisplayLight<double>(ToneCurve::kAgx, rgb, ExposureScale(ev100));
+  std::array<float, 3> code{};
+  for (std::size_t c = 0; c < 3; ++c)
+    code[c] = static_cast<float>(shared::SrgbCode(std::clamp(light[c], 0.0, 1.0)));
+  return code;
+}
+
+bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b) {
+  constexpr double kAngle_rad = 0.5 * kRadiansPerDegree;
+  constexpr double kHeight_m = 200.0, kShareOfHeight = 0.1;
+  const double apart_rad =
+      std::max(std::abs(a.place.latitude_rad - b.place.latitude_rad),
+               std::abs(std::remainder(a.place.longitude_rad - b.place.longitude_rad, 2.0 * kPi)) *
+                   std::cos(a.place.latitude_rad));
+  return a.air == b.air && a.diffuse == b.diffuse && a.columns == b.columns && a.begin == b.begin &&
+         apart_rad < kAngle_rad &&
+         std::abs(a.place.height_m - b.place.height_m) <
+             std::max(kHeight_m, kShareOfHeight * std::abs(a.place.height_m));
+}
+
+}  // namespace
+
+UtcInstant InstantInStrip(const UtcInstant& begin, double day_fraction) {
+  return AddSeconds(begin, day_fraction * kDay_s);
+}
+
+double FractionInStrip(const UtcInstant& begin, const UtcInstant& instant) {
+  return SecondsBetween(begin, instant) / kDay_s;
+}
+
+UtcInstant SolarMidnightBefore(const UtcInstant& now, double longitude_rad) {
+  const double offset_s = longitude_rad / (2.0 * kPi) * kDay_s;
+  const UtcInstant solar = AddSeconds(now, offset_s);
+  // Whole seconds, so that a day has one beginning.
+  return AddSeconds(UtcInstant{solar.modified_julian_day, 0.0}, -std::round(offset_s));
+}
+
+DayStrip MakeDayStrip(const DayStripRequest& request) {
+  ALPENGLOW_ENSURE(request.columns, >=, 2);
+  DayStrip strip;
+  strip.columns = request.columns;
+  strip.rows = kRows;
+  strip.begin = request.begin;
+  strip.colours.resize(static_cast<std::size_t>(request.columns) * kRows);
+  const Sky sky(request);
+  for (int x = 0; x < request.columns; ++x) {
+    const UtcInstant instant = InstantInStrip(request.begin, (x + 0.5) / request.columns);
+    const SunPosition sun = ApparentSunAt(request.place, instant);
+    strip.sun_elevation_rad.push_back(sun.elevation_rad);
+    Column column;
+    for (std::size_t row = 0; row < kRows; ++row)
+      column[row] = sky.LinearSrgb(kElevations_deg[row], sun);
+    const double ev100 = ShownEv100(column);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      strip.colours[row * static_cast<std::size_t>(request.columns) + static_cast<std::size_t>(x)] =
+          DisplayCode(column[row], ev100);
+    }
+  }
+  return strip;
+}
+
+void DayStrips::Want(const DayStripRequest& request) {
+  if (asked_ && LooksTheSame(*asked_, request)) return;
+  asked_ = request;
+  job_.Ask(request);
+}
+
+const DayStrip* DayStrips::Newest() {
+  if (auto made = job_.Take()) newest_ = std::move(made);
+  return newest_ ? &*newest_ : nullptr;
+}
+
+}  // namespace alpenglow

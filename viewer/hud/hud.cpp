@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/hud/hud.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "atmosphere/text/error.h"
+#include "viewer/hud/draw_list_painter.h"
+#include "viewer/hud/hud_font.h"
+#include "viewer/hud/hud_style.h"
+#include "viewer/hud/instruments.h"
+#include "viewer/hud/tell_input.h"
+
+namespace alpenglow {
+namespace {
+
+/// What Dear ImGui remembers from frame to frame.
+class Context {
+ public:
+  Context() : context_(ImGui::CreateContext()) {
+    ImGui::SetCurrentContext(context_);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // nothing is written behind the pilot's back
+    io.LogFilename = nullptr;
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    io.ConfigWindowsMoveFromTitleBarOnly = true;
+  }
+  ~Context() { ImGui::DestroyContext(context_); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  /// Dear ImGui works on one context at a time.
+  void MakeCurrent() const { ImGui::SetCurrentContext(context_); }
+
+ private:
+  ImGuiContext* context_;
+};
+
+}  // namespace
+
+struct Hud::State {
+  Context context;
+  DrawListPainter painter;
+  bool laid_out = false;  // the last frame left something to draw
+};
+
+Hud::Hud(const HudSettings& settings)
+    : state_(std::make_unique<State>()),
+      font_(settings.font ? settings.font : InstalledFont()),
+      choice_(settings.theme) {
+  SetScale(settings.scale);
+}
+
+Hud::~Hud() = default;
+
+void Hud::SetScale(double scale) {
+  constexpr double kLeast = 0.5, kMost = 8.0;
+  if (!(scale >= kLeast && scale <= kMost)) {
+    throw InputError(
+        fmt::format("the instruments' scale is {}; it must lie in [{}, {}]", scale, kLeast, kMost));
+  }
+  state_->context.MakeCurrent();
+  scale_ = scale;
+  LoadFont(*ImGui::GetIO().Fonts, scale, font_);
+  state_->painter.UploadAtlas(*ImGui::GetIO().Fonts);
+  ApplyTheme(theme_);
+}
+
+void Hud::ApplyTheme(HudTheme theme) {
+  theme_ = theme;
+  ApplyStyle(theme, scale_);
+}
+
+HudRequest Hud::Update(const HudModel& model, const HudChoices& choices, const DayStrip* strip,
+                       const HudInput& input) {
+  state_->context.MakeCurrent();
+  state_->laid_out = visible_ && input.width > 0 && input.height > 0;
+  if (!state_->laid_out) return {};
+  const HudTheme theme = ThemeFor(choice_, model.exposure.ev100, theme_);
+  if (theme != theme_) ApplyTheme(theme);
+  TellInput(ImGui::GetIO(), input);
+  ImGui::NewFrame();
+  const Canvas canvas(*ImGui::GetBackgroundDrawList(), ColoursOf(theme_), scale_);
+  DrawInstruments(canvas, {input.width, input.height, panels_.MenuHeight()}, model);
+  const HudRequest request =
+      panels_.Draw({model, choices, strip, scale_, input.width - 2.0 * kPanelMargin * scale_});
+  ImGui::Render();
+  return request;
+}
+
+void Hud::Paint(GLuint framebuffer) const {
+  if (!state_->laid_out || !visible_) return;
+  state_->context.MakeCurrent();
+  state_->painter.Paint(*ImGui::GetDrawData(), framebuffer);
+}
+
+bool Hud::WantsMouse() const {
+  state_->context.MakeCurrent();
+  return state_->laid_out && ImGui::GetIO().WantCaptureMouse;
+}
+
+bool Hud::WantsKeyboard() const {
+  state_->context.MakeCurrent();
+  return state_->laid_out && ImGui::GetIO().WantTextInput;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// What was asked for in panels during one frame: each value at most once, most of the time none.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "viewer/hud/hud_model.h"
+
+namespace alpenglow {
+
+/// Degrees and metres as they were typed; the panel keeps them in range.
+struct HudPlaceRequest {
+  double latitude_deg = 0.0;   // [-90, 90]
+  double longitude_deg = 0.0;  // [-180, 180]
+  double height_m = 0.0;       // over the ellipsoid
+};
+
+struct HudTimeRequest {
+  std::optional<std::string> instant = {};  // as typed; ParseInstant (time.h) is its judge
+  std::optional<double> day_fraction = {};  // a click into the strip of the day, [0, 1]
+  std::optional<std::string> moment = {};   // one of HudChoices::moments
+  std::optional<double> rate = {};          // [-3600, 3600]
+  std::optional<bool> paused = {};
+};
+
+struct HudAirRequest {
+  std::optional<std::string> planet = {};
+  std::optional<std::string> mixture = {};
+  std::optional<double> visibility_km = {};
+  std::optional<double> aerosol_scale = {};
+  std::optional<double> ozone_du = {};
+  std::optional<double> ground_albedo = {};
+};
+
+/// Hold a value, or let it go.
+struct HudHold {
+  std::optional<double> value = {};
+};
+
+struct HudLampRequest {
+  std::size_t lamp = 0;  // in HudChoices::lamps
+  bool is_on = true;
+};
+
+enum class HudPictureKind { kPng, kExr };
+
+struct HudCaptureRequest {
+  HudPictureKind kind = HudPictureKind::kPng;
+  int width = 0;  // pixels, [1, kLargestImageSide]
+  int height = 0;
+  bool with_hud = false;
+};
+
+struct HudRequest {
+  std::optional<HudPlaceRequest> place = {};
+  std::optional<std::string> named_place = {};  // one of HudChoices::places
+  HudTimeRequest time;
+  HudAirRequest air;
+  std::optional<HudLampRequest> lamp = {};
+  std::optional<std::string> tone_curve = {};
+  std::optional<bool> exposure_locked = {};
+  std::optional<double> ev100 = {};  // and locked at it
+  std::optional<double> compensation_ev = {};
+  std::optional<std::string> quality = {};
+  std::optional<HudHold> hold_heading_rad = {};
+  std::optional<HudHold> hold_height_m = {};
+  std::optional<HudCaptureRequest> capture = {};
+  std::optional<bool> record = {};  // begin or end
+  std::optional<HudUnits> units = {};
+  bool quit = false;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Colours of instruments and panels: bright ones for the day, dim red and amber ones that leave the
+// eye adapted to the dark.
+#pragma once
+
+#include <array>
+
+namespace alpenglow {
+
+enum class HudTheme { kDay, kNight };
+enum class HudThemeChoice { kAuto, kDay, kNight };
+
+/// Red, green, blue of the display and opacity, each in [0, 1].
+using HudColour = std::array<float, 4>;
+
+struct HudColours {
+  HudColour text, quiet, accent, warning;  // what is written and drawn
+  HudColour shadow;                        // around it
+  HudColour plate;                         // behind it
+  HudColour panel, control, active;        // of panels
+};
+[[nodiscard]] const HudColours& ColoursOf(HudTheme theme);
+
+/// The theme of a choice; kAuto takes the night's when the exposure falls below the end of civil
+/// twilight, EV 1, and the day's again above EV 3, so that no dusk flickers.
+[[nodiscard]] HudTheme ThemeFor(HudThemeChoice choice, double ev100, HudTheme before);
+
+}  // namespace alpenglow

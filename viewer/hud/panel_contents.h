@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What stands on each panel: draws its controls into the window of Dear ImGui that is begun and
+// returns the request with what was asked for there.
+#pragma once
+
+#include <array>
+
+#include "viewer/hud/day_strip.h"
+#include "viewer/hud/hud_model.h"
+#include "viewer/hud/hud_request.h"
+
+namespace alpenglow {
+
+inline constexpr double kPanelMargin = 10.0;  // to the edges of the picture [units]
+
+/// What panels show.
+struct PanelView {
+  const HudModel& model;
+  const HudChoices& choices;
+  const DayStrip* strip;  // null until there is one
+  double scale;           // pixels a unit
+  double widest_px;       // that a panel may become
+};
+
+/// Texts and numbers that are typed before they are asked for.
+struct PanelTyping {
+  std::array<char, 64> instant{};
+  std::array<double, 3> place{};  // latitude and longitude [deg], height [m]
+  bool is_place_typed = false;    // else it follows the eye
+  std::array<int, 2> picture_size{1920, 1080};
+  bool with_hud = false;
+};
+
+[[nodiscard]] HudRequest WithPlaceAndTime(const PanelView& view, PanelTyping& typing,
+                                          HudRequest request);
+[[nodiscard]] HudRequest WithAir(const PanelView& view, HudRequest request);
+[[nodiscard]] HudRequest WithLights(const PanelView& view, HudRequest request);
+[[nodiscard]] HudRequest WithExposure(const PanelView& view, HudRequest request);
+[[nodiscard]] HudRequest WithFlight(const PanelView& view, HudRequest request);
+[[nodiscard]] HudRequest WithTables(const PanelView& view, HudRequest request);
+[[nodiscard]] HudRequest WithCapture(const PanelView& view, PanelTyping& typing,
+                                     HudRequest request);
+void ShowHelp(const PanelView& view);
+
+}  // namespace alpenglow

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Panels: what the pilot sets by mouse, and what is looked up; and the menu that opens them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "viewer/hud/panel_contents.h"
+
+namespace alpenglow {
+
+enum class HudPanel {
+  kPlaceAndTime,
+  kAir,
+  kLights,
+  kExposure,
+  kFlight,
+  kTables,
+  kCapture,
+  kHelp,
+  kLeave
+};
+inline constexpr std::size_t kHudPanels = 9;
+
+/// Which panels are open, and what is being typed into them. Works on the Dear ImGui context that
+/// is current, between its NewFrame and Render.
+class Panels {
+ public:
+  void Toggle(HudPanel panel) { Open(panel) = !Open(panel); }
+  [[nodiscard]] bool IsOpen(HudPanel panel) const { return open_[static_cast<std::size_t>(panel)]; }
+  /// Whether any was open.
+  bool CloseAll();
+  void ToggleMenu() { menu_ = !menu_; }
+  /// Pixels that the menu takes of the upper edge.
+  [[nodiscard]] int MenuHeight() const;
+
+  [[nodiscard]] HudRequest Draw(const PanelView& view);
+
+ private:
+  bool& Open(HudPanel panel) { return open_[static_cast<std::size_t>(panel)]; }
+  void DrawMenu();
+  [[nodiscard]] HudRequest DrawPanel(HudPanel panel, const PanelView& view, HudRequest request);
+  [[nodiscard]] HudRequest Contents(HudPanel panel, const PanelView& view, HudRequest request);
+
+  std::array<bool, kHudPanels> open_{};
+  bool menu_ = false;
+  PanelTyping typing_;
+};
+
+}  // namespace alpenglow
