@@ -42,6 +42,13 @@ TEST_F(Glslang, AcceptsEveryShaderOfTheViewer) {
   ExpectAccepted(LightTexts(2), "diffuse_sky.frag.glsl");
   ExpectAccepted(SharedTexts(), "develop.frag.glsl");
   ExpectAccepted({view}, "terrain.vert.glsl");
+  const ShaderPiece air{"air",
+                        "vec4 SingleTo(vec3 direction, float distance_km) {\n"
+                        "  return vec4(distance_km * direction.z);\n}\n"};
+  std::vector<ShaderPiece> shafts = {view, air};
+  for (const char* name : {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl"})
+    shafts.push_back({name, std::string(viewer::EmbeddedText(name))});
+  ExpectAccepted(shafts, "shafts.frag.glsl");
   for (const char* stage : {"average.frag.glsl", "empty.frag.glsl", "full_screen.vert.glsl",
                             "shadow.vert.glsl", "terrain.frag.glsl"}) {
     ExpectAccepted({}, stage);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Shafts as a pass of their own: what shade takes from the rays of every few pixels, for the
+// picture to take between them.
+//
+// In every direction light that is missing runs smoothly over the picture but at the edges of
+// terrain, where it jumps with the distance that rays come. So the map holds both, and the picture
+// takes the mean of what its neighbours say that have come about as far as its own ray
+// (shafts.glsl).
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <optional>
+#include <vector>
+
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/gl/shader.h"
+#include "viewer/shade/shade_texture.h"
+
+namespace alpenglow {
+
+/// Sizes of the pass.
+struct ShaftDetail {
+  int scale = 4;  // a ray for so many pixels across, and up
+  ShadeSteps steps{};
+};
+
+class ShaftPass {
+ public:
+  /// @param air  texts that say what View is and define SingleTo (shade_march.glsl). Their blocks
+  ///             and samplers are for the caller to bind, in program().
+  explicit ShaftPass(std::vector<ShaderPiece> air);
+
+  [[nodiscard]] const ShaderProgram& program() const { return program_; }
+
+  /// Paints for a picture of that size. Only where shade.Shades().
+  /// @param surface_unit  of a map of that size whose fourth component is the distance to terrain
+  ///                      [m], 0 where none is seen.
+  /// @param shade_unit    free.
+  void Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width, int height,
+             int surface_unit, int shade_unit, const ShaftDetail& detail);
+
+  /// Gives a program, which becomes the one in use, what shafts.glsl reads. After Paint.
+  void Bind(const ShaderProgram& picture, int unit) const;
+
+ private:
+  ShaderProgram program_;
+  GlVertexArray no_vertices_;
+  std::optional<RenderTarget> map_;
+  int scale_ = 1;
+};
+
+/// What the fragment shader of a picture needs to ask ShadedSingle.
+[[nodiscard]] std::vector<ShaderPiece> ShaftTexts();
+
+}  // namespace alpenglow

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Light of single scattering that terrain's shade takes from a ray, by steps through a ShadeMap
+// (viewer/shade/shade_map.h).
+//
+// Needs vec4 SingleTo(vec3 direction, float distance_km): sunlight scattered once on the way to a
+// distance in unshaded air.
+
+uniform sampler2D shade_map;  // height of the shade of the disk's middle, half that of its ends [m]
+// From metres around the eye (east, north, up, 1) to the map's coordinates and height in its frame.
+uniform vec4 shade_u, shade_v, shade_z;
+uniform vec2 shade_first;  // first coordinate along u that the map has, and how shade falls before
+uniform vec3 shade_low, shade_high;  // box that holds all shade, in these coordinates
+uniform int shade_pieces;            // of the stretch that may be shaded: one look at SingleTo each
+uniform int shade_steps;             // of a piece: one look at the map each
+
+// Keeps the part of a stretch where a + t b >= 0.
+vec2 KeptWhere(vec2 stretch, float a, float b) {
+  if (b == 0.0) return a < 0.0 ? vec2(1.0, 0.0) : stretch;
+  float t = -a / b;
+  return b > 0.0 ? vec2(max(stretch.x, t), stretch.y) : vec2(stretch.x, min(stretch.y, t));
+}
+
+// A ray in the map's coordinates: place at the eye, and change per metre.
+struct ShadeRay {
+  vec3 eye, slope;
+};
+
+ShadeRay ShadeRayOf(vec3 direction) {
+  return ShadeRay(
+      vec3(shade_u.w, shade_v.w, shade_z.w),
+      vec3(dot(shade_u.xyz, direction), dot(shade_v.xyz, direction), dot(shade_z.xyz, direction)));
+}
+
+// The stretch [m] of a ray that may be shaded; empty where it ends before it begins.
+vec2 ShadeStretch(ShadeRay ray, float length_m) {
+  vec2 stretch = vec2(0.0, length_m);
+  stretch = KeptWhere(stretch, shade_high.z - ray.eye.z, -ray.slope.z);
+  stretch = KeptWhere(stretch, ray.eye.x - shade_low.x, ray.slope.x);
+  stretch = KeptWhere(stretch, shade_high.x - ray.eye.x, -ray.slope.x);
+  stretch = KeptWhere(stretch, ray.eye.y - shade_low.y, ray.slope.y);
+  return KeptWhere(stretch, shade_high.y - ray.eye.y, -ray.slope.y);
+}
+
+// Height over the shade of the disk's middle, and half that of the disk's ends [m].
+vec2 OverShade(ShadeRay ray, float t) {
+  vec3 at = ray.eye + t * ray.slope;
+  vec2 shade = textureLod(shade_map, at.xy, 0.0).xy;
+  float fallen = max(shade_first.x - at.x, 0.0) * shade_first.y;
+  return vec2(at.z - shade.x + fallen, shade.y);
+}
+
+// Integral of the sunlight over an edge, from the disk below it to a height x over it in radii:
+// of 0.5 + 0.7 x - 0.2 x^3, which is SunlightOverEdge (sunlit_path.h) within 0.01.
+float SunlightUpTo(float x) {
+  float s = clamp(x, -1.0, 1.0);
+  return ((-0.05 * s * s + 0.35) * s + 0.5) * s + 0.2 + max(x - 1.0, 0.0);
+}
+
+// Mean share of sunlight that is missing between two places of a ray, heights running evenly.
+float MeanDarkness(vec2 from, vec2 to) {
+  float radius = max(0.5 * (from.y + to.y), 0.01);
+  float x = from.x / radius, y = to.x / radius;
+  float middle = 0.5 * (x + y);
+  // Less apart the difference of the integrals has no digits left.
+  float least = 0.01 * max(1.0, abs(middle));
+  float apart = abs(y - x) < least ? least : y - x;
+  return 1.0 - (SunlightUpTo(middle + 0.5 * apart) - SunlightUpTo(middle - 0.5 * apart)) / apart;
+}
+
+// Distance at a share of a stretch: steps grow threefold along it.
+float ShadeDistance(vec2 stretch, float share) {
+  return stretch.x + (stretch.y - stretch.x) * share * (0.5 + 0.5 * share);
+}
+
+// Light [1/sr per unit irradiance] that shade takes from the ray on its way to a distance.
+vec4 MarchedShade(vec3 direction, float distance_km) {
+  ShadeRay ray = ShadeRayOf(direction);
+  vec2 stretch = ShadeStretch(ray, 1e3 * distance_km);
+  int pieces = stretch.x < stretch.y ? shade_pieces : 0;
+  float share_of_step = 1.0 / float(shade_pieces * shade_steps);
+  vec4 shaded = vec4(0.0);
+  vec4 single = SingleTo(direction, 1e-3 * stretch.x);
+  vec2 over = OverShade(ray, stretch.x);
+  for (int piece = 0; piece < pieces; ++piece) {
+    float dark = 0.0;
+    for (int step = 1; step <= shade_steps; ++step) {
+      float share = float(piece * shade_steps + step) * share_of_step;
+      vec2 next = OverShade(ray, ShadeDistance(stretch, share));
+      dark += MeanDarkness(over, next);
+      over = next;
+    }
+    float end = ShadeDistance(stretch, float(piece + 1) / float(shade_pieces));
+    vec4 farther = SingleTo(direction, 1e-3 * end);
+    shaded += dark / float(shade_steps) * (farther - single);
+    single = farther;
+  }
+  return shaded;
+}
