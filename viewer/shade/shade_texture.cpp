@@ -34,8 +34,8 @@ void ShadeTexture::TakeOver(std::shared_ptr<const ShadeMap> map) {
   lines_sent_ = 0;
 }
 
-void ShadeTexture::Upload(int most_lines, int unit) {
-  if (!coming_.map) return;
+bool ShadeTexture::Upload(int most_lines, int unit) {
+  if (!coming_.map) return false;
   const ShadeMap& map = *coming_.map;
   if (!map.ShadesNothing()) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
@@ -48,9 +48,10 @@ void ShadeTexture::Upload(int most_lines, int unit) {
     lines_sent_ += lines;
     CheckGl("ShadeTexture::Upload");
   }
-  if (lines_sent_ < map.lines) return;
+  if (lines_sent_ < map.lines) return false;
   std::swap(used_, coming_);
   coming_.map = nullptr;
+  return true;
 }
 
 void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4& map_from_eye,

@@ -23,7 +23,8 @@ class ShadeTexture {
   void TakeOver(std::shared_ptr<const ShadeMap> map);
   /// Sends up to so many of its lines, by way of a texture unit; once all are there the map is in use. Nothing to do: nothing
   /// is done.
-  void Upload(int most_lines, int unit);
+  /// Returns whether a map came into use.
+  bool Upload(int most_lines, int unit);
 
   /// Whether there is a map in use, and it shades anything.
   [[nodiscard]] bool Shades() const { return used_.map && !used_.map->ShadesNothing(); }
