@@ -12,6 +12,9 @@ using std::sin;
 using std::sqrt;
 using std::tan;
 
+inline long double atan(long double y, long double x) { return std::atan2(y, x); }
+inline double atan(double y, double x) { return std::atan2(y, x); }
+inline float atan(float y, float x) { return std::atan2(y, x); }
 inline long double max(long double a, long double b) { return a < b ? b : a; }
 inline double max(double a, double b) { return a < b ? b : a; }
 inline float max(float a, float b) { return a < b ? b : a; }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
@@ -132,15 +133,20 @@ void ShadowHeights::Deposit(const TriangleMesh& mesh) {
       Raise(highest_[at][beam], static_cast<float>(std::max(c_a, c_b)));
     }
   };
+  std::vector<Corner> corners(mesh.positions.size());
+  tbb::parallel_for(std::size_t{0}, corners.size(), [&](std::size_t i) {
+    const glm::dvec3 p = ToDouble(mesh.positions[i]);
+    corners[i] = {(glm::dot(p, sunwards_) - first_u_m_) / cell_m_,
+                  (glm::dot(p, across_) - first_v_m_) / cell_m_, p.z};
+  });
   const auto cut = [&](const std::array<std::uint32_t, 3>& triangle) {
-    std::array<Corner, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const glm::dvec3 p = ToDouble(mesh.positions[triangle[k]]);
-      corner[k] = {(glm::dot(p, sunwards_) - first_u_m_) / cell_m_,
-                   (glm::dot(p, across_) - first_v_m_) / cell_m_, p.z};
-    }
-    std::sort(corner.begin(), corner.end(),
-              [](const Corner& a, const Corner& b) { return a.v < b.v; });
+    std::array<Corner, 3> corner{corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
+    const auto put_in_order = [](Corner& a, Corner& b) {
+      if (b.v < a.v) std::swap(a, b);
+    };
+    put_in_order(corner[0], corner[1]);
+    put_in_order(corner[1], corner[2]);
+    put_in_order(corner[0], corner[1]);
     for (double v = std::ceil(corner[0].v); v <= corner[2].v; v += 1.0) {
       if (corner[0].v == corner[2].v) break;
       const Corner other = v < corner[1].v || corner[1].v == corner[2].v
@@ -371,6 +377,53 @@ struct ShadowHeights::Walk {
     }
   }
 };
+
+// c of the beams through a point.
+ShadowHeights::Beams ShadowHeights::BeamsOf(const glm::dvec3& point) const {
+  const double u = glm::dot(point, sunwards_);
+  Beams through;
+  for (std::size_t beam = 0; beam < kBeams; ++beam)
+    through[beam] = static_cast<float>(point.z * cosine_[beam] - u * sine_[beam]);
+  return through;
+}
+
+// C between four nodes; before the first column that of the column.
+ShadowHeights::Beams ShadowHeights::HighestAt(double column, double line) const {
+  const double along = std::max(column, 0.0);
+  const std::size_t i = std::min(static_cast<std::size_t>(along), columns_ - 2);
+  const std::size_t j = std::min(static_cast<std::size_t>(line), lines_ - 2);
+  const auto x = static_cast<float>(along - static_cast<double>(i));
+  const auto y = static_cast<float>(line - static_cast<double>(j));
+  const Beams* low = &highest_[j * columns_ + i];
+  const Beams* high = low + columns_;
+  Beams between;
+  for (std::size_t beam = 0; beam < kBeams; ++beam) {
+    const float a = low[0][beam] + x * (low[1][beam] - low[0][beam]);
+    const float b = high[0][beam] + x * (high[1][beam] - high[0][beam]);
+    between[beam] = a + y * (b - a);
+  }
+  return between;
+}
+
+// Clearances grow from the lowest beam to the highest; where they pass 0 the edge cuts the disk.
+// Beyond the disk the nearer two beams are continued.
+SunOverEdge ShadowHeights::Over(const glm::dvec3& ground) const {
+  constexpr double kOwnCells = 1.0;
+  constexpr SunOverEdge kNothing{1e7, 0.0};
+  if (highest_.empty()) return kNothing;
+  const double column = (glm::dot(ground, sunwards_) - first_u_m_) / cell_m_ + kOwnCells;
+  const double line = (glm::dot(ground, across_) - first_v_m_) / cell_m_;
+  const bool is_beside = line < 0.0 || line > static_cast<double>(lines_ - 1);
+  if (is_beside || column > static_cast<double>(columns_ - 1)) return kNothing;
+  const Beams through = BeamsOf(ground), edge = HighestAt(column, line);
+  std::array<double, kBeams> clearance;
+  for (std::size_t beam = 0; beam < kBeams; ++beam)
+    clearance[beam] = static_cast<double>(through[beam] - edge[beam]);
+  const std::size_t upper = clearance[1] > 0.0 ? 1 : 2;
+  const double over = clearance[upper], under = clearance[upper - 1];
+  const double radius = std::max((over - under) / (HeightOver(upper - 1) - HeightOver(upper)), 0.0);
+  return {over + HeightOver(upper) * radius, radius};
+}
 
 SunlitPath ShadowHeights::Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                 double length_m) const {

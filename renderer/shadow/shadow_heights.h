@@ -24,6 +24,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -33,6 +34,21 @@
 #include "renderer/terrain/mesh.h"
 
 namespace alpenglow {
+
+/// The sun's disk over the edge of terrain that cuts it, as a place of the ground sees it. Their
+/// ratio is the height of the disk's centre over that edge in radii of the disk, see
+/// SunlightOverEdge; interpolated apart they put the edge of a shadow where it lies between places.
+struct SunOverEdge {
+  double clearance_m;  // by how much the beam from the disk's centre passes over the edge; less
+                       // than 0 in its shade
+  double radius_m;     // what the disk's radius is there, not negative; 0 on the edge itself
+
+  /// In radii, between -limit and limit.
+  [[nodiscard]] double Radii(double limit) const {
+    if (std::abs(clearance_m) >= limit * radius_m) return clearance_m < 0.0 ? -limit : limit;
+    return clearance_m / radius_m;
+  }
+};
 
 /// Immutable; safe to ask from many threads.
 class ShadowHeights {
@@ -54,6 +70,10 @@ class ShadowHeights {
   /// The stretches of a ray within [0, length_m] that the sun reaches; length_m may be infinite.
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                  double length_m) const;
+
+  /// What the ground there sees of the sun. Terrain within a cell counts as the place's own
+  /// surface: whether that faces the sun is its normal's to say.
+  [[nodiscard]] SunOverEdge Over(const glm::dvec3& ground) const;
 
   /// Distance of lines and bins [m].
   [[nodiscard]] double cell_m() const { return cell_m_; }
@@ -78,6 +98,8 @@ class ShadowHeights {
   };
   struct Walk;
 
+  [[nodiscard]] Beams BeamsOf(const glm::dvec3& point) const;
+  [[nodiscard]] Beams HighestAt(double column, double line) const;
   void Deposit(const TriangleMesh& mesh);
   void SweepFromTheSun();
   void BuildPyramid();

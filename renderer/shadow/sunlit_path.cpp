@@ -5,18 +5,14 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "renderer/shadow/sunlight_over_edge.h"
 
 namespace alpenglow {
 
 double SunlightOverEdge(double x) {
-  constexpr double kDarkening = 0.6;
   if (x >= 1.0) return 1.0;
   if (x <= -1.0) return 0.0;
-  const double even = kPi - std::acos(x) + x * std::sqrt((1.0 - x) * (1.0 + x));
-  const double darkened = 0.5 * kPi * (x - x * x * x / 3.0 + 2.0 / 3.0);
-  const double passed = (1.0 - kDarkening) * even + kDarkening * darkened;
-  return std::clamp(passed / (kPi * (1.0 - kDarkening / 3.0)), 0.0, 1.0);
+  return shared::SunlightOverEdge(x);
 }
 
 double SunlightAt(const SunlitPath& path, double distance_m) {

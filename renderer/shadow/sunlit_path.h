@@ -10,8 +10,7 @@ namespace alpenglow {
 /// Sunlight that passes a straight edge which cuts the sun's disk, in [0, 1].
 /// @param x  height of the disk's centre over the edge in radii of the disk: 1 and more, all of the
 ///           light passes; -1 and less, none.
-/// Integral of LimbDarkening (sun_disk.h) over the circular segment, with w its coefficient:
-///   ((1 - w) (pi - acos x + x sqrt(1 - x^2)) + w pi / 2 (x - x^3 / 3 + 2 / 3)) / (pi (1 - w / 3)).
+/// Integral of LimbDarkening (sun_disk.h) over the circular segment: sunlight_over_edge.glsl.
 [[nodiscard]] double SunlightOverEdge(double x);
 
 /// A stretch of a ray that sunlight reaches. The height of the disk's centre over the edge that

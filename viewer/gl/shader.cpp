@@ -107,7 +107,8 @@ std::vector<ShaderPiece> SharedTexts() {
     pieces.push_back({name, std::string(lut::EmbeddedText(name))});
   }
   for (const char* name :
-       {"renderer/terrain/lattice_noise.glsl", "renderer/ground/ground_cover.glsl"}) {
+       {"renderer/terrain/lattice_noise.glsl", "renderer/ground/ground_cover.glsl",
+        "renderer/shadow/sunlight_over_edge.glsl"}) {
     pieces.push_back({name, std::string(renderer::EmbeddedText(name))});
   }
   return pieces;

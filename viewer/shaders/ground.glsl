@@ -28,34 +28,56 @@ ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed
   return ivec4(kReliefWave_m, kReliefOctaves, kReliefSeed, 0);
 }
 
-// Noise and its derivatives to the east and north, per cell.
+// A place in its cell of the lattice, and the hashes of the cell's corners.
+struct NoiseCell {
+  vec2 place;
+  uint sw, se, nw, ne;
+};
+
 // @param place  within and beyond `cell`, in cells.
-vec3 GradientNoiseSlope(ivec2 cell, vec2 place, uint seed) {
+NoiseCell NoiseCellAt(ivec2 cell, vec2 place, uint seed) {
   vec2 whole = floor(place);
-  vec2 d = place - whole;
   uvec2 at = uvec2(cell + ivec2(whole));
-  uint sw = LatticePoint(at.x, at.y, seed);
-  uint se = LatticePoint(at.x + 1u, at.y, seed);
-  uint nw = LatticePoint(at.x, at.y + 1u, seed);
-  uint ne = LatticePoint(at.x + 1u, at.y + 1u, seed);
-  return vec3(NoiseInCell(sw, se, nw, ne, d.x, d.y), NoiseSlopeEast(sw, se, nw, ne, d.x, d.y),
-              NoiseSlopeNorth(sw, se, nw, ne, d.x, d.y));
+  return NoiseCell(place - whole, LatticePoint(at.x, at.y, seed),
+                   LatticePoint(at.x + 1u, at.y, seed), LatticePoint(at.x, at.y + 1u, seed),
+                   LatticePoint(at.x + 1u, at.y + 1u, seed));
 }
 
-// The octaves that a footprint keeps, with their derivatives to the east and north [1/m].
-vec3 DetailNoiseSlope(vec2 offset, int family, float footprint) {
-  vec3 sum = vec3(0.0);
+NoiseCell OctaveCell(vec2 offset, int family, float wavelength, int cells, uint seed) {
+  vec2 place = noise_place[family].xy * float(cells) + offset / wavelength;
+  return NoiseCellAt(ivec2(noise_cell[family].xy) * cells, place, seed);
+}
+
+// The octaves that a footprint keeps. All are summed: software drivers have no early end of loops.
+float DetailNoise(vec2 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
+  float sum = 0.0;
   float amplitude = 1.0;
   float wavelength = float(of.x);
   int cells = 1;
   for (int octave = 0; octave < of.y; ++octave) {
-    float kept = OctaveShare(wavelength, footprint);
-    if (kept == 0.0) break;
-    vec2 place = noise_place[family].xy * float(cells) + offset / wavelength;
-    vec3 noise =
-        GradientNoiseSlope(ivec2(noise_cell[family].xy) * cells, place, uint(of.z + octave));
-    sum += kept * amplitude * vec3(noise.x, noise.yz / wavelength);
+    NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
+    sum += OctaveShare(wavelength, footprint) * amplitude *
+           NoiseOfHashes(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y);
+    amplitude *= 0.5;
+    wavelength *= 0.5;
+    cells *= 2;
+  }
+  return sum;
+}
+
+// Its derivatives to the east and north [1/m].
+vec2 DetailSlope(vec2 offset, int family, float footprint) {
+  ivec4 of = NoiseOf(family);
+  vec2 sum = vec2(0.0);
+  float amplitude = 1.0;
+  float wavelength = float(of.x);
+  int cells = 1;
+  for (int octave = 0; octave < of.y; ++octave) {
+    NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
+    sum += OctaveShare(wavelength, footprint) * (amplitude / wavelength) *
+           vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),
+                SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
     amplitude *= 0.5;
     wavelength *= 0.5;
     cells *= 2;
@@ -65,8 +87,8 @@ vec3 DetailNoiseSlope(vec2 offset, int family, float footprint) {
 
 // @param altitude [m]; normal_up of the mesh's normal.
 vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
-  float broad = DetailNoiseSlope(offset, BROAD, footprint).x;
-  float fine = DetailNoiseSlope(offset, FINE, footprint).x;
+  float broad = DetailNoise(offset, BROAD, footprint);
+  float fine = DetailNoise(offset, FINE, footprint);
   float wavering = WaveringAltitude(altitude, broad, fine);
   float level = WaveringLevel(normal_up, broad, fine);
   float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(level));
@@ -84,7 +106,7 @@ vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint)
 // The normal with the relief that the mesh does not have.
 vec3 DetailedNormal(vec2 offset, vec3 normal, float footprint) {
   if (cover_lines.z == 0.0) return normal;
-  vec2 slope = float(kReliefHeight_m) * DetailNoiseSlope(offset, RELIEF, footprint).yz;
+  vec2 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, footprint);
   vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz;
   return normalize(normal + tilt * max(dot(normal, mesh_up.xyz), 0.0));
 }

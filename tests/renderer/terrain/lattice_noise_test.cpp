@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/terrain/lattice_text.h"
+
 namespace alpenglow {
 namespace {
 
@@ -18,6 +20,22 @@ TEST(LatticeNoise, SlopesAreTheDifferencesOfNearbyValues) {
     EXPECT_NEAR(noise.by_x, by_x / (2.0 * kStep), 1e-7)
         << "step^2 times the third derivative, which jumps across lattice lines";
     EXPECT_NEAR(noise.by_y, by_y / (2.0 * kStep), 1e-7);
+  }
+}
+
+TEST(LatticeNoise, WithFewerOperationsIsTheSameNoise) {
+  for (int i = 0; i < 200; ++i) {
+    const auto bits = static_cast<std::uint32_t>(i);
+    const std::uint32_t sw = shared::MixedBits(bits), se = shared::MixedBits(sw);
+    const std::uint32_t nw = shared::MixedBits(se), ne = shared::MixedBits(nw);
+    const double dx = 0.0049 * i, dy = 1.0 - 0.0037 * i;
+    EXPECT_NEAR(shared::NoiseOfHashes(sw, se, nw, ne, dx, dy),
+                shared::NoiseInCell(sw, se, nw, ne, dx, dy), 1e-14)
+        << "another order of the same sums";
+    EXPECT_NEAR(shared::SlopeOfHashesEast(sw, se, nw, ne, dx, dy),
+                shared::NoiseSlopeEast(sw, se, nw, ne, dx, dy), 1e-14);
+    EXPECT_NEAR(shared::SlopeOfHashesNorth(sw, se, nw, ne, dx, dy),
+                shared::NoiseSlopeNorth(sw, se, nw, ne, dx, dy), 1e-14);
   }
 }
 

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Time of the light on the viewer's ground: a position of the sun prepared, and vertices lit, on
+// one thread. Run by hand; results are in README.md.
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "renderer/terrain/built_in_range.h"
+#include "viewer/ground/lit_ground.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDegree, 0.0};
+
+const std::shared_ptr<const GroundSite>& TheSite() {
+  static const std::shared_ptr<const GroundSite> kSite = [] {
+    const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
+    SolvedAir air;
+    air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
+    air.diffuse = std::make_shared<const DiffuseLight>(medium);
+    return std::make_shared<const GroundSite>(
+        GroundOf(BuiltInRange(kPlace), LocalFrame(kWgs84, kPlace)), GroundCover{}, nullptr,
+        std::move(air));
+  }();
+  return kSite;
+}
+
+Lighting SunAt(double elevation_deg) {
+  SunPosition sun{};
+  sun.elevation_rad = elevation_deg * kRadiansPerDegree;
+  sun.azimuth_rad = 2.0;
+  sun.angular_radius_rad = 0.00465;
+  sun.distance_au = 1.0;
+  return LightingOf(sun, ParseInstant("2026-03-21T12:00:00Z"), kPlace.latitude_rad,
+                    TheSite()->medium());
+}
+
+void ASunPrepared(benchmark::State& state) {
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  (void)TheSite();
+  for (auto unused : state)
+    benchmark::DoNotOptimize(LitGround(TheSite(), SunAt(static_cast<double>(state.range(0)))));
+}
+BENCHMARK(ASunPrepared)->Arg(30)->Arg(5)->Unit(benchmark::kMillisecond);
+
+void SkyOfASunPrepared(benchmark::State& state) {
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  (void)TheSite();
+  const Lighting light = SunAt(10.0);
+  for (auto unused : state) benchmark::DoNotOptimize(TheSite()->Under(light));
+}
+BENCHMARK(SkyOfASunPrepared)->Unit(benchmark::kMillisecond);
+
+// By the distance of its lines [m].
+void ShadowPrepared(benchmark::State& state) {
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  const Lighting light = SunAt(10.0);
+  ShadowHeights::Options options;
+  options.cell_m = static_cast<double>(state.range(0));
+  for (auto unused : state) {
+    benchmark::DoNotOptimize(ShadowHeights(TheSite()->ground().terrain->mesh(), light.to_sun,
+                                           light.sun_radius_rad, options));
+  }
+}
+BENCHMARK(ShadowPrepared)->Arg(0)->Arg(60)->Arg(90)->Arg(120)->Unit(benchmark::kMillisecond);
+
+void VerticesLit(benchmark::State& state) {
+  const LitGround lit(TheSite(), SunAt(10.0));
+  const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
+  std::vector<GroundVertex> vertices;
+  for (std::size_t i = 0; i < 160000; ++i) {
+    const std::size_t at = i * (mesh.positions.size() / 160000);
+    vertices.push_back({mesh.positions[at], mesh.normals[at]});
+  }
+  for (auto unused : state) benchmark::DoNotOptimize(lit.LightOf(vertices));
+}
+BENCHMARK(VerticesLit)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace alpenglow

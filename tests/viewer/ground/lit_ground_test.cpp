@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// Light on the land as vertices have it and triangles interpolate it, against rays and against the
+// light of every place of its own.
+#include "viewer/ground/lit_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/number/halton.h"
+#include "atmosphere/sun/sun_disk.h"
+#include "tests/viewer/ground/rough_site.h"
+
+namespace alpenglow {
+namespace {
+
+const std::shared_ptr<const GroundSite>& TheSite() {
+  static const std::shared_ptr<const GroundSite> site = tests::RoughSite();
+  return site;
+}
+
+/// A place within a triangle, and what its vertices' light makes of it.
+struct Interpolated {
+  glm::dvec3 normal{0.0};
+  double x = 0.0, y = 0.0;  // of the place [m]
+  double sun_x = 0.0;
+  double sky = 0.0;  // in the second band
+};
+
+Interpolated PlaceOfCase(const LitGround& lit, int number) {
+  const TriangleMesh& mesh = lit.site().ground().terrain->mesh();
+  const auto triangles = static_cast<double>(mesh.triangles.size());
+  const auto& triangle = mesh.triangles[static_cast<std::size_t>(Halton(number, 2) * triangles)];
+  double a = Halton(number, 3), b = Halton(number, 5);
+  if (a + b > 1.0) {
+    a = 1.0 - a;
+    b = 1.0 - b;
+  }
+  const std::array<double, 3> weight{1.0 - a - b, a, b};
+  Interpolated place;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const GroundVertex vertex{mesh.positions[triangle[k]], mesh.normals[triangle[k]]};
+    const VertexLight light = lit.At(vertex);
+    for (const glm::length_t axis : {0, 1, 2}) {
+      place.normal[axis] +=
+          weight[k] * static_cast<double>(vertex.normal[static_cast<std::size_t>(axis)]);
+    }
+    place.x += weight[k] * static_cast<double>(vertex.position_m[0]);
+    place.y += weight[k] * static_cast<double>(vertex.position_m[1]);
+    place.sun_x += weight[k] * static_cast<double>(light.sun_x);
+    place.sky += weight[k] * static_cast<double>(light.sky[1]);
+  }
+  place.normal = glm::normalize(place.normal);
+  return place;
+}
+
+TerrainHit GroundAt(double x, double y) {
+  return *TheSite()->ground().terrain->Intersect({x, y, 9000.0}, {0.0, 0.0, -1.0});
+}
+
+/// The share of the disk's light that reaches a place, by rays.
+double SunlightByRays(const LitGround& lit, const TerrainHit& at) {
+  constexpr int kRays = 24;
+  const glm::dvec3& sun = lit.lighting().to_sun;
+  const glm::dvec3 side = glm::normalize(glm::cross(sun, glm::dvec3(0.3, -0.5, 0.8)));
+  const glm::dvec3 other = glm::cross(sun, side);
+  double light = 0.0, all = 0.0;
+  for (int i = 0; i < kRays; ++i) {
+    const double rho = std::sqrt((i + 0.5) / kRays), angle = 2.0 * kPi * Halton(i + 1, 2);
+    const glm::dvec3 d =
+        glm::normalize(sun + rho * lit.lighting().sun_radius_rad *
+                                 (std::cos(angle) * side + std::sin(angle) * other));
+    all += LimbDarkening(rho);
+    if (!TheSite()->ground().terrain->Occluded(at.smooth_point, at.geometric_normal, d,
+                                               std::numeric_limits<double>::infinity()))
+      light += LimbDarkening(rho);
+  }
+  return light / all;
+}
+
+TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
+  for (const double elevation_deg : {30.0, 10.0, 4.0}) {
+    const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
+    int places = 0, wrong = 0, shaded = 0;
+    double sum2 = 0.0;
+    for (int i = 1; i <= 4000; ++i) {
+      const Interpolated place = PlaceOfCase(lit, i);
+      const double incidence = glm::dot(place.normal, lit.lighting().to_sun);
+      if (incidence <= 0.0) continue;
+      const double by_rays = SunlightByRays(lit, GroundAt(place.x, place.y));
+      const double error = SunlightOverEdge(place.sun_x) - by_rays;
+      ++places;
+      if (by_rays < 0.5) ++shaded;
+      if (std::abs(error) > 0.5) ++wrong;
+      sum2 += incidence * error * incidence * error;
+    }
+    EXPECT_GT(shaded, places / 200) << "what is asked";
+    EXPECT_LT(wrong, places / 100) << "share of places lit or shaded wrongly, " << elevation_deg;
+    EXPECT_LT(std::sqrt(sum2 / places), 0.02) << "of sunlight across its beams";
+  }
+}
+
+TEST(LitGround, SkyBetweenVerticesIsThatOfThePlace) {
+  const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 20.0));
+  double sum2 = 0.0;
+  constexpr int kPlaces = 500;
+  for (int i = 1; i <= kPlaces; ++i) {
+    const Interpolated place = PlaceOfCase(lit, i);
+    const TerrainHit hit = GroundAt(place.x, place.y);
+    GroundVertex own{};
+    for (const glm::length_t axis : {0, 1, 2}) {
+      const auto k = static_cast<std::size_t>(axis);
+      own.position_m[k] = static_cast<float>(hit.smooth_point[axis]);
+      own.normal[k] = static_cast<float>(place.normal[axis]);
+    }
+    const double error = place.sky / static_cast<double>(lit.At(own).sky[1]) - 1.0;
+    sum2 += error * error / kPlaces;
+  }
+  EXPECT_LT(std::sqrt(sum2), 0.03);
+}
+
+TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
+  for (const double elevation_deg : {40.0, 5.0, -3.0}) {
+    const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
+    const glm::dvec3& to_sun = lit.lighting().to_sun;
+    const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
+    const auto open = [&](const glm::dvec3& n) {
+      return static_cast<double>(lit.tilt().level[1]) +
+             static_cast<double>(lit.tilt().up[1]) * n.z +
+             static_cast<double>(lit.tilt().sunward[1]) * glm::dot(n, sunward);
+    };
+    double sum2 = 0.0, without2 = 0.0;
+    constexpr int kPlaces = 1000;
+    for (int i = 1; i <= kPlaces; ++i) {
+      const Interpolated place = PlaceOfCase(lit, i);
+      const TerrainHit hit = GroundAt(place.x, place.y);
+      const glm::dvec3 relief = MountainSurface::DetailedNormal(
+          TheSite()->geometry().GroundAt(hit.smooth_point, 1.0), place.normal);
+      const auto sky = [&](const glm::dvec3& n) {
+        GroundVertex vertex{};
+        for (const glm::length_t axis : {0, 1, 2}) {
+          const auto k = static_cast<std::size_t>(axis);
+          vertex.position_m[k] = static_cast<float>(hit.smooth_point[axis]);
+          vertex.normal[k] = static_cast<float>(n[axis]);
+        }
+        return static_cast<double>(lit.At(vertex).sky[1]);
+      };
+      const double smooth = sky(place.normal), rough = sky(relief);
+      const double error = smooth * open(relief) / open(place.normal) / rough - 1.0;
+      sum2 += error * error / kPlaces;
+      without2 += (smooth / rough - 1.0) * (smooth / rough - 1.0) / kPlaces;
+    }
+    EXPECT_LT(std::sqrt(sum2), 0.025) << elevation_deg;
+    EXPECT_LT(std::sqrt(sum2), 0.75 * std::sqrt(without2)) << "what the correction is for";
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// A site of rough mountains under an earthly sky, for tests of the light on it.
+#pragma once
+
+#include <memory>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "tests/fixtures/rough_land.h"
+#include "tests/fixtures/small_light.h"
+#include "viewer/ground/lit_ground.h"
+
+namespace alpenglow::tests {
+
+inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree,
+                                              0.0};
+
+/// 7.7 km of RoughLand.
+inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}) {
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
+  SolvedAir air;
+  air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
+  air.diffuse = std::make_shared<const DiffuseLight>(medium, kSmallLight);
+  SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,
+                     "", true};
+  return std::make_shared<const GroundSite>(std::move(ground), cover, nullptr, std::move(air));
+}
+
+/// The sun in the south-west, in midsummer.
+inline Lighting RoughSun(const GroundSite& site, double elevation_deg) {
+  SunPosition sun{};
+  sun.elevation_rad = elevation_deg * kRadiansPerDegree;
+  sun.azimuth_rad = 220.0 * kRadiansPerDegree;
+  sun.angular_radius_rad = 0.00465;
+  sun.distance_au = 1.0;
+  return LightingOf(sun, ParseInstant("2026-06-21T12:00:00Z"), kRoughPlace.latitude_rad,
+                    site.medium());
+}
+
+}  // namespace alpenglow::tests

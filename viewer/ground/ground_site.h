@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Land around the eye and what does not change with the sun: triangles ready for rays, horizons,
+// what the slopes see of each other, materials.
+//
+// Frame: east, north, up of a place near the eye (SceneGround::frame), metres. Altitudes are those
+// over the sphere that osculates the ellipsoid there.
+#pragma once
+
+#include <memory>
+
+#include "renderer/ground/ground_material.h"
+#include "renderer/ground/scene_geometry.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/lamp/lamp_light.h"
+#include "renderer/light/terrain_light.h"
+#include "renderer/picture/ground_light.h"
+#include "renderer/scene/scene.h"
+
+namespace alpenglow {
+
+/// The air over the land, solved: both of one medium on the sphere of the site.
+struct SolvedAir {
+  std::shared_ptr<const AirIntegrator<float>> integrator;
+  std::shared_ptr<const DiffuseLight> diffuse;
+};
+
+/// The ground that an elevation model makes around a place; nothing stands on it.
+[[nodiscard]] SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame);
+
+/// Immutable; safe to ask from many threads.
+class GroundSite {
+ public:
+  /// @param ground  with terrain, in one surface.
+  /// @param cover  what it is made of; drape: colours over it, or null.
+  GroundSite(SceneGround ground, const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
+             SolvedAir air);
+  GroundSite(const GroundSite&) = delete;
+  GroundSite& operator=(const GroundSite&) = delete;
+
+  [[nodiscard]] const SceneGround& ground() const { return ground_; }
+  [[nodiscard]] const SceneGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] const Medium& medium() const { return air_.integrator->medium(); }
+
+  [[nodiscard]] const GroundLight& light() const { return light_; }
+  /// What terrain makes of the light of sky and sun: see GroundLight::OnTerrain.
+  [[nodiscard]] std::shared_ptr<const TerrainLight> Under(const Lighting& light) const;
+
+ private:
+  SolvedAir air_;
+  SceneGround ground_;
+  SceneGeometry geometry_;
+  GroundMaterial material_;
+  LampLight no_lamps_;
+  HorizonsOnDemand horizons_;
+  GroundLight light_;  // refers to all above
+};
+
+}  // namespace alpenglow

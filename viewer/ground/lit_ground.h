@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Light on the land for one position of the sun, vertex by vertex: what the graphics card
+// interpolates over its triangles.
+//
+// Sky and slopes as TerrainLight has them; the edge of shade by ShadowHeights. Both change slowly
+// over the ground but for the edges, which are interpolated as a height over them.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "renderer/light/lighting.h"
+#include "renderer/shadow/shadow_heights.h"
+#include "viewer/ground/ground_site.h"
+#include "viewer/ground/sky_tilt.h"
+
+namespace alpenglow {
+
+/// A vertex of the land in the frame of its site.
+struct GroundVertex {
+  std::array<float, 3> position_m;
+  std::array<float, 3> normal;  // unit, of the mesh: without finer relief
+};
+
+/// What shines on it.
+struct VertexLight {
+  /// Beyond that many radii it is only the sign that matters; as far as that, heights place the
+  /// edges of shade between vertices.
+  static constexpr double kMostRadii = 64.0;
+
+  std::array<float, 4> sky;  // irradiance of sky and slopes per unit solar irradiance, by band
+  float sun_x;  // height of the disk's centre over the edge of terrain that cuts it [radii of the
+                // disk]: see SunlightOverEdge. The planet's own horizon is not among the edges.
+};
+
+/// Immutable; safe to ask from many threads.
+class LitGround {
+ public:
+  /// Works on the calling thread alone.
+  /// @param light  the sun in the frame of the site.
+  /// @param shadow  how fine the shadow is: see ShadowHeights.
+  LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
+            const ShadowHeights::Options& shadow = ShadowHeights::Options{});
+
+  [[nodiscard]] const Lighting& lighting() const { return light_; }
+  [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
+  [[nodiscard]] const GroundSite& site() const { return *site_; }
+
+  [[nodiscard]] VertexLight At(const GroundVertex& vertex) const;
+  [[nodiscard]] std::vector<VertexLight> LightOf(std::span<const GroundVertex> vertices) const;
+
+ private:
+  std::shared_ptr<const GroundSite> site_;
+  Lighting light_;
+  ShadowHeights shadow_;
+  SkyTilt tilt_;
+};
+
+}  // namespace alpenglow

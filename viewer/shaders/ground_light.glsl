@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// What the ground sends towards the eye, per unit solar irradiance [1/sr]: ground_light.h of the
+// renderer, with the light of sky and slopes, and the edges of shade, as LitGround interpolates
+// them. Lamps are apart.
+
+// What the sky's light gains where a surface tilts: GroundLightBlock of ground_block.h.
+layout(std140) uniform GroundLight {
+  vec4 sky_level;  // irradiance of an open place: level + up n.up + sunward n.sunward, by band
+  vec4 sky_up;
+  vec4 sky_sunward;
+  vec4 ground_view;  // angle of a pixel [rad]
+};
+
+// A place of the ground as its light and material see it.
+struct GroundPlace {
+  vec3 up;
+  float altitude;   // km
+  float footprint;  // m
+  vec2 offset;      // from the eye, east and north in the plane of the pattern [m]
+};
+
+// @param point  from the eye [m].
+GroundPlace GroundPlaceAt(vec3 point) {
+  vec3 at = 1e-3 * point;
+  float d = length(at);
+  float h = AltitudeAlongRay(EYE_ALTITUDE, at.z / max(d, 1e-9), d, RADIUS);
+  return GroundPlace(normalize(vec3(at.xy, RADIUS + EYE_ALTITUDE + at.z)), max(h, 0.0),
+                     1e3 * d * ground_view.x,
+                     vec2(dot(point, mesh_east.xyz), dot(point, mesh_north.xyz)));
+}
+
+// Of the sun on a level across its beams: what of the disk stands over the planet's horizon, over
+// terrain and over the plane of the mesh there, through the air.
+vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
+  vec2 disk = DiskOverHorizon(clamp(dot(at.up, sun.xyz), -1.0, 1.0),
+                              HorizonCosine(at.altitude, RADIUS), sun.w);
+  float over_plane = dot(mesh_normal, sun.xyz) / sun.w;
+  float seen = disk.x * SunlightOverEdge(min(sun_x, over_plane));
+  return seen * TransmittanceToSun(at.altitude, disk.y);
+}
+
+vec4 OpenSkyOn(vec3 normal, vec3 up) {
+  float normal_up = dot(normal, up);
+  vec3 flat_sun = sun.xyz - dot(sun.xyz, up) * up;
+  float sunward = dot(normal, flat_sun) / max(length(flat_sun), 1e-6);
+  return max(sky_level + sky_up * normal_up + sky_sunward * sunward, 0.02 * sky_level);
+}
+
+// The light of the sky on a surface that is tilted against that of the mesh: in an open place's
+// ratio.
+vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
+  return sky_irradiance * OpenSkyOn(normal, up) / max(OpenSkyOn(mesh_normal, up), 1e-12);
+}
+
+// @param point_m  from the eye; mesh_normal: unit, without finer relief; sun_x, sky_irradiance: of
+//     VertexLight (lit_ground.h); to_eye: unit.
+vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
+  GroundPlace at = GroundPlaceAt(point_m);
+  vec3 normal = DetailedNormal(at.offset, mesh_normal, at.footprint);
+  vec4 direct = max(dot(normal, sun.xyz), 0.0) * SunAcross(at, mesh_normal, sun_x);
+  vec4 sky = SkyOn(normal, mesh_normal, at.up, sky_irradiance);
+  vec4 albedo = GroundAlbedo(at.offset, 1e3 * at.altitude, dot(mesh_normal, at.up), at.footprint);
+  return albedo / 3.14159265359 * (direct + sky);
+}
