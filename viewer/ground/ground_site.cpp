@@ -23,7 +23,7 @@ SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame) {
 }
 
 GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
-                       std::shared_ptr<const ColourDrape> drape, SolvedAir air)
+                       std::shared_ptr<const ColourDrape> drape, SiteAir air)
     : air_(std::move(air)),
       ground_(std::move(ground)),
       geometry_(ground_, medium(), true),

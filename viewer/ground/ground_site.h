@@ -19,7 +19,7 @@
 namespace alpenglow {
 
 /// The air over the land, solved: both of one medium on the sphere of the site.
-struct SolvedAir {
+struct SiteAir {
   std::shared_ptr<const AirIntegrator<float>> integrator;
   std::shared_ptr<const DiffuseLight> diffuse;
 };
@@ -33,7 +33,7 @@ class GroundSite {
   /// @param ground  with terrain, in one surface.
   /// @param cover  what it is made of; drape: colours over it, or null.
   GroundSite(SceneGround ground, const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
-             SolvedAir air);
+             SiteAir air);
   GroundSite(const GroundSite&) = delete;
   GroundSite& operator=(const GroundSite&) = delete;
 
@@ -46,7 +46,7 @@ class GroundSite {
   [[nodiscard]] std::shared_ptr<const TerrainLight> Under(const Lighting& light) const;
 
  private:
-  SolvedAir air_;
+  SiteAir air_;
   SceneGround ground_;
   SceneGeometry geometry_;
   GroundMaterial material_;

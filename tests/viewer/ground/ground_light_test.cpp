@@ -13,7 +13,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/embedded_text.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/paint/uniform_blocks.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 namespace {
