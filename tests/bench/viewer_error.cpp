@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 #include <vector>
 
 #include "atmosphere/number/halton.h"
@@ -120,25 +122,25 @@ void Study(const Air& air, const char* name, double altitude_m, double sun_deg,
              sky.Text(), total.Text(), single.Text(), through.Text());
 }
 
+std::vector<double> NumbersOf(const char* text) {
+  std::vector<double> numbers;
+  std::istringstream stream(text);
+  for (double number; stream >> number;) numbers.push_back(number);
+  return numbers;
+}
+
 }  // namespace
 }  // namespace alpenglow
 
-int main() {
+// viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]" MEDIUM
+int main(int argc, char** argv) {
   using namespace alpenglow;
-  const Air earth(MediumPreset("earth"));
-  AirTablesSize high;
-  high.columns = 64;
-  high.rows = 32;
-  high.ground_rows = 32;
-  high.distances = 32;
-  high.sky_columns = 192;
-  high.sky_rows = 192;
-  high.sky_ground_rows = 128;
-  high.extinction_rows = high.extinction_ground_rows = 128;
-  high.extinction_distances = 64;
-  for (const AirTablesSize& size : {AirTablesSize{}, high}) {
-    for (const double altitude : {2.0, 1500.0, 9000.0, 12000.0, 30000.0, 400000.0})
-      for (const double sun : {60.0, 30.0, 6.0, 0.2, -2.0, -5.0, -10.0})
-        Study(earth, "earth", altitude, sun, size);
+  const int quality = argc > 1 ? std::atoi(argv[1]) : 3;
+  const char* name = argc > 4 ? argv[4] : "earth";
+  const Air air(MediumPreset(name));
+  for (const double altitude : NumbersOf(argc > 2 ? argv[2] : "2 1500 9000 12000 30000 400000")) {
+    for (const double sun : NumbersOf(argc > 3 ? argv[3] : "60 30 6 0.2 -2 -6 -10")) {
+      Study(air, name, altitude, sun, AirTablesSizeOf(static_cast<AirQuality>(quality), altitude));
+    }
   }
 }

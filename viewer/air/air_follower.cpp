@@ -12,57 +12,14 @@ namespace {
 constexpr double kMostChange = 5e-4;  // that is left alone while eye or sun move
 constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
 
-constexpr AirTablesSize kFirst{.sky_columns = 48,
-                               .sky_rows = 64,
-                               .sky_ground_rows = 32,
-                               .columns = 12,
-                               .rows = 8,
-                               .ground_rows = 8,
-                               .distances = 8,
-                               .extinction_rows = 32,
-                               .extinction_ground_rows = 32,
-                               .extinction_distances = 16,
-                               .through_rows = 256,
-                               .through_ground_rows = 64};
-
 AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z}; }
 
-AirTables TablesOf(const SolvedAir& air, const AirView& view, const AirTablesSize& size) {
+AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
   const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
-  return MakeAirTables(here, air.diffuse, EyeOf(view), size);
+  return MakeAirTables(here, air.diffuse, EyeOf(view), AirTablesSizeOf(quality, view.altitude_m));
 }
 
 }  // namespace
-
-AirTablesSize AirTablesSizeOf(AirQuality quality) {
-  switch (quality) {
-    case AirQuality::kLow:
-      return {};
-    case AirQuality::kMedium:
-      return {.sky_columns = 128,
-              .sky_rows = 128,
-              .sky_ground_rows = 96,
-              .columns = 48,
-              .rows = 24,
-              .ground_rows = 24,
-              .distances = 24,
-              .extinction_rows = 96,
-              .extinction_ground_rows = 96,
-              .extinction_distances = 48};
-    case AirQuality::kHigh:
-      break;
-  }
-  return {.sky_columns = 192,
-          .sky_rows = 192,
-          .sky_ground_rows = 128,
-          .columns = 64,
-          .rows = 32,
-          .ground_rows = 32,
-          .distances = 32,
-          .extinction_rows = 128,
-          .extinction_ground_rows = 128,
-          .extinction_distances = 64};
-}
 
 double AirChange(const AirEye& made, const AirEye& now) {
   const double elevation = std::asin(std::clamp(now.mu_s, -1.0, 1.0)) / kRadiansPerDegree;
@@ -77,7 +34,7 @@ double AirChange(const AirEye& made, const AirEye& now) {
 
 AirFollower::Made AirFollower::Make(const Request& request) {
   const auto start = Clock::now();
-  AirTables tables = TablesOf(*request.air, request.view, AirTablesSizeOf(request.quality));
+  AirTables tables = TablesOf(*request.air, request.view, request.quality);
   return {request, std::move(tables), std::chrono::duration<double>(Clock::now() - start).count()};
 }
 
@@ -91,7 +48,7 @@ AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality qualit
       maker_(Make) {
   textures_.Upload(air_->tables);
   shown_ = air_;
-  textures_.Upload(TablesOf(*air_, first, kFirst));
+  textures_.Upload(TablesOf(*air_, first, AirQuality::kFirst));
   textures_.SetView(first.altitude_m, first.sun);
 }
 

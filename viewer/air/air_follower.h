@@ -15,10 +15,6 @@
 
 namespace alpenglow {
 
-/// Sizes of the tables.
-enum class AirQuality { kLow, kMedium, kHigh };
-[[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality);
-
 /// What a frame sees of the air.
 struct AirView {
   double altitude_m;    // of the eye over the sphere that osculates the ellipsoid below it

@@ -20,7 +20,7 @@ double DipTo(double z, double h, double radius) {
 
 }  // namespace
 
-AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m)
+AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m, double twilight_fall_)
     : altitude(std::max(altitude_m, 0.0) / kMetresPerKilometre),
       ceiling(ceiling_m / kMetresPerKilometre),
       top(medium.atmosphere_height_m / kMetresPerKilometre),
@@ -29,11 +29,12 @@ AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m)
       sky_range(horizon_dip + (altitude > top ? -DipTo(top, altitude, radius) : 0.5 * kPi)),
       air_sky_range(horizon_dip +
                     (altitude > ceiling ? -DipTo(ceiling, altitude, radius) : 0.5 * kPi)),
-      ground_range(0.5 * kPi - horizon_dip) {
-  // From high up, all that matters lies at the far end.
+      ground_range(0.5 * kPi - horizon_dip),
+      twilight_fall(twilight_fall_),
+      twilight_reference(altitude > ceiling ? radius : radius + altitude) {
+  // From above all land, what is seen of its air is seen through all of the rest.
   const double layers = altitude * kMetresPerKilometre / medium.rayleigh_scale_height_m;
-  sky_crowding = ground_crowding =
-      layers > 2.0 ? std::max(2.0 / layers, 0.1) - 1.0 : 6.0 / (1.0 + layers) - 2.0;
+  sky_crowding = ground_crowding = altitude > ceiling ? 0.0 : 6.0 / (1.0 + layers) - 2.0;
 }
 
 }  // namespace alpenglow

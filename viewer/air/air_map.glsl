@@ -30,9 +30,9 @@ SHARED Number AirShareFromNode(Number w, Number crowding) {
   return w / (Number(1.0) + crowding * (Number(1.0) - w));
 }
 
-// Distance at which a ray that meets air comes into it.
-SHARED Length AirEntry(Length h, Number mu, Length top, Length R) {
-  return select(h > top, DistanceDownTo(h, mu, top, R), Length(0.0));
+// Distance at which a ray comes below an altitude that it meets; 0 from below it.
+SHARED Length AirEntry(Length h, Number mu, Length altitude, Length R) {
+  return select(h > altitude, DistanceDownTo(h, mu, altitude, R), Length(0.0));
 }
 
 // Distance to the far end of a ray above the horizon, from the eye.
@@ -44,4 +44,17 @@ SHARED Length AirEndUp(Length h, Number mu, Length ceiling, Length R) {
 // And of one below it.
 SHARED Length AirEndDown(Length h, Number mu, Length R) {
   return DistanceDownTo(h, mu, Length(0.0), R);
+}
+
+// Where the air of a whole ray is densest: at the ground, at the lowest point, or at the eye.
+SHARED Length AirFoot(Length h, Number mu, Number ground, Length R) {
+  return select(ground > Number(0.5), AirEndDown(h, mu, R), max(-(R + h) * mu, Length(0.0)));
+}
+
+// How light falls, roughly, where the sun sinks below the horizon: what texels are divided by. At
+// distance d of a ray, nu its cosine with the sun, where the radius is about `reference`.
+SHARED Number AirTwilight(Length h, Number mu_s, Number nu, Length d, Number fall, Length reference,
+                          Length R) {
+  Number x = Number(-0.03) - ((R + h) * mu_s + d * nu) / reference;
+  return exp(Number(-0.5) * fall * (x + sqrt(x * x + Number(0.0025))));
 }

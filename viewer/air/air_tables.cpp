@@ -132,6 +132,18 @@ std::array<glm::vec4, 3> SkyMix(const AirIntegrator<float>& air, const SkyView& 
   return mix;
 }
 
+float TwilightAt(const AirMap& map, const AirEye& eye, double nu, double distance_km) {
+  return static_cast<float>(shared::AirTwilight<double>(map.altitude, eye.mu_s, nu, distance_km,
+                                                        map.twilight_fall, map.twilight_reference,
+                                                        map.radius));
+}
+
+float TwilightAtFoot(const AirMap& map, const AirEye& eye, const Row& row, double nu) {
+  return TwilightAt(
+      map, eye, nu,
+      shared::AirFoot<double>(map.altitude, row.mu, row.ground ? 1.0 : 0.0, map.radius));
+}
+
 AirTexels SkyTexels(const SkyView& view, const AirMap& map, const Medium& medium, const AirEye& eye,
                     const std::array<glm::vec4, 3>& mix, const AirTablesSize& size) {
   const std::vector<double> azimuths = AzimuthsOf(size.sky_columns);
@@ -144,9 +156,9 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const Medium& medium
     for (int x = 0; x < size.sky_columns; ++x) {
       const float* light = &radiance[static_cast<std::size_t>(x) * view.stride()];
       const double nu = SunCosineOf(row, eye.mu_s, azimuths[static_cast<std::size_t>(x)]);
-      texels.At(x, y) =
-          Quotient({light[0], light[1], light[2], light[3]},
-                   PhaseOfMolecules(nu) * mix[0] + PhaseOfAerosol(medium, nu) * mix[1] + mix[2]);
+      texels.At(x, y) = Quotient(
+          glm::vec4{light[0], light[1], light[2], light[3]} / TwilightAtFoot(map, eye, row, nu),
+          PhaseOfMolecules(nu) * mix[0] + PhaseOfAerosol(medium, nu) * mix[1] + mix[2]);
     }
     ++y;
   }
@@ -164,26 +176,32 @@ AirTexels ThroughTexels(const AirIntegrator<float>& air, const AirMap& map, cons
 
 // --- the way to a point ---
 
-/// A row of rays, from where they enter the air to as far as land may lie [m from the eye].
+/// A row of rays: where they enter the air, where they may first meet land and where they may last
+/// do so [m from the eye].
 struct Reach {
   Row row;
-  double begin_m, end_m;
-  std::vector<double> distance_m;  // of the nodes; the first is a little beyond the beginning
+  double begin_m, near_m, end_m;
+  std::vector<double> distance_m;  // of the nodes, from near_m on
 };
 
 Reach ReachOf(const AirMap& map, const Row& row, int distances) {
   using namespace shared;
-  const double begin = AirEntry<double>(map.altitude, row.mu, map.top, map.radius);
+  const double near = AirEntry<double>(map.altitude, row.mu, map.ceiling, map.radius);
   const double end = row.ground ? AirEndDown<double>(map.altitude, row.mu, map.radius)
                                 : AirEndUp<double>(map.altitude, row.mu, map.ceiling, map.radius);
-  Reach reach{
-      row, kMetresPerKilometre * begin, kMetresPerKilometre * std::max(end, begin + 1e-3), {}};
-  constexpr double kFirst = 0.05;  // of the way to the second node: all but the beginning
+  const double begin = AirEntry<double>(map.altitude, row.mu, map.top, map.radius);
+  Reach reach{row,
+              kMetresPerKilometre * begin,
+              kMetresPerKilometre * near,
+              kMetresPerKilometre * std::max(end, near + 1e-3),
+              {}};
+  // The eye's own place has no way to it: a little beyond.
+  const double first = map.altitude > map.ceiling ? 0.0 : 0.05;
   for (int j = 0; j < distances; ++j) {
-    const double w = j == 0 ? kFirst / (distances - 1) : Unit(j, distances);
+    const double w = j == 0 ? first / (distances - 1) : Unit(j, distances);
     const double share =
         AirShareFromNode<double>(w, row.ground ? map.ground_crowding : map.sky_crowding);
-    reach.distance_m.push_back(reach.begin_m + (reach.end_m - reach.begin_m) * share);
+    reach.distance_m.push_back(reach.near_m + (reach.end_m - reach.near_m) * share);
   }
   return reach;
 }
@@ -196,10 +214,15 @@ struct PieceNodes {
 };
 
 constexpr int kNodesOfAPiece = 3;
+constexpr int kNodesOfFirstPiece = 16;  // through all air above the ceiling
 
-void AddRule(double begin_m, double end_m, std::vector<RayNode>& nodes) {
+int NodesOfPiece(const Reach& reach, double to_m) {
+  return to_m <= reach.near_m ? kNodesOfFirstPiece : kNodesOfAPiece;
+}
+
+void AddRule(double begin_m, double end_m, int count, std::vector<RayNode>& nodes) {
   if (end_m <= begin_m) return;
-  static const GaussRule& rule = GaussLegendre(kNodesOfAPiece);
+  const GaussRule& rule = GaussLegendre(count);
   for (std::size_t k = 0; k < rule.node.size(); ++k) {
     nodes.push_back(
         {begin_m + rule.node[k] * (end_m - begin_m), rule.weight[k] * (end_m - begin_m)});
@@ -211,7 +234,7 @@ PieceNodes NodesOf(const Reach& reach) {
   PieceNodes nodes;
   double from = reach.begin_m;
   for (const double to : reach.distance_m) {
-    AddRule(from, to, nodes.node);
+    AddRule(from, to, NodesOfPiece(reach, to), nodes.node);
     nodes.node.push_back({to, 0.0});
     nodes.end.push_back(nodes.node.size());
     from = to;
@@ -224,8 +247,9 @@ PieceNodes LitNodesOf(const Reach& reach, const ShadowSpan& shadow) {
   PieceNodes nodes;
   double from = reach.begin_m;
   for (const double to : reach.distance_m) {
-    AddRule(from, std::min(to, shadow.dark_begin_m), nodes.node);
-    AddRule(std::max(from, shadow.dark_end_m), to, nodes.node);
+    const int count = NodesOfPiece(reach, to);
+    AddRule(from, std::min(to, shadow.dark_begin_m), count, nodes.node);
+    AddRule(std::max(from, shadow.dark_end_m), to, count, nodes.node);
     nodes.end.push_back(nodes.node.size());
     from = to;
   }
@@ -365,10 +389,6 @@ class WayBuilder {
     for (glm::vec4& share : absorbed) share = Absorbed(share);
     FillSingle(y, reach, absorbed);
     FillDiffuse(y, reach, rays, absorbed);
-    for (AirTexels* texels : {&tables_.single, &tables_.diffuse}) {
-      if (reach.begin_m == 0.0) continue;  // too little air for a quotient
-      for (int x = 0; x < texels->width; ++x) texels->At(x, y, 0) = texels->At(x, y, 1);
-    }
   }
 
   void FillSingle(int y, const Reach& reach, const std::vector<glm::vec4>& absorbed) {
@@ -379,7 +399,8 @@ class WayBuilder {
                             PhaseOfAerosol(air_.medium(), nu) * tables_.single_mix[1];
       const std::vector<glm::vec4> light = SingleAlong(air_, tables_.eye, reach, nu);
       for (std::size_t j = 0; j < light.size(); ++j)
-        tables_.single.At(x, y, static_cast<int>(j)) = Quotient(light[j], absorbed[j] * mix);
+        tables_.single.At(x, y, static_cast<int>(j)) =
+            Quotient(light[j] / TwilightOnWay(reach, nu, j), absorbed[j] * mix);
     }
   }
 
@@ -397,9 +418,14 @@ class WayBuilder {
         for (std::size_t band = 0; band < bands; ++band)
           sum[x][static_cast<glm::length_t>(band)] += piece[x * bands + band];
         tables_.diffuse.At(static_cast<int>(x), y, static_cast<int>(j)) =
-            Quotient(sum[x], absorbed[j]);
+            Quotient(sum[x] / TwilightOnWay(reach, static_cast<double>(nus[x]), j), absorbed[j]);
       }
     }
+  }
+
+  [[nodiscard]] float TwilightOnWay(const Reach& reach, double nu, std::size_t j) const {
+    const double source_m = 0.5 * (reach.near_m + reach.distance_m[j]);
+    return TwilightAt(tables_.map, tables_.eye, nu, source_m / kMetresPerKilometre);
   }
 
   void FillExtinction(int y, const Reach& reach) {
@@ -423,11 +449,42 @@ void RequireFourBands(const Medium& medium) {
                  static_cast<double>(kBands), "number of spectrum.wavelengths_nm");
 }
 
+AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
+  constexpr double kHighUp_m = 25000.0;
+  const bool high_up = altitude_m > kHighUp_m;
+  const auto with = [&](int sky, int columns, int rows, int distances) {
+    return AirTablesSize{.sky_columns = sky,
+                         .sky_rows = sky,
+                         .sky_ground_rows = sky * 2 / 3,
+                         .columns = high_up ? 3 * columns : columns,
+                         .rows = rows,
+                         .ground_rows = rows,
+                         .distances = high_up ? (distances + 1) / 2 : distances,
+                         .extinction_rows = 2 * rows,
+                         .extinction_ground_rows = 2 * rows,
+                         .extinction_distances = 2 * distances,
+                         .through_rows = 512,
+                         .through_ground_rows = 256};
+  };
+  switch (quality) {
+    case AirQuality::kFirst:
+      return with(64, 12, 12, 8);
+    case AirQuality::kLow:
+      return with(128, 24, 32, 12);
+    case AirQuality::kMedium:
+      return with(192, 32, 48, 16);
+    case AirQuality::kHigh:
+      break;
+  }
+  return with(192, 32, 64, 24);
+}
+
 AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                         const AirEye& eye, const AirTablesSize& size) {
   RequireFourBands(air.medium());
   const SkyView view(air, diffuse, eye.altitude_m, eye.mu_s);
-  const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m);
+  const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
+                   static_cast<double>(diffuse.grid().twilight_fall));
   const std::array<glm::vec4, 3> mix = SkyMix(air, view, map, eye);
   const int rows = size.rows + size.ground_rows;
   AirTables tables{

@@ -30,11 +30,18 @@
 namespace alpenglow {
 
 struct AirTablesSize {
-  int sky_columns = 96, sky_rows = 96, sky_ground_rows = 64;  // of the sky
-  int columns = 32, rows = 16, ground_rows = 16, distances = 16;
-  int extinction_rows = 64, extinction_ground_rows = 64, extinction_distances = 32;
-  int through_rows = 512, through_ground_rows = 256;  // of TransmittanceToSpace
+  int sky_columns, sky_rows, sky_ground_rows;  // of the sky
+  int columns, rows, ground_rows, distances;   // of ways to a point
+  int extinction_rows, extinction_ground_rows, extinction_distances;
+  int through_rows, through_ground_rows;  // of TransmittanceToSpace
 };
+
+/// How fine tables are. Each step is about twice as exact and takes about twice as long to make.
+enum class AirQuality { kFirst, kLow, kMedium, kHigh };
+
+/// From high up rows are longer, because the terminator crosses them, and ways through the air below
+/// short. kFirst is for a first frame that must not wait.
+[[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m);
 
 /// Texels of four floats, x fastest.
 struct AirTexels {

@@ -93,7 +93,8 @@ void AirTextures::Upload(const AirTables& tables) {
   values_.shell = {map.altitude, map.ceiling, map.top, map.radius};
   values_.ranges = {map.sky_range, map.air_sky_range, map.ground_range,
                     map.altitude > map.top ? 1.0 : 0.0};
-  values_.crowding = {map.sky_crowding, map.ground_crowding, 0.0, 0.0};
+  values_.crowding = {map.sky_crowding, map.ground_crowding, map.twilight_fall,
+                      map.twilight_reference};
   values_.columns = AxesOf(size.sky_columns, size.columns);
   values_.sky_rows = RowsOf(size.sky_rows, size.sky_ground_rows);
   values_.through_rows = RowsOf(size.through_rows, size.through_ground_rows);

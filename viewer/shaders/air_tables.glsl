@@ -78,6 +78,12 @@ float RowOf(float angle, float sky_range, vec4 rows) {
   return ground ? rows.z + rows.w * v : rows.x + rows.y * v;
 }
 
+// What texels are divided by, at distance d of a ray.
+float TwilightAt(float half_sine_squared, float d) {
+  return AirTwilight(air_shell.x, air_sun.z, 1.0 - 2.0 * half_sine_squared, d, air_crowding.z,
+                     air_crowding.w, air_shell.w);
+}
+
 // Whether a direction passes above all air.
 bool AboveAir(float angle) { return air_ranges.w > 0.5 && angle > air_ranges.x; }
 
@@ -89,6 +95,7 @@ vec4 SkyRadiance(vec3 direction) {
   float h2 = HalfSineSquared(direction);
   vec4 mix = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] + AerosolPhase(h2) * air_sky_mix[1] +
              air_sky_mix[2];
+  mix *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, angle < 0.0 ? 1.0 : 0.0, air_shell.w));
   return AboveAir(angle) ? vec4(0.0) : mix * texture(air_sky, at);
 }
 
@@ -111,50 +118,56 @@ vec4 TransmittanceToSun(float altitude_km, float mu_s) {
 
 // Where a point lies in the tables of ways, and what reaches the eye from there.
 struct AirWay {
-  vec3 at;        // in the 3-D tables
-  vec4 absorbed;  // 1 - transmittance
+  vec3 at;  // in the 3-D tables
   vec4 transmittance;
+  vec4 scattered;           // by what texels are to be multiplied
+  float half_sine_squared;  // of the angle to the sun
 };
+
+// 1 - exp(-tau), given that exponential, where it cancels too: error below 1e-6 of it.
+vec4 OneLess(vec4 exponential, vec4 tau) {
+  vec4 series = tau * (1.0 - tau * (0.5 - tau * (0.166666667 - tau * 0.0416666667)));
+  return mix(1.0 - exponential, series, lessThan(tau, vec4(0.06)));
+}
 
 AirWay WayTo(vec3 direction, float distance_km) {
   float angle = AngleOverHorizon(direction);
   bool ground = angle < 0.0;
   float h = air_shell.x;
   float radius = air_shell.w;
-  float begin = AirEntry(h, direction.z, air_shell.z, radius);
+  float entry = AirEntry(h, direction.z, air_shell.z, radius);
+  float near = AirEntry(h, direction.z, air_shell.y, radius);
   float end =
       ground ? AirEndDown(h, direction.z, radius) : AirEndUp(h, direction.z, air_shell.y, radius);
-  float reach = max(end - begin, 1e-3);
-  float way = clamp(distance_km - begin, 0.0, reach);
-  float w = AirNodeFromShare(way / reach, ground ? air_crowding.y : air_crowding.x);
+  float reach = max(end - near, 1e-3);
+  float beyond = clamp(distance_km - near, 0.0, reach);
+  float w = AirNodeFromShare(beyond / reach, ground ? air_crowding.y : air_crowding.x);
   vec2 distances = air_distances.xz + air_distances.yw * w;
   float row = RowOf(angle, air_ranges.y, air_extinction_rows);
-  vec4 tau = way * texture(air_extinction, vec2(distances.y, row));
-  AirWay found;
-  found.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
-                  RowOf(angle, air_ranges.y, air_way_rows), distances.x);
-  found.transmittance = exp(-tau);
-  // 1 - exp(-tau) where it cancels: error below 1e-7 of it.
-  vec4 series = tau * (1.0 - tau * (0.5 - tau * (0.166666667 - tau * 0.0416666667)));
-  found.absorbed = mix(1.0 - found.transmittance, series, lessThan(tau, vec4(0.06)));
-  return found;
+  float length_km = clamp(distance_km, entry, near + reach) - entry;
+  vec4 tau = length_km * texture(air_extinction, vec2(distances.y, row));
+  AirWay way;
+  way.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
+                RowOf(angle, air_ranges.y, air_way_rows), distances.x);
+  way.half_sine_squared = HalfSineSquared(direction);
+  way.transmittance = exp(-tau);
+  way.scattered =
+      OneLess(way.transmittance, tau) * TwilightAt(way.half_sine_squared, near + 0.5 * beyond);
+  return way;
 }
 
-vec4 SingleOf(AirWay way, vec3 direction) {
-  float h2 = HalfSineSquared(direction);
+vec4 SingleOf(AirWay way) {
+  float h2 = way.half_sine_squared;
   vec4 mix =
       PhaseRayleigh(1.0 - 2.0 * h2) * air_single_mix[0] + AerosolPhase(h2) * air_single_mix[1];
-  return mix * way.absorbed * texture(air_single, way.at);
+  return mix * way.scattered * texture(air_single, way.at);
 }
 
 // From the eye to a point.
 AirTo AirToPoint(vec3 direction, float distance_km) {
   AirWay way = WayTo(direction, distance_km);
-  return AirTo(SingleOf(way, direction), way.absorbed * texture(air_diffuse, way.at),
-               way.transmittance);
+  return AirTo(SingleOf(way), way.scattered * texture(air_diffuse, way.at), way.transmittance);
 }
 
 // AirToPoint(direction, distance_km).single alone: light that comes from before a distance.
-vec4 SingleTo(vec3 direction, float distance_km) {
-  return SingleOf(WayTo(direction, distance_km), direction);
-}
+vec4 SingleTo(vec3 direction, float distance_km) { return SingleOf(WayTo(direction, distance_km)); }

@@ -49,7 +49,11 @@ class AirReading {
     const AirMap& map = tables_.map;
     if (map.altitude > map.top && angle > map.sky_range) return glm::dvec4(0.0);
     const AirTablesSize& size = tables_.size;
-    return Mix(angle, azimuth, tables_.sky_mix[0], tables_.sky_mix[1], tables_.sky_mix[2]) *
+    const double mu = std::sin(angle - map.horizon_dip);
+    const double foot =
+        shared::AirFoot<double>(map.altitude, mu, angle < 0.0 ? 1.0 : 0.0, map.radius);
+    return Twilight(angle, azimuth, foot) *
+           Mix(angle, azimuth, tables_.sky_mix[0], tables_.sky_mix[1], tables_.sky_mix[2]) *
            Linear(tables_.sky, Column(azimuth, size.sky_columns),
                   Row(angle, map.sky_range, size.sky_rows, size.sky_ground_rows));
   }
@@ -70,10 +74,12 @@ class AirReading {
     const double begin = AirEntry<double>(map.altitude, mu, map.top, map.radius);
     const double end = ground ? AirEndDown<double>(map.altitude, mu, map.radius)
                               : AirEndUp<double>(map.altitude, mu, map.ceiling, map.radius);
-    const double reach = std::max(end - begin, 1e-3);
-    const double way = std::clamp(distance_km - begin, 0.0, reach);
+    const double near = AirEntry<double>(map.altitude, mu, map.ceiling, map.radius);
+    const double reach = std::max(end - near, 1e-3);
+    const double beyond = std::clamp(distance_km - near, 0.0, reach);
+    const double way = std::clamp(distance_km, begin, near + reach) - begin;
     const double w =
-        AirNodeFromShare<double>(way / reach, ground ? map.ground_crowding : map.sky_crowding);
+        AirNodeFromShare<double>(beyond / reach, ground ? map.ground_crowding : map.sky_crowding);
     const glm::dvec4 tau = way * Linear(tables_.extinction, w * (size.extinction_distances - 1),
                                         Row(angle, map.air_sky_range, size.extinction_rows,
                                             size.extinction_ground_rows));
@@ -82,6 +88,7 @@ class AirReading {
     const double z = w * (size.distances - 1);
     glm::dvec4 absorbed;
     for (int band = 0; band < 4; ++band) absorbed[band] = -std::expm1(-tau[band]);
+    absorbed *= Twilight(angle, azimuth, near + 0.5 * beyond);
     return {Mix(angle, azimuth, tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)) *
                 absorbed * Linear(tables_.single, x, y, z),
             absorbed * Linear(tables_.diffuse, x, y, z), glm::exp(-tau)};
@@ -96,12 +103,21 @@ class AirReading {
     const double v = shared::AirRowFromAngle<double>(std::abs(angle), range);
     return angle < 0.0 ? sky + v * (ground - 1) : v * (sky - 1);
   }
-  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const glm::vec4& molecules,
-                               const glm::vec4& aerosol, const glm::vec4& rest) const {
+  [[nodiscard]] double SunCosine(double angle, double azimuth) const {
     const double zenith = 0.5 * kPi + tables_.map.horizon_dip - angle;
-    const double nu = std::clamp(
+    return std::clamp(
         std::cos(zenith) * std::cos(sun_) + std::sin(zenith) * std::sin(sun_) * std::cos(azimuth),
         -1.0, 1.0);
+  }
+  [[nodiscard]] double Twilight(double angle, double azimuth, double distance_km) const {
+    const AirMap& map = tables_.map;
+    return shared::AirTwilight<double>(map.altitude, tables_.eye.mu_s, SunCosine(angle, azimuth),
+                                       distance_km, map.twilight_fall, map.twilight_reference,
+                                       map.radius);
+  }
+  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const glm::vec4& molecules,
+                               const glm::vec4& aerosol, const glm::vec4& rest) const {
+    const double nu = SunCosine(angle, azimuth);
     const double node = std::sqrt(std::acos(nu) / kPi) * (medium_.phase.width - 1);
     return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(molecules) +
            Linear(medium_.phase, node) * glm::dvec4(aerosol) + glm::dvec4(rest);

@@ -26,7 +26,8 @@ constexpr GLuint kBinding = 5;
 struct Both {
   Both(double altitude_m, double mu_s)
       : medium(MakeMediumTables(tests::Earth().air)),
-        tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, {altitude_m, mu_s}, {})),
+        tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, {altitude_m, mu_s},
+                             AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables, medium) {
     textures.Upload(medium);
     textures.Upload(tables);
@@ -71,7 +72,7 @@ std::vector<Look> Looks(const AirMap& map, double sky_range) {
     const double v = i % 2 == 0 ? u : u * u * u;
     const double angle = v * (v > 0.0 ? sky_range : map.ground_range) * 0.9999;
     const double entry = shared::AirEntry<double>(map.altitude, std::sin(angle - map.horizon_dip),
-                                                  map.top, map.radius);
+                                                  map.ceiling, map.radius);
     looks.push_back({angle, kPi * Halton(i, 3), entry + 200.0 * Halton(i, 5) * Halton(i, 7)});
   }
   return looks;
