@@ -9,25 +9,10 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/reflectance_text.h"
 
 namespace alpenglow {
 namespace {
-
-double FifthPower(double x) {
-  const double x2 = x * x;
-  return x2 * x2 * x;
-}
-
-/// Half vector of light and eye.
-struct Half {
-  double mu;         // its cosine with the normal
-  double cos_light;  // and with the light
-};
-
-Half HalfOf(const ReflectionAngles& at) {
-  const double length = std::sqrt(std::max(2.0 + 2.0 * at.cos_between, 1e-12));
-  return {std::min((at.mu_light + at.mu_eye) / length, 1.0), 0.5 * length};
-}
 
 /// Axes around a normal, the first towards the eye's foot point.
 struct Axes {
@@ -61,16 +46,11 @@ double MirroredRays::TotalWeight() const {
 }
 
 double FresnelReflectance(double cosine, double refractive_index) {
-  const double sine2 =
-      (1.0 - cosine * cosine) / (refractive_index * refractive_index);  // Snell, inside
-  const double inside = std::sqrt(std::max(1.0 - sine2, 0.0));
-  const double across = (cosine - refractive_index * inside) / (cosine + refractive_index * inside);
-  const double along = (refractive_index * cosine - inside) / (refractive_index * cosine + inside);
-  return 0.5 * (across * across + along * along);
+  return shared::FresnelReflectance(cosine, refractive_index);
 }
 
 double SchlickReflectance(double cosine, double f0) {
-  return f0 + (1.0 - f0) * FifthPower(1.0 - std::clamp(cosine, 0.0, 1.0));
+  return shared::SchlickReflectance(cosine, f0);
 }
 
 // Portsmouth et al. (2025), equations of sections 2 and 3: "FON" for light reflected once.
@@ -79,27 +59,18 @@ RoughDiffuse::RoughDiffuse(double roughness)
       scale_(1.0 / (1.0 + (0.5 - 2.0 / (3.0 * kPi)) * roughness)),
       mean_single_(scale_ * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * kPi)) * roughness)) {}
 
-double RoughDiffuse::Single(double mu) const {
-  const double sine = std::sqrt(std::max(1.0 - mu * mu, 0.0));
-  // sin / mu (1 - sin^3), without the division by 0 of the horizontal.
-  const double far = sine * mu * (1.0 + sine + sine * sine) / (1.0 + sine);
-  const double g = sine * (std::acos(std::min(mu, 1.0)) - sine * mu) + 2.0 / 3.0 * (far - sine);
-  return scale_ * (1.0 + roughness_ * g / kPi);
-}
+double RoughDiffuse::Single(double mu) const { return shared::RoughSingle(mu, roughness_, scale_); }
 
 Bands<float> RoughDiffuse::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
-  const double s = at.cos_between - at.mu_light * at.mu_eye;
-  const double ratio = s > 0.0 ? s / std::max(at.mu_light, at.mu_eye) : s;
-  const auto once = static_cast<float>(scale_ * (1.0 + roughness_ * ratio) / kPi);
+  const auto once = static_cast<float>(
+      shared::RoughOnce(at.mu_light, at.mu_eye, at.cos_between, roughness_, scale_));
   const double lost = (1.0 - Single(at.mu_light)) * (1.0 - Single(at.mu_eye));
   const auto again =
       roughness_ > 0.0 ? static_cast<float>(lost / ((1.0 - mean_single_) * kPi)) : 0.0F;
   const auto mean = static_cast<float>(mean_single_);
   Bands<float> f(albedo.count);
-  for (std::size_t band = 0; band < albedo.count; ++band) {
-    const float rho = albedo[band];
-    f[band] = rho * once + again * rho * rho * mean / (1.0F - rho * (1.0F - mean));
-  }
+  for (std::size_t band = 0; band < albedo.count; ++band)
+    f[band] = albedo[band] * once + again * shared::RoughAgain(albedo[band], mean);
   return f;
 }
 
@@ -108,8 +79,7 @@ Bands<float> RoughDiffuse::Albedo(const Bands<float>& albedo, double mu) const {
   const auto mean = static_cast<float>(mean_single_);
   Bands<float> sent(albedo.count);
   for (std::size_t band = 0; band < albedo.count; ++band) {
-    const float rho = albedo[band];
-    sent[band] = rho * once + (1.0F - once) * rho * rho * mean / (1.0F - rho * (1.0F - mean));
+    sent[band] = albedo[band] * once + (1.0F - once) * shared::RoughAgain(albedo[band], mean);
   }
   return sent;
 }
@@ -123,22 +93,21 @@ Glossy::Glossy(double roughness, double f0)
                      (8.0 * kPi * (std::exp2(-0.5 * exponent_) + exponent_))) {}
 
 double Glossy::Coat(const ReflectionAngles& at) const {
-  const Half half = HalfOf(at);
-  return SchlickReflectance(half.cos_light, f0_) * normalisation_ * std::pow(half.mu, exponent_);
+  const double cos_light = shared::HalfCosLight(at.cos_between);
+  return shared::CoatLobe(shared::HalfMu(at.mu_light, at.mu_eye, cos_light), cos_light, f0_,
+                          exponent_, normalisation_);
 }
 
 Bands<float> Glossy::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
   const auto coat = static_cast<float>(Coat(at));
-  const auto body = static_cast<float>(28.0 / (23.0 * kPi) * (1.0 - f0_) *
-                                       (1.0 - FifthPower(1.0 - 0.5 * at.mu_light)) *
-                                       (1.0 - FifthPower(1.0 - 0.5 * at.mu_eye)));
+  const auto body = static_cast<float>(shared::BodyUnderCoat(at.mu_light, at.mu_eye, f0_));
   Bands<float> f(albedo.count);
   for (std::size_t band = 0; band < albedo.count; ++band) f[band] = coat + body * albedo[band];
   return f;
 }
 
 Bands<float> Glossy::BodyAlbedo(const Bands<float>& albedo, double mu) const {
-  const auto share = static_cast<float>((1.0 - f0_) * (1.0 - FifthPower(1.0 - 0.5 * mu)));
+  const auto share = static_cast<float>((1.0 - f0_) * shared::CoatPassed(mu));
   Bands<float> sent(albedo.count);
   for (std::size_t band = 0; band < albedo.count; ++band) sent[band] = share * albedo[band];
   return sent;
@@ -176,8 +145,6 @@ MirroredRays Glossy::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye
 
 namespace {
 
-constexpr double kZenithTransmittance = 0.9789;  // 1 - (0.34 / 2.34)^2
-
 // Lee, Carder, Arnone (2002), equations 2, 3 and table 2.
 Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
   Bands<float> reflectance(wavelengths_nm.size());
@@ -192,17 +159,7 @@ Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
   return reflectance;
 }
 
-// Share of the surface that waves hide from a direction, over the share that they do not.
-double SmithLambda(double mu, double variance) {
-  const double sine = std::sqrt(std::max(1.0 - mu * mu, 1e-12));
-  const double a = mu / (sine * std::sqrt(variance));
-  if (a > 4.0) return 0.0;
-  return 0.5 * (std::exp(-a * a) / (a * std::sqrt(kPi)) - std::erfc(a));
-}
-
-double Transmitted(double mu) {
-  return (1.0 - FresnelReflectance(mu, Water::kRefractiveIndex)) / kZenithTransmittance;
-}
+double Transmitted(double mu) { return shared::WaterTransmitted(mu, Water::kRefractiveIndex); }
 
 /// Slopes across the line of sight: Gauss-Hermite of weight exp(-x^2), normalised to 1 (Abramowitz
 /// and Stegun, table 25.10).
@@ -219,13 +176,7 @@ Water::Water(double wind_m_per_s, std::span<const double> wavelengths_nm)
       under_surface_(LightFromUnderWater(wavelengths_nm)) {}
 
 double Water::Glitter(const ReflectionAngles& at) const {
-  const Half half = HalfOf(at);
-  const double mu2 = half.mu * half.mu;
-  const double slopes = std::exp(-(1.0 - mu2) / (mu2 * variance_)) / (kPi * variance_);
-  const double visible =
-      1.0 / (1.0 + SmithLambda(at.mu_light, variance_) + SmithLambda(at.mu_eye, variance_));
-  return FresnelReflectance(half.cos_light, kRefractiveIndex) * slopes * visible /
-         (4.0 * at.mu_light * at.mu_eye * mu2 * mu2);
+  return shared::WaveGlitter(at.mu_light, at.mu_eye, at.cos_between, variance_, kRefractiveIndex);
 }
 
 Bands<float> Water::Brdf(const ReflectionAngles& at) const {
@@ -238,8 +189,7 @@ Bands<float> Water::Brdf(const ReflectionAngles& at) const {
 }
 
 Bands<float> Water::BodyAlbedo(double mu) const {
-  // A flat surface of index 1.34 lets 0.934 of an even sky in.
-  const auto through = static_cast<float>(0.934 / kZenithTransmittance * Transmitted(mu));
+  const auto through = static_cast<float>(shared::WaterLetsIn(kRefractiveIndex, mu));
   Bands<float> sent(under_surface_.count);
   for (std::size_t band = 0; band < sent.count; ++band) sent[band] = through * under_surface_[band];
   return sent;
@@ -302,14 +252,8 @@ MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye)
 
 namespace {
 
-double Escape(double mu) { return 3.0 / 7.0 * (1.0 + 2.0 * mu); }
-
-// Kokhanovsky (2005), equations 13 and 14; the scattering angle in degrees.
 double WithoutAbsorption(const ReflectionAngles& at) {
-  const double scattering = std::acos(-at.cos_between) / kRadiansPerDegree;
-  const double phase = 11.1 * std::exp(-0.087 * scattering) + 1.1 * std::exp(-0.014 * scattering);
-  const double sum = at.mu_light + at.mu_eye;
-  return (1.247 + 1.186 * sum + 5.157 * at.mu_light * at.mu_eye + phase) / (4.0 * sum);
+  return shared::SnowWithoutAbsorption(at.mu_light, at.mu_eye, at.cos_between);
 }
 
 /// What both directions of R0 are multiplied by so that snow without absorption sends on exactly
@@ -387,7 +331,8 @@ Snow::Snow(double grain_diameter_m, std::span<const double> wavelengths_nm)
 
 Bands<float> Snow::Brdf(const ReflectionAngles& at) const {
   const double r0 = WithoutAbsorption(at) * Balanced(at.mu_light) * Balanced(at.mu_eye);
-  const auto fall = static_cast<float>(Escape(at.mu_light) * Escape(at.mu_eye) / r0);
+  const auto fall =
+      static_cast<float>(shared::SnowEscape(at.mu_light) * shared::SnowEscape(at.mu_eye) / r0);
   const auto scale = static_cast<float>(r0 / kPi);
   Bands<float> f(y_.count);
   for (std::size_t band = 0; band < f.count; ++band) f[band] = scale * std::exp(-y_[band] * fall);
@@ -395,7 +340,7 @@ Bands<float> Snow::Brdf(const ReflectionAngles& at) const {
 }
 
 Bands<float> Snow::Albedo(double mu) const {
-  const auto escape = static_cast<float>(Escape(mu));
+  const auto escape = static_cast<float>(shared::SnowEscape(mu));
   Bands<float> sent(y_.count);
   for (std::size_t band = 0; band < sent.count; ++band) sent[band] = std::exp(-y_[band] * escape);
   return sent;

@@ -1,0 +1,131 @@
+// How surfaces send light on (reflectance.h): what their distributions are made of. Cosines of the
+// normal with light and eye are mu_light and mu_eye, that between light and eye is cos_between;
+// lengths do not occur.
+
+SHARED Number FifthPower(Number x) {
+  Number x2 = x * x;
+  return x2 * x2 * x;
+}
+
+// Of unpolarised light (Fresnel).
+SHARED Number FresnelReflectance(Number cosine, Number index) {
+  Number sine2 = (Number(1.0) - cosine * cosine) / (index * index);  // Snell, inside
+  Number inside = sqrt(max(Number(1.0) - sine2, Number(0.0)));
+  Number across = (cosine - index * inside) / (cosine + index * inside);
+  Number along = (index * cosine - inside) / (index * cosine + inside);
+  return Number(0.5) * (across * across + along * along);
+}
+
+SHARED Number SchlickReflectance(Number cosine, Number f0) {
+  return f0 +
+         (Number(1.0) - f0) * FifthPower(Number(1.0) - min(max(cosine, Number(0.0)), Number(1.0)));
+}
+
+// The half vector of light and eye: its cosine with the light, and with the normal.
+SHARED Number HalfCosLight(Number cos_between) {
+  return Number(0.5) * sqrt(max(Number(2.0) + Number(2.0) * cos_between, Number(1e-12)));
+}
+
+SHARED Number HalfMu(Number mu_light, Number mu_eye, Number cos_light) {
+  return min((mu_light + mu_eye) / (Number(2.0) * cos_light), Number(1.0));
+}
+
+// RoughDiffuse. Albedo of light reflected once between facets that absorb nothing; `scale` and
+// `mean` are those of a roughness.
+SHARED Number RoughSingle(Number mu, Number roughness, Number scale) {
+  Number cosine = min(mu, Number(1.0));
+  Number sine = sqrt(max(Number(1.0) - cosine * cosine, Number(0.0)));
+  // sin / mu (1 - sin^3), without the division by 0 of the horizontal.
+  Number far = sine * cosine * (Number(1.0) + sine + sine * sine) / (Number(1.0) + sine);
+  Number g =
+      sine * (atan(sine, cosine) - sine * cosine) + Number(0.6666666666666667) * (far - sine);
+  return scale * (Number(1.0) + roughness * g * Number(0.3183098861837907));
+}
+
+// Reflected once [1/sr], of facets that absorb nothing.
+SHARED Number RoughOnce(Number mu_light, Number mu_eye, Number cos_between, Number roughness,
+                        Number scale) {
+  Number s = cos_between - mu_light * mu_eye;
+  Number ratio = select(s > Number(0.0), s / max(mu_light, mu_eye), s);
+  return scale * (Number(1.0) + roughness * ratio) * Number(0.3183098861837907);
+}
+
+// What of the light that is reflected more than once leaves facets of an albedo.
+SHARED Number RoughAgain(Number albedo, Number mean) {
+  return albedo * albedo * mean / (Number(1.0) - albedo * (Number(1.0) - mean));
+}
+
+// Glossy. Share of the light that the coat lets through to the body, in and out alike, but for
+// 1 - f0.
+SHARED Number CoatPassed(Number mu) {
+  return Number(1.0) - FifthPower(Number(1.0) - Number(0.5) * mu);
+}
+
+SHARED Number CoatLobe(Number half_mu, Number cos_light, Number f0, Number exponent,
+                       Number normalisation) {
+  return SchlickReflectance(cos_light, f0) * normalisation * pow(half_mu, exponent);
+}
+
+// Distribution of the body under the coat, over its albedo [1/sr].
+SHARED Number BodyUnderCoat(Number mu_light, Number mu_eye, Number f0) {
+  return Number(0.38750768752787574) * (Number(1.0) - f0) * CoatPassed(mu_light) *
+         CoatPassed(mu_eye);  // 28 / (23 pi)
+}
+
+// Water. Share of the surface that waves hide from a direction, over the share that they do not:
+// (exp(-a^2) / (a sqrt(pi)) - erfc(a)) / 2 with erfc of Abramowitz and Stegun 7.1.26, to 2e-7.
+SHARED Number SmithLambda(Number mu, Number variance) {
+  Number sine = sqrt(max(Number(1.0) - mu * mu, Number(1e-12)));
+  Number a = mu / (sine * sqrt(variance));
+  Number t = Number(1.0) / (Number(1.0) + Number(0.3275911) * a);
+  Number series =
+      t * (Number(0.254829592) +
+           t * (Number(-0.284496736) +
+                t * (Number(1.421413741) + t * (Number(-1.453152027) + t * Number(1.061405429)))));
+  Number b = min(a, Number(5.0));
+  Number hidden =
+      Number(0.5) * exp(-b * b) * (Number(0.5641895835477563) / max(a, Number(1e-9)) - series);
+  return select(a > Number(4.0), Number(0.0), max(hidden, Number(0.0)));
+}
+
+// Glitter of waves of a slope variance [1/sr].
+SHARED Number WaveGlitter(Number mu_light, Number mu_eye, Number cos_between, Number variance,
+                          Number index) {
+  Number cos_light = HalfCosLight(cos_between);
+  Number mu = HalfMu(mu_light, mu_eye, cos_light);
+  Number mu2 = mu * mu;
+  Number slopes =
+      exp(-(Number(1.0) - mu2) / (mu2 * variance)) * Number(0.3183098861837907) / variance;
+  Number visible =
+      Number(1.0) / (Number(1.0) + SmithLambda(mu_light, variance) + SmithLambda(mu_eye, variance));
+  return FresnelReflectance(cos_light, index) * slopes * visible /
+         (Number(4.0) * mu_light * mu_eye * mu2 * mu2);
+}
+
+// Through a flat surface, over that of the zenith, 1 - (0.34 / 2.34)^2.
+SHARED Number WaterTransmitted(Number mu, Number index) {
+  return (Number(1.0) - FresnelReflectance(mu, index)) / Number(0.9789);
+}
+
+// Share of an even sky that comes back from under the surface, over what is under it: a flat
+// surface of index 1.34 lets 0.934 of it in.
+SHARED Number WaterLetsIn(Number index, Number mu_eye) {
+  return Number(0.934) / Number(0.9789) * WaterTransmitted(mu_eye, index);
+}
+
+// Snow.
+SHARED Number SnowEscape(Number mu) {
+  return Number(0.42857142857142855) * (Number(1.0) + Number(2.0) * mu);
+}
+
+// Kokhanovsky (2005), equations 13 and 14; the angle of scattering comes in radians from its
+// cosine, -cos_between.
+SHARED Number SnowWithoutAbsorption(Number mu_light, Number mu_eye, Number cos_between) {
+  Number sine = sqrt(max((Number(1.0) - cos_between) * (Number(1.0) + cos_between), Number(0.0)));
+  Number scattering = atan(sine, -cos_between) * Number(57.29577951308232);
+  Number phase = Number(11.1) * exp(Number(-0.087) * scattering) +
+                 Number(1.1) * exp(Number(-0.014) * scattering);
+  Number sum = mu_light + mu_eye;
+  return (Number(1.247) + Number(1.186) * sum + Number(5.157) * mu_light * mu_eye + phase) /
+         (Number(4.0) * sum);
+}
