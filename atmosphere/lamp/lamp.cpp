@@ -7,17 +7,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/lamp/lamp_ray.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
-
-double SmoothCone(double cosine, double inner_rad, double outer_rad) {
-  const double outer = std::cos(outer_rad);
-  const double t = std::clamp((cosine - outer) / (std::cos(inner_rad) - outer), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 /// Where a value lies between the ascending points of a table.
 struct Between {
@@ -87,9 +82,9 @@ double RelativeIntensity(const LampProfile& profile, const glm::dvec3& cosines) 
     case LampProfile::Kind::kIsotropic:
       return 1.0;
     case LampProfile::Kind::kCosinePower:
-      return cosines.x > 0.0 ? std::pow(cosines.x, profile.exponent) : 0.0;
+      return shared::CosinePowerShare(cosines.x, profile.exponent);
     case LampProfile::Kind::kCone:
-      return SmoothCone(cosines.x, profile.inner_rad, profile.outer_rad);
+      return shared::SpotShare(cosines.x, std::cos(profile.inner_rad), std::cos(profile.outer_rad));
     case LampProfile::Kind::kTable:
       return FromTable(profile.table, cosines);
   }
@@ -139,11 +134,7 @@ LampAir HomogeneousAir(double scattering_per_m, double extinction_per_m,
 }
 
 double ExponentialColumn(double length_m, double rho_a, double rho_b, double rise_over_h) {
-  // Near 0, (1 - e^-x) / x over its trapezoid (1 + e^-x) / 2; the next term is x^4 / 120.
-  if (std::abs(rise_over_h) < 1e-3) {
-    return length_m * 0.5 * (rho_a + rho_b) * (1.0 - rise_over_h * rise_over_h / 12.0);
-  }
-  return length_m * (rho_a - rho_b) / rise_over_h;
+  return shared::LampColumn(length_m, rho_a, rho_b, rise_over_h);
 }
 
 Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,

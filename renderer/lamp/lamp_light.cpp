@@ -19,25 +19,6 @@
 #include "renderer/lamp/tile_cut.h"
 
 namespace alpenglow {
-namespace {
-
-std::vector<PlacedLamp> LampsOf(const Scene& scene, const LampStage& stage, const Medium& medium,
-                                const BandColour& colour) {
-  const MeasuredLamps measured = MeasuredLampsOf(scene.lights);
-  std::vector<PlacedLamp> lamps;
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const alpenglow::Light& light = scene.lights[i];
-    if (light.intensity_cd == 0.0) continue;
-    PlacedLamp lamp = PlacedOn(stage, light, i, measured);
-    lamp.intensity =
-        LampIntensity(light.temperature_k, lamp.candela, medium.wavelengths_nm, colour);
-    lamps.push_back(std::move(lamp));
-  }
-  return lamps;
-}
-
-}  // namespace
-
 struct LampLight::State {
   LampStage stage;
   LampEye eye;
@@ -47,7 +28,7 @@ struct LampLight::State {
         const BandColour& colour)
       : stage(scene, ground, medium),
         eye{{0.0, 0.0, ground.eye_height_m}, std::nullopt},
-        tree(LampsOf(scene, stage, medium, colour), eye, stage) {}
+        tree(PlacedLampsOf(scene, stage, medium, colour), eye, stage) {}
 
   [[nodiscard]] Bands<float> InAir(const LampNodes& lamps, const LampRayEnd& ray,
                                    double pixel_angle_rad, int nodes) const;
@@ -111,7 +92,7 @@ Bands<float> LampLight::State::InAir(const LampNodes& lamps, const LampRayEnd& r
     const PlacedLamp& placed = tree.Light(index);
     const LampAlongRay along = AlongRay(placed, ray.direction, pixel_angle_rad);
     const double reach = Reach(placed, ray.length_m);
-    for (const auto& [begin, end] : LitPieces(placed, stage, eye.at, ray.direction, reach)) {
+    for (const auto& [begin, end] : PiecesLitBy(placed, stage, eye.at, ray.direction, reach)) {
       const LampSegment segment{eye.at, ray.direction, begin, end};
       sum = sum +
             Scaled(placed.intensity, Airlight(placed.air, along.lamp, segment, nodes), along.share);
@@ -261,7 +242,7 @@ LampTile LampLight::State::TileAt(const MovingCamera& camera, const PixelBox& bo
 bool LampLight::State::AllLit(const LampNodes& members, const LampRayEnd& ray) const {
   return std::all_of(members.begin(), members.end(), [&](std::uint32_t i) {
     const double reach = Reach(tree.Light(i), ray.length_m);
-    const auto pieces = LitPieces(tree.Light(i), stage, eye.at, ray.direction, reach);
+    const auto pieces = PiecesLitBy(tree.Light(i), stage, eye.at, ray.direction, reach);
     return pieces.size() == 1 && pieces[0][0] == 0.0 && pieces[0][1] == reach;
   });
 }

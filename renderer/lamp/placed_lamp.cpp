@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/colour/black_body.h"
+#include "atmosphere/lamp/lamp_ray.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
@@ -119,6 +120,21 @@ Bands<float> LampIntensity(double temperature_k, double candela,
   return intensity;
 }
 
+std::vector<PlacedLamp> PlacedLampsOf(const Scene& scene, const LampStage& stage,
+                                      const Medium& medium, const BandColour& colour) {
+  const MeasuredLamps measured = MeasuredLampsOf(scene.lights);
+  std::vector<PlacedLamp> lamps;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    if (light.intensity_cd == 0.0) continue;
+    PlacedLamp lamp = PlacedOn(stage, light, i, measured);
+    lamp.intensity =
+        LampIntensity(light.temperature_k, lamp.candela, medium.wavelengths_nm, colour);
+    lamps.push_back(std::move(lamp));
+  }
+  return lamps;
+}
+
 PlacedLamp Before(const LampEye& eye, const LampStage& stage, PlacedLamp placed) {
   constexpr double kAtTheEye_m = 1e-6;
   const glm::dvec3 to_lamp = placed.lamp.position_m - eye.at;
@@ -165,9 +181,9 @@ double Reach(const PlacedLamp& placed, double length_m) {
   return std::min(length_m, 4.0 * placed.distance_m + 20e3);
 }
 
-std::vector<std::array<double, 2>> LitPieces(const PlacedLamp& placed, const LampStage& stage,
-                                             const glm::dvec3& eye, const glm::dvec3& direction,
-                                             double length_m) {
+std::vector<std::array<double, 2>> PiecesLitBy(const PlacedLamp& placed, const LampStage& stage,
+                                               const glm::dvec3& eye, const glm::dvec3& direction,
+                                               double length_m) {
   if (!stage.ground().terrain) return {{0.0, length_m}};
   const glm::dvec3 to_lamp = placed.lamp.position_m - eye;
   const double nearest = glm::dot(to_lamp, direction);
@@ -215,8 +231,7 @@ double SeenPerSr(const PlacedLamp& placed, const LampStage& stage, const LampEye
   }
   const double off = glm::length(ray.direction - glm::normalize(way)) / radius;
   if (off >= 1.0 || placed.is_hidden) return 0.0;
-  // (1 - r^2)^2 over the disk integrates to pi / 3.
-  return (1.0 - off * off) * (1.0 - off * off) * 3.0 / (kPi * radius * radius);
+  return shared::SoftDiskPerSr(off, radius);
 }
 
 Bands<float> SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray) {

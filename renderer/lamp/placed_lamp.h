@@ -57,6 +57,10 @@ using MeasuredLamps = std::map<std::string, IesLamp>;
                                          const std::vector<double>& wavelengths_nm,
                                          const BandColour& colour);
 
+/// All lights of a scene that shine, before no eye. Throws InputError as PlacedOn and MeasuredLampsOf.
+[[nodiscard]] std::vector<PlacedLamp> PlacedLampsOf(const Scene& scene, const LampStage& stage,
+                                                    const Medium& medium, const BandColour& colour);
+
 /// The lamp as an eye has it: distance, direction, air between, blur; its light has not arrived.
 [[nodiscard]] PlacedLamp Before(const LampEye& eye, const LampStage& stage, PlacedLamp placed);
 /// And with what of its light arrives.
@@ -77,11 +81,11 @@ struct LampAlongRay {
 
 /// The lit pieces of a ray from the eye, in distances: points at equal angles as the lamp sees them
 /// are tested, and edges between them bisected.
-[[nodiscard]] std::vector<std::array<double, 2>> LitPieces(const PlacedLamp& placed,
-                                                           const LampStage& stage,
-                                                           const glm::dvec3& eye,
-                                                           const glm::dvec3& direction,
-                                                           double length_m);
+[[nodiscard]] std::vector<std::array<double, 2>> PiecesLitBy(const PlacedLamp& placed,
+                                                             const LampStage& stage,
+                                                             const glm::dvec3& eye,
+                                                             const glm::dvec3& direction,
+                                                             double length_m);
 
 /// Of a lamp's light as the eye gets it, what a ray of the camera sees of it [1/sr].
 [[nodiscard]] double SeenPerSr(const PlacedLamp& placed, const LampStage& stage, const LampEye& eye,

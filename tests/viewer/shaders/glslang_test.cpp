@@ -7,8 +7,10 @@
 
 #include <cstdlib>
 
+#include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "viewer/embedded_text.h"
+#include "viewer/lamps/lamp_painter.h"
 #include "viewer/paint/sky_painter.h"
 
 namespace alpenglow {
@@ -52,6 +54,29 @@ TEST_F(Glslang, AcceptsEveryShaderOfTheViewer) {
   for (const char* stage : {"average.frag.glsl", "empty.frag.glsl", "full_screen.vert.glsl",
                             "shadow.vert.glsl", "terrain.frag.glsl"}) {
     ExpectAccepted({}, stage);
+  }
+}
+
+TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
+  for (const bool with_fog : {false, true}) {
+    Scene scene = BareScene(10.0, 0.0, 0.0, 40.0);
+    if (with_fog) {
+      scene.fog.emplace();
+      scene.fog->extinction_per_m = 0.01;
+      scene.fog->scale_height_m = 30.0;
+      scene.fog->base_height_m = 0.0;
+    }
+    const SceneGround ground = LoadGround(scene);
+    const SceneLamps lamps(scene, ground, scene.medium);
+    std::vector<ShaderPiece> texts = SharedTexts();
+    texts.push_back({"viewer/shaders/view_block.glsl",
+                     std::string(viewer::EmbeddedText("viewer/shaders/view_block.glsl"))});
+    for (const ShaderPiece& piece : LampTexts(lamps, {.nodes = 6, .step = 4}))
+      texts.push_back(piece);
+    for (const char* stage :
+         {"lamp_glow.frag.glsl", "lamp_core.frag.glsl", "lamp_disk.frag.glsl"}) {
+      ExpectAccepted(texts, stage);
+    }
   }
 }
 

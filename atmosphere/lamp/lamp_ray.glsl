@@ -1,0 +1,57 @@
+// What an eye has of a lamp: how its light is spread over directions, columns of the air between
+// them, the soft disk that stands for a small one. Lengths in one unit, metres where lamps are.
+
+// Integral of a density that is exponential in the altitude, along a straight line of this length
+// over a flat ground: rho_a and rho_b at its ends, b higher than a by this many scale heights. Near
+// 0, (1 - e^-x) / x over its trapezoid (1 + e^-x) / 2; the next term is 17 x^6 / 20160.
+SHARED Length LampColumn(Length span, Number rho_a, Number rho_b, Number rise_over_h) {
+  Number small = Number(0.02);
+  Number square = min(rise_over_h * rise_over_h, small * small);
+  Number series = Number(1.0) - square * (Number(1.0) / Number(12.0) - square / Number(120.0));
+  Number divisor = select(abs(rise_over_h) < small, small, rise_over_h);
+  return select(abs(rise_over_h) < small, span * Number(0.5) * (rho_a + rho_b) * series,
+                span * (rho_a - rho_b) / divisor);
+}
+
+// Of a spot, relative: 1 inside, 0 outside, smooth in the cosine to its axis between.
+SHARED Number SpotShare(Number cosine, Number cos_inner, Number cos_outer) {
+  Number t = (cosine - cos_outer) / (cos_inner - cos_outer);
+  t = min(max(t, Number(0.0)), Number(1.0));
+  return t * t * (Number(3.0) - Number(2.0) * t);
+}
+
+// Of a lamp whose light falls by a power of the cosine to its axis, relative; none behind it.
+SHARED Number CosinePowerShare(Number cosine, Number exponent) {
+  Number ahead = select(cosine > Number(0.0), cosine, Number(1.0));
+  return select(cosine > Number(0.0), pow(ahead, exponent), Number(0.0));
+}
+
+// Share per solid angle [1/sr] of light that a soft disk of angular radius `radius` spreads around
+// its middle, `off` radii away: (1 - off^2)^2 over the disk integrates to pi / 3.
+SHARED Number SoftDiskPerSr(Number off, Number radius) {
+  Number inside = max(Number(1.0) - off * off, Number(0.0));
+  return inside * inside * Number(0.95492965855137202) / (radius * radius);
+}
+
+// Places in a map of what the air around a lamp brings to surfaces (LampGlow): logarithmic in the
+// distance, linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6 and 1.
+SHARED Number LampGlowUnit(Length distance, Length nearest, Length farthest) {
+  return log(distance / nearest) / log(farthest / nearest);
+}
+
+SHARED Number LampRiseUnit(Number sine) {
+  Number a = min(abs(sine), Number(1.0));
+  Number steps = min(a / Number(0.04), Number(1.0)) +
+                 min(max((a - Number(0.04)) / Number(0.16), Number(0.0)), Number(1.0)) +
+                 min(max((a - Number(0.2)) / Number(0.4), Number(0.0)), Number(1.0)) +
+                 max((a - Number(0.6)) / Number(0.4), Number(0.0));
+  return Number(0.5) + select(sine < Number(0.0), Number(-0.125), Number(0.125)) * steps;
+}
+
+SHARED Number LampRiseFromUnit(Number unit) {
+  Number steps = abs(unit - Number(0.5)) * Number(8.0);
+  Number a = Number(0.04) * min(steps, Number(1.0)) +
+             Number(0.16) * min(max(steps - Number(1.0), Number(0.0)), Number(1.0)) +
+             Number(0.4) * max(steps - Number(2.0), Number(0.0));
+  return select(unit < Number(0.5), -a, a);
+}

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+// Light of lamps on the graphics card, against the renderer's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+
+#include "renderer/lamp/lamp_light.h"
+#include "renderer/light/lighting.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/shaders/gpu_values.h"
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/lamps/lamp_painter.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kPixel_rad = 1e-3;
+
+Light LightAt(double north_m, double east_m, double height_m, double candela) {
+  const double radius = 6371000.0;
+  Light light;
+  light.latitude_rad = BareScene(0.0, 0.0, 0.0, 40.0).place.latitude_rad + north_m / radius;
+  light.longitude_rad = BareScene(0.0, 0.0, 0.0, 40.0).place.longitude_rad +
+                        east_m / (radius * std::cos(light.latitude_rad));
+  light.height = {height_m, false};
+  light.intensity_cd = candela;
+  light.radius_m = 0.1;
+  return light;
+}
+
+Light Spot(Light light, double heading_rad, double pitch_rad, double outer_rad) {
+  light.type = Light::Type::kSpot;
+  light.heading_rad = heading_rad;
+  light.pitch_rad = pitch_rad;
+  light.inner_rad = 0.5 * outer_rad;
+  light.outer_rad = outer_rad;
+  return light;
+}
+
+Scene Night(double eye_height_m, double fog_per_m, double fog_height_m) {
+  Scene scene = BareScene(eye_height_m, 0.0, 0.0, 40.0);
+  scene.lights = {LightAt(300.0, 10.0, 5.0, 1000.0), LightAt(20.0, -8.0, 1.0, 400.0),
+                  LightAt(2500.0, 900.0, 40.0, 20000.0),
+                  Spot(LightAt(400.0, -60.0, 30.0, 50000.0), 2.0, -0.2, 0.3)};
+  if (fog_per_m > 0.0) {
+    Fog fog;
+    fog.extinction_per_m = fog_per_m;
+    fog.scale_height_m = fog_height_m;
+    fog.base_height_m = 0.0;
+    fog.phase = FogPhase(12.0);
+    scene.fog = fog;
+  }
+  return scene;
+}
+
+/// A scene before an eye, as the renderer has it and as the graphics card does.
+struct Both {
+  explicit Both(const Scene& of, const LampQuality& quality = {})
+      : scene(of),
+        ground(LoadGround(scene)),
+        medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
+        colour(medium.wavelengths_nm),
+        light(scene, ground, medium, colour),
+        lamps(scene, ground, medium),
+        painter(lamps, quality, {}),
+        eye_m(0.0, 0.0, ground.eye_height_m) {
+    painter.Prepare(lamps, {eye_m, glm::dmat3(1.0), eye_m.z, kPixel_rad}, 0.0);
+  }
+
+  [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
+                                         const std::vector<tests::Arguments<float>>& points) const {
+    std::vector<ShaderPiece> pieces = SharedTexts();
+    for (const ShaderPiece& piece : painter.texts()) {
+      // No fragment, no lattice.
+      if (piece.name.find("lamp_picture") == std::string::npos) pieces.push_back(piece);
+    }
+    return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
+      painter.Connect(program);
+      painter.Bind();
+    });
+  }
+
+  Scene scene;
+  SceneGround ground;
+  Medium medium;
+  BandColour colour;
+  LampLight light;
+  SceneLamps lamps;
+  LampPainter painter;
+  glm::dvec3 eye_m;
+};
+
+/// Rays (x, y, z, length): half of them within a tenth of a radian of a lamp, lengths to the sky,
+/// the ground, or some place before.
+std::vector<tests::Arguments<float>> Rays(const Both& both, int count, bool near_lamps = true) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(random);
+  };
+  std::vector<tests::Arguments<float>> rays;
+  const std::vector<glm::dvec3> lamps = both.light.Directions();
+  while (static_cast<int>(rays.size()) < count) {
+    glm::dvec3 way(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-0.4, 0.6));
+    if (near_lamps && rays.size() % 2 == 0) {
+      way = lamps[rays.size() / 2 % lamps.size()] + std::pow(10.0, uniform(-4.0, -1.0)) * way;
+    }
+    way = glm::normalize(way);
+    double length = rays.size() % 3 == 0 ? std::pow(10.0, uniform(1.0, 3.5)) : 1e9;
+    if (way.z < 0.0) length = std::min(length, both.eye_m.z / -way.z);
+    rays.push_back({static_cast<float>(way.x), static_cast<float>(way.y), static_cast<float>(way.z),
+                    static_cast<float>(length)});
+  }
+  return rays;
+}
+
+glm::dvec3 DirectionOf(const tests::Arguments<float>& ray) {
+  return glm::normalize(glm::dvec3(ray[0], ray[1], ray[2]));
+}
+
+struct Deviation {
+  double mean, p99;
+};
+Deviation Of(std::vector<double> deviations) {
+  std::sort(deviations.begin(), deviations.end());
+  double sum = 0.0;
+  for (const double deviation : deviations) sum += deviation;
+  const auto count = static_cast<double>(deviations.size());
+  return {sum / count, deviations[static_cast<std::size_t>(0.99 * (count - 1.0))]};
+}
+/// Relative to what is expected, of values worth the name.
+Deviation Compare(const std::vector<float>& gpu, const std::vector<double>& truth) {
+  const double least = 1e-7 * *std::max_element(truth.begin(), truth.end());
+  std::vector<double> deviations;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] > least) deviations.push_back(std::abs(double{gpu[i]} / truth[i] - 1.0));
+  }
+  return Of(std::move(deviations));
+}
+
+using LampsOnTheCard = tests::Headless;
+
+/// Of the middle band of the scene's air.
+Deviation GlowDeviation(const Both& both, bool near_lamps = true) {
+  constexpr int kBand = 2;
+  const auto rays = Rays(both, 400, near_lamps);
+  const std::vector<float> gpu =
+      both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
+  std::vector<double> truth;
+  for (const auto& ray : rays) {
+    const LampRayEnd end{DirectionOf(ray), double{ray[3]}};
+    truth.push_back(double{both.light.InAir(both.light.All(), end, kPixel_rad, 48)[kBand]});
+  }
+  return Compare(gpu, truth);
+}
+
+TEST_F(LampsOnTheCard, GlowInClearAirAsTheRenderer) {
+  const Deviation deviation = GlowDeviation(Both(Night(6.0, 0.0, 1.0)));
+  EXPECT_LT(deviation.mean, 1e-3) << "12 nodes for four lamps, one a spot";
+  EXPECT_LT(deviation.p99, 0.01);
+}
+
+TEST_F(LampsOnTheCard, GlowInFogAroundTheEyeAsTheRenderer) {
+  const Deviation deviation = GlowDeviation(Both(Night(6.0, 0.004, 25.0)));
+  EXPECT_LT(deviation.mean, 4e-3) << "fog of 25 m is thin where the rule looks for it";
+  EXPECT_LT(deviation.p99, 0.06);
+}
+
+TEST_F(LampsOnTheCard, GlowInFogUnderTheEyeAsTheRenderer) {
+  const Deviation deviation = GlowDeviation(Both(Night(300.0, 0.004, 25.0)));
+  EXPECT_LT(deviation.mean, 4e-3);
+  EXPECT_LT(deviation.p99, 0.06);
+}
+
+TEST_F(LampsOnTheCard, AnEyeInsideALampSeesAsTheRenderer) {
+  Scene scene = Night(6.0, 0.004, 25.0);
+  scene.lights = {LightAt(0.0, 0.0, 6.0, 1000.0)};
+  scene.lights[0].radius_m = 0.5;
+  const Both both(scene);
+  const auto rays = Rays(both, 100);
+  const std::vector<float> gpu =
+      both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const glm::dvec3 direction = DirectionOf(rays[i]);
+    const LampRayEnd end{direction, double{rays[i][3]}};
+    const CameraRay seen{
+        .eye = both.eye_m, .origin = both.eye_m, .direction = direction, .through = direction};
+    const double truth = double{both.light.InAir(both.light.All(), end, kPixel_rad, 48)[2]} +
+                         double{both.light.Seen(both.light.All(), seen, kPixel_rad)[2]};
+    EXPECT_NEAR(double{gpu[i]}, truth, 0.01 * truth);
+  }
+}
+
+/// Points of the ground and normals, in the frame of the ground: (x, y, z, nx, ny, nz).
+std::vector<tests::Arguments<float>> Points(int count, bool with_slopes) {
+  std::mt19937 random(3);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(random);
+  };
+  std::vector<tests::Arguments<float>> points;
+  for (int i = 0; i < count; ++i) {
+    const double far = std::pow(10.0, uniform(0.5, 3.3)), turn = uniform(-1.0, 1.0);
+    const glm::dvec3 normal =
+        !with_slopes ? glm::dvec3(0.0, 0.0, 1.0)
+                     : glm::normalize(glm::dvec3(uniform(-0.5, 0.5), uniform(-0.5, 0.5), 1.0));
+    points.push_back({static_cast<float>(far * std::sin(turn)),
+                      static_cast<float>(far * std::cos(turn)), 0.0F, static_cast<float>(normal.x),
+                      static_cast<float>(normal.y), static_cast<float>(normal.z)});
+  }
+  return points;
+}
+
+/// Relative to what level ground there gets.
+Deviation GroundDeviation(const Both& both, bool with_slopes) {
+  std::vector<tests::Arguments<float>> points = Points(400, with_slopes);
+  std::vector<double> truth, level;
+  for (auto& point : points) {
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(point[3], point[4], point[5]));
+    const glm::dvec3 up(0.0, 0.0, 1.0);
+    const LitPoint at{{point[0], point[1], point[2]}, normal, normal}, on_level{at.point, up, up};
+    truth.push_back(double{both.light.OnSurface(both.light.All(), at)[2]});
+    level.push_back(double{both.light.OnSurface(both.light.All(), on_level)[2]});
+    point[2] -= static_cast<float>(both.eye_m.z);
+  }
+  const std::vector<float> gpu =
+      both.OnGpu("LampsOnGround(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], a[5]))[2]", points);
+  std::vector<double> deviations;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    deviations.push_back(std::abs(double{gpu[i]} - truth[i]) / level[i]);
+  }
+  return Of(std::move(deviations));
+}
+
+TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
+  const Both clear(Night(6.0, 0.0, 1.0)), fog(Night(6.0, 0.004, 25.0));
+  EXPECT_LT(GroundDeviation(clear, false).p99, 0.01);
+  const Deviation level = GroundDeviation(fog, false), slopes = GroundDeviation(fog, true);
+  EXPECT_LT(level.mean, 0.01) << "its light in the fog comes from a map of LampGlow";
+  EXPECT_LT(level.p99, 0.08);
+  EXPECT_LT(slopes.mean, 0.06) << "light in the fog is linear in the tilt; LampGlow is off by 18 %";
+  EXPECT_LT(slopes.p99, 0.3);
+}
+
+TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
+  Scene scene = Night(6.0, 0.0, 1.0);
+  const Both both(scene);
+  LampProfile profile;
+  profile.kind = LampProfile::Kind::kTable;
+  profile.table = {{0.0, 0.3, 0.6, 1.5},
+                   {0.0, 1.0, 3.0},
+                   {1.0, 0.8, 0.2, 0.0, 0.9, 0.9, 0.4, 0.0, 0.5, 0.2, 0.1, 0.0}};
+  const std::vector<float> samples = SampledProfile(profile);
+  for (int turn = 0; turn < kLampTurns; turn += 7) {
+    const double c = 2.0 * 3.14159265358979 * turn / (kLampTurns - 1);
+    const double gamma = 3.14159265358979 * 40 / (kLampGammas - 1);
+    EXPECT_NEAR(double{samples[static_cast<std::size_t>(turn * kLampGammas + 40)]},
+                RelativeIntensity(profile, {std::cos(gamma), std::sin(gamma) * std::cos(c),
+                                            std::sin(gamma) * std::sin(c)}),
+                1e-6);
+  }
+}
+
+TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
+  Scene scene = Night(6.0, 0.0, 1.0);
+  scene.lights.clear();
+  for (int i = 0; i < 300; ++i) {
+    scene.lights.push_back(LightAt(200.0 + 30.0 * (i / 2), i % 2 == 0 ? 20.0 : -20.0, 0.5, 500.0));
+  }
+  Both both(scene);
+  const SceneLamps::InView in_view =
+      both.lamps.Before({both.eye_m, glm::dmat3(1.0), both.eye_m.z, kPixel_rad}, {0.0, 0.0}, 0.0);
+  EXPECT_EQ(in_view.block.count.x, 64.0F);
+  EXPECT_EQ(in_view.disks.size(), 300U) << "each lamp itself is seen";
+  EXPECT_LT(GlowDeviation(both, false).mean, 0.02)
+      << "in all directions; close to one of the lamps that a node stands for its own glow is "
+         "missing";
+}
+
+TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
+  Both both(Night(6.0, 0.0, 1.0));
+  LandingLight landing;
+  both.lamps.SetLandingLight(landing);
+  for (const double north_m : {0.0, 5000.0}) {
+    const LampView view{{0.0, north_m, 6.0}, glm::dmat3(1.0), 6.0, kPixel_rad};
+    const SceneLamps::InView in_view = both.lamps.Before(view, {0.0, 0.0}, 1.0);
+    EXPECT_NEAR(in_view.block.lamps[0].position.z, -1.5F, 1e-4F);
+    EXPECT_NEAR(in_view.block.lamps[0].position.y, 0.0F, 1e-4F);
+    EXPECT_EQ(in_view.block.lamps[0].axis.y, 1.0F);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

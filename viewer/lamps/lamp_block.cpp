@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/lamps/lamp_block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+template <typename Values>
+glm::vec4 InFloats(const Values& values, std::size_t count, double scale = 1.0) {
+  ALPENGLOW_ENSURE(count, <=, std::size_t{4});
+  glm::vec4 bands(0.0F);
+  for (std::size_t band = 0; band < count; ++band) {
+    bands[static_cast<glm::length_t>(band)] =
+        static_cast<float>(scale * static_cast<double>(values[band]));
+  }
+  return bands;
+}
+
+glm::vec4 Parameters(const PhaseFunction& phase) {
+  return {phase.g, phase.g_back, phase.back_weight, phase.alpha};
+}
+
+/// Altitudes over the plane of a lamp's air count from `reference_m`.
+class LampPacking {
+ public:
+  LampPacking(const LampView& view, double reference_m) : view_(view), reference_m_(reference_m) {}
+
+  [[nodiscard]] GpuLamp Packed(const ChosenLamp& chosen, bool with_core) const {
+    const PlacedLamp& placed = *chosen.placed;
+    const LampAlongRay along = AlongRay(placed, placed.direction, view_.pixel_angle_rad);
+    const double z_eye = placed.air.AltitudeOf(view_.eye_m) - reference_m_;
+    const double z_lamp = placed.air.AltitudeOf(placed.lamp.position_m) - reference_m_;
+    GpuLamp gpu{};
+    gpu.position = {Turned(placed.lamp.position_m - view_.eye_m), along.lamp.radius_m};
+    gpu.intensity = InFloats(placed.intensity.value, placed.intensity.count);
+    gpu.axis = {Turned(placed.lamp.axis), static_cast<float>(placed.lamp.profile.kind)};
+    gpu.side = {Turned(placed.lamp.side), static_cast<float>(chosen.table)};
+    gpu.profile = {Edges(placed.lamp.profile), placed.distance_m, placed.HoldsEye() ? 1.0 : 0.0};
+    gpu.up = {Turned(placed.air.up), z_eye};
+    gpu.at_eye = {Densities(placed.air, z_eye), z_lamp};
+    gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
+    gpu.glow = {placed.mean_share, chosen.glow, with_core && !placed.HoldsEye() ? 1.0 : 0.0, 0.0};
+    return gpu;
+  }
+
+ private:
+  [[nodiscard]] glm::vec3 Turned(const glm::dvec3& of_ground) const {
+    return view_.eye_from_ground * of_ground;
+  }
+  [[nodiscard]] static glm::vec2 Edges(const LampProfile& profile) {
+    if (profile.kind == LampProfile::Kind::kCone) {
+      return {std::cos(profile.inner_rad), std::cos(profile.outer_rad)};
+    }
+    return {profile.exponent, 0.0};
+  }
+  [[nodiscard]] static glm::vec3 Densities(const LampAir& air, double z) {
+    glm::dvec3 densities(0.0);
+    for (std::size_t k = 0; k < air.layers.size(); ++k) {
+      densities[static_cast<glm::length_t>(k)] = std::exp(-z / air.layers[k].scale_height_m);
+    }
+    return densities;
+  }
+
+  const LampView& view_;
+  double reference_m_;
+};
+
+void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double reference_m,
+            LampsBlock& block) {
+  const auto density = [&](std::size_t k) {
+    return std::exp(-reference_m / layers[k].scale_height_m);
+  };
+  block.falls = {1.0 / layers[0].scale_height_m, 1.0 / layers[1].scale_height_m, 0.0, 0.0};
+  block.molecules = InFloats(layers[0].scattering_per_m.value, bands, density(0));
+  block.aerosol = InFloats(layers[1].scattering_per_m.value, bands, density(1));
+  block.dimming = InFloats(layers[1].extinction_per_m.value, bands, density(1));
+  block.mie_phase = Parameters(layers[1].phase);
+  if (layers.size() < 3) return;
+  const LampLayer& fog = layers[2];
+  block.falls.z = static_cast<float>(1.0 / fog.scale_height_m);
+  block.fog = {fog.scattering_per_m[0] * density(2), fog.extinction_per_m[0] * density(2), 0.0,
+               0.0};
+  block.fog_phase = Parameters(fog.phase);
+}
+
+void PutColours(const Medium& medium, LampsBlock& block) {
+  const BandColour colour(medium.wavelengths_nm);
+  const std::size_t bands = medium.wavelengths_nm.size();
+  const auto rows = colour.linear_srgb_from_bands();
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    glm::vec4& row = channel == 0 ? block.red : channel == 1 ? block.green : block.blue;
+    row = InFloats(rows.subspan(channel * bands, bands), bands);
+  }
+}
+
+}  // namespace
+
+LampsBlock LampsBlockOf(const std::vector<ChosenLamp>& lamps, const std::vector<LampLayer>& layers,
+                        const Medium& medium, const LampView& view,
+                        std::array<double, 2> core_rad) {
+  ALPENGLOW_ENSURE(lamps.size(), <=, kMostGpuLamps);
+  double reference_m = view.altitude_m;
+  for (const ChosenLamp& lamp : lamps) {
+    reference_m = std::min(reference_m, lamp.placed->air.AltitudeOf(lamp.placed->lamp.position_m));
+  }
+  LampsBlock block{};
+  block.count = {static_cast<double>(lamps.size()), core_rad[0], std::max(core_rad[1], 1e-9), 0.0};
+  block.planet = {medium.planet_radius_m / 1000.0, std::max(view.altitude_m, 0.0) / 1000.0, 0.0,
+                  0.0};
+  PutAir(layers, medium.wavelengths_nm.size(), reference_m, block);
+  PutColours(medium, block);
+  const LampPacking packing(view, reference_m);
+  for (std::size_t i = 0; i < lamps.size(); ++i) {
+    block.lamps[i] = packing.Packed(lamps[i], core_rad[1] > 0.0);
+  }
+  return block;
+}
+
+}  // namespace alpenglow

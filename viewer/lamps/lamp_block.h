@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Lamps as lamp_light.glsl reads them: a uniform block of vec4 alone.
+//
+// Densities are relative to those at a reference altitude, that of the lowest of eye and lamps, so
+// that float holds fog of metres' scale height under an eye kilometres above it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+
+#include "atmosphere/air/medium.h"
+#include "renderer/lamp/placed_lamp.h"
+
+namespace alpenglow {
+
+/// As many as the smallest uniform block that every OpenGL has room for can hold, and a loop in a
+/// shader should.
+inline constexpr std::size_t kMostGpuLamps = 64;
+
+/// `struct Lamp` of lamp_light.glsl.
+struct GpuLamp {
+  glm::vec4 position, intensity, axis, side, profile, up, at_eye, at_lamp, glow;
+};
+
+/// `block Lamps` of lamp_light.glsl.
+struct LampsBlock {
+  glm::vec4 count, planet, falls, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
+  glm::vec4 red, green, blue;
+  std::array<GpuLamp, kMostGpuLamps> lamps;
+};
+static_assert(sizeof(LampsBlock) == (12 + 9 * kMostGpuLamps) * sizeof(glm::vec4));
+static_assert(sizeof(LampsBlock) <= 16384);  // GL_MAX_UNIFORM_BLOCK_SIZE is at least that
+
+/// From where lamps are seen, and how finely.
+struct LampView {
+  glm::dvec3 eye_m{0.0};  // in the frame of SceneGround
+  glm::dmat3 eye_from_ground{
+      1.0};                 // turns directions of that frame into east, north, up at the eye
+  double altitude_m = 0.0;  // of the eye over the sphere
+  double pixel_angle_rad = 1e-3;
+};
+
+/// A lamp of the block, and what its picture needs beside it.
+struct ChosenLamp {
+  const PlacedLamp* placed;  // before the eye of the view
+  int table = 0;             // layer of its measured profile
+  int glow = 0;              // of what its air brings to surfaces
+};
+
+/// @param layers  of LampStage: molecules, aerosol and perhaps fog, densities as of altitude 0.
+/// @param core_rad  angles from a lamp at which what is drawn of it by itself fades and ends; 0, 0:
+///     nothing is.
+[[nodiscard]] LampsBlock LampsBlockOf(const std::vector<ChosenLamp>& lamps,
+                                      const std::vector<LampLayer>& layers, const Medium& medium,
+                                      const LampView& view, std::array<double, 2> core_rad);
+
+}  // namespace alpenglow

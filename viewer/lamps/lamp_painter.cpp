@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/lamps/lamp_painter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "atmosphere/air/phase_table.h"
+#include "atmosphere/number/quadrature.h"
+#include "atmosphere/text/error.h"
+#include "viewer/embedded_text.h"
+#include "viewer/gl/gl_context.h"
+
+namespace alpenglow {
+namespace {
+
+enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit };
+
+/// Cores end at so many steps of the lattice from their lamp: there 1/angle is straight between its
+/// points to 3e-4, and so is what fades.
+constexpr double kCoreBegin_steps = 5.0, kCoreEnd_steps = 20.0;
+
+ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
+
+/// A phase function as a macro over a cosine and its vector of parameters.
+std::string PhaseMacro(PhaseKind kind) {
+  switch (kind) {
+    case PhaseKind::kRayleigh:
+      return "PhaseRayleigh(c)";
+    case PhaseKind::kHenyeyGreenstein:
+      return "PhaseHenyeyGreenstein(c, p.x)";
+    case PhaseKind::kDoubleHenyeyGreenstein:
+      return "PhaseDoubleHenyeyGreenstein(c, p.x, p.y, p.z)";
+    case PhaseKind::kCornetteShanks:
+      return "PhaseCornetteShanks(c, p.x)";
+    case PhaseKind::kSchlick:
+      return "PhaseSchlick(c, p.x)";
+    case PhaseKind::kDraine:
+      return "PhaseDraine(c, p.x, p.w)";
+    case PhaseKind::kHenyeyGreensteinDraine:
+      return "PhaseHenyeyGreensteinDraine(c, p.x, p.y, p.z, p.w)";
+    case PhaseKind::kTable:
+      return "0.0";  // LampPhaseMie reads the texture; fog has no table
+  }
+  throw InternalError("unknown kind of phase function");
+}
+
+std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
+  const std::vector<LampLayer>& layers = shape.layers();
+  std::string text = fmt::format(
+      "#define LAMP_NODES {}\n#define LAMP_STEP {}\n#define LAMP_SPOTS\n"
+      "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
+      "#define LAMP_GLOW_FARTHEST {:.7f}\n",
+      quality.nodes, quality.step, PhaseMacro(layers[1].phase.kind), kNearestGlow_m,
+      kFarthestGlow_m);
+  if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
+  if (!shape.glows().empty()) text += "#define LAMP_GLOW_MAP\n";
+  if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
+  if (shape.HasFog()) {
+    text += fmt::format("#define LAMP_FOG\n#define LAMP_PHASE_FOG(c, p) {}\n",
+                        PhaseMacro(layers[2].phase.kind));
+  }
+  return text;
+}
+
+std::vector<ShaderPiece> Together(std::vector<ShaderPiece> texts,
+                                  std::initializer_list<const char*> names) {
+  for (const char* name : names) texts.push_back(Piece(name));
+  return texts;
+}
+
+}  // namespace
+
+std::vector<ShaderPiece> LampTexts(const SceneLamps& shape, const LampQuality& quality) {
+  return Together({{"lamp constants", DefinesOf(shape, quality)}},
+                  {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamp_picture.glsl"});
+}
+
+LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
+                         const LampUnits& units)
+    : quality_(quality), units_(units), texts_(LampTexts(shape, quality)) {
+  ALPENGLOW_ENSURE(quality.nodes, >=, 2);
+  ALPENGLOW_ENSURE(quality.nodes, <=, 32);
+  std::vector<ShaderPiece> texts = SharedTexts();
+  texts.push_back(Piece("viewer/shaders/view_block.glsl"));
+  texts.insert(texts.end(), texts_.begin(), texts_.end());
+  const std::vector<ShaderPiece> corners = Together(texts, {"viewer/shaders/lamp_corners.glsl"});
+  if (quality.step > 1) {
+    glow_program_.emplace(std::vector{Piece("viewer/shaders/full_screen.vert.glsl")},
+                          Together(texts, {"viewer/shaders/lamp_glow.frag.glsl"}));
+    core_program_.emplace(Together(corners, {"viewer/shaders/lamp_core.vert.glsl"}),
+                          Together(texts, {"viewer/shaders/lamp_core.frag.glsl"}));
+    Connect(*glow_program_);
+    Connect(*core_program_);
+  }
+  disk_program_.emplace(
+      Together(corners, {"viewer/shaders/lamp_disk.vert.glsl"}),
+      Together(texts, {"viewer/shaders/lamp_disk.frag.glsl"}),
+      std::vector<VertexAttribute>{{0, "disk_towards"}, {1, "disk_light"}, {2, "disk_place"}});
+  Connect(*disk_program_);
+  UploadTables(shape);
+  UploadGlows(shape);
+  CheckGl("LampPainter");
+}
+
+void LampPainter::Connect(const ShaderProgram& program) const {
+  const GaussRule& rule = GaussLegendre(quality_.nodes);
+  std::vector<float> pairs;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    pairs.push_back(static_cast<float>(rule.node[i]));
+    pairs.push_back(static_cast<float>(rule.weight[i]));
+  }
+  program.Use();
+  glUniform2fv(program.Uniform("lamp_gauss"), quality_.nodes, pairs.data());
+  program.BindBlock("Lamps", units_.lamps_block);
+  program.BindBlock("View", units_.view_block);
+  program.BindSampler("surface_map", units_.surface);
+  program.BindSampler("lamp_tables", units_.first + kTablesUnit);
+  program.BindSampler("lamp_glow_map", units_.first + kGlowUnit);
+  program.BindSampler("lamp_mie_table", units_.first + kMieUnit);
+  program.BindSampler("lamp_lattice", units_.first + kLatticeUnit);
+}
+
+void LampPainter::UploadTables(const SceneLamps& shape) {
+  std::vector<float> samples;
+  for (const LampProfile& profile : shape.tables()) {
+    const std::vector<float> sampled = SampledProfile(profile);
+    samples.insert(samples.end(), sampled.begin(), sampled.end());
+  }
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kTablesUnit));
+  glBindTexture(GL_TEXTURE_2D_ARRAY, tables_.id());
+  if (!samples.empty()) {
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kLampGammas, kLampTurns,
+                 static_cast<GLsizei>(shape.tables().size()), 0, GL_RED, GL_FLOAT, samples.data());
+    ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+  }
+  const PhaseFunction& mie = shape.layers()[1].phase;
+  if (mie.kind != PhaseKind::kTable) return;
+  std::vector<float> nodes;
+  for (const double node : mie.table->nodes()) nodes.push_back(static_cast<float>(node));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kMieUnit));
+  glBindTexture(GL_TEXTURE_2D, mie_table_.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, static_cast<GLsizei>(nodes.size()), 1, 0, GL_RED,
+               GL_FLOAT, nodes.data());
+  ClampAndFilter(GL_TEXTURE_2D, true);
+}
+
+void LampPainter::UploadGlows(const SceneLamps& shape) {
+  if (shape.glows().empty()) return;
+  std::vector<glm::vec4> texels;
+  for (const LampGlow* glow : shape.glows()) {
+    for (const std::vector<glm::vec4>& layer : SampledGlow(*glow)) {
+      texels.insert(texels.end(), layer.begin(), layer.end());
+    }
+  }
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kGlowUnit));
+  glBindTexture(GL_TEXTURE_2D_ARRAY, glows_.id());
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowRises,
+               static_cast<GLsizei>(3 * shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
+  ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+}
+
+void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2) {
+  std::array<double, 2> core{0.0, 0.0};
+  if (quality_.step > 1) {
+    const double step_rad = quality_.step * view.pixel_angle_rad;
+    core = {kCoreBegin_steps * step_rad, kCoreEnd_steps * step_rad};
+  }
+  const SceneLamps::InView in_view = lamps.Before(view, core, dimmest_cd_per_m2);
+  lamps_ = static_cast<int>(in_view.block.count.x);
+  disks_ = static_cast<int>(in_view.disks.size());
+  glBindBuffer(GL_UNIFORM_BUFFER, block_.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(in_view.block), &in_view.block, GL_DYNAMIC_DRAW);
+  if (disks_ == 0) return;
+  glBindVertexArray(disk_vertices_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, disk_buffer_.id());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(LampDisk) * in_view.disks.size()),
+               in_view.disks.data(), GL_DYNAMIC_DRAW);
+  for (GLuint i = 0; i < 3; ++i) {
+    glEnableVertexAttribArray(i);
+    glVertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(LampDisk),
+                          reinterpret_cast<const void*>(i * sizeof(glm::vec4)));
+    glVertexAttribDivisor(i, 1);
+  }
+}
+
+void LampPainter::Bind() const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, units_.lamps_block, block_.id());
+  const auto bind = [&](Unit unit, GLenum target, const GlTexture& texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + unit));
+    glBindTexture(target, texture.id());
+  };
+  bind(kTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
+  bind(kGlowUnit, GL_TEXTURE_2D_ARRAY, glows_);
+  bind(kMieUnit, GL_TEXTURE_2D, mie_table_);
+  if (lattice_) lattice_->BindTexture(units_.first + kLatticeUnit);
+}
+
+void LampPainter::PaintGlow(int width, int height) {
+  if (quality_.step == 1 || lamps_ == 0) return;
+  const int columns = (width + quality_.step - 1) / quality_.step + 1;
+  const int rows = (height + quality_.step - 1) / quality_.step + 1;
+  if (!lattice_ || lattice_->width() != columns || lattice_->height() != rows) {
+    lattice_.emplace(columns, rows, RenderTarget::Depth::kNone);
+  }
+  Bind();
+  lattice_->Bind();
+  glow_program_->Use();
+  glUniform2f(glow_program_->Uniform("picture_size"), static_cast<float>(width),
+              static_cast<float>(height));
+  glBindVertexArray(no_vertices_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  CheckGl("LampPainter::PaintGlow");
+}
+
+void LampPainter::PaintOver(double pixel_angle_rad) const {
+  if (IsDark()) return;
+  Bind();
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  if (core_program_ && lamps_ > 0) {
+    core_program_->Use();
+    glBindVertexArray(no_vertices_.id());
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, lamps_);
+  }
+  if (disks_ > 0) {
+    disk_program_->Use();
+    glUniform1f(disk_program_->Uniform("pixel_angle"), static_cast<float>(pixel_angle_rad));
+    glBindVertexArray(disk_vertices_.id());
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, disks_);
+  }
+  glDisable(GL_BLEND);
+  CheckGl("LampPainter::PaintOver");
+}
+
+}  // namespace alpenglow

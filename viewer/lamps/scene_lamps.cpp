@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/lamps/scene_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <queue>
+
+#include "atmosphere/lamp/lamp_ray.h"
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+// What a lamp may add to a picture [cd/m^2]: its light in the air three degrees beside it, or on
+// ground a third of which it sends back, as far as that fills a pixel.
+double Promise(const LampNode& node, const LampView& view) {
+  constexpr double kBeside = 0.05;
+  const PlacedLamp& lamp = node.light;
+  const double distance = std::max(lamp.distance_m - node.radius_m, 1.0);
+  const double in_air = lamp.candela * node.extinction_per_m / (distance * kBeside);
+  const double height = std::max(lamp.above_ground_m, 0.3);
+  const double width = std::min(height / (distance * view.pixel_angle_rad), 1.0);
+  return std::max(in_air, 0.1 * lamp.candela / (height * height) * width * width);
+}
+
+// Of taking the node for the lamps below it.
+double ErrorOf(const LampNode& node) {
+  if (!node.children) return 0.0;
+  const double distance = std::max(node.light.distance_m - node.radius_m, 1.0);
+  const double relative = node.radius_m / distance;
+  return node.light.candela / distance * relative * relative;
+}
+
+glm::vec4 InFloats(const Bands<float>& bands, double scale) {
+  glm::vec4 values(0.0F);
+  for (std::size_t band = 0; band < std::min<std::size_t>(bands.count, 4); ++band) {
+    values[static_cast<glm::length_t>(band)] = static_cast<float>(scale) * bands[band];
+  }
+  return values;
+}
+
+LampDisk DiskOf(const PlacedLamp& lamp, const LampView& view) {
+  const glm::vec3 towards = view.eye_from_ground * lamp.direction;
+  return {{towards, lamp.lamp.radius_m / lamp.distance_m},
+          InFloats(lamp.towards_eye, 1.0 / (lamp.distance_m * lamp.distance_m)),
+          {lamp.distance_m, 0.0, 0.0, 0.0}};
+}
+
+}  // namespace
+
+SceneLamps::SceneLamps(const Scene& scene, const SceneGround& ground, const Medium& medium)
+    : medium_(medium),
+      colour_(medium.wavelengths_nm),
+      stage_(scene, ground, medium),
+      tree_(PlacedLampsOf(scene, stage_, medium, colour_),
+            {{0.0, 0.0, ground.eye_height_m}, std::nullopt}, stage_) {
+  for (std::uint32_t i = 0; i < tree_.lamps(); ++i) {
+    const LampProfile& profile = tree_.Light(i).lamp.profile;
+    auto known = std::find(tables_.begin(), tables_.end(), profile);
+    if (profile.kind == LampProfile::Kind::kTable && known == tables_.end()) {
+      known = tables_.insert(tables_.end(), profile);
+    }
+    table_of_lamp_.push_back(static_cast<int>(known - tables_.begin()));
+  }
+  for (std::uint32_t i = 0; i < tree_.nodes().size(); ++i) {
+    const LampGlow* glow = &tree_.GlowOf(i);
+    if (number_of_glow_.try_emplace(glow, static_cast<int>(glows_.size())).second) {
+      glows_.push_back(glow);
+    }
+  }
+}
+
+LampNodes SceneLamps::Cut(std::size_t most) const {
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    const double error_a = ErrorOf(tree_.nodes()[a]), error_b = ErrorOf(tree_.nodes()[b]);
+    return error_a != error_b ? error_a < error_b : a < b;
+  };
+  std::priority_queue<std::uint32_t, LampNodes, decltype(less)> open(less);
+  for (const std::uint32_t root : tree_.roots()) open.push(root);
+  while (!open.empty() && open.size() < most && tree_.nodes()[open.top()].children) {
+    const auto children = *tree_.nodes()[open.top()].children;
+    open.pop();
+    for (const std::uint32_t child : children) open.push(child);
+  }
+  LampNodes cut;
+  for (; !open.empty(); open.pop()) cut.push_back(open.top());
+  return cut;
+}
+
+ChosenLamp SceneLamps::Choose(std::uint32_t node) const {
+  const int table = node < table_of_lamp_.size() ? table_of_lamp_[node] : 0;
+  return {&tree_.Light(node), table, number_of_glow_.at(&tree_.GlowOf(node))};
+}
+
+PlacedLamp SceneLamps::Landing(const LampView& view) const {
+  const glm::dmat3 ground_from_eye = glm::transpose(view.eye_from_ground);
+  PlacedLamp placed;
+  placed.lamp.position_m = view.eye_m + ground_from_eye * landing_->offset_m;
+  placed.lamp.radius_m = landing_->radius_m;
+  placed.lamp.profile.kind = LampProfile::Kind::kCone;
+  placed.lamp.profile.inner_rad = landing_->inner_rad;
+  placed.lamp.profile.outer_rad = landing_->outer_rad;
+  placed.lamp.axis = ground_from_eye * landing_->axis;
+  placed.candela = landing_->intensity_cd;
+  placed.intensity = LampIntensity(landing_->temperature_k, landing_->intensity_cd,
+                                   medium_.wavelengths_nm, colour_);
+  // Of a cone, to a tenth: it is what its air, spread evenly, brings to the ground.
+  placed.mean_share = 0.5 * (1.0 - std::cos(0.5 * (landing_->inner_rad + landing_->outer_rad)));
+  return alpenglow::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
+}
+
+SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2> core_rad,
+                                      double dimmest_cd_per_m2, std::size_t most) {
+  tree_.StandBefore({view.eye_m, std::nullopt}, stage_);
+  InView in_view;
+  std::vector<ChosenLamp> chosen;
+  std::optional<PlacedLamp> landing;
+  if (landing_) {
+    landing = Landing(view);
+    chosen.push_back({&*landing, 0, 0});
+  }
+  std::vector<std::pair<double, std::uint32_t>> bright;
+  for (const std::uint32_t node : Cut(most - chosen.size())) {
+    const double promise = Promise(tree_.nodes()[node], view);
+    if (promise >= dimmest_cd_per_m2) bright.emplace_back(-promise, node);
+  }
+  std::sort(bright.begin(), bright.end());
+  bright.resize(std::min(bright.size(), most - chosen.size()));
+  for (const auto& [minus_promise, node] : bright) chosen.push_back(Choose(node));
+  in_view.block = LampsBlockOf(chosen, layers(), medium_, view, core_rad);
+  for (std::uint32_t i = 0; i < tree_.lamps(); ++i) {
+    const PlacedLamp& lamp = tree_.Light(i);
+    if (!lamp.HoldsEye() && !lamp.is_hidden) in_view.disks.push_back(DiskOf(lamp, view));
+  }
+  return in_view;
+}
+
+std::vector<float> SampledProfile(const LampProfile& profile) {
+  std::vector<float> samples;
+  for (int turn = 0; turn < kLampTurns; ++turn) {
+    const double c = 2.0 * kPi * turn / (kLampTurns - 1);
+    for (int i = 0; i < kLampGammas; ++i) {
+      const double gamma = kPi * i / (kLampGammas - 1);
+      samples.push_back(static_cast<float>(RelativeIntensity(
+          profile,
+          {std::cos(gamma), std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c)})));
+    }
+  }
+  return samples;
+}
+
+namespace {
+
+/// Irradiance of level ground times the distance, as a logarithm; and what slopes of this sine get
+/// more, towards the lamp and away from it, over that sine and relative to level ground.
+std::array<glm::vec4, 3> GlowTexel(const LampGlow& glow, double distance_m, double rise) {
+  constexpr double kTilt = 0.3;
+  constexpr double kDark = 1e-30;
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  const double level_share = std::sqrt(1.0 - kTilt * kTilt);
+  const glm::dvec3 way =
+      distance_m * glm::dvec3(std::sqrt(std::max(1.0 - rise * rise, 0.0)), 0.0, rise);
+  const Bands<double> level = glow.On(way, up, up);
+  const std::array<Bands<double>, 2> tilted{glow.On(way, {kTilt, 0.0, level_share}, up),
+                                            glow.On(way, {-kTilt, 0.0, level_share}, up)};
+  std::array<glm::vec4, 3> texel{glm::vec4(static_cast<float>(std::log(kDark))), glm::vec4(0.0F),
+                                 glm::vec4(0.0F)};
+  for (std::size_t band = 0; band < level.count; ++band) {
+    const auto at = static_cast<glm::length_t>(band);
+    const double most = std::max(level[band], kDark);
+    texel[0][at] = static_cast<float>(std::log(most * distance_m));
+    for (std::size_t k = 0; k < 2; ++k) {
+      texel[k + 1][at] = static_cast<float>((tilted[k][band] / most - level_share) / kTilt);
+    }
+  }
+  return texel;
+}
+
+}  // namespace
+
+std::array<std::vector<glm::vec4>, 3> SampledGlow(const LampGlow& glow) {
+  std::array<std::vector<glm::vec4>, 3> layers;
+  for (int j = 0; j < kGlowRises; ++j) {
+    const double rise = shared::LampRiseFromUnit(j / (kGlowRises - 1.0));
+    for (int i = 0; i < kGlowDistances; ++i) {
+      const double distance =
+          kNearestGlow_m * std::pow(kFarthestGlow_m / kNearestGlow_m, i / (kGlowDistances - 1.0));
+      const std::array<glm::vec4, 3> texel = GlowTexel(glow, distance, rise);
+      for (std::size_t k = 0; k < texel.size(); ++k) layers[k].push_back(texel[k]);
+    }
+  }
+  return layers;
+}
+
+}  // namespace alpenglow

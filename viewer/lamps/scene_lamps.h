@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// The lamps of a scene and the landing light of the eye's own aircraft, as an eye that flies has
+// them: which of them, or of the nodes that stand for many (renderer/lamp/lamp_tree.h), are worth a
+// loop in a shader.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "renderer/lamp/lamp_stage.h"
+#include "renderer/lamp/lamp_tree.h"
+#include "viewer/lamps/lamp_block.h"
+
+namespace alpenglow {
+
+/// A spot that moves with the eye.
+struct LandingLight {
+  double intensity_cd = 400e3;
+  double temperature_k = 3200.0;
+  double radius_m = 0.1;    // of the luminous sphere that it is
+  double inner_rad = 0.07;  // half angles: full inside, none outside
+  double outer_rad = 0.14;
+  glm::dvec3 offset_m{0.0, 0.0, -1.5};  // from the eye, east, north, up
+  glm::dvec3 axis{0.0, 1.0, 0.0};       // unit, east, north, up
+};
+
+/// A lamp itself, as the picture shows it.
+struct LampDisk {
+  glm::vec4 towards;  // unit, in the frame of the eye; angular radius, without that of pixels [rad]
+  glm::vec4 light;    // irradiance at the eye [W m^-2 nm^-1]
+  glm::vec4 place;    // distance [m]; the rest unused
+};
+
+/// What a measured lamp's table has on the graphics card: uniform angles gamma over [0, pi] and C
+/// over a whole turn, its ends the same.
+inline constexpr int kLampGammas = 361;
+inline constexpr int kLampTurns = 73;
+/// And what the air around a lamp brings to surfaces: distances and rises of lamp_ray.glsl, each
+/// step of LampGlow in four.
+inline constexpr int kGlowDistances = 61;
+inline constexpr int kGlowRises = 33;
+inline constexpr double kNearestGlow_m = 0.2;
+inline constexpr double kFarthestGlow_m = 2e4;
+
+class SceneLamps {
+ public:
+  /// Lights and fog of the scene. Reads the IES files of lamps. `ground` must outlive this. Throws
+  /// InputError naming the lamp for a lamp below the ground, and what ReadIes refuses.
+  SceneLamps(const Scene& scene, const SceneGround& ground, const Medium& medium);
+
+  void SetLandingLight(const std::optional<LandingLight>& light) { landing_ = light; }
+
+  [[nodiscard]] bool IsDark() const { return tree_.lamps() == 0 && !landing_; }
+  [[nodiscard]] bool HasFog() const { return stage_.layers().size() > 2; }
+  [[nodiscard]] const std::vector<LampLayer>& layers() const { return stage_.layers(); }
+  [[nodiscard]] const Medium& medium() const { return medium_; }
+  /// Of the measured lamps, in the order of ChosenLamp::table.
+  [[nodiscard]] const std::vector<LampProfile>& tables() const { return tables_; }
+  /// In the order of ChosenLamp::glow.
+  [[nodiscard]] const std::vector<const LampGlow*>& glows() const { return glows_; }
+
+  /// Everything that depends on the eye.
+  struct InView {
+    LampsBlock block;
+    std::vector<LampDisk> disks;
+  };
+  /// @param dimmest_cd_per_m2  lamps whose glow and light on the ground under them stay below this
+  ///     are left out.
+  /// @param most  lamps or nodes of the block, at most kMostGpuLamps.
+  [[nodiscard]] InView Before(const LampView& view, std::array<double, 2> core_rad,
+                              double dimmest_cd_per_m2, std::size_t most = kMostGpuLamps);
+
+ private:
+  [[nodiscard]] LampNodes Cut(std::size_t most) const;
+  [[nodiscard]] PlacedLamp Landing(const LampView& view) const;
+  [[nodiscard]] ChosenLamp Choose(std::uint32_t node) const;
+
+  Medium medium_;
+  BandColour colour_;
+  LampStage stage_;
+  LampTree tree_;
+  std::optional<LandingLight> landing_;
+  std::vector<LampProfile> tables_;
+  std::vector<int> table_of_lamp_;
+  std::vector<const LampGlow*> glows_;
+  std::map<const LampGlow*, int> number_of_glow_;
+};
+
+/// A measured profile at the angles of kLampGammas and kLampTurns, [turn * kLampGammas + gamma].
+[[nodiscard]] std::vector<float> SampledProfile(const LampProfile& profile);
+/// What a lamp's air brings to surfaces, three layers of [rise * kGlowDistances + distance]:
+/// logarithm of the irradiance of level ground times the distance [1/m]; what slopes towards the
+/// lamp and away from it get more, over the sine of the slope and relative to level ground.
+[[nodiscard]] std::array<std::vector<glm::vec4>, 3> SampledGlow(const LampGlow& glow);
+
+}  // namespace alpenglow

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Light in the air around a lamp, added to the picture: what the lattice leaves to it.
+in vec2 screen;
+flat in int number;
+out vec4 picture;
+
+uniform sampler2D surface_map;
+
+void main() {
+  vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
+  float part = LampCore(lamps[number], direction);
+  if (part <= 0.0) discard;
+  float end_m = LampRayEnd(direction, texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w);
+  picture = vec4(part * LampRgb(GlowOfLamp(lamps[number], direction, end_m)), 0.0);
+}

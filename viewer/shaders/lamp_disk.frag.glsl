@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// A lamp itself, never smaller than a pixel, added to the picture.
+in vec2 screen;
+flat in vec4 towards;
+flat in vec3 light;
+out vec4 picture;
+
+void main() {
+  vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
+  float off = length(direction - towards.xyz) / towards.w;
+  picture = vec4(SoftDiskPerSr(min(off, 1.0), towards.w) * light, 0.0);
+}

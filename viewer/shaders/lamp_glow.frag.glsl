@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Light of lamps in the air at every LAMP_STEP-th pixel, without that in their cores; and the
+// inverse of the distance at which the ray ends [1/m].
+out vec4 lattice;
+
+uniform sampler2D surface_map;
+uniform vec2 picture_size;  // [pixels]
+
+void main() {
+  vec2 at = floor(gl_FragCoord.xy) * float(LAMP_STEP);
+  vec2 screen = (2.0 * at + 1.0) / picture_size - 1.0;
+  vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
+  ivec2 texel = min(ivec2(at), textureSize(surface_map, 0) - 1);
+  float end_m = LampRayEnd(direction, texelFetch(surface_map, texel, 0).w);
+  lattice = vec4(LampRgb(LampGlowIn(direction, end_m, 0.0)), 1.0 / end_m);
+}

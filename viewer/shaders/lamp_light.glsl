@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+// Light of lamps: LampsBlock of lamp_block.h. Frame: east, north, up at the eye, which is the
+// origin; lengths are metres. One band a component.
+//
+// Light in the air, with a the angle at which it is scattered, t_c the place of the ray nearest to
+// the lamp and D its distance (atmosphere/lamp/airlight.h):
+//
+//   L = I / D  integral of  sum over layers sigma rho p(cos a)  share  T  da,   t = t_c - D cot a
+//
+// by Gauss-Legendre in the logarithm of a, in which forward peaks of any width are as smooth as the
+// rest. The air of a lamp lies over the plane that touches the sphere between it and the eye.
+#define LAMP_MOST 64
+#define LAMP_EVEN 0
+#define LAMP_POWER 1
+#define LAMP_CONE 2
+#define LAMP_TABLE 3
+
+struct Lamp {
+  vec4 position;   // of its middle; radius within which the air scatters as there
+  vec4 intensity;  // in its brightest direction [W sr^-1 nm^-1]
+  vec4 axis;       // unit; kind of its profile
+  vec4 side;       // unit; layer of its table
+  vec4 profile;    // cosines inside which a cone is full and outside which it is dark (or exponent,
+                   // nothing); distance; 1 where the eye is inside of it
+  vec4 up;         // of its air; altitude of the eye
+  vec4 at_eye;     // densities of molecules, aerosol, fog; altitude of the lamp
+  vec4 at_lamp;    // densities there; its own radius
+  vec4 glow;       // mean of its profile; layer of glow_map; 1 with a core of its own; unused
+};
+
+layout(std140) uniform Lamps {
+  vec4 lamp_count;      // lamps; angles at which cores begin to fade and end [rad]
+  vec4 lamp_planet;     // radius; altitude of the eye [km]
+  vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, fog [1/m]
+  vec4 lamp_molecules;  // scattering where density is 1 [1/m]
+  vec4 lamp_aerosol;    // scattering
+  vec4 lamp_dimming;    // extinction of aerosol
+  vec4 lamp_fog;        // scattering and extinction of fog
+  vec4 lamp_mie_phase;  // g, g of the second lobe, its weight, alpha
+  vec4 lamp_fog_phase;
+  vec4 lamp_red;  // rows of the matrix to linear sRGB [cd m^-2 per W m^-2 sr^-1 nm^-1]
+  vec4 lamp_green;
+  vec4 lamp_blue;
+  Lamp lamps[LAMP_MOST];
+};
+
+uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
+#ifdef LAMP_TABLES
+uniform sampler2DArray lamp_tables;  // share over angles from the axis and around it
+#endif
+#ifdef LAMP_GLOW_MAP
+uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see LampGlowMap
+#endif
+#ifdef LAMP_MIE_TABLE
+uniform sampler2D lamp_mie_table;  // over (a / pi)^(1/3)
+#endif
+
+vec3 LampRgb(vec4 radiance) {
+  return vec3(dot(lamp_red, radiance), dot(lamp_green, radiance), dot(lamp_blue, radiance));
+}
+
+float LampPhaseMie(float cosine, float angle) {
+#ifdef LAMP_MIE_TABLE
+  float unit = pow(max(angle, 1e-12) * 0.318309886, 0.333333333);
+  float size = float(textureSize(lamp_mie_table, 0).x);
+  return textureLod(lamp_mie_table, vec2(TexelFromUnit(unit, size), 0.5), 0.0).x;
+#else
+  return LAMP_PHASE_MIE(cosine, lamp_mie_phase);
+#endif
+}
+
+vec3 LampColumns(float span, vec3 from, vec3 to, vec3 rise) {
+  return vec3(LampColumn(span, from.x, to.x, rise.x), LampColumn(span, from.y, to.y, rise.y),
+              LampColumn(span, from.z, to.z, rise.z));
+}
+
+vec4 LampDepth(vec3 columns) {
+  vec4 depth = lamp_molecules * columns.x + lamp_dimming * columns.y;
+#ifdef LAMP_FOG
+  depth += lamp_fog.y * columns.z;
+#endif
+  return depth;
+}
+
+// Densities at an altitude over the plane of a lamp.
+vec3 LampDensities(float z) {
+  vec3 density = vec3(exp(-z * lamp_falls.xy), 0.0);
+#ifdef LAMP_FOG
+  density.z = exp(-z * lamp_falls.z);
+#endif
+  return density;
+}
+
+// Of its intensity, towards a direction given by its cosines to axis, side and side x axis.
+float LampShare(Lamp lamp, vec3 cosines) {
+  int kind = int(lamp.axis.w + 0.5);
+  float share = 1.0;
+#ifdef LAMP_SPOTS
+  if (kind == LAMP_CONE) share = SpotShare(cosines.x, lamp.profile.x, lamp.profile.y);
+  if (kind == LAMP_POWER) share = CosinePowerShare(cosines.x, lamp.profile.x);
+#endif
+#ifdef LAMP_TABLES
+  if (kind == LAMP_TABLE) {
+    float gamma = atan(length(cosines.yz), cosines.x) * 0.318309886;
+    float around = atan(cosines.z, cosines.y) * 0.159154943;
+    vec2 size = vec2(textureSize(lamp_tables, 0).xy);
+    share =
+        textureLod(lamp_tables,
+                   vec3(TexelFromUnit(gamma, size.x),
+                        TexelFromUnit(around < 0.0 ? around + 1.0 : around, size.y), lamp.side.w),
+                   0.0)
+            .x;
+  }
+#endif
+  return share;
+}
+
+vec3 LampCosines(Lamp lamp, vec3 direction) {
+  return vec3(dot(direction, lamp.axis.xyz), dot(direction, lamp.side.xyz),
+              dot(direction, cross(lamp.side.xyz, lamp.axis.xyz)));
+}
+
+// The angles of scattering between which a spot lights the ray; x > y where nowhere. The cosine to
+// its axis is a cos(angle - middle) along the ray.
+vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
+#ifdef LAMP_SPOTS
+  int kind = int(lamp.axis.w + 0.5);
+  float edge = kind == LAMP_CONE ? lamp.profile.y : kind == LAMP_POWER ? 0.0 : -1.0;
+  if (edge < 0.0) return angles;
+  float a = length(vec2(along, across));
+  float half_angle = acos(clamp(edge / max(a, 1e-6), -1.0, 1.0));
+  float middle = atan(along, across) + 1.57079633;
+  if (middle - half_angle > 3.14159265) middle -= 6.28318531;
+  if (middle + half_angle < 0.0) middle += 6.28318531;
+  return vec2(max(angles.x, middle - half_angle),
+              a > edge ? min(angles.y, middle + half_angle) : -1.0);
+#else
+  return angles;
+#endif
+}
+
+// Light that the air in front of a distance scatters from one lamp into the eye.
+vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m) {
+  float nearest = dot(lamp.position.xyz, direction);
+  vec3 off = nearest * direction - lamp.position.xyz;
+  float from_ray = length(off);
+  float approach = max(from_ray, lamp.position.w);
+  float reach = min(distance_m, 4.0 * lamp.profile.z + 20e3);
+  vec2 angles = vec2(atan(approach, nearest), atan(approach, nearest - reach));
+  vec3 along = LampCosines(lamp, direction);
+  vec3 across = LampCosines(lamp, off / max(from_ray, 1e-9));
+  bool inside = lamp.profile.w > 0.5;
+  float share = 1.0;
+  if (inside) {
+    share = LampShare(lamp, along);
+  } else {
+    angles = LampBeam(lamp, along.x, across.x, angles);
+  }
+  float low = log(angles.x);
+  float span = log(max(angles.y, 1e-9)) - low;
+  float slope = dot(lamp.up.xyz, direction);
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < LAMP_NODES; ++i) {
+    float angle = exp(low + span * lamp_gauss[i].x);
+    float fold = min(angle, 3.14159265 - angle);
+    float square = fold * fold;
+    float sine =
+        fold * (1.0 - square * (0.166666667 -
+                                square * (8.33333333e-3 -
+                                          square * (1.98412698e-4 - square * 2.7557319e-6))));
+    sine = clamp(sine, 1e-7, 1.0);
+    float cosine = sqrt((1.0 - sine) * (1.0 + sine)) * (angle > 1.57079633 ? -1.0 : 1.0);
+    float away = approach / sine;
+    float t = clamp(nearest - away * cosine, 0.0, reach);
+    float z = lamp.up.w + slope * t;
+    vec3 density = LampDensities(z);
+    vec3 columns =
+        LampColumns(t, lamp.at_eye.xyz, density, slope * t * lamp_falls.xyz) +
+        LampColumns(away, lamp.at_lamp.xyz, density, (z - lamp.at_eye.w) * lamp_falls.xyz);
+    vec4 source = lamp_molecules * (density.x * PhaseRayleigh(cosine)) +
+                  lamp_aerosol * (density.y * LampPhaseMie(cosine, angle));
+#ifdef LAMP_FOG
+    source += lamp_fog.x * density.z * LAMP_PHASE_FOG(cosine, lamp_fog_phase);
+#endif
+    float weight = lamp_gauss[i].y * angle;
+#if defined(LAMP_SPOTS) || defined(LAMP_TABLES)
+    if (!inside) weight *= LampShare(lamp, sine * across - cosine * along);
+#endif
+    sum += weight * source * exp(-LampDepth(columns));
+  }
+  return lamp.intensity * (sum * (max(span, 0.0) * share / approach));
+}
+
+// 1 in the core of a lamp's light in the picture, 0 outside of it.
+float LampCore(Lamp lamp, vec3 direction) {
+  float apart = length(direction - lamp.position.xyz / lamp.profile.z);
+  float fade = clamp((lamp_count.z - apart) / (lamp_count.z - lamp_count.y), 0.0, 1.0);
+  return lamp.glow.z * fade * fade * fade * (10.0 - fade * (15.0 - 6.0 * fade));
+}
+
+// Of a lamp that the eye is in: the inside of its luminous sphere.
+vec4 LampFromWithin(Lamp lamp, vec3 direction) {
+  if (lamp.profile.w < 0.5) return vec4(0.0);
+  float radius = lamp.at_lamp.w;
+  return lamp.intensity *
+         (LampShare(lamp, LampCosines(lamp, -direction)) / (3.14159265 * radius * radius));
+}
+
+// Light of all lamps scattered into the eye in front of a distance [W m^-2 sr^-1 nm^-1].
+// @param with_cores  1: all of it; 0: without what GlowOfCores draws.
+vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
+  vec4 sum = vec4(0.0);
+  int count = int(lamp_count.x + 0.5);
+  for (int i = 0; i < count; ++i) {
+    float part = 1.0 - (1.0 - with_cores) * LampCore(lamps[i], direction);
+    sum += part * GlowOfLamp(lamps[i], direction, distance_m) + LampFromWithin(lamps[i], direction);
+  }
+  return sum;
+}
+
+vec4 LampGlow(vec3 direction, float distance_km) {
+  return LampGlowIn(direction, 1e3 * distance_km, 1.0);
+}
+
+#ifdef LAMP_GLOW_MAP
+// What the air that a lamp lights brings to a surface: exact for level ground, linear in the tilt.
+// The map has the logarithm of what level ground gets times the distance, and what slopes towards
+// the lamp and away from it get more, relative to that.
+vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
+  float sine = dot(towards, lamp.up.xyz);
+  vec2 size = vec2(textureSize(lamp_glow_map, 0).xy);
+  float far = clamp(distance_m, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST);
+  vec2 at = vec2(TexelFromUnit(LampGlowUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), size.x),
+                 TexelFromUnit(LampRiseUnit(sine), size.y));
+  vec4 level = textureLod(lamp_glow_map, vec3(at, 3.0 * lamp.glow.y), 0.0);
+  vec3 flat_way = towards - sine * lamp.up.xyz;
+  float tilt = dot(normal, flat_way) / max(length(flat_way), 1e-6);
+  float layer = 3.0 * lamp.glow.y + (tilt < 0.0 ? 2.0 : 1.0);
+  vec4 tilted = textureLod(lamp_glow_map, vec3(at, layer), 0.0);
+  return exp(level) / far * max(dot(normal, lamp.up.xyz) + tilted * abs(tilt), vec4(0.0));
+}
+#endif
+
+// Irradiance of a surface by all lamps [W m^-2 nm^-1].
+// @param point_m  from the eye; normal: unit.
+vec4 LampsOnGround(vec3 point_m, vec3 normal) {
+  vec4 sum = vec4(0.0);
+  int count = int(lamp_count.x + 0.5);
+  for (int i = 0; i < count; ++i) {
+    Lamp lamp = lamps[i];
+    vec3 way = lamp.position.xyz - point_m;
+    float far = max(length(way), lamp.at_lamp.w);
+    vec3 towards = way / far;
+    float rise = dot(lamp.up.xyz, point_m);
+    vec3 density = LampDensities(lamp.up.w + rise);
+    vec3 columns = LampColumns(far, lamp.at_lamp.xyz, density,
+                               (lamp.up.w + rise - lamp.at_eye.w) * lamp_falls.xyz);
+    float facing = max(dot(normal, towards), 0.0) / (far * far);
+#if defined(LAMP_SPOTS) || defined(LAMP_TABLES)
+    facing *= LampShare(lamp, LampCosines(lamp, -towards));
+#endif
+    vec4 light = facing * exp(-LampDepth(columns));
+#ifdef LAMP_GLOW_MAP
+    light += lamp.glow.x * LampAirOnSurface(lamp, towards, far, normal);
+#endif
+    sum += lamp.intensity * light;
+  }
+  return sum;
+}

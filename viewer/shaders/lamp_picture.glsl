@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Light of lamps in the air of a picture [cd/m^2, linear sRGB], from the lattice of lamp_glow.frag
+// and what lamp_core.frag draws over the picture, or summed here.
+
+// Where the ray of a pixel ends [m]: at terrain (distance of the surface map, 0: none), at the bare
+// planet, or nowhere.
+float LampRayEnd(vec3 direction, float surface_m) {
+  float h = lamp_planet.y;
+  bool planet = GroundClearance(h, direction.z, lamp_planet.x) > 0.0;
+  float to_planet = 1e3 * DistanceDownTo(h, min(direction.z, -1e-9), 0.0, lamp_planet.x);
+  return surface_m > 0.0 ? surface_m : planet ? to_planet : 1e12;
+}
+
+#if LAMP_STEP > 1
+uniform sampler2D lamp_lattice;  // light; inverse of the distance at which the ray ends [1/m]
+
+// Rays whose ends lie in one plane, or in the sky, have inverse distances that are linear over the
+// picture. Where that of the pixel is not, those of its neighbours count that end nearest to it.
+vec3 LampGlowRgb(vec3 direction, float end_m) {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  ivec2 corner = pixel / LAMP_STEP;
+  vec2 share = vec2(pixel - corner * LAMP_STEP) / float(LAMP_STEP);
+  vec4 a = texelFetch(lamp_lattice, corner, 0);
+  vec4 b = texelFetch(lamp_lattice, corner + ivec2(1, 0), 0);
+  vec4 c = texelFetch(lamp_lattice, corner + ivec2(0, 1), 0);
+  vec4 d = texelFetch(lamp_lattice, corner + ivec2(1, 1), 0);
+  vec4 weight = vec4((1.0 - share.x) * (1.0 - share.y), share.x * (1.0 - share.y),
+                     (1.0 - share.x) * share.y, share.x * share.y);
+  vec4 ends = vec4(a.w, b.w, c.w, d.w);
+  float here = 1.0 / end_m;
+  bool plane = abs(dot(weight, ends) - here) <= 0.03 * here + 1e-9;
+  vec4 alike = 1.0 / (0.01 + abs(ends - here) / (ends + here + 1e-9));
+  vec4 chosen = weight * alike * alike;
+  weight = plane ? weight : chosen / dot(chosen, vec4(1.0));
+  return weight.x * a.rgb + weight.y * b.rgb + weight.z * c.rgb + weight.w * d.rgb;
+}
+#else
+vec3 LampGlowRgb(vec3 direction, float end_m) { return LampRgb(LampGlowIn(direction, end_m, 1.0)); }
+#endif
