@@ -124,6 +124,12 @@ double LoadOfSteadyPath(const AircraftState& state, const Surroundings& here) {
   return weight * share;
 }
 
+/// What is held of an angle when the stick is let go: nothing of a small one, and not too much.
+double HeldAngle(double angle_rad, double level_deg, double most_deg) {
+  if (std::abs(angle_rad) < level_deg * kRadiansPerDegree) return 0.0;
+  return std::clamp(angle_rad, -most_deg * kRadiansPerDegree, most_deg * kRadiansPerDegree);
+}
+
 /// The computer between stick and wings.
 struct Demand {
   double load, roll_rate_rad_per_s, held_path_rad, held_bank_rad;
@@ -141,7 +147,6 @@ double PathToHold(const AircraftState& state, double speed_in_stall_speeds) {
 
 void HoldPath(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
               double wing_limit, Demand& demand) {
-  constexpr double kLevel_rad = 1.0 * kRadiansPerDegree;
   constexpr double kPerSecond = 0.8;
   const double speed = glm::length(state.velocity.xyz);
   const double in_stall_speeds = std::sqrt(wing_limit / std::max(demand.load, 0.5));
@@ -149,7 +154,7 @@ void HoldPath(const AircraftState& state, const AircraftKind& kind, const Surrou
                       speed / kStandardGravity_m_per_s2;
   demand.load = std::clamp(demand.load + std::clamp(back, -1.0, 1.0), kind.least_load,
                            std::min(kind.most_load, wing_limit));
-  demand.held_path_rad = std::abs(state.held_path_rad) < kLevel_rad ? 0.0 : state.held_path_rad;
+  demand.held_path_rad = state.held_path_rad;
 }
 
 void DemandLoad(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
@@ -166,20 +171,19 @@ void DemandLoad(const AircraftState& state, const AircraftKind& kind, const Surr
   demand.load += std::abs(pitch_up) * (end - demand.load);
   demand.stalled = demand.load > wing_limit;
   demand.load = std::min(demand.load, wing_limit);
-  demand.held_path_rad = PathOf(state, here);
+  demand.held_path_rad = HeldAngle(PathOf(state, here), 1.0, 60.0);
 }
 
 void DemandRoll(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
                 const Stick& stick, Demand& demand) {
-  constexpr double kLevel_rad = 5.0 * kRadiansPerDegree, kMost_rad = 45.0 * kRadiansPerDegree;
   constexpr double kSteepest_rad = 75.0 * kRadiansPerDegree;
   constexpr double kPerSecond = 1.5;
   const double bank = BankOf(state, here);
   const double roll_right = std::clamp(stick.roll_right, -1.0, 1.0);
   demand.roll_rate_rad_per_s = roll_right * kind.roll_rate_rad_per_s;
-  demand.held_bank_rad = std::clamp(bank, -kMost_rad, kMost_rad);
+  demand.held_bank_rad = HeldAngle(bank, 5.0, 45.0);
   if (std::abs(roll_right) >= kHandsOff) return;
-  demand.held_bank_rad = std::abs(state.held_bank_rad) < kLevel_rad ? 0.0 : state.held_bank_rad;
+  demand.held_bank_rad = state.held_bank_rad;
   // There is no bank about a vertical path, and who pulls hard flies a figure.
   constexpr double kFigure = 0.5;
   if (std::abs(PathOf(state, here)) > kSteepest_rad || std::abs(stick.pitch_up) > kFigure) return;

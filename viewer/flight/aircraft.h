@@ -94,8 +94,8 @@ struct AircraftState {
   double throttle = 0.0;  // in [0, 1]
   double load = 1.0;      // lift asked for, in weights at standard gravity
   double roll_rate_rad_per_s = 0.0;
-  double slip_rad = 0.0;  // nose to the right of the path
-  double held_path_rad = 0.0, held_bank_rad = 0.0;
+  double slip_rad = 0.0;                            // nose to the right of the path
+  double held_path_rad = 0.0, held_bank_rad = 0.0;  // with the stick let go
   bool stalled = false;
   GroundContact contact = GroundContact::kNone;
 };

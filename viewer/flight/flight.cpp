@@ -11,7 +11,8 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kTurnRate_rad_per_s = 45.0 * kRadiansPerDegree;
+/// Through a telescope the head turns slowly: 45 degrees a second in a view of 60 degrees.
+double TurnRate(const Eye& eye) { return 0.75 * std::min(eye.fov_rad, 60.0 * kRadiansPerDegree); }
 
 }  // namespace
 
@@ -56,8 +57,9 @@ double SpeedAt(double above_ground_m) {
 
 Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
           double above_ground_m, double seconds) {
-  Eye moved = Turned(eye, steering.turn_right * kTurnRate_rad_per_s * seconds,
-                     steering.pitch_up * kTurnRate_rad_per_s * seconds);
+  const double turn_rad = TurnRate(eye) * seconds;
+  Eye moved = Turned(eye, steering.turn_right * turn_rad, steering.pitch_up * turn_rad);
+  moved.roll_rad = std::remainder(eye.roll_rad + steering.roll_right * turn_rad, 2.0 * kPi);
   const ViewAxes axes = AxesOf(moved);
   const double step_m = SpeedAt(above_ground_m) * seconds;
   const glm::dvec3 step = step_m * (steering.forward * axes.forward + steering.right * axes.right +
@@ -71,6 +73,21 @@ Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
   moved.place = there;
   const Vector<Enu> ahead_there = LocalFrame(ellipsoid, there).EnuFromEcef(ahead);
   moved.heading_rad = std::atan2(ahead_there.xyz.x, ahead_there.xyz.y);
+  return moved;
+}
+
+Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
+               const GroundHeight& ground, double speed_factor, double seconds) {
+  constexpr double kLongest_s = 1.0 / 60.0, kClearance_m = 1.5;
+  const double steps = std::max(std::ceil(seconds / kLongest_s), 1.0);
+  Steering scaled = steering;
+  for (double* pace : {&scaled.forward, &scaled.right, &scaled.up}) *pace *= speed_factor;
+  Eye moved = eye;
+  for (double step = 0.0; step < steps; ++step) {
+    const double above_m = std::max(moved.place.height_m - ground(moved.place), 0.0);
+    moved = Steer(moved, scaled, ellipsoid, above_m, seconds / steps);
+    moved = KeptAbove(moved, ground(moved.place), kClearance_m);
+  }
   return moved;
 }
 

@@ -8,8 +8,8 @@
 namespace alpenglow {
 
 struct PilotControls {
-  Steering camera;  // the free camera
-  Stick stick;      // the aircraft
+  Steering camera = {};  // the free camera
+  Stick stick = {};      // the aircraft
   /// Looking around with the mouse or the right stick, in this frame: in widths of the view.
   double look_right = 0.0, look_up = 0.0;
 };

@@ -83,7 +83,7 @@ constexpr ActionRow kTable[] = {
     {Action::kLevelWings, kOnce, kAircraft, kAutopilotKeys, "keep the wings level", "Ctrl+W", ""},
     {Action::kAutopilotOff, kOnce, kAircraft, kAutopilotKeys, "let go of everything", "Backspace",
      ""},
-    {Action::kPause, kOnce, kAll, kTimeKeys, "pause: time and flight stand", "P", ""},
+    {Action::kPause, kOnce, kAll, kTimeKeys, "pause: time, aircraft and track stand", "P", ""},
     {Action::kFasterTime, kAgain, kAll, kTimeKeys, "rate of time up: -3600 to 3600", "T", ""},
     {Action::kSlowerTime, kAgain, kAll, kTimeKeys, "rate of time down, and backwards", "Shift+T",
      ""},

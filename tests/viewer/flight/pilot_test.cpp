@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/pilot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+double Sea(const GeodeticPosition&) { return 0.0; }
+
+Eye EyeAt(double height_m, double heading_deg = 0.0) {
+  return {PlaceFromDegrees(46.0, 8.0, height_m), heading_deg * kRadiansPerDegree};
+}
+double Apart(const Eye& a, const Eye& b) {
+  return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
+}
+
+/// The same controls for the same time, in frames of different lengths.
+Eye FlownFor(FlightMode mode, const PilotControls& controls, double seconds, double frame_s) {
+  Pilot pilot(EyeAt(1500.0), kWgs84);
+  EXPECT_FALSE(pilot.Enter(mode, Sea));
+  const int frames = static_cast<int>(std::lround(seconds / frame_s));
+  for (int i = 0; i < frames; ++i) pilot.Advance(controls, frame_s, Sea);
+  return pilot.eye();
+}
+
+TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
+  const PilotControls controls{.stick = {.pitch_up = 0.1, .roll_right = 0.05, .throttle_up = 0.1}};
+  const Eye smooth = FlownFor(FlightMode::kAircraft, controls, 12.0, 1.0 / 240.0);
+  for (const double frame_s : {1.0 / 60.0, 1.0 / 7.0, 0.75, 4.0, 12.0}) {
+    const Eye flown = FlownFor(FlightMode::kAircraft, controls, 12.0, frame_s);
+    EXPECT_LT(Apart(flown, smooth), 1e-3) << frame_s << " s a frame: the last step may be split";
+    EXPECT_NEAR(flown.heading_rad, smooth.heading_rad, 1e-5) << frame_s;
+  }
+}
+
+TEST(Pilot, AFlightOfTheFreeCameraIsWithinAPercentAtEveryFrameRate) {
+  const PilotControls controls{.camera = {.forward = 1.0, .up = 0.5, .turn_right = 0.1}};
+  const Eye smooth = FlownFor(FlightMode::kFree, controls, 4.0, 1.0 / 240.0);
+  const double way = Apart(smooth, EyeAt(1500.0));
+  for (const double frame_s : {1.0 / 60.0, 1.0 / 8.0, 0.5, 4.0}) {
+    EXPECT_LT(Apart(FlownFor(FlightMode::kFree, controls, 4.0, frame_s), smooth), 0.01 * way)
+        << frame_s;
+  }
+}
+
+TEST(Pilot, TheAircraftMovesSmoothlyBetweenItsSteps) {
+  Pilot pilot(EyeAt(1500.0), kWgs84);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
+  constexpr double kFrame_s = 1.0 / 500.0;
+  Eye before = pilot.eye();
+  for (int i = 0; i < 200; ++i) {
+    pilot.Advance({}, kFrame_s, Sea);
+    EXPECT_NEAR(Apart(pilot.eye(), before) / kFrame_s, CruiseSpeed(kLightAircraft, 1500.0), 0.1);
+    before = pilot.eye();
+  }
+}
+
+TEST(Pilot, TheFreeCameraIsNeverInTheGround) {
+  const GroundHeight ridge = [](const GeodeticPosition& place) {
+    return 1000.0 + 900.0 * std::sin(place.latitude_rad * 6e4);
+  };
+  Pilot pilot(EyeAt(2100.0), kWgs84);
+  for (int i = 0; i < 100; ++i) {
+    pilot.Advance({.camera = {.forward = 1.0, .up = -1.0}}, 0.1, ridge);
+    EXPECT_GE(pilot.eye().place.height_m, ridge(pilot.eye().place) + 1.499);
+  }
+}
+
+TEST(Pilot, ChangingTheModeKeepsPlaceAndHeading) {
+  Pilot pilot(EyeAt(1500.0, 77.0), kWgs84);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
+  EXPECT_LT(Apart(pilot.eye(), EyeAt(1500.0)), 1e-6);
+  EXPECT_NEAR(pilot.eye().heading_rad, 77.0 * kRadiansPerDegree, 1e-9);
+  pilot.Advance({.stick = {.roll_right = 1.0}}, 1.0, Sea);
+  const Eye flying = pilot.eye();
+  EXPECT_GT(std::abs(flying.roll_rad), 0.2);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kFree, Sea));
+  EXPECT_LT(Apart(pilot.eye(), flying), 1e-6);
+  EXPECT_EQ(pilot.eye().roll_rad, 0.0);
+}
+
+TEST(Pilot, NearTheGroundTheAircraftStandsOnItAndHighUpItIsAJet) {
+  Pilot low(EyeAt(3.0), kWgs84);
+  ASSERT_FALSE(low.Enter(FlightMode::kAircraft, Sea));
+  EXPECT_EQ(low.Readout(Sea).aircraft->contact, GroundContact::kStanding);
+  EXPECT_EQ(low.Readout(Sea).aircraft_name, "light aircraft");
+  Pilot high(EyeAt(10e3), kWgs84);
+  ASSERT_FALSE(high.Enter(FlightMode::kAircraft, Sea));
+  EXPECT_EQ(high.Readout(Sea).aircraft_name, "small jet");
+  Pilot space(EyeAt(400e3), kWgs84);
+  EXPECT_EQ(space.Enter(FlightMode::kAircraft, Sea), "there is no air to fly in over 18 km");
+  EXPECT_EQ(space.mode(), FlightMode::kFree);
+  EXPECT_EQ(space.Enter(FlightMode::kTrack, Sea), "there is no track to follow");
+}
+
+TEST(Pilot, LookingAroundTurnsTheHeadAndNotTheAircraft) {
+  Pilot pilot(EyeAt(1500.0), kWgs84);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
+  pilot.Advance({.look_right = 0.5}, 1.0, Sea);
+  EXPECT_NEAR(pilot.eye().heading_rad, 0.5 * pilot.eye().fov_rad, 1e-3);
+  pilot.Advance({}, 10.0, Sea);
+  EXPECT_NEAR(pilot.Readout(Sea).aircraft->heading_rad, 0.0, 1e-3);
+  pilot.Centre(Sea);
+  EXPECT_NEAR(pilot.eye().heading_rad, 0.0, 1e-3);
+}
+
+TEST(Pilot, AFlightThatIsFourTimesAsFastGoesFourTimesAsFar) {
+  Pilot once(EyeAt(1500.0), kWgs84), four(EyeAt(1500.0), kWgs84);
+  ASSERT_FALSE(once.Enter(FlightMode::kAircraft, Sea));
+  ASSERT_FALSE(four.Enter(FlightMode::kAircraft, Sea));
+  four.StepSpeed(2);
+  EXPECT_EQ(four.time_factor(), 4.0);
+  once.Advance({}, 20.0, Sea);
+  four.Advance({}, 5.0, Sea);
+  EXPECT_LT(Apart(once.eye(), four.eye()), 1e-3);
+  four.StepSpeed(100);
+  EXPECT_EQ(four.time_factor(), 32.0);
+  four.StepSpeed(-100);
+  EXPECT_EQ(four.time_factor(), 1.0);
+}
+
+TEST(Pilot, AThousandFeetHigherItFliesOnEvenFromTheGround) {
+  Pilot pilot(EyeAt(2.0), kWgs84);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
+  pilot.Lift(304.8, Sea);
+  pilot.Advance({}, 10.0, Sea);
+  EXPECT_NEAR(pilot.eye().place.height_m, 306.3, 5.0);
+  EXPECT_NEAR(pilot.Readout(Sea).speed_m_per_s, CruiseSpeed(kLightAircraft, 306.0), 2.0);
+}
+
+std::shared_ptr<const CameraPath> TwoPoints() {
+  return std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
+      {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2026-06-21T04:00:00Z")},
+      {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2026-06-21T04:01:40Z")}});
+}
+
+TEST(Pilot, ATrackIsFollowedToItsEndAndKeepsTheFieldOfView) {
+  Pilot pilot(EyeAt(1500.0), kWgs84);
+  pilot.SetTrack(TwoPoints());
+  ASSERT_FALSE(pilot.Enter(FlightMode::kTrack, Sea));
+  pilot.Zoom(0.5);
+  const double fov_rad = pilot.eye().fov_rad;
+  pilot.Advance({}, 50.0, Sea);
+  EXPECT_NEAR(pilot.eye().place.height_m, 1500.0, 1e-6);
+  EXPECT_EQ(pilot.eye().fov_rad, fov_rad);
+  EXPECT_EQ(FormatUtc(*pilot.TrackUtc()), "2026-06-21T04:00:50Z");
+  pilot.Advance({}, 500.0, Sea);
+  EXPECT_NEAR(pilot.eye().place.height_m, 2000.0, 1e-6);
+  EXPECT_EQ(*pilot.Readout(Sea).track_s, 100.0);
+  pilot.SkipTrack(-1000.0);
+  EXPECT_EQ(*pilot.Readout(Sea).track_s, 0.0);
+  pilot.SetTrack(nullptr);
+  EXPECT_EQ(pilot.mode(), FlightMode::kFree);
+}
+
+TEST(Pilot, PutSomewhereElseItFliesOnThere) {
+  Pilot pilot(EyeAt(1500.0), kWgs84);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
+  Eye there = EyeAt(2500.0, 90.0);
+  there.place.longitude_rad = 3.0;
+  pilot.PutAt(there, Sea);
+  EXPECT_EQ(pilot.mode(), FlightMode::kAircraft);
+  EXPECT_LT(Apart(pilot.eye(), there), 1e-6);
+  pilot.Advance({}, 1.0, Sea);
+  EXPECT_GT(pilot.eye().place.longitude_rad, 3.0);
+  there.place.height_m = 400e3;
+  pilot.PutAt(there, Sea);
+  EXPECT_EQ(pilot.mode(), FlightMode::kFree) << "there is no air";
+}
+
+}  // namespace
+}  // namespace alpenglow

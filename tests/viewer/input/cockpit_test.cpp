@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/input/cockpit.h"
+
+#include <gtest/gtest.h>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+double Sea(const GeodeticPosition&) { return 0.0; }
+
+Cockpit NewCockpit() {
+  return {{PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z")};
+}
+std::string Shows(const Cockpit& cockpit) { return FormatUtc(cockpit.clock().now()); }
+
+TEST(Cockpit, DoesWhatIsOfFlightAndTimeAndLeavesTheRestToOthers) {
+  Cockpit cockpit = NewCockpit();
+  EXPECT_EQ(cockpit.Do(Action::kFasterTime, Sea), "time x10");
+  EXPECT_EQ(cockpit.Do(Action::kLaterHour, Sea), "");
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T13:00:00Z");
+  EXPECT_EQ(cockpit.Do(Action::kToSunset, Sea), "sunset");
+  EXPECT_EQ(Shows(cockpit).substr(0, 13), "2026-06-21T19");
+  EXPECT_EQ(cockpit.Do(Action::kToMoonrise, Sea), "no moonrise here within a year");
+  EXPECT_EQ(cockpit.Do(Action::kTrackMode, Sea), "there is no track to follow");
+  EXPECT_EQ(cockpit.Do(Action::kScreenshot, Sea), std::nullopt);
+  EXPECT_EQ(cockpit.Do(Action::kHud, Sea), std::nullopt);
+  EXPECT_EQ(cockpit.Do(Action::kForward, Sea), std::nullopt) << "held keys are controls";
+}
+
+TEST(Cockpit, GoesAroundTheModesThatThereAre) {
+  Cockpit cockpit = NewCockpit();
+  EXPECT_EQ(cockpit.Do(Action::kNextMode, Sea), "aircraft");
+  EXPECT_EQ(cockpit.Do(Action::kNextMode, Sea), "free camera");
+  EXPECT_EQ(cockpit.Do(Action::kPreviousMode, Sea), "aircraft");
+  EXPECT_EQ(cockpit.Do(Action::kHoldHeading, Sea), "HDG 000");
+  EXPECT_EQ(cockpit.Do(Action::kAutopilotOff, Sea), "autopilot off");
+  EXPECT_EQ(cockpit.Do(Action::kFirstMode, Sea), "free camera");
+}
+
+TEST(Cockpit, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
+  Cockpit cockpit = NewCockpit();
+  EXPECT_EQ(cockpit.Do(Action::kPause, Sea), "paused");
+  const double latitude = cockpit.pilot().eye().place.latitude_rad;
+  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0, Sea);
+  EXPECT_GT(cockpit.pilot().eye().place.latitude_rad, latitude);
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
+  const double stands = cockpit.pilot().eye().place.latitude_rad;
+  cockpit.Advance({.look_right = 0.1}, 1.0, Sea);
+  EXPECT_EQ(cockpit.pilot().eye().place.latitude_rad, stands);
+  EXPECT_GT(cockpit.pilot().eye().heading_rad, 0.05) << "one can look around";
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:00Z");
+}
+
+TEST(Cockpit, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
+  Cockpit cockpit = NewCockpit();
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
+  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, Sea), "speed x2");
+  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, Sea), "speed x4");
+  cockpit.Advance({}, 2.5, Sea);
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:10Z");
+}
+
+TEST(Cockpit, ALongFrameIsNotCutShort) {
+  Cockpit cockpit = NewCockpit();
+  cockpit.Advance({}, 7.0, Sea);
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:07Z");
+}
+
+TEST(Cockpit, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
+  Cockpit cockpit = NewCockpit();
+  cockpit.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
+      {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2025-01-02T08:00:00Z")},
+      {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2025-01-02T08:01:40Z")}}));
+  EXPECT_EQ(cockpit.Do(Action::kTrackMode, Sea), "track");
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
+  cockpit.Advance({}, 5.0, Sea);
+  static_cast<void>(cockpit.Do(Action::kTrackAhead, Sea));
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:15Z");
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Who flies: the free camera, the aircraft or a track, one at a time; and where the eye is then.
+//
+// Real seconds come in, however many: aircraft fly them in steps of 1/120 s, and what is seen is
+// the state at the end of the last one carried on by the rest, so that neither flights nor their
+// smoothness depend on the frame rate.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "renderer/camera/camera_path.h"
+#include "viewer/flight/aircraft.h"
+#include "viewer/flight/autopilot.h"
+#include "viewer/flight/flight.h"
+#include "viewer/flight/pilot_controls.h"
+
+namespace alpenglow {
+
+/// For instruments, in every mode.
+struct FlightReadout {
+  FlightMode mode = FlightMode::kFree;
+  double speed_m_per_s = 0.0;           // over the ground, of the last frame
+  double vertical_speed_m_per_s = 0.0;  // up is positive
+  double above_ground_m = 0.0;
+  double speed_factor = 1.0;  // of the free camera; of the track's time; of the flight's (1 to 32)
+  std::optional<AircraftReadout> aircraft;  // in aircraft mode
+  std::string_view aircraft_name;           // "" elsewhere
+  std::string autopilot;                    // as TextOf(AutopilotTargets)
+  std::optional<double> track_s, track_end_s;
+};
+
+class Pilot {
+ public:
+  /// A free camera.
+  Pilot(const Eye& eye, const Ellipsoid& ellipsoid);
+
+  [[nodiscard]] FlightMode mode() const { return mode_; }
+  [[nodiscard]] const Eye& eye() const { return eye_; }
+
+  /// Changes the mode where the eye is; a track begins at its beginning, or where it was left. In
+  /// less than 15 m over the ground the aircraft stands on it. Returns why not, in words, or
+  /// nothing.
+  [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
+  /// Puts the eye somewhere else, in the mode that it is in; leaves a track for the free camera.
+  void PutAt(const Eye& eye, const GroundHeight& ground);
+  /// What kTrack follows. Gives it up when there is none.
+  void SetTrack(std::shared_ptr<const CameraPath> track);
+  [[nodiscard]] bool HasTrack() const { return track_ != nullptr; }
+
+  /// Lets real seconds pass.
+  void Advance(const PilotControls& controls, double seconds, const GroundHeight& ground);
+
+  /// Faster (+1) or slower (-1), by half: the free camera 1/64 to 64, the track 1/8 to 64; the
+  /// aircraft by the double, 1 to 32. A time of 32 flies 32 s in a second.
+  void StepSpeed(int step);
+  /// How much faster than real time aircraft and track are flown; the scene's clock goes with it.
+  [[nodiscard]] double time_factor() const;
+  /// Moves along the track, to its ends at most.
+  void SkipTrack(double seconds);
+  /// What the track says the time is; nothing elsewhere.
+  [[nodiscard]] std::optional<UtcInstant> TrackUtc() const;
+
+  void Zoom(double factor) { eye_ = Zoomed(eye_, factor); }
+  void ResetView() { eye_.fov_rad = first_fov_rad_; }
+  /// Looks ahead, wings level; lets go of nothing else.
+  void Centre(const GroundHeight& ground);
+  /// Up by so much; in the aircraft with enough speed to fly on. A track stays where it is.
+  void Lift(double height_m, const GroundHeight& ground);
+
+  /// In aircraft mode; elsewhere nothing is held.
+  void ToggleHold(Autopilot::Hold hold);
+  void ReleaseAutopilot() { autopilot_.Release(); }
+  [[nodiscard]] Autopilot& autopilot() { return autopilot_; }
+
+  [[nodiscard]] FlightReadout Readout(const GroundHeight& ground) const;
+
+ private:
+  void BeginFlight(double heading_rad, const GroundHeight& ground);
+  void FlyAircraft(const Stick& stick, double seconds, const GroundHeight& ground);
+  [[nodiscard]] AircraftState NextState(Autopilot& autopilot, const Stick& stick, double step_s,
+                                        const GroundHeight& ground) const;
+  void LookAround(const PilotControls& controls);
+  void Show(const GroundHeight& ground);
+
+  Ellipsoid ellipsoid_;
+  FlightMode mode_ = FlightMode::kFree;
+  Eye eye_;
+  double first_fov_rad_;
+  double free_factor_ = 1.0, track_factor_ = 1.0, flight_factor_ = 1.0;
+  double look_right_rad_ = 0.0, look_up_rad_ = 0.0;
+  double speed_m_per_s_ = 0.0, vertical_speed_m_per_s_ = 0.0;
+
+  AircraftKind kind_ = kLightAircraft;
+  AircraftState aircraft_, shown_;
+  Autopilot autopilot_;
+  double rest_s_ = 0.0;  // not flown yet, less than a step
+
+  std::shared_ptr<const CameraPath> track_;
+  double track_s_ = 0.0;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Pilot and clock, and what actions do to them. What an action does to the picture or the program
+// is not done here.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "viewer/flight/clock.h"
+#include "viewer/flight/pilot.h"
+#include "viewer/input/action.h"
+
+namespace alpenglow {
+
+class Cockpit {
+ public:
+  Cockpit(const Eye& eye, const Ellipsoid& ellipsoid, const UtcInstant& start)
+      : pilot_(eye, ellipsoid), clock_(start) {}
+
+  [[nodiscard]] Pilot& pilot() { return pilot_; }
+  [[nodiscard]] const Pilot& pilot() const { return pilot_; }
+  [[nodiscard]] SceneClock& clock() { return clock_; }
+  [[nodiscard]] const SceneClock& clock() const { return clock_; }
+
+  /// What it came to, in words for the screen (empty: nothing needs saying); nothing when the action
+  /// is none of flight and time.
+  [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground,
+                                              const MoonEventAfter& moon = {});
+
+  /// Lets real seconds pass, however many. Paused, aircraft, track and clock stand; the free camera
+  /// still flies, and one can look around. A flight at 4 times its speed takes the clock along.
+  void Advance(const PilotControls& controls, double seconds, const GroundHeight& ground);
+
+ private:
+  [[nodiscard]] std::optional<std::string> DoFlight(Action action, const GroundHeight& ground);
+  [[nodiscard]] std::optional<std::string> DoAutopilot(Action action);
+  [[nodiscard]] std::optional<std::string> DoTime(Action action, const MoonEventAfter& moon);
+  [[nodiscard]] std::string Enter(FlightMode mode, const GroundHeight& ground);
+  void SkipTrack(double seconds);
+  [[nodiscard]] std::string Jump(SkyEvent event, const MoonEventAfter& moon);
+
+  Pilot pilot_;
+  SceneClock clock_;
+};
+
+}  // namespace alpenglow
