@@ -36,6 +36,20 @@ double Canvas::WidthOf(const std::string& text) const {
   return static_cast<double>(ImGui::CalcTextSize(text.c_str()).x);
 }
 
+std::vector<std::string> Canvas::Wrapped(const std::string& text, double width_px) const {
+  std::vector<std::string> lines;
+  const char* const end = text.data() + text.size();
+  for (const char* begin = text.data(); begin < end;) {
+    const char* stop =
+        ImGui::GetFont()->CalcWordWrapPositionA(1.0F, begin, end, static_cast<float>(width_px));
+    stop = std::max(stop, begin + 1);
+    lines.emplace_back(begin, stop);
+    begin = stop;
+    while (begin < end && *begin == ' ') ++begin;
+  }
+  return lines;
+}
+
 void Canvas::Line(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const {
   const auto wide = static_cast<float>(Pixels(kLineWidth + 2.0 * kShadowWidth));
   list_.AddLine(At(from), At(to), Packed(Faded(colours_.shadow, static_cast<double>(colour[3]))),

@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "viewer/hud/hud_theme.h"
 
@@ -26,6 +27,8 @@ class Canvas {
   /// Height of a line of text [pixels].
   [[nodiscard]] double LineHeight() const;
   [[nodiscard]] double WidthOf(const std::string& text) const;
+  /// The text in lines no wider than that, broken at spaces.
+  [[nodiscard]] std::vector<std::string> Wrapped(const std::string& text, double width_px) const;
 
   /// With a shadow around it, so that it is seen on snow and on forest.
   void Line(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;

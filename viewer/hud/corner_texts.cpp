@@ -14,9 +14,15 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-std::string ModeText(const HudModel& model) {
-  return model.flight.mode + (model.recording ? "  REC" : "") +
-         (model.time.paused ? "  PAUSED" : "");
+std::string StateText(const HudModel& model) {
+  return std::string(model.recording ? "REC " : "") + (model.time.paused ? "PAUSED" : "");
+}
+
+// The state on a line of its own, and none where there is nothing to tell.
+Lines ModeLines(const HudModel& model) {
+  Lines lines{model.flight.mode};
+  if (model.recording || model.time.paused) lines.push_back(StateText(model));
+  return lines;
 }
 
 std::string AutopilotText(const HudModel& model) {
@@ -28,7 +34,7 @@ std::string AutopilotText(const HudModel& model) {
 }
 
 Lines FlightLines(const HudModel& model) {
-  Lines lines{ModeText(model)};
+  Lines lines = ModeLines(model);
   if (model.autopilot.heading_rad || model.autopilot.height_m)
     lines.push_back(AutopilotText(model));
   if (model.flight.throttle)
@@ -122,6 +128,20 @@ void DrawLineOfMessage(const Canvas& canvas, const HudFrame& frame, double y,
   canvas.TextOnPlate({middle, y}, HudAlign::kMiddle, message.text, Faded(colour, opacity));
 }
 
+// What is still said, in lines that fit, the lowest first.
+std::vector<HudMessage> LinesOfMessages(const Canvas& canvas, const HudFrame& frame,
+                                        const std::vector<HudMessage>& messages) {
+  const double widest = frame.width - canvas.Pixels(24.0);
+  std::vector<HudMessage> lines;
+  for (const HudMessage& message : messages) {
+    if (MessageOpacity(message.age_s) == 0.0) continue;
+    for (const std::string& line : canvas.Wrapped(message.text, widest))
+      lines.push_back({line, message.age_s, message.is_warning});
+  }
+  std::reverse(lines.begin(), lines.end());
+  return lines;
+}
+
 constexpr double kBarHeight = 5.0;  // units
 
 void DrawProgress(const Canvas& canvas, const HudFrame& frame, double y,
@@ -144,7 +164,7 @@ CornerTexts CornerTextsOf(const HudModel& model) {
 }
 
 CornerTexts ShortCornerTextsOf(const HudModel& model) {
-  return {{ModeText(model)},
+  return {ModeLines(model),
           {model.time.local, RateText(model.time.rate, model.time.paused)},
           {LatitudeText(model.latitude_rad), LongitudeText(model.longitude_rad)},
           {ExposureText(model.exposure), FrameText(model.speed)}};
@@ -168,16 +188,14 @@ double MessageOpacity(double age_s) {
 void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
   constexpr double kLinesBelow = 3.8;  // the corners' texts of small pictures are lower
   double y = std::min(0.86 * frame.height, frame.height - kLinesBelow * canvas.LineHeight());
-  if (model.flight.stall) {
+  if (model.flight.stall)
     DrawLineOfMessage(canvas, frame, 0.36 * frame.height, {"STALL", 0.0, true});
-  }
   if (model.progress) {
     DrawProgress(canvas, frame, y - canvas.Pixels(kBarHeight), *model.progress);
     y -= canvas.LineHeight() + canvas.Pixels(kBarHeight);
   }
-  for (std::size_t i = model.messages.size(); i-- > 0;) {
-    if (MessageOpacity(model.messages[i].age_s) == 0.0) continue;
-    DrawLineOfMessage(canvas, frame, y, model.messages[i]);
+  for (const HudMessage& line : LinesOfMessages(canvas, frame, model.messages)) {
+    DrawLineOfMessage(canvas, frame, y, line);
     y -= canvas.LineHeight();
   }
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "viewer/hud/hud_model.h"
+#include "viewer/hud/hud_theme.h"
 
 namespace alpenglow {
 
@@ -69,6 +70,7 @@ struct HudRequest {
   std::optional<HudCaptureRequest> capture = {};
   std::optional<bool> record = {};  // begin or end
   std::optional<HudUnits> units = {};
+  std::optional<HudThemeChoice> theme = {};  // done already by whoever drew the panel
   bool quit = false;
 };
 

@@ -18,6 +18,7 @@ namespace {
 constexpr double kItemWidth = 170.0;   // of sliders and lists [units]
 constexpr double kStripWidth = 440.0;  // units
 constexpr double kStripHeight = 64.0;  // units
+constexpr double kNightShare = 0.35;   // of the strip's brightness that the night's theme shows
 
 float Pixels(const PanelView& view, double units) { return static_cast<float>(units * view.scale); }
 
@@ -26,7 +27,9 @@ double Degrees(double radians) { return radians / kRadiansPerDegree; }
 double StripWidth_px(const PanelView& view) {
   const double margin = static_cast<double>(2.0F * ImGui::GetStyle().WindowPadding.x +
                                             ImGui::GetStyle().ScrollbarSize);
-  return std::max(std::min(kStripWidth * view.scale, view.widest_px - margin), 60.0);
+  return std::max(
+      std::min(kStripWidth * view.scale, view.width - 2.0 * kPanelMargin * view.scale - margin),
+      60.0);
 }
 
 std::optional<double> RateButtons(const HudTime& time, double width_px) {
@@ -55,8 +58,9 @@ HudTimeRequest TimeControls(const PanelView& view, PanelTyping& typing) {
   HudTimeRequest request;
   ImGui::TextUnformatted(time.utc.c_str());
   ImGui::TextUnformatted((time.local + " " + time.zone).c_str());
-  request.day_fraction =
-      DayStripControl(view.strip, time.day_fraction, width, kStripHeight * view.scale);
+  request.day_fraction = DayStripControl(
+      view.strip, time.day_fraction,
+      {width, kStripHeight * view.scale, view.theme == HudTheme::kDay ? 1.0 : kNightShare});
   if (const auto moment = ButtonRows(view.choices.moments, width))
     request.moment = view.choices.moments[*moment];
   request.rate = RateButtons(time, width);
@@ -106,6 +110,14 @@ void ShowRow(const HudRow& row) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(cell.c_str());
   }
+}
+
+std::optional<HudThemeChoice> ThemeList(HudThemeChoice current) {
+  static const std::vector<std::string> names{"by exposure", "day", "night"};
+  const auto chosen = NameList("instruments", names[static_cast<std::size_t>(current)], names);
+  if (!chosen) return std::nullopt;
+  return static_cast<HudThemeChoice>(std::find(names.begin(), names.end(), *chosen) -
+                                     names.begin());
 }
 
 constexpr ImGuiTableFlags kTableFlags =
@@ -176,6 +188,7 @@ HudRequest WithExposure(const PanelView& view, HudRequest request) {
   request.ev100 = Slider("EV at ISO 100", exposure.ev100, {kDarkestEv100, kBrightestEv100, "%.1f"});
   request.compensation_ev = Slider("compensation", exposure.compensation_ev, {-5.0, 5.0, "%+.1f"});
   request.tone_curve = NameList("tone curve", exposure.tone_curve, view.choices.tone_curves);
+  request.theme = ThemeList(view.theme_choice);
   ImGui::PopItemWidth();
   return request;
 }
@@ -209,7 +222,8 @@ HudRequest WithTables(const PanelView& view, HudRequest request) {
 
 HudRequest WithCapture(const PanelView& view, PanelTyping& typing, HudRequest request) {
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  ImGui::InputInt2("width, height", typing.picture_size.data());
+  if (!typing.is_size_typed) typing.picture_size = {view.width, view.height};
+  typing.is_size_typed |= ImGui::InputInt2("width, height", typing.picture_size.data());
   for (int& side : typing.picture_size) side = std::clamp(side, 1, kLargestImageSide);
   if (const auto with_hud = CheckBox("with instruments", typing.with_hud))
     typing.with_hud = *with_hud;

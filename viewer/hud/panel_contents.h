@@ -8,6 +8,7 @@
 #include "viewer/hud/day_strip.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/hud_request.h"
+#include "viewer/hud/hud_theme.h"
 
 namespace alpenglow {
 
@@ -18,8 +19,10 @@ struct PanelView {
   const HudModel& model;
   const HudChoices& choices;
   const DayStrip* strip;  // null until there is one
-  double scale;           // pixels a unit
-  double widest_px;       // that a panel may become
+  HudTheme theme;
+  HudThemeChoice theme_choice;
+  double scale;       // pixels a unit
+  int width, height;  // of the picture [pixels]
 };
 
 /// Texts and numbers that are typed before they are asked for.
@@ -27,7 +30,8 @@ struct PanelTyping {
   std::array<char, 64> instant{};
   std::array<double, 3> place{};  // latitude and longitude [deg], height [m]
   bool is_place_typed = false;    // else it follows the eye
-  std::array<int, 2> picture_size{1920, 1080};
+  std::array<int, 2> picture_size{};
+  bool is_size_typed = false;  // else it is that of the picture
   bool with_hud = false;
 };
 

@@ -11,8 +11,9 @@
 namespace alpenglow {
 namespace {
 
-ImU32 Colour(const std::array<float, 3>& rgb) {
-  return ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1.0F});
+ImU32 Colour(const std::array<float, 3>& rgb, double brightness) {
+  const auto share = static_cast<float>(brightness);
+  return ImGui::ColorConvertFloat4ToU32({share * rgb[0], share * rgb[1], share * rgb[2], 1.0F});
 }
 
 /// Where the strip lies [pixels].
@@ -26,7 +27,10 @@ struct StripBox {
 };
 
 // Colours run between the middles of columns and rows.
-void DrawColours(ImDrawList& list, const DayStrip& strip, const StripBox& box) {
+void DrawColours(ImDrawList& list, const DayStrip& strip, const StripBox& box, double brightness) {
+  const auto colour = [&](int column, int row) {
+    return Colour(strip.at(column, row), brightness);
+  };
   const auto x_of = [&](int column) { return (column + 0.5) / strip.columns; };
   for (int row = 0; row + 1 < strip.rows; ++row) {
     const double top = static_cast<double>(row) / (strip.rows - 1);
@@ -35,8 +39,7 @@ void DrawColours(ImDrawList& list, const DayStrip& strip, const StripBox& box) {
       const int left = std::max(column, 0), right = std::min(column + 1, strip.columns - 1);
       list.AddRectFilledMultiColor(
           box.At(std::max(x_of(column), 0.0), top), box.At(std::min(x_of(column + 1), 1.0), bottom),
-          Colour(strip.at(left, row)), Colour(strip.at(right, row)),
-          Colour(strip.at(right, row + 1)), Colour(strip.at(left, row + 1)));
+          colour(left, row), colour(right, row), colour(right, row + 1), colour(left, row + 1));
     }
   }
 }
@@ -109,25 +112,25 @@ std::optional<std::size_t> ButtonRows(std::span<const std::string> names, double
   return pressed;
 }
 
-std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction, double width_px,
-                                      double height_px) {
+std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction,
+                                      const StripLook& look) {
   const StripBox box{ImGui::GetCursorScreenPos(),
-                     {static_cast<float>(width_px), static_cast<float>(height_px)}};
+                     {static_cast<float>(look.width_px), static_cast<float>(look.height_px)}};
   ImGui::InvisibleButton("day", box.size);
   const bool is_held = ImGui::IsItemActive();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImU32 line = IM_COL32(255, 255, 255, 170);
+  const ImU32 line = (ImGui::GetColorU32(ImGuiCol_Text) & 0xFFFFFFU) | 0xAA000000U;
   if (strip == nullptr) {
     list.AddRectFilled(box.from, box.At(1.0, 1.0), ImGui::GetColorU32(ImGuiCol_FrameBg));
   } else {
-    DrawColours(list, *strip, box);
+    DrawColours(list, *strip, box, look.brightness);
     DrawSunPath(list, *strip, box, line);
   }
   DrawHours(list, box, line);
   DrawNow(list, std::clamp(day_fraction, 0.0, 1.0), box);
   ImGui::Dummy({box.size.x, ImGui::GetTextLineHeight()});
   if (!is_held) return std::nullopt;
-  const double x = static_cast<double>(ImGui::GetIO().MousePos.x - box.from.x) / width_px;
+  const double x = static_cast<double>(ImGui::GetIO().MousePos.x - box.from.x) / look.width_px;
   return std::clamp(x, 0.0, 1.0);
 }
 

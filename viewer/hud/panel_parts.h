@@ -27,9 +27,14 @@ struct SliderRange {
 [[nodiscard]] std::optional<std::size_t> ButtonRows(std::span<const std::string> names,
                                                     double row_width_px);
 
+struct StripLook {
+  double width_px, height_px;
+  double brightness = 1.0;  // share of the colours' that is shown
+};
+
 /// The day's colours, its hours and the sun's way; the share of the day that is clicked on. With no
 /// strip yet its place is kept free.
 [[nodiscard]] std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction,
-                                                    double width_px, double height_px);
+                                                    const StripLook& look);
 
 }  // namespace alpenglow

@@ -126,7 +126,7 @@ double MarkStep(double value, double least) {
 
 void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
   constexpr double kShown_deg = 60.0;
-  const double half = 0.17 * frame.width, middle = frame.middle().x;
+  const double half = 0.15 * frame.width, middle = frame.middle().x;
   const double top = frame.top + canvas.Pixels(kEdge);
   const double bottom = top + canvas.LineHeight() + canvas.Pixels(12.0);
   const double heading = model.flight.heading_rad / kRadiansPerDegree;
