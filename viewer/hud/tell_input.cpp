@@ -8,30 +8,30 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::pair<HudKey, ImGuiKey_> kKeys[] = {{HudKey::kTab, ImGuiKey_Tab},
-                                                  {HudKey::kLeft, ImGuiKey_LeftArrow},
-                                                  {HudKey::kRight, ImGuiKey_RightArrow},
-                                                  {HudKey::kUp, ImGuiKey_UpArrow},
-                                                  {HudKey::kDown, ImGuiKey_DownArrow},
-                                                  {HudKey::kPageUp, ImGuiKey_PageUp},
-                                                  {HudKey::kPageDown, ImGuiKey_PageDown},
-                                                  {HudKey::kHome, ImGuiKey_Home},
-                                                  {HudKey::kEnd, ImGuiKey_End},
-                                                  {HudKey::kInsert, ImGuiKey_Insert},
-                                                  {HudKey::kDelete, ImGuiKey_Delete},
-                                                  {HudKey::kBackspace, ImGuiKey_Backspace},
-                                                  {HudKey::kSpace, ImGuiKey_Space},
-                                                  {HudKey::kEnter, ImGuiKey_Enter},
-                                                  {HudKey::kEscape, ImGuiKey_Escape},
-                                                  {HudKey::kA, ImGuiKey_A},
-                                                  {HudKey::kC, ImGuiKey_C},
-                                                  {HudKey::kV, ImGuiKey_V},
-                                                  {HudKey::kX, ImGuiKey_X},
-                                                  {HudKey::kY, ImGuiKey_Y},
-                                                  {HudKey::kZ, ImGuiKey_Z}};
+constexpr std::pair<HudKey, int> kKeys[] = {{HudKey::kTab, ImGuiKey_Tab},
+                                            {HudKey::kLeft, ImGuiKey_LeftArrow},
+                                            {HudKey::kRight, ImGuiKey_RightArrow},
+                                            {HudKey::kUp, ImGuiKey_UpArrow},
+                                            {HudKey::kDown, ImGuiKey_DownArrow},
+                                            {HudKey::kPageUp, ImGuiKey_PageUp},
+                                            {HudKey::kPageDown, ImGuiKey_PageDown},
+                                            {HudKey::kHome, ImGuiKey_Home},
+                                            {HudKey::kEnd, ImGuiKey_End},
+                                            {HudKey::kInsert, ImGuiKey_Insert},
+                                            {HudKey::kDelete, ImGuiKey_Delete},
+                                            {HudKey::kBackspace, ImGuiKey_Backspace},
+                                            {HudKey::kSpace, ImGuiKey_Space},
+                                            {HudKey::kEnter, ImGuiKey_Enter},
+                                            {HudKey::kEscape, ImGuiKey_Escape},
+                                            {HudKey::kA, ImGuiKey_A},
+                                            {HudKey::kC, ImGuiKey_C},
+                                            {HudKey::kV, ImGuiKey_V},
+                                            {HudKey::kX, ImGuiKey_X},
+                                            {HudKey::kY, ImGuiKey_Y},
+                                            {HudKey::kZ, ImGuiKey_Z}};
 
 #if IMGUI_VERSION_NUM >= 18700
-void TellKey(ImGuiIO& io, ImGuiKey_ key, bool is_down) {
+void TellKey(ImGuiIO& io, int key, bool is_down) {
   io.AddKeyEvent(static_cast<ImGuiKey>(key), is_down);
 }
 void TellModifiers(ImGuiIO& io, const HudInput& input) {
@@ -45,7 +45,7 @@ void TellModifiers(ImGuiIO& io, const HudInput& input) {
 }
 #else
 // Keys have the numbers of their names.
-void TellKey(ImGuiIO& io, ImGuiKey_ key, bool is_down) {
+void TellKey(ImGuiIO& io, int key, bool is_down) {
   io.KeyMap[key] = key;
   io.KeysDown[key] = is_down;
 }

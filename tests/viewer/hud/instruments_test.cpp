@@ -159,6 +159,20 @@ TEST_F(Instruments, TheSmallestPictureHasNumbersInsteadOfTapes) {
   EXPECT_LE(box.right, 100);
 }
 
+TEST_F(Instruments, ALongMessageIsWrappedIntoTheSmallestPicture) {
+  Hud hud;
+  HudModel model = tests::Flying();
+  const Image before = Drawn(hud, model, 320, 240);
+  model.messages = {
+      {"N46E008.hgt has 1201 rows of 3601 samples; the missing ones are taken from "
+       "the neighbours of the file",
+       0.0, true}};
+  const Box box = Difference(before, Drawn(hud, model, 320, 240));
+  EXPECT_GT(box.left, 0);
+  EXPECT_LT(box.right, 320);
+  EXPECT_GT(box.bottom - box.top, 40) << "three lines";
+}
+
 TEST_F(Instruments, EveryAttitudeAndViewIsDrawn) {
   Hud hud;
   for (const double pitch_deg : {-90.0, -89.9, -45.0, 89.0, 90.0}) {
