@@ -240,6 +240,7 @@ class PolarMap {
   glm::dvec2 centre_;
 };
 
+// Of a land without heights: the grid without heights; so the next one.
 ElevationGrid BoxGrid(const Land& land, const GeodeticPosition& centre) {
   const BoxMap map(centre);
   const double half_m = 0.5 * land.spacing_m * (land.size - 1);
@@ -272,6 +273,7 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   grid.west_rad = -kPi;
   const double first = 0.5 * kPi - 0.5 * grid.step_lat_rad;  // half a step off the pole
   grid.north_rad = centre.latitude_rad > 0.0 ? first : -first + (grid.rows - 1) * grid.step_lat_rad;
+  if (land.height_m.empty()) return grid;
   grid.height_m.reserve(static_cast<std::size_t>(grid.rows) * kColumns);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -286,16 +288,21 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   return grid;
 }
 
+ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
+  RequireInRange(centre.latitude_rad, -0.5 * kPi, 0.5 * kPi, "latitude_rad");
+  GeodeticPosition wrapped = centre;
+  wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
+  return IsPolar(wrapped) ? PolarGrid(land, wrapped) : BoxGrid(land, wrapped);
+}
+
 }  // namespace
 
 std::vector<float> MadeRangeHeights() { return RangeLand().height_m; }
 
-ElevationGrid BuiltInRange(const GeodeticPosition& centre) {
-  RequireInRange(centre.latitude_rad, -0.5 * kPi, 0.5 * kPi, "latitude_rad");
-  GeodeticPosition wrapped = centre;
-  wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
-  if (IsPolar(wrapped)) return PolarGrid(TheLand(), wrapped);
-  return BoxGrid(TheLand(), wrapped);
+ElevationGrid BuiltInRange(const GeodeticPosition& centre) { return GridAt(centre, TheLand()); }
+
+ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre) {
+  return GridAt(centre, GridOf(kRangeSize));
 }
 
 BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {

@@ -15,6 +15,9 @@ namespace alpenglow {
 /// arithmetic, for any number of threads and any centre; it falls to 0 m at the rim.
 [[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre);
 
+/// Its grid without heights, at once.
+[[nodiscard]] ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre);
+
 /// Of its heights, see FingerprintOf (kept_heights.h). It changes with the range.
 inline constexpr std::uint64_t kBuiltInRangeFingerprint = 15784046122448507333ULL;
 

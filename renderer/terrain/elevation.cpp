@@ -81,4 +81,9 @@ ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids
   return model;
 }
 
+ElevationGrid ReadElevationExtent(const std::filesystem::path& file) {
+  const QuietGdal quiet;
+  return GeographicExtent(ReadElevationHeader(file), file.string());
+}
+
 }  // namespace alpenglow

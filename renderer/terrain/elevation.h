@@ -64,4 +64,8 @@ struct ElevationModel {
 /// that no ground on earth has, damaged or truncated files.
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids);
 
+/// The grid that ReadElevation makes of a file, without its heights, which are not read. Throws
+/// InputError as ReadElevation does, as far as it can tell without them.
+[[nodiscard]] ElevationGrid ReadElevationExtent(const std::filesystem::path& file);
+
 }  // namespace alpenglow

@@ -182,17 +182,28 @@ std::size_t ConvertToMetres(const std::filesystem::path& file, GDALRasterBand& b
   return voids;
 }
 
+ElevationRaster HeaderOf(const std::filesystem::path& file, GDALDataset& dataset) {
+  CheckLayout(file, dataset);
+  ElevationRaster raster;
+  raster.columns = dataset.GetRasterXSize();
+  raster.rows = dataset.GetRasterYSize();
+  raster.crs = ReadCrs(file, dataset);
+  raster.geotransform = ReadGeotransform(file, dataset);
+  return raster;
+}
+
 }  // namespace
+
+ElevationRaster ReadElevationHeader(const std::filesystem::path& file) {
+  const QuietGdal quiet;
+  const Dataset dataset = Open(file);
+  return HeaderOf(file, *dataset);
+}
 
 ElevationRaster ReadElevationRaster(const std::filesystem::path& file) {
   const QuietGdal quiet;
   const Dataset dataset = Open(file);
-  CheckLayout(file, *dataset);
-  ElevationRaster raster;
-  raster.columns = dataset->GetRasterXSize();
-  raster.rows = dataset->GetRasterYSize();
-  raster.crs = ReadCrs(file, *dataset);
-  raster.geotransform = ReadGeotransform(file, *dataset);
+  ElevationRaster raster = HeaderOf(file, *dataset);
   raster.height_m = ReadSamples(file, *dataset);
   raster.voids = ConvertToMetres(file, *dataset->GetRasterBand(1), raster.height_m);
   if (raster.voids == raster.height_m.size()) Refuse(file, "has no valid sample, only voids");

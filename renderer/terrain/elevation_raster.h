@@ -51,6 +51,9 @@ struct ElevationRaster {
 /// Reads and checks a file; throws InputError as ReadElevation does.
 [[nodiscard]] ElevationRaster ReadElevationRaster(const std::filesystem::path& file);
 
+/// The same without samples, which are not read and not checked.
+[[nodiscard]] ElevationRaster ReadElevationHeader(const std::filesystem::path& file);
+
 /// Closes the NaN samples of a rows x columns raster with a membrane: Laplace's equation with the
 /// rim as boundary (free at the raster's edge), so that a hole in a plane is closed by the plane.
 /// At least one sample must be valid. Returns how many were filled.
@@ -60,5 +63,9 @@ std::size_t FillVoids(std::vector<float>& height, int rows, int columns);
 /// kept as they are where they lie on such a grid already; else bilinear, NaN outside the
 /// footprint. Throws InputError, naming `file`, for places that are not on the earth.
 [[nodiscard]] ElevationGrid GeographicGrid(const ElevationRaster& raster, const std::string& file);
+
+/// That grid without heights, from a raster that may have none either.
+[[nodiscard]] ElevationGrid GeographicExtent(const ElevationRaster& raster,
+                                             const std::string& file);
 
 }  // namespace alpenglow

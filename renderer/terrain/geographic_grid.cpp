@@ -134,8 +134,9 @@ bool LiesOn(const RegularGrid& grid, const Footprint& footprint, const Elevation
   return true;
 }
 
-ElevationGrid EmptyGrid(double west_deg, double north_deg, double step_lon_deg, double step_lat_deg,
-                        int columns, int rows) {
+// Without heights.
+ElevationGrid BareGrid(double west_deg, double north_deg, double step_lon_deg, double step_lat_deg,
+                       int columns, int rows) {
   ElevationGrid grid;
   grid.west_rad = west_deg * kDegree;
   grid.north_rad = std::min(north_deg, 90.0) * kDegree;
@@ -143,19 +144,29 @@ ElevationGrid EmptyGrid(double west_deg, double north_deg, double step_lon_deg, 
   grid.step_lat_rad = step_lat_deg * kDegree;
   grid.columns = columns;
   grid.rows = rows;
-  grid.height_m.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
-                       std::numeric_limits<float>::quiet_NaN());
   return grid;
+}
+
+void OpenHeights(ElevationGrid& grid) {
+  grid.height_m.resize(grid.index(grid.rows, 0), std::numeric_limits<float>::quiet_NaN());
+}
+
+// The samples' own grid, running eastwards and southwards.
+ElevationGrid BareGridOf(const RegularGrid& from, const ElevationRaster& raster) {
+  const double north =
+      from.first.lat + (from.step_lat > 0.0 ? (raster.rows - 1) * from.step_lat : 0.0);
+  const double west =
+      from.first.lon + (from.step_lon < 0.0 ? (raster.columns - 1) * from.step_lon : 0.0);
+  return BareGrid(west, north, std::abs(from.step_lon), std::abs(from.step_lat), raster.columns,
+                  raster.rows);
 }
 
 // The samples as they are, mirrored where the file runs south to north or east to west.
 ElevationGrid TakeOver(const RegularGrid& from, const ElevationRaster& raster) {
   const bool south_up = from.step_lat > 0.0;
   const bool east_first = from.step_lon < 0.0;
-  const double north = from.first.lat + (south_up ? (raster.rows - 1) * from.step_lat : 0.0);
-  const double west = from.first.lon + (east_first ? (raster.columns - 1) * from.step_lon : 0.0);
-  ElevationGrid grid = EmptyGrid(west, north, std::abs(from.step_lon), std::abs(from.step_lat),
-                                 raster.columns, raster.rows);
+  ElevationGrid grid = BareGridOf(from, raster);
+  OpenHeights(grid);
   for (int row = 0; row < raster.rows; ++row) {
     for (int column = 0; column < raster.columns; ++column) {
       const int source_row = south_up ? raster.rows - 1 - row : row;
@@ -303,16 +314,22 @@ ElevationGrid GridOver(const Bounds& bounds, double step, bool north_pole, bool 
   const double columns_used = std::max(columns, 2.0);
   const double rows_used = std::max(rows, 2.0);
   const double north = north_pole ? 90.0 - 0.5 * step : bounds.north;
-  return EmptyGrid(bounds.west, north, wide / (closed ? columns_used : columns_used - 1.0),
-                   high / (rows_used - 1.0), static_cast<int>(columns_used),
-                   static_cast<int>(rows_used));
+  return BareGrid(bounds.west, north, wide / (closed ? columns_used : columns_used - 1.0),
+                  high / (rows_used - 1.0), static_cast<int>(columns_used),
+                  static_cast<int>(rows_used));
+}
+
+ElevationGrid BareGridAround(const Footprint& footprint, const ElevationRaster& raster,
+                             SourceCoordinates& source, const std::string& file) {
+  return GridOver(BoundsOf(footprint, raster), GroundStep(footprint, raster),
+                  source.Holds(0.0, 90.0), source.Holds(0.0, -90.0), file);
 }
 
 ElevationGrid Resample(const Footprint& footprint, const ElevationRaster& raster,
                        const std::string& file) {
   SourceCoordinates source(raster, file);
-  ElevationGrid grid = GridOver(BoundsOf(footprint, raster), GroundStep(footprint, raster),
-                                source.Holds(0.0, 90.0), source.Holds(0.0, -90.0), file);
+  ElevationGrid grid = BareGridAround(footprint, raster, source, file);
+  OpenHeights(grid);
   for (int row = 0; row < grid.rows; ++row) source.ResampleRow(grid, row);
   return grid;
 }
@@ -324,6 +341,14 @@ ElevationGrid GeographicGrid(const ElevationRaster& raster, const std::string& f
   const RegularGrid spanned = SpannedGrid(footprint, raster);
   if (LiesOn(spanned, footprint, raster)) return TakeOver(spanned, raster);
   return Resample(footprint, raster, file);
+}
+
+ElevationGrid GeographicExtent(const ElevationRaster& raster, const std::string& file) {
+  const Footprint footprint(raster, file);
+  const RegularGrid spanned = SpannedGrid(footprint, raster);
+  if (LiesOn(spanned, footprint, raster)) return BareGridOf(spanned, raster);
+  SourceCoordinates source(raster, file);
+  return BareGridAround(footprint, raster, source, file);
 }
 
 }  // namespace alpenglow

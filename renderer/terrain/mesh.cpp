@@ -11,6 +11,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/terrain/cell_diagonal.h"
 #include "renderer/terrain/smooth_normals.h"
 
 namespace alpenglow {
@@ -111,20 +112,13 @@ class MeshBuilder {
     return static_cast<double>(grid_.at(within_row, within_column));
   }
 
-  // Whether the middle of the diagonal from north-west to south-east is nearer than the other's to
-  // the cubic height at the cell's centre, which the 4 x 4 samples around it give.
   [[nodiscard]] bool FallingDiagonalFits(int row, int column) const {
-    constexpr std::array<double, 4> kWeight{-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0};
-    double centre = 0.0;
+    CellHeights around{};
     for (int r = 0; r < 4; ++r) {
-      for (int c = 0; c < 4; ++c) {
-        centre += kWeight[static_cast<std::size_t>(r)] * kWeight[static_cast<std::size_t>(c)] *
-                  HeightNear(row + r - 1, column + c - 1);
-      }
+      for (int c = 0; c < 4; ++c)
+        around[static_cast<std::size_t>(4 * r + c)] = HeightNear(row + r - 1, column + c - 1);
     }
-    const double falling = 0.5 * (HeightNear(row, column) + HeightNear(row + 1, column + 1));
-    const double rising = 0.5 * (HeightNear(row + 1, column) + HeightNear(row, column + 1));
-    return std::abs(falling - centre) < std::abs(rising - centre);  // beside a void: false
+    return alpenglow::FallingDiagonalFits(around);
   }
 
   // Left out: triangles at a void, and those that a row of samples at the pole has shrunk.

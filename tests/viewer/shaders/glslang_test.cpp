@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shaders, read by a second compiler: Khronos' reference front end is stricter than Mesa, and
 // drivers are as strict as it.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -51,6 +52,15 @@ TEST_F(Glslang, AcceptsEveryShaderOfTheViewer) {
   for (const char* name : {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl"})
     shafts.push_back({name, std::string(viewer::EmbeddedText(name))});
   ExpectAccepted(shafts, "shafts.frag.glsl");
+  const auto piece = [](const std::string& name) {
+    return ShaderPiece{name, std::string(viewer::EmbeddedText(name))};
+  };
+  ExpectAccepted({view, piece("viewer/shaders/land_block.glsl")}, "land.vert.glsl");
+  for (const char* depth : {"reversed", "logarithmic"}) {
+    ExpectAccepted({piece("viewer/shaders/octahedral.glsl"),
+                    piece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
+                   "land.frag.glsl");
+  }
   for (const char* stage : {"average.frag.glsl", "empty.frag.glsl", "full_screen.vert.glsl",
                             "shadow.vert.glsl", "terrain.frag.glsl"}) {
     ExpectAccepted({}, stage);

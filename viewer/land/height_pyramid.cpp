@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/height_pyramid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/text/error.h"
+
+namespace alpenglow {
+namespace {
+
+bool IsWhole(float height_m) {
+  return std::isnan(height_m) || (height_m == std::round(height_m) && std::abs(height_m) < 32000);
+}
+
+// The binomial mean where both neighbours are there, else the middle alone.
+float Binomial(float before, float middle, float after) {
+  const float mean = 0.25F * before + 0.5F * middle + 0.25F * after;
+  return std::isnan(mean) ? middle : mean;
+}
+
+}  // namespace
+
+HeightSamples::HeightSamples(std::vector<float> height_m) {
+  if (!std::all_of(height_m.begin(), height_m.end(), IsWhole)) {
+    real_m_ = std::move(height_m);
+    return;
+  }
+  whole_m_.reserve(height_m.size());
+  for (const float height : height_m)
+    whole_m_.push_back(std::isnan(height) ? kNone : static_cast<std::int16_t>(height));
+}
+
+HeightPyramid::HeightPyramid(const LatticeBox& box, int level, std::vector<float> height_m)
+    : box_(box), finest_(level) {
+  const auto samples =
+      static_cast<std::size_t>(LevelAxis(box.first_column, box.last_column, level).count() *
+                               LevelAxis(box.first_row, box.last_row, level).count());
+  ALPENGLOW_ENSURE(height_m.size(), ==, samples);
+  levels_.push_back(std::make_shared<const HeightSamples>(std::move(height_m)));
+  const int across = std::max(box.last_column - box.first_column, box.last_row - box.first_row);
+  for (int next = level + 1; (1 << next) < 2 * across; ++next)
+    levels_.push_back(std::make_shared<const HeightSamples>(Coarser(next)));
+}
+
+std::size_t HeightPyramid::IndexOf(int level, int column, int row) const {
+  const LevelAxis columns(box_.first_column, box_.last_column, level);
+  const LevelAxis rows(box_.first_row, box_.last_row, level);
+  return static_cast<std::size_t>(rows.IndexOf(row)) * static_cast<std::size_t>(columns.count()) +
+         static_cast<std::size_t>(columns.IndexOf(column));
+}
+
+// Of the level before, which is the coarsest so far.
+std::vector<float> HeightPyramid::Coarser(int level) const {
+  const LevelAxis columns(box_.first_column, box_.last_column, level);
+  const LevelAxis rows(box_.first_row, box_.last_row, level);
+  const int step = 1 << (level - 1);
+  const auto inside = [&](int sample, int first, int last) {
+    return sample % (2 * step) == 0 && sample - step >= first && sample + step <= last;
+  };
+  const auto along_row = [&](int column, int row) {
+    const float middle = At(level - 1, column, row);
+    if (!inside(column, box_.first_column, box_.last_column)) return middle;
+    return Binomial(At(level - 1, column - step, row), middle, At(level - 1, column + step, row));
+  };
+  std::vector<float> means;
+  means.reserve(static_cast<std::size_t>(columns.count()) * static_cast<std::size_t>(rows.count()));
+  for (int j = 0; j < rows.count(); ++j) {
+    const int row = rows.SampleOf(j);
+    const bool both = inside(row, box_.first_row, box_.last_row);
+    for (int i = 0; i < columns.count(); ++i) {
+      const int column = columns.SampleOf(i);
+      // On the rim's own columns no mean goes across it, along it the mean does.
+      const float middle = along_row(column, row);
+      means.push_back(
+          both ? Binomial(along_row(column, row - step), middle, along_row(column, row + step))
+               : middle);
+    }
+  }
+  return means;
+}
+
+HeightPyramid HeightPyramid::From(int level) const {
+  HeightPyramid coarser(*this);
+  const int most = finest_ + static_cast<int>(levels_.size()) - 1;
+  const int wanted = std::clamp(level, finest_, most);
+  coarser.levels_.erase(coarser.levels_.begin(), coarser.levels_.begin() + (wanted - finest_));
+  coarser.finest_ = wanted;
+  return coarser;
+}
+
+// Bilinear, from the finest level.
+float HeightPyramid::Between(int column, int row) const {
+  const LevelAxis columns(box_.first_column, box_.last_column, finest_);
+  const LevelAxis rows(box_.first_row, box_.last_row, finest_);
+  struct Span {
+    int low, high;
+    float share;
+  };
+  const auto span = [](const LevelAxis& axis, int sample) {
+    const int within = std::max(sample, std::min(axis.first, axis.last));
+    const int index = std::clamp((within - axis.first) >> axis.level, 0, axis.count() - 1);
+    const int low = axis.SampleOf(index);
+    const int high = axis.SampleOf(std::min(index + 1, axis.count() - 1));
+    return Span{
+        low, high,
+        high > low ? static_cast<float>(within - low) / static_cast<float>(high - low) : 0.0F};
+  };
+  const Span x = span(columns, column), y = span(rows, row);
+  const auto along = [&](int at_row) {
+    const float west = At(finest_, x.low, at_row);
+    if (x.share == 0.0F) return west;
+    return (1.0F - x.share) * west + x.share * At(finest_, x.high, at_row);
+  };
+  const float north = along(y.low);
+  return y.share == 0.0F ? north : (1.0F - y.share) * north + y.share * along(y.high);
+}
+
+float HeightPyramid::At(int level, int column, int row) const {
+  const int coarsest = finest_ + static_cast<int>(levels_.size()) - 1;
+  if (level < finest_) return Between(column, row);
+  const int from = std::min(level, coarsest);
+  return levels_[static_cast<std::size_t>(from - finest_)]->at(IndexOf(from, column, row));
+}
+
+std::size_t HeightPyramid::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& level : levels_) sum += level->bytes();
+  return sum;
+}
+
+std::size_t HeightPyramid::BytesOf(const LatticeBox& box, int level) {
+  const double columns = box.last_column - box.first_column + 1.0;
+  const double rows = box.last_row - box.first_row + 1.0;
+  return static_cast<std::size_t>(4.0 / 3.0 * sizeof(float) * columns * rows *
+                                  std::pow(0.25, level));
+}
+
+}  // namespace alpenglow

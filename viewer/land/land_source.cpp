@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/land_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "atmosphere/text/error.h"
+#include "renderer/terrain/built_in_range.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr double kPole = 0.5 * std::numbers::pi;
+
+// The mean of a row.
+float MeanOfRow(const ElevationGrid& grid, int row) {
+  double sum = 0.0;
+  for (int column = 0; column < grid.columns; ++column)
+    sum += static_cast<double>(grid.at(row, column));
+  return static_cast<float>(sum / grid.columns);
+}
+
+// A grid around the earth ends where it begins, and reaches the pole that it surrounds; heights,
+// if it has any, go along.
+ElevationGrid Closed(const ElevationGrid& grid) {
+  if (!grid.ClosesAroundTheEarth()) return grid;
+  const auto reaches = [&](int row, double pole) {
+    const double gap = std::abs(pole - grid.LatitudeOfRow(row));
+    return gap < 1.001 * grid.step_lat_rad && gap > 1e-12;
+  };
+  const bool north = reaches(0, kPole), south = reaches(grid.rows - 1, -kPole);
+  ElevationGrid closed = grid;
+  closed.columns = grid.columns + 1;
+  closed.rows = grid.rows + (north ? 1 : 0) + (south ? 1 : 0);
+  closed.north_rad = grid.north_rad + (north ? grid.step_lat_rad : 0.0);
+  closed.height_m.clear();
+  if (grid.height_m.empty()) return closed;
+  for (int row = north ? -1 : 0; row < grid.rows + (south ? 1 : 0); ++row) {
+    const int within = std::clamp(row, 0, grid.rows - 1);
+    const float pole_m = MeanOfRow(grid, within);
+    for (int column = 0; column < closed.columns; ++column)
+      closed.height_m.push_back(row == within ? grid.at(row, column % grid.columns) : pole_m);
+  }
+  return closed;
+}
+
+bool IsModel(const std::filesystem::path& file) {
+  constexpr std::array<const char*, 4> kEndings{".hgt", ".tif", ".tiff", ".dem"};
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+std::string NoteOn(const ElevationModel& model, const std::string& file) {
+  std::string note;
+  if (model.voids > 0)
+    note = fmt::format("{}: {} samples without data, {} filled", file, model.voids,
+                       model.voids_filled);
+  if (model.vertical_datum.empty()) return note;
+  return fmt::format("{}{}{}: heights are declared as {}; they are taken as over the ellipsoid",
+                     note, note.empty() ? "" : "; ", file, model.vertical_datum);
+}
+
+}  // namespace
+
+LandTiles::LandTiles(const LandSource& source) : source_(source) {
+  for (const std::filesystem::path& path : source.files) {
+    if (std::filesystem::is_directory(path)) {
+      AddFolder(path);
+    } else {
+      AddFile(path, false);
+    }
+  }
+  if (source.files.empty() && source.range_centre) {
+    tiles_.emplace_back();
+    extents_.push_back(Closed(BuiltInRangeExtent(*source.range_centre)));
+  }
+  if (tiles_.empty()) return;
+  LayLattice();
+  for (std::size_t index = 0; index < tiles_.size(); ++index) PlaceTile(index);
+  lattice_.last_column = 0;
+  lattice_.last_row = 0;
+  int first_column = std::numeric_limits<int>::max(), first_row = first_column;
+  for (const LandTile& tile : tiles_) {
+    first_column = std::min(first_column, tile.box.first_column);
+    first_row = std::min(first_row, tile.box.first_row);
+  }
+  lattice_.west_rad += first_column * lattice_.step_lon_rad;
+  lattice_.north_rad -= first_row * lattice_.step_lat_rad;
+  for (LandTile& tile : tiles_) {
+    tile.box.first_column -= first_column;
+    tile.box.last_column -= first_column;
+    tile.box.first_row -= first_row;
+    tile.box.last_row -= first_row;
+    lattice_.last_column = std::max(lattice_.last_column, tile.box.last_column);
+    lattice_.last_row = std::max(lattice_.last_row, tile.box.last_row);
+  }
+}
+
+void LandTiles::AddFile(const std::filesystem::path& file, bool is_from_folder) {
+  LandTile tile;
+  tile.file = file;
+  tile.is_from_folder = is_from_folder;
+  extents_.push_back(Closed(ReadElevationExtent(file)));
+  tiles_.push_back(tile);
+}
+
+void LandTiles::AddFolder(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (IsModel(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  const std::size_t before = tiles_.size();
+  for (const std::filesystem::path& file : files) {
+    try {
+      AddFile(file, true);
+    } catch (const InputError& error) {
+      notes_.push_back(fmt::format("left out: {}", error.what()));
+    }
+  }
+  if (tiles_.size() == before)
+    throw InputError(fmt::format("{}: no elevation model (.hgt, .tif, .tiff, .dem) in this folder",
+                                 folder.string()));
+}
+
+void LandTiles::LayLattice() {
+  const auto finest = std::min_element(
+      extents_.begin(), extents_.end(), [](const ElevationGrid& a, const ElevationGrid& b) {
+        // Steps that differ by rounding alone are alike.
+        if (std::abs(a.step_lat_rad - b.step_lat_rad) > 1e-6 * a.step_lat_rad)
+          return a.step_lat_rad < b.step_lat_rad;
+        return a.step_lon_rad < (1.0 - 1e-6) * b.step_lon_rad;
+      });
+  lattice_.west_rad = finest->west_rad;
+  lattice_.north_rad = finest->north_rad;
+  lattice_.step_lon_rad = finest->step_lon_rad;
+  lattice_.step_lat_rad = finest->step_lat_rad;
+}
+
+void LandTiles::PlaceTile(std::size_t index) {
+  const ElevationGrid& grid = extents_[index];
+  const double column = std::remainder(grid.west_rad - lattice_.west_rad, 2.0 * std::numbers::pi) /
+                        lattice_.step_lon_rad;
+  const double row = (lattice_.north_rad - grid.north_rad) / lattice_.step_lat_rad;
+  const double wide = (grid.columns - 1) * grid.step_lon_rad / lattice_.step_lon_rad;
+  const double high = (grid.rows - 1) * grid.step_lat_rad / lattice_.step_lat_rad;
+  constexpr double kOnLattice = 1e-2;  // samples
+  LandTile& tile = tiles_[index];
+  tile.box = {static_cast<int>(std::ceil(column - kOnLattice)),
+              static_cast<int>(std::ceil(row - kOnLattice)),
+              static_cast<int>(std::floor(column + wide + kOnLattice)),
+              static_cast<int>(std::floor(row + high + kOnLattice))};
+  const double ratio = std::min(grid.step_lon_rad / lattice_.step_lon_rad,
+                                grid.step_lat_rad / lattice_.step_lat_rad);
+  tile.level = std::max(static_cast<int>(std::floor(std::log2(ratio) + 1e-6)), 0);
+}
+
+std::vector<int> LandTiles::Touching(const LatticeBox& box) const {
+  std::vector<int> touching;
+  for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
+    if (tiles_[tile].box.Touches(box)) touching.push_back(static_cast<int>(tile));
+  return touching;
+}
+
+namespace {
+
+// Heights of a grid at the samples that the lattice has of a tile. Samples that lie on the lattice
+// are taken as they are.
+std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile,
+                             const ElevationGrid& grid) {
+  const LevelAxis columns(tile.box.first_column, tile.box.last_column, tile.level);
+  const LevelAxis rows(tile.box.first_row, tile.box.last_row, tile.level);
+  const double lon_ratio = lattice.step_lon_rad / grid.step_lon_rad;
+  const double lat_ratio = lattice.step_lat_rad / grid.step_lat_rad;
+  const double west =
+      std::remainder(
+          lattice.west_rad + tile.box.first_column * lattice.step_lon_rad - grid.west_rad,
+          2.0 * std::numbers::pi) /
+      grid.step_lon_rad;
+  const double north = (grid.north_rad - lattice.north_rad) / grid.step_lat_rad;
+  struct Span {
+    int low;
+    double share;
+  };
+  // Nearest sample within the rounding of steps, else between two.
+  const auto span = [](double place, int count) {
+    const double nearest = std::round(place);
+    const double snapped = std::abs(place - nearest) < 1e-2 ? nearest : place;
+    const double low = std::clamp(std::floor(snapped), 0.0, count - 1.0);
+    return Span{static_cast<int>(low), std::clamp(snapped - low, 0.0, 1.0)};
+  };
+  std::vector<float> heights;
+  heights.reserve(static_cast<std::size_t>(columns.count()) *
+                  static_cast<std::size_t>(rows.count()));
+  for (int j = 0; j < rows.count(); ++j) {
+    const Span y = span(north + rows.SampleOf(j) * lat_ratio, grid.rows);
+    for (int i = 0; i < columns.count(); ++i) {
+      const Span x =
+          span(west + (columns.SampleOf(i) - tile.box.first_column) * lon_ratio, grid.columns);
+      const auto along = [&](int row) {
+        if (x.share == 0.0) return static_cast<double>(grid.at(row, x.low));
+        return (1.0 - x.share) * static_cast<double>(grid.at(row, x.low)) +
+               x.share * static_cast<double>(grid.at(row, x.low + 1));
+      };
+      const double height = y.share == 0.0
+                                ? along(y.low)
+                                : (1.0 - y.share) * along(y.low) + y.share * along(y.low + 1);
+      heights.push_back(static_cast<float>(height));
+    }
+  }
+  return heights;
+}
+
+}  // namespace
+
+ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
+  const LandTile& wanted = tiles.tiles()[static_cast<std::size_t>(tile)];
+  ElevationModel model;
+  if (wanted.file.empty()) {
+    model.grid = BuiltInRange(*tiles.source().range_centre);
+  } else {
+    model = ReadElevation(wanted.file, tiles.source().voids);
+  }
+  const HeightPyramid all(wanted.box, wanted.level,
+                          OnLattice(tiles.lattice(), wanted, Closed(model.grid)));
+  return {std::make_shared<const HeightPyramid>(all.From(level)),
+          NoteOn(model, wanted.file.string())};
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Where the land comes from: elevation models by file and folder, or the built-in range.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/terrain/elevation.h"
+#include "viewer/land/height_pyramid.h"
+#include "viewer/land/land_lattice.h"
+
+namespace alpenglow {
+
+struct LandSource {
+  /// Elevation models as ReadElevation reads them, and folders of such (.hgt, .tif, .tiff, .dem;
+  /// other files there are passed over). The first that has a place counts.
+  std::vector<std::filesystem::path> files;
+  VoidPolicy voids = VoidPolicy::kFill;
+  /// Without files: the built-in range around this place; without either there is no land.
+  std::optional<GeodeticPosition> range_centre;
+};
+
+/// One file, or the built-in range (no file).
+struct LandTile {
+  std::filesystem::path file;
+  bool is_from_folder = false;
+  LatticeBox box;  // of the samples that it has on the lattice
+  int level = 0;   // of the lattice that comes nearest to its own spacing, from the fine side
+};
+
+/// The tiles of a source on a common lattice: the samples of the tile with the narrowest rows.
+/// Tiles whose samples lie elsewhere are read between their samples.
+class LandTiles {
+ public:
+  /// Reads headers, no heights. Throws InputError for a file that is named and cannot be read, and
+  /// for a folder without models; what cannot be read in a folder is left out and noted.
+  explicit LandTiles(const LandSource& source);
+
+  [[nodiscard]] const LandLattice& lattice() const { return lattice_; }
+  [[nodiscard]] const std::vector<LandTile>& tiles() const { return tiles_; }
+  [[nodiscard]] const LandSource& source() const { return source_; }
+  /// Indices of tiles that touch a box, in their order.
+  [[nodiscard]] std::vector<int> Touching(const LatticeBox& box) const;
+  /// One line each about what was left out.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  void AddFile(const std::filesystem::path& file, bool is_from_folder);
+  void AddFolder(const std::filesystem::path& folder);
+  void LayLattice();
+  void PlaceTile(std::size_t index);
+
+  LandSource source_;
+  LandLattice lattice_;
+  std::vector<LandTile> tiles_;
+  std::vector<ElevationGrid> extents_;  // one a tile, without heights
+  std::vector<std::string> notes_;
+};
+
+/// Heights of a tile, and what there is to say about them.
+struct ReadTile {
+  std::shared_ptr<const HeightPyramid> heights;
+  std::string note;  // empty: nothing
+};
+
+/// Reads a tile whole, from `level` of the lattice on. Throws InputError as ReadElevation does.
+[[nodiscard]] ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level);
+
+}  // namespace alpenglow

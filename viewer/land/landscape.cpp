@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/landscape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "viewer/embedded_text.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr GLuint kLandBinding = 8;
+constexpr std::size_t kMostLevels = 32;
+constexpr double kAnchorReach_m = 100e3;
+constexpr double kReachTime_s = 0.7;  // that a level takes to come in
+
+/// `block Land` of land_block.glsl.
+struct LandBlock {
+  glm::vec4 eye_high, eye_low;
+  glm::vec4 east, north, up;
+  glm::vec4 eye_sample, eye_above;
+  std::array<glm::vec4, kMostLevels> turning;
+};
+static_assert(sizeof(LandBlock) == (7 + kMostLevels) * sizeof(glm::vec4));
+
+ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
+
+// Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.
+bool CanReverseDepth() {
+  return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+}
+
+ShaderProgram LandProgram(bool reversed_depth) {
+  std::vector<VertexAttribute> attributes;
+  for (const char* const name : ChunkBuffers::kAttributes)
+    attributes.push_back({static_cast<GLuint>(attributes.size()), name});
+  return ShaderProgram(
+      {Piece("viewer/shaders/view_block.glsl"), Piece("viewer/shaders/land_block.glsl"),
+       Piece("viewer/shaders/land.vert.glsl")},
+      {Piece("viewer/shaders/octahedral.glsl"),
+       Piece(reversed_depth ? "viewer/shaders/reversed_depth.glsl"
+                            : "viewer/shaders/logarithmic_depth.glsl"),
+       Piece("viewer/shaders/land.frag.glsl")},
+      attributes);
+}
+
+glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
+
+// Axes of the eye's frame in the anchor's, and where the eye stands there.
+struct EyeInAnchor {
+  glm::dvec3 at, east, north, up;
+
+  EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye) {
+    const LocalFrame there(anchor.ellipsoid(), eye);
+    const auto axis = [&](const glm::dvec3& v) {
+      return anchor.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{v})).xyz;
+    };
+    at = anchor.EnuFromGeodetic(eye).xyz;
+    east = axis({1.0, 0.0, 0.0});
+    north = axis({0.0, 1.0, 0.0});
+    up = axis({0.0, 0.0, 1.0});
+  }
+  [[nodiscard]] glm::dvec3 Turned(const glm::dvec3& v) const {
+    return v.x * east + v.y * north + v.z * up;
+  }
+};
+
+// The four sides of the view and what is before it, as planes through the eye; inside is positive.
+class ViewPyramid {
+ public:
+  ViewPyramid(const EyeInAnchor& eye, const LandView& view) : at_(eye.at) {
+    const double wide = glm::length(view.right), high = glm::length(view.up);
+    const glm::dvec3 forward = eye.Turned(view.forward);
+    const glm::dvec3 right = eye.Turned(view.right) / wide, up = eye.Turned(view.up) / high;
+    planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
+               high * forward - up, forward};
+  }
+  // Whether any of a box may be inside.
+  [[nodiscard]] bool Touches(const glm::dvec3& low, const glm::dvec3& high) const {
+    return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec3& plane) {
+      const glm::dvec3 corner{plane.x > 0.0 ? high.x : low.x, plane.y > 0.0 ? high.y : low.y,
+                              plane.z > 0.0 ? high.z : low.z};
+      return glm::dot(plane, corner - at_) > 0.0;
+    });
+  }
+
+ private:
+  glm::dvec3 at_;
+  std::array<glm::dvec3, 5> planes_;
+};
+
+// How far the horizon lies from a height over a sphere a little larger than the earth [m].
+double HorizonDistance(double height_m) {
+  constexpr double kRadius_m = 6.4e6;
+  const double above = std::max(height_m, 0.0);
+  return std::sqrt(above * (above + 2.0 * kRadius_m));
+}
+
+constexpr double kHighestGround_m = 9000.0;
+
+}  // namespace
+
+Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellipsoid& ellipsoid)
+    : tiles_(std::make_shared<const LandTiles>(source)),
+      size_(size),
+      ellipsoid_(ellipsoid),
+      tree_(*tiles_),
+      cache_(tiles_, tree_, size.detail, size.most_bytes),
+      reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
+      reversed_depth_(CanReverseDepth()),
+      program_(LandProgram(reversed_depth_)),
+      worker_(Work) {
+  if (source.files.empty() && source.range_centre)
+    notes_.emplace_back("the terrain is made up: no elevation model of the place was named");
+}
+
+Landscape::~Landscape() = default;
+
+// As many as take about 30 ms, so that what is asked for later need not wait for long.
+Landscape::Made Landscape::Work(const Order& order) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(30);
+  Made made{{}, {}, order.light_number, order.for_next_anchor};
+  const auto lit = [&](std::shared_ptr<const LandChunk> chunk) {
+    std::vector<ChunkLight> light;
+    if (!chunk->triangles.empty()) light = LightOfChunk(*chunk, order.anchor.frame, order.light);
+    return LitChunk{std::move(chunk), std::move(light)};
+  };
+  for (const ChunkKey& key : order.make) {
+    if (Clock::now() > end) break;
+    made.made.push_back(lit(std::make_shared<const LandChunk>(
+        MakeChunk(*order.heights, key, order.top, order.anchor))));
+  }
+  for (const auto& chunk : order.relight) {
+    if (Clock::now() > end) break;
+    made.relit.push_back(lit(chunk));
+  }
+  return made;
+}
+
+LandEye Landscape::EyeAt(const GeodeticPosition& eye) const {
+  const LandLattice& lattice = tiles_->lattice();
+  LandEye at{lattice.At(eye.latitude_rad, eye.longitude_rad),
+             SampleSizeAt(lattice, eye.latitude_rad), 0.0, 0.0};
+  at.above_m = std::max(eye.height_m - ceiling_m_.value_or(0.0), 0.0);
+  at.sight_m = HorizonDistance(eye.height_m) + HorizonDistance(kHighestGround_m);
+  return at;
+}
+
+LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
+  const LandLattice& lattice = tiles_->lattice();
+  const int column = std::clamp(static_cast<int>(eye_.at.column), 0, lattice.last_column);
+  const int row = std::clamp(static_cast<int>(eye_.at.row), 0, lattice.last_row);
+  return {LocalFrame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0}), column, row};
+}
+
+// A new set grows beside the old one and takes its place when it has all that is wanted.
+void Landscape::MoveAnchor() {
+  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_));
+  if (next_set_) {
+    const bool has_all =
+        std::all_of(demand_.wanted.begin(), demand_.wanted.end(), [&](const WantedChunk& wanted) {
+          return !set_->chunks.contains(wanted.key) || next_set_->chunks.contains(wanted.key);
+        });
+    if (!has_all) return;
+    set_ = std::move(next_set_);
+    drawn_.clear();
+    return;
+  }
+  GeodeticPosition foot = eye_place_;
+  foot.height_m = 0.0;
+  const double away = glm::length(set_->anchor.frame.EnuFromGeodetic(foot).xyz);
+  if (away > kAnchorReach_m) next_set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_));
+}
+
+void Landscape::Add(ChunkSet& set, const LitChunk& lit, int light_number) {
+  Kept kept{lit.chunk, -1, frame_, light_number};
+  if (!lit.chunk->triangles.empty()) kept.slot = set.buffers.Add(*lit.chunk, lit.light);
+  set.chunks[lit.chunk->key] = std::move(kept);
+}
+
+void Landscape::TakeChunks() {
+  const std::optional<Made> made = worker_.Take();
+  if (!made) return;
+  is_working_ = false;
+  ChunkSet* const set = made->for_next_anchor ? next_set_.get() : set_.get();
+  if (set == nullptr) return;
+  for (const LitChunk& lit : made->made)
+    if (!set->chunks.contains(lit.chunk->key)) Add(*set, lit, made->light_number);
+  for (const LitChunk& lit : made->relit) {
+    const auto found = set->chunks.find(lit.chunk->key);
+    if (found == set->chunks.end() || found->second.chunk != lit.chunk) continue;
+    if (found->second.slot >= 0)
+      set->buffers.SetLight(found->second.slot, Other(shown_), lit.light);
+    found->second.light = made->light_number;
+  }
+}
+
+void Landscape::FindDemand(double seconds) {
+  demand_ = DemandOf(tree_, eye_, size_.detail,
+                     [&](const ChunkKey& key) { return set_->chunks.contains(key); });
+  for (const WantedChunk& wanted : demand_.wanted) {
+    const auto found = set_->chunks.find(wanted.key);
+    if (found != set_->chunks.end()) found->second.last_wanted = frame_;
+  }
+  LetLevelsReach(seconds);
+}
+
+// A level that has come reaches out from the eye within a moment, from coarse to fine.
+void Landscape::LetLevelsReach(double seconds) {
+  for (std::size_t level = 0; level < reach_m_.size(); ++level) {
+    const double full = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m) *
+                        std::exp2(static_cast<double>(level));
+    const double grown = reach_m_[level] + full * seconds / kReachTime_s;
+    reach_m_[level] = std::min(demand_.reach_m[level], grown);
+  }
+  ranges_ = RangesOf(reach_m_, eye_);
+}
+
+std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
+  constexpr std::size_t kMost = 256;
+  std::vector<WantedChunk> missing;
+  for (const WantedChunk& wanted : demand_.wanted)
+    if (!set.chunks.contains(wanted.key)) missing.push_back(wanted);
+  std::sort(missing.begin(), missing.end(),
+            [](const WantedChunk& a, const WantedChunk& b) { return a.urgency < b.urgency; });
+  std::vector<ChunkKey> keys;
+  for (const WantedChunk& wanted : missing) {
+    if (keys.size() == kMost) break;
+    if (cache_.CanMake(wanted.key)) keys.push_back(wanted.key);
+  }
+  return keys;
+}
+
+void Landscape::AskForChunks() {
+  if (is_working_) return;
+  for (const bool next : {false, true}) {
+    const ChunkSet* const set = next ? next_set_.get() : set_.get();
+    if (set == nullptr) continue;
+    std::vector<ChunkKey> missing = Missing(*set);
+    if (missing.empty()) continue;
+    worker_.Ask({cache_.loaded(),
+                 set->anchor,
+                 std::move(missing),
+                 {},
+                 tree_.top(),
+                 light_,
+                 light_number_,
+                 next});
+    is_working_ = true;
+    return;
+  }
+}
+
+void Landscape::AskForLight() {
+  if (is_working_ || !relighting_) return;
+  Order order{cache_.loaded(), set_->anchor, {}, {}, tree_.top(), light_, light_number_, false};
+  for (const auto& [key, kept] : set_->chunks)
+    if (kept.light != light_number_) order.relight.push_back(kept.chunk);
+  if (order.relight.empty()) return;
+  worker_.Ask(std::move(order));
+  is_working_ = true;
+}
+
+void Landscape::Relight(LightOfVertices light) { light_asked_ = std::move(light); }
+
+bool Landscape::IsRelighting() const { return light_asked_ || relighting_ || fading_ < 1.0; }
+
+// New light begins when the one before is all there and shown.
+void Landscape::FinishLight(double seconds) {
+  fading_ = std::min(fading_ + seconds / std::max(relight_s_, 0.2), 1.0);
+  if (relighting_) relight_s_ += seconds;
+  const bool complete =
+      std::all_of(set_->chunks.begin(), set_->chunks.end(),
+                  [&](const auto& entry) { return entry.second.light == light_number_; });
+  if (relighting_ && complete && fading_ == 1.0) {
+    relighting_ = false;
+    shown_ = Other(shown_);
+    fading_ = 0.0;
+  }
+  // The side that is faded from must stay as it is until the fading ends.
+  if (!relighting_ && light_asked_ && fading_ == 1.0) {
+    light_ = *std::exchange(light_asked_, std::nullopt);
+    ++light_number_;
+    relighting_ = true;
+    relight_s_ = 0.0;
+  }
+}
+
+void Landscape::Evict(ChunkSet& set) const {
+  const std::size_t most = demand_.wanted.size() + demand_.wanted.size() / 4 + 64;
+  if (set.chunks.size() <= most) return;
+  constexpr long kFrames = 60;
+  for (auto entry = set.chunks.begin(); entry != set.chunks.end();) {
+    if (entry->second.last_wanted + kFrames >= frame_) {
+      ++entry;
+      continue;
+    }
+    if (entry->second.slot >= 0) set.buffers.Remove(entry->second.slot);
+    entry = set.chunks.erase(entry);
+  }
+}
+
+// The ground about the eye is as high as any chunk near it, less its distance.
+void Landscape::RaiseAbove(double seconds) {
+  constexpr double kTime_s = 0.3;
+  double highest = -1e9;
+  for (const DrawnChunk& near : around_) {
+    const auto found = set_->chunks.find(near.key);
+    if (found == set_->chunks.end() || found->second.chunk->triangles.empty()) continue;
+    const double beside =
+        std::sqrt(std::max(near.distance_m * near.distance_m - eye_.above_m * eye_.above_m, 0.0));
+    highest = std::max(highest, found->second.chunk->highest_m - beside);
+  }
+  if (highest < -1e8) return;
+  const double share = ceiling_m_ ? 1.0 - std::exp(-seconds / kTime_s) : 1.0;
+  ceiling_m_ = ceiling_m_.value_or(highest) + share * (highest - ceiling_m_.value_or(highest));
+}
+
+void Landscape::Choose(const LandView& view) {
+  around_ = DrawnChunks(tree_, eye_, ranges_,
+                        [&](const ChunkKey& key) { return set_->chunks.contains(key); });
+  const EyeInAnchor eye(set_->anchor.frame, eye_place_);
+  const ViewPyramid pyramid(eye, view);
+  drawn_.clear();
+  for (const DrawnChunk& near : around_) {
+    const auto found = set_->chunks.find(near.key);
+    if (found == set_->chunks.end() || found->second.slot < 0) continue;
+    const LandChunk& chunk = *found->second.chunk;
+    if (!pyramid.Touches(chunk.low, chunk.high)) continue;
+    drawn_.push_back({found->second.slot, &chunk, near.coarse_sides});
+  }
+}
+
+void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
+  ++frame_;
+  if (tiles_->tiles().empty()) return;
+  eye_place_ = eye;
+  eye_ = EyeAt(eye);
+  if (cache_.Update(eye_)) ++heights_version_;
+  for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
+  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_));
+  TakeChunks();
+  FindDemand(seconds);
+  MoveAnchor();
+  FinishLight(seconds);
+  AskForChunks();
+  AskForLight();
+  Choose(view);
+  RaiseAbove(seconds);
+  Evict(*set_);
+}
+
+void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
+  constexpr double kLong_s = 1e3;
+  for (int still = 0; still < 3;) {
+    const std::optional<double> ceiling = ceiling_m_;
+    const std::size_t before = set_ ? set_->chunks.size() : 0;
+    cache_.Wait();
+    worker_.Wait();
+    Update(eye, view, kLong_s);
+    if (!set_) return;
+    const bool same = set_->chunks.size() == before && ceiling == ceiling_m_ && !is_working_ &&
+                      cache_.reading().empty() && !IsRelighting() && !next_set_;
+    still = same ? still + 1 : 0;
+  }
+}
+
+void Landscape::UploadBlock() {
+  const EyeInAnchor eye(set_->anchor.frame, eye_place_);
+  const glm::vec3 high(eye.at);
+  LandBlock block{};
+  block.eye_high = glm::vec4(high, 0.0F);
+  block.eye_low = Padded(eye.at - glm::dvec3(high));
+  block.east = Padded(eye.east);
+  block.north = Padded(eye.north);
+  block.up = Padded(eye.up);
+  block.eye_sample =
+      glm::vec4(glm::dvec4(eye_.at.column - set_->anchor.column, eye_.at.row - set_->anchor.row,
+                           eye_.size.column_m, eye_.size.row_m));
+  block.eye_above = glm::vec4(static_cast<float>(eye_.above_m), static_cast<float>(fading_),
+                              reversed_depth_ ? 1.0F : 0.0F, 0.0F);
+  for (std::size_t level = 0; level < ranges_.size(); ++level) {
+    // Float's rounding must not leave a vertex on the line short of the end.
+    const double end = 0.999 * ranges_[level].end_m;
+    const double start = std::min(ranges_[level].start_m, 0.98 * end);
+    block.turning[level] = end > 0.0 ? glm::vec4(glm::dvec4(start, 1.0 / (end - start), 0.0, 0.0))
+                                     : glm::vec4(-1.0F, 1e9F, 0.0F, 0.0F);
+  }
+  glBindBufferBase(GL_UNIFORM_BUFFER, kLandBinding, block_.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+}
+
+void Landscape::Draw(GLuint view_binding) {
+  constexpr std::array<float, 4> kNothing{};
+  constexpr float kFarthest = 0.0F;
+  glDepthMask(GL_TRUE);
+  glClearBufferfv(GL_COLOR, 0, kNothing.data());
+  glClearBufferfv(GL_COLOR, 1, kNothing.data());
+  glClearBufferfv(GL_DEPTH, 0, &kFarthest);
+  if (!set_ || drawn_.empty()) return;
+  UploadBlock();
+  program_.Use();
+  program_.BindBlock("Land", kLandBinding);
+  program_.BindBlock("View", view_binding);
+  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  set_->buffers.Draw(drawn_, Other(shown_));
+  glDisable(GL_DEPTH_TEST);
+  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+}
+
+std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) const {
+  return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
+}
+
+std::optional<ElevationGrid> Landscape::SampledGrid(const GeodeticPosition& place,
+                                                    double half_width_m, int most_samples) const {
+  return cache_.loaded()->SampledGrid(place, half_width_m, most_samples);
+}
+
+LandProgress Landscape::Progress() const {
+  if (tiles_->tiles().empty() || !set_) return {};
+  std::size_t there = 0;
+  for (const WantedChunk& wanted : demand_.wanted)
+    if (set_->chunks.contains(wanted.key)) ++there;
+  const double tiles = static_cast<double>(cache_.there()) / std::max(cache_.wanted(), 1);
+  const double chunks = static_cast<double>(there) /
+                        static_cast<double>(std::max<std::size_t>(demand_.wanted.size(), 1));
+  const double share = 0.5 * (tiles + chunks);
+  if (!cache_.reading().empty())
+    return {share, fmt::format("terrain: reading {} ({} of {})", cache_.reading(),
+                               cache_.there() + 1, cache_.wanted())};
+  if (there == demand_.wanted.size()) return {};
+  return {share, fmt::format("terrain: {} of {} pieces", there, demand_.wanted.size())};
+}
+
+std::vector<std::string> Landscape::TakeNotes() { return std::exchange(notes_, {}); }
+
+LandFigures Landscape::Figures() const {
+  LandFigures figures;
+  figures.tile_bytes = cache_.bytes();
+  if (!set_) return figures;
+  figures.chunks = static_cast<int>(drawn_.size());
+  for (const auto& drawn : drawn_)
+    figures.triangles += static_cast<int>(drawn.chunk->triangles.size() / 3);
+  for (const ChunkSet* const set : {set_.get(), next_set_.get()}) {
+    if (set == nullptr) continue;
+    figures.kept_chunks += static_cast<int>(set->chunks.size());
+    figures.card_bytes += set->buffers.bytes();
+    for (const auto& [key, kept] : set->chunks) figures.chunk_bytes += BytesOf(*kept.chunk);
+  }
+  return figures;
+}
+
+std::optional<GeodeticPosition> Landscape::Middle() const {
+  if (tiles_->tiles().empty()) return std::nullopt;
+  const LandLattice& lattice = tiles_->lattice();
+  return lattice.PlaceOf(lattice.last_column / 2, lattice.last_row / 2, 0.0);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The land around the eye: read, cut into levels of detail, lit and drawn, all but the drawing on
+// threads beside it.
+//
+// Every frame: Update, then Draw into a SurfaceMap. Near the eye stand the model's own samples, as
+// in MeshFromElevation; the farther, the coarser (level_ranges.h). Without land it draws nothing.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "viewer/gl/shader.h"
+#include "viewer/land/chunk_buffers.h"
+#include "viewer/land/level_ranges.h"
+#include "viewer/land/tile_cache.h"
+#include "viewer/work/latest_job.h"
+
+namespace alpenglow {
+
+/// How much land is drawn and kept.
+struct LandSize {
+  /// Samples from the eye to where the second level begins; at least 64. Triangles grow as its
+  /// square.
+  double detail = 96.0;
+  /// Of heights that are kept [bytes], see TileCache.
+  std::size_t most_bytes = std::size_t{512} << 20;
+};
+
+/// What the eye sees, as in view_block.glsl: axes in its frame (east, north, up).
+struct LandView {
+  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
+  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
+  glm::dvec3 forward{0.0, 1.0, 0.0};
+};
+
+/// Figures of the last frame.
+struct LandFigures {
+  int chunks = 0, triangles = 0;  // drawn
+  int kept_chunks = 0;
+  std::size_t tile_bytes = 0, chunk_bytes = 0, card_bytes = 0;
+};
+
+/// How far loading is.
+struct LandProgress {
+  double share = 1.0;  // 1: all there
+  std::string text;    // empty: nothing is being loaded
+};
+
+class Landscape {
+ public:
+  /// Reads headers of files, nothing else; throws InputError as LandTiles does. An OpenGL context
+  /// must be current, here and in all calls.
+  Landscape(const LandSource& source, const LandSize& size, const Ellipsoid& ellipsoid);
+  ~Landscape();
+  Landscape(const Landscape&) = delete;
+  Landscape& operator=(const Landscape&) = delete;
+
+  /// Takes what has become ready, asks for what is missing, chooses what is drawn. Never waits.
+  /// Throws InputError when a file that was named by itself turns out damaged.
+  /// @param seconds  since the last call: what has come fades in.
+  void Update(const GeodeticPosition& eye, const LandView& view, double seconds);
+  /// Waits until all that is wanted for this eye is there and as it will stay.
+  void Settle(const GeodeticPosition& eye, const LandView& view);
+  /// Draws what the last Update chose into the bound SurfaceMap, over what is in it. The uniform
+  /// block View must be bound to `view_binding`.
+  void Draw(GLuint view_binding);
+
+  /// Lights all vertices anew by this function, beside drawing; the old light fades into the new
+  /// when that is complete. Asked again meanwhile, it goes on with the newest after that.
+  void Relight(LightOfVertices light);
+  /// Whether new light is on its way or fading in.
+  [[nodiscard]] bool IsRelighting() const;
+
+  /// Height of the ground [m] under a place, the same as is drawn near the eye; nothing where there
+  /// is none or it is not loaded.
+  [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
+  /// See LoadedHeights::SampledGrid.
+  [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
+                                                         double half_width_m,
+                                                         int most_samples) const;
+  /// Counts up when heights have come: SampledGrid may have changed.
+  [[nodiscard]] int heights_version() const { return heights_version_; }
+
+  [[nodiscard]] LandProgress Progress() const;
+  /// What there is to say, each once: tiles left out, voids, vertical datums, that the range is made
+  /// up.
+  [[nodiscard]] std::vector<std::string> TakeNotes();
+  [[nodiscard]] LandFigures Figures() const;
+  /// The middle of the land; nothing without any.
+  [[nodiscard]] std::optional<GeodeticPosition> Middle() const;
+  [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
+
+ private:
+  struct Kept {
+    std::shared_ptr<const LandChunk> chunk;
+    int slot = -1;  // on the card; -1: nothing to draw
+    long last_wanted = 0;
+    int light = 0;  // number of the light on the side that is being filled
+  };
+  // All chunks of one anchor.
+  struct ChunkSet {
+    explicit ChunkSet(const LandAnchor& at) : anchor(at) {}
+    LandAnchor anchor;
+    ChunkBuffers buffers;
+    std::unordered_map<ChunkKey, Kept, ChunkKeyHash> chunks;
+  };
+  struct Order {
+    std::shared_ptr<const LoadedHeights> heights;
+    LandAnchor anchor;
+    std::vector<ChunkKey> make;
+    std::vector<std::shared_ptr<const LandChunk>> relight;
+    int top = 0;
+    LightOfVertices light;
+    int light_number = 0;
+    bool for_next_anchor = false;
+  };
+  struct LitChunk {
+    std::shared_ptr<const LandChunk> chunk;
+    std::vector<ChunkLight> light;
+  };
+  struct Made {
+    std::vector<LitChunk> made, relit;
+    int light_number;
+    bool for_next_anchor;
+  };
+  static Made Work(const Order& order);
+
+  [[nodiscard]] LandEye EyeAt(const GeodeticPosition& eye) const;
+  [[nodiscard]] LandAnchor AnchorAt(const GeodeticPosition& eye) const;
+  void MoveAnchor();
+  void TakeChunks();
+  void Add(ChunkSet& set, const LitChunk& lit, int light_number);
+  void FindDemand(double seconds);
+  void LetLevelsReach(double seconds);
+  void AskForChunks();
+  void AskForLight();
+  [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
+  void Evict(ChunkSet& set) const;
+  void FinishLight(double seconds);
+  void Choose(const LandView& view);
+  void RaiseAbove(double seconds);
+  void UploadBlock();
+
+  std::shared_ptr<const LandTiles> tiles_;
+  LandSize size_;
+  Ellipsoid ellipsoid_;
+  ChunkTree tree_;
+  TileCache cache_;
+  GeodeticPosition eye_place_;
+  LandEye eye_;
+  std::optional<double> ceiling_m_;  // of the ground about the eye, over the ellipsoid
+  std::unique_ptr<ChunkSet> set_, next_set_;
+  LandDemand demand_;
+  std::vector<double> reach_m_;
+  std::vector<LevelRange> ranges_;
+  std::vector<DrawnChunk> around_;              // in view or not
+  std::vector<ChunkBuffers::Drawn> drawn_;      // in view
+  LightOfVertices light_;                       // of chunks that are made
+  std::optional<LightOfVertices> light_asked_;  // to follow
+  int light_number_ = 0;                        // of light_
+  bool relighting_ = false;
+  LightSide shown_ = LightSide::kFirst;
+  double fading_ = 1.0;     // share of the way from the side before to shown_
+  double relight_s_ = 0.0;  // that the last relighting took
+  long frame_ = 0;
+  int heights_version_ = 0;
+  bool is_working_ = false;
+  bool reversed_depth_;
+  std::vector<std::string> notes_;
+  GlBuffer block_;
+  ShaderProgram program_;
+  LatestJob<Order, Made> worker_;  // last: it uses all above
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Land relative to the eye, on the way from its own level of detail to the next coarser one (see
+// viewer/land/level_ranges.h).
+in vec3 position;  // [m]
+in vec3 coarse_position;
+in vec2 sample_place;
+in vec4 normal;  // of any length; the level
+in vec4 coarse_normal;
+in vec4 sky, coarse_sky;  // irradiance per unit solar irradiance, in bands
+in vec2 sun_over_edge;    // height of the sun over the terrain's edge: own, coarser
+in vec4 new_sky, new_coarse_sky;
+in vec2 new_sun_over_edge;
+out vec3 from_eye;  // [m], east, north, up at the eye
+out vec3 facing;    // normal, in the same frame
+out vec4 sky_light;
+out float sun_height;
+
+vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
+
+// 0: own, 1: the coarser level's.
+float Turned() {
+  vec2 away = (sample_place - eye_sample.xy) * eye_sample.zw;
+  vec2 range = turning[int(normal.w)].xy;
+  float d = sqrt(dot(away, away) + eye_above.x * eye_above.x);
+  return clamp((d - range.x) * range.y, 0.0, 1.0);
+}
+
+void main() {
+  const float nearest = 0.1;  // m
+  float turned = Turned();
+  // At the ends exactly the one or the other: chunks that meet have the same vertices there.
+  vec3 at = turned == 1.0 ? coarse_position : mix(position, coarse_position, turned);
+  from_eye = InEyeFrame((at - eye_high.xyz) - eye_low.xyz);
+  facing = InEyeFrame(mix(normal.xyz, coarse_normal.xyz, turned));
+  sky_light = mix(mix(sky, coarse_sky, turned), mix(new_sky, new_coarse_sky, turned), eye_above.y);
+  sun_height = mix(mix(sun_over_edge.x, sun_over_edge.y, turned),
+                   mix(new_sun_over_edge.x, new_sun_over_edge.y, turned), eye_above.y);
+  float along_view = dot(from_eye, view_forward.xyz);
+  float width = dot(view_right.xyz, view_right.xyz);
+  float height = dot(view_up.xyz, view_up.xyz);
+  // Only the near plane clips. Reversed depth is nearest / w; else the fragment stage writes it.
+  float z = eye_above.z > 0.0 ? nearest : along_view - 2.0 * nearest;
+  gl_Position = vec4(dot(from_eye, view_right.xyz) / width, dot(from_eye, view_up.xyz) / height, z,
+                     along_view);
+}

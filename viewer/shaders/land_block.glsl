@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The eye among the land's vertices. These are metres in the frame of an anchor; the eye's position
+// there comes in two floats a coordinate, so that what is left near the eye is right to a
+// micrometre.
+layout(std140) uniform Land {
+  vec4 eye_high;  // position of the eye in the anchor's frame [m]
+  vec4 eye_low;   // and what float cannot hold of it
+  vec4 east;      // axes of the eye's frame in the anchor's
+  vec4 north;
+  vec4 up;
+  vec4 eye_sample;   // column and row of the eye from the anchor's; metres a column and a row
+  vec4 eye_above;    // height over all ground about [m]; share of the new light; depth is reversed
+  vec4 turning[32];  // a level: distance where it begins to turn [m], one over how far it takes
+};
