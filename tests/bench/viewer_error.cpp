@@ -48,7 +48,7 @@ void Study(const Air& air, const char* name, double altitude_m, double sun_deg,
            const AirTablesSize& size) {
   const AirEye eye{altitude_m, std::sin(sun_deg * kRadiansPerDegree)};
   const auto start = std::chrono::steady_clock::now();
-  const AirTables tables = MakeAirTables(air.air, air.diffuse, eye, size);
+  const AirTables tables = MakeAirTables(air.air, air.diffuse, air.tables, eye, size);
   const double ms =
       1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const tests::AirReading reading(tables, air.tables);

@@ -16,7 +16,8 @@ AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z}; }
 
 AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
   const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
-  return MakeAirTables(here, air.diffuse, EyeOf(view), AirTablesSizeOf(quality, view.altitude_m));
+  return MakeAirTables(here, air.diffuse, air.tables, EyeOf(view),
+                       AirTablesSizeOf(quality, view.altitude_m));
 }
 
 }  // namespace

@@ -87,11 +87,6 @@ struct AirTables {
 /// Throws InputError for a medium of more bands than a texel has.
 void RequireFourBands(const Medium& medium);
 
-/// On the calling thread alone. `air` and `diffuse` must be of one medium; neither is kept. Throws
-/// InputError for a medium of more than four bands.
-[[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
-                                      const AirEye& eye, const AirTablesSize& size);
-
 /// What depends on the medium alone.
 struct MediumTables {
   /// Of the aerosol, [node]: scattering angles pi (k / (n - 1))^2.
@@ -101,5 +96,11 @@ struct MediumTables {
 };
 
 [[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air);
+
+/// On the calling thread alone. `air`, `diffuse` and `medium` must be of one medium; neither is kept. Throws
+/// InputError for a medium of more than four bands.
+[[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                                      const MediumTables& medium, const AirEye& eye,
+                                      const AirTablesSize& size);
 
 }  // namespace alpenglow

@@ -26,7 +26,7 @@ constexpr GLuint kBinding = 5;
 struct Both {
   Both(double altitude_m, double mu_s)
       : medium(MakeMediumTables(tests::Earth().air)),
-        tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, {altitude_m, mu_s},
+        tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, medium, {altitude_m, mu_s},
                              AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables, medium) {
     textures.Upload(medium);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// What the tables of the air share while they are made: directions of their texels, values of four
+// bands, and what texels are divided by.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/ray/ray_samples.h"
+#include "viewer/air/air_map.h"
+#include "viewer/air/air_tables.h"
+
+namespace alpenglow {
+
+inline constexpr double kMetresPerKilometre = 1000.0;
+
+/// Node i of n over [0, 1].
+[[nodiscard]] inline double Unit(int i, int n) { return static_cast<double>(i) / (n - 1); }
+
+[[nodiscard]] glm::vec4 Vec4Of(const Bands<float>& bands);
+[[nodiscard]] glm::vec4 Vec4Of(const std::array<float, kMaxBands>& per_band, std::size_t bands);
+
+/// a / b, and 0 where either is not positive.
+[[nodiscard]] inline glm::vec4 Quotient(const glm::vec4& a, const glm::vec4& b) {
+  glm::vec4 quotient(0.0F);
+  for (glm::length_t band = 0; band < 4; ++band)
+    quotient[band] = a[band] > 0.0F && b[band] > 0.0F ? a[band] / b[band] : 0.0F;
+  return quotient;
+}
+
+/// A row of directions of one zenith angle [rad], with its cosine and sine.
+struct AirRow {
+  bool ground;
+  double zenith_angle, mu, sine;
+};
+
+/// Rows from the horizon up to sky_range, then rows from the horizon down.
+[[nodiscard]] std::vector<AirRow> RowsOf(const AirMap& map, int sky, double sky_range, int ground);
+/// Of columns, from the sun's.
+[[nodiscard]] std::vector<double> AzimuthsOf(int columns);
+/// Cosine between a direction and the sun.
+[[nodiscard]] double SunCosineOf(const AirRow& row, double mu_s, double azimuth);
+
+/// Phase functions as shaders read them.
+class AirPhases {
+ public:
+  explicit AirPhases(const MediumTables& medium) : nodes_(medium.phase) {}
+
+  [[nodiscard]] static float OfMolecules(double nu);
+  [[nodiscard]] glm::vec4 OfAerosol(double nu) const;
+
+ private:
+  const AirTexels& nodes_;
+};
+
+/// AirTwilight of air_map.glsl at a distance of a ray.
+[[nodiscard]] float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km);
+
+/// Fills single, diffuse and extinction; the rest must be there.
+void FillWays(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+              AirTables& tables);
+
+}  // namespace alpenglow
