@@ -58,7 +58,7 @@ VertexLight LitGround::At(const GroundVertex& vertex) const {
       light_.on_terrain->Irradiance({point, ToDouble(vertex.normal), up, altitude_m, mu_s});
   VertexLight lit{};
   std::copy_n(sky.value.begin(), sky.count, lit.sky.begin());
-  lit.sun_x = static_cast<float>(shadow_.Over(point).Radii(VertexLight::kMostRadii));
+  lit.sun_x = static_cast<float>(shadow_.Over(point).Radii(kMostRadii));
   return lit;
 }
 

@@ -15,6 +15,7 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "viewer/ground/ground_site.h"
 #include "viewer/ground/sky_tilt.h"
+#include "viewer/land/land_chunk.h"
 
 namespace alpenglow {
 
@@ -24,20 +25,14 @@ struct GroundVertex {
   std::array<float, 3> normal;  // unit, of the mesh: without finer relief
 };
 
-/// What shines on it.
-struct VertexLight {
-  /// Beyond that many radii it is only the sign that matters; as far as that, heights place the
-  /// edges of shade between vertices.
-  static constexpr double kMostRadii = 64.0;
-
-  std::array<float, 4> sky;  // irradiance of sky and slopes per unit solar irradiance, by band
-  float sun_x;  // height of the disk's centre over the edge of terrain that cuts it [radii of the
-                // disk]: see SunlightOverEdge. The planet's own horizon is not among the edges.
-};
-
 /// Immutable; safe to ask from many threads.
 class LitGround {
  public:
+  /// VertexLight::sun_x is clamped to so many radii either way: beyond, it is only the sign that
+  /// matters; as far as that, heights place the edges of shade between vertices. The planet's own
+  /// horizon is not among the edges.
+  static constexpr double kMostRadii = 64.0;
+
   /// Works on the calling thread alone.
   /// @param light  the sun in the frame of the site.
   /// @param shadow  how fine the shadow is: see ShadowHeights.

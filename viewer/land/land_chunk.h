@@ -55,7 +55,7 @@ struct LandVertex {
 struct VertexLight {
   std::array<float, 4> sky{};  // sky's irradiance on it in four bands, per unit solar irradiance
   /// Height of the sun's centre over the edge of terrain that hides it, in radii of the disk,
-  /// in [-4, 4].
+  /// a share of the disk between -1 and 1.
   float sun_x = 4.0F;
 };
 
