@@ -64,16 +64,10 @@ void Canvas::Ring(const glm::dvec2& centre, double radius_px, const HudColour& c
   list_.AddCircle(At(centre), radius, Packed(colour), 0, static_cast<float>(Pixels(kLineWidth)));
 }
 
-void Canvas::Arc(const glm::dvec2& centre, double radius_px, double from_rad, double to_rad,
-                 const HudColour& colour) const {
-  constexpr double kUp = -1.5707963267948966;  // Dear ImGui counts from the right
-  const auto stroke = [&](const HudColour& with, double width) {
-    list_.PathArcTo(At(centre), static_cast<float>(radius_px), static_cast<float>(from_rad + kUp),
-                    static_cast<float>(to_rad + kUp));
-    list_.PathStroke(Packed(with), 0, static_cast<float>(Pixels(width)));
-  };
-  stroke(colours_.shadow, kLineWidth + 2.0 * kShadowWidth);
-  stroke(colour, kLineWidth);
+void Canvas::Disk(const glm::dvec2& centre, double radius_px, const HudColour& colour) const {
+  list_.AddCircleFilled(At(centre), static_cast<float>(radius_px + Pixels(kShadowWidth)),
+                        Packed(colours_.shadow));
+  list_.AddCircleFilled(At(centre), static_cast<float>(radius_px), Packed(colour));
 }
 
 void Canvas::Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,

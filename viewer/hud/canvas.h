@@ -33,9 +33,7 @@ class Canvas {
   /// With a shadow around it, so that it is seen on snow and on forest.
   void Line(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;
   void Ring(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
-  /// Part of a ring, angles clockwise from up [rad].
-  void Arc(const glm::dvec2& centre, double radius_px, double from_rad, double to_rad,
-           const HudColour& colour) const;
+  void Disk(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
   void Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
                 const HudColour& colour) const;
   /// @param at  its upper left corner, upper middle, or upper right corner.

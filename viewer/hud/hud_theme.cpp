@@ -16,8 +16,8 @@ const HudColours& ColoursOf(HudTheme theme) {
       .active = {0.28F, 0.52F, 0.66F, 1.0F},
   };
   static constexpr HudColours kNight{
-      .text = {0.66F, 0.22F, 0.07F, 1.0F},
-      .quiet = {0.47F, 0.15F, 0.05F, 1.0F},
+      .text = {0.76F, 0.26F, 0.08F, 1.0F},
+      .quiet = {0.56F, 0.18F, 0.06F, 1.0F},
       .accent = {0.70F, 0.33F, 0.06F, 1.0F},
       .warning = {0.80F, 0.12F, 0.05F, 1.0F},
       .shadow = {0.0F, 0.0F, 0.0F, 0.75F},

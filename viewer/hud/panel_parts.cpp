@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "atmosphere/number/constants.h"
 
@@ -73,6 +74,12 @@ void DrawNow(ImDrawList& list, double day_fraction, const StripBox& box) {
   list.AddLine(from, to, ImGui::GetColorU32(ImGuiCol_CheckMark), 2.0F);
 }
 
+// Time of day.
+std::string ClockText(double day_fraction) {
+  const auto minutes = std::lround(day_fraction * 24.0 * 60.0);
+  return fmt::format("{:02d}:{:02d}", minutes / 60, minutes % 60);
+}
+
 }  // namespace
 
 std::optional<double> Slider(const char* label, double value, const SliderRange& range) {
@@ -117,7 +124,7 @@ std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction
   const StripBox box{ImGui::GetCursorScreenPos(),
                      {static_cast<float>(look.width_px), static_cast<float>(look.height_px)}};
   ImGui::InvisibleButton("day", box.size);
-  const bool is_held = ImGui::IsItemActive();
+  const bool is_held = ImGui::IsItemActive(), is_hovered = ImGui::IsItemHovered();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 line = (ImGui::GetColorU32(ImGuiCol_Text) & 0xFFFFFFU) | 0xAA000000U;
   if (strip == nullptr) {
@@ -128,10 +135,11 @@ std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction
   }
   DrawHours(list, box, line);
   DrawNow(list, std::clamp(day_fraction, 0.0, 1.0), box);
+  const double share = std::clamp(
+      static_cast<double>(ImGui::GetIO().MousePos.x - box.from.x) / look.width_px, 0.0, 1.0);
+  if (is_held || is_hovered) ImGui::SetTooltip("%s", ClockText(share).c_str());
   ImGui::Dummy({box.size.x, ImGui::GetTextLineHeight()});
-  if (!is_held) return std::nullopt;
-  const double x = static_cast<double>(ImGui::GetIO().MousePos.x - box.from.x) / look.width_px;
-  return std::clamp(x, 0.0, 1.0);
+  return is_held ? std::optional(share) : std::nullopt;
 }
 
 }  // namespace alpenglow

@@ -100,13 +100,15 @@ HudRequest Panels::DrawPanel(HudPanel panel, const PanelView& view, HudRequest r
   const auto margin = static_cast<float>(kPanelMargin * view.scale);
   const ImVec2 free{size.x - 2.0F * margin, size.y - menu - 2.0F * margin};
   ImGui::SetNextWindowPos({margin + share.x * free.x, menu + margin + share.y * free.y},
-                          ImGuiCond_Appearing, share);
+                          resized_ ? ImGuiCond_Always : ImGuiCond_Appearing, share);
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, free);
   const Shown window(placement.name, &Open(panel));
   return window.visible() ? Contents(panel, view, std::move(request)) : request;
 }
 
 HudRequest Panels::Draw(const PanelView& view) {
+  const std::array<int, 2> size{view.width, view.height};
+  resized_ = std::exchange(picture_, size) != size;
   if (menu_) DrawMenu();
   HudRequest request;
   for (const Placement& placement : kPlacements) {

@@ -45,6 +45,8 @@ class Panels {
   std::array<bool, kHudPanels> open_{};
   bool menu_ = false;
   PanelTyping typing_;
+  std::array<int, 2> picture_{};  // size of the last one [pixels]
+  bool resized_ = false;          // since the last frame: panels are placed anew
 };
 
 }  // namespace alpenglow

@@ -109,6 +109,55 @@ void DrawScale(const Canvas& canvas, const HudFrame& frame, const Scale& scale,
               canvas.colours().quiet);
 }
 
+/// Where headings stand on their tape [pixels].
+class HeadingTape {
+ public:
+  HeadingTape(const Canvas& canvas, const HudFrame& frame, double heading_rad)
+      : heading_rad_(heading_rad),
+        middle_(frame.middle().x),
+        half_(0.15 * frame.width),
+        top_(frame.top + canvas.Pixels(kEdge)),
+        bottom_(top_ + canvas.LineHeight() + canvas.Pixels(12.0)) {}
+
+  /// Beside the tape for what is not on it.
+  [[nodiscard]] double At(double heading_rad) const {
+    constexpr double kHalfShown_rad = 30.0 * kRadiansPerDegree;
+    return middle_ + std::remainder(heading_rad - heading_rad_, 2.0 * kPi) / kHalfShown_rad * half_;
+  }
+  [[nodiscard]] double left() const { return middle_ - half_; }
+  [[nodiscard]] double right() const { return middle_ + half_; }
+  [[nodiscard]] double top() const { return top_; }
+  [[nodiscard]] double bottom() const { return bottom_; }
+
+ private:
+  double heading_rad_, middle_, half_, top_, bottom_;
+};
+
+void DrawHeadingMarks(const Canvas& canvas, const HeadingTape& tape) {
+  for (int degrees = 0; degrees < 360; degrees += 5) {
+    const double x = tape.At(degrees * kRadiansPerDegree), aside = canvas.Pixels(20.0);
+    if (x < tape.left() - aside || x > tape.right() + aside) continue;
+    const double mark = canvas.Pixels(degrees % 10 == 0 ? 8.0 : 5.0);
+    canvas.Line({x, tape.bottom() - mark}, {x, tape.bottom()}, canvas.colours().quiet);
+    if (degrees % 10 != 0) continue;
+    canvas.TextOnPlate({x, tape.top() + canvas.Pixels(2.0)}, HudAlign::kMiddle,
+                       HeadingLabel(degrees),
+                       degrees % 90 == 0 ? canvas.colours().text : canvas.colours().quiet);
+  }
+}
+
+void DrawSunAndMoon(const Canvas& canvas, const HeadingTape& tape, const HudSky& sky) {
+  const double radius = canvas.Pixels(5.0), y = tape.bottom() - canvas.Pixels(7.0);
+  canvas.Disk({tape.At(sky.sun_azimuth_rad), y}, radius, canvas.colours().warning);
+  if (sky.moon) canvas.Ring({tape.At(sky.moon->azimuth_rad), y}, radius, canvas.colours().text);
+}
+
+void DrawHeldHeading(const Canvas& canvas, const HeadingTape& tape, double heading_rad) {
+  const double x = std::clamp(tape.At(heading_rad), tape.left(), tape.right());
+  const double arm = canvas.Pixels(6.0), y = tape.bottom();
+  canvas.Triangle({x, y}, {x - arm, y + arm}, {x + arm, y + arm}, canvas.colours().warning);
+}
+
 double ShownSpeed(const HudFlight& flight) {
   return flight.air_speed_m_per_s.value_or(flight.ground_speed_m_per_s);
 }
@@ -125,36 +174,16 @@ double MarkStep(double value, double least) {
 }
 
 void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  constexpr double kShown_deg = 60.0;
-  const double half = 0.15 * frame.width, middle = frame.middle().x;
-  const double top = frame.top + canvas.Pixels(kEdge);
-  const double bottom = top + canvas.LineHeight() + canvas.Pixels(12.0);
-  const double heading = model.flight.heading_rad / kRadiansPerDegree;
-  const auto x_of = [&](double degrees) {
-    return middle + std::remainder(degrees - heading, 360.0) / (0.5 * kShown_deg) * half;
-  };
-  canvas.Plate({middle - half, top}, {middle + half, bottom});
+  const HeadingTape tape(canvas, frame, model.flight.heading_rad);
+  canvas.Plate({tape.left(), tape.top()}, {tape.right(), tape.bottom()});
   {
-    const Canvas::Clip inside(canvas, {middle - half, top}, {middle + half, bottom});
-    for (int degrees = 0; degrees < 360; degrees += 5) {
-      if (std::abs(std::remainder(degrees - heading, 360.0)) > 0.6 * kShown_deg) continue;
-      const double x = x_of(degrees);
-      const double mark = canvas.Pixels(degrees % 10 == 0 ? 8.0 : 5.0);
-      canvas.Line({x, bottom - mark}, {x, bottom}, canvas.colours().quiet);
-      if (degrees % 10 != 0) continue;
-      canvas.TextOnPlate({x, top + canvas.Pixels(2.0)}, HudAlign::kMiddle, HeadingLabel(degrees),
-                         degrees % 90 == 0 ? canvas.colours().text : canvas.colours().quiet);
-    }
+    const Canvas::Clip inside(canvas, {tape.left(), tape.top()}, {tape.right(), tape.bottom()});
+    DrawHeadingMarks(canvas, tape);
+    DrawSunAndMoon(canvas, tape, model.sky);
   }
-  if (model.autopilot.heading_rad) {
-    const double x = std::clamp(x_of(*model.autopilot.heading_rad / kRadiansPerDegree),
-                                middle - half, middle + half);
-    const double arm = canvas.Pixels(6.0);
-    canvas.Triangle({x, bottom}, {x - arm, bottom + arm}, {x + arm, bottom + arm},
-                    canvas.colours().warning);
-  }
-  DrawBoxed(canvas, {middle, bottom + canvas.Pixels(4.0)}, HeadingText(model.flight.heading_rad),
-            HudAlign::kMiddle);
+  if (model.autopilot.heading_rad) DrawHeldHeading(canvas, tape, *model.autopilot.heading_rad);
+  DrawBoxed(canvas, {frame.middle().x, tape.bottom() + canvas.Pixels(4.0)},
+            HeadingText(model.flight.heading_rad), HudAlign::kMiddle);
 }
 
 void DrawHeadingNumber(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {

@@ -8,7 +8,8 @@
 
 namespace alpenglow {
 
-/// Heading over the middle of the upper edge, 60 degrees of it, with a bug where it is held.
+/// Heading over the middle of the upper edge, 60 degrees of it, with a bug where it is held, a disk
+/// where the sun stands and a ring where the moon does.
 void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 /// The same as a number.
 void DrawHeadingNumber(const Canvas& canvas, const HudFrame& frame, const HudModel& model);

@@ -212,6 +212,18 @@ TEST_F(HudTest, EveryPanelFitsIntoTheSmallestPicture) {
   }
 }
 
+TEST_F(HudTest, PanelsStayInAPictureThatShrinks) {
+  Hud hud;
+  const Image bare = Drawn(hud, model_, 320, 240);
+  hud.Toggle(HudPanel::kAir);  // on the right
+  static_cast<void>(Drawn(hud, model_, kWidth, kHeight));
+  const Box box = Difference(bare, Drawn(hud, model_, 320, 240));
+  ASSERT_FALSE(box.empty());
+  EXPECT_GT(box.left, 0);
+  EXPECT_LT(box.right, 320);
+  EXPECT_LT(box.bottom, 240);
+}
+
 TEST_F(HudTest, ItIsDimAtNight) {
   Hud hud;
   HudModel night = model_;

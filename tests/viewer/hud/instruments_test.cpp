@@ -32,6 +32,7 @@ struct Told {
 TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
   const std::vector<Told> cases{
       {"heading", [](HudModel& m) { m.flight.heading_rad += 0.1; }, 0.3, 0.0, 0.7, 0.1},
+      {"sun", [](HudModel& m) { m.sky.sun_azimuth_rad = 0.9; }, 0.35, 0.0, 1.0, 0.12},
       {"air speed", [](HudModel& m) { *m.flight.air_speed_m_per_s += 5.0; }, 0.1, 0.3, 0.25, 0.7},
       {"height held", [](HudModel& m) { m.autopilot.height_m = 3300.0; }, 0.0, 0.0, 0.9, 0.7},
       {"climb", [](HudModel& m) { m.flight.climb_m_per_s = 4.0; }, 0.75, 0.6, 0.9, 0.8},
