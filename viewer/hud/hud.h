@@ -25,6 +25,7 @@ struct HudSettings {
   std::optional<std::filesystem::path> font = {};  // TrueType; else InstalledFont (hud_font.h)
 };
 
+/// For pictures of other sizes than the window's: another Hud, so that panels stay where they are.
 class Hud {
  public:
   /// An OpenGL context must be current, now and in all calls. Throws InputError for a scale out of

@@ -4,6 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "tests/viewer/hud/hud_picture.h"
 
@@ -21,21 +27,20 @@ class HudTest : public tests::HudPicture {
     input.buttons[0] = pressed;
     return hud.Update(model_, choices_, nullptr, input);
   }
-  /// Moves there, presses, and lets go: what was asked for while the button was held.
-  HudRequest Click(Hud& hud, double x, double y) {
+  /// Moves there, presses and lets go: what was asked for in these two frames.
+  std::array<HudRequest, 2> Click(Hud& hud, double x, double y) {
     static_cast<void>(At(hud, x, y, false));
-    HudRequest request = At(hud, x, y, true);
-    const HudRequest released = At(hud, x, y, false);
-    if (released.capture) request.capture = released.capture;
-    if (released.lamp) request.lamp = released.lamp;
-    return request;
+    HudRequest pressed = At(hud, x, y, true);
+    return {std::move(pressed), At(hud, x, y, false)};
   }
-  /// The first place of a column of the picture where a click asks for something.
+  /// Clicks along a column of the picture until that is asked for.
   template <typename Asked>
   std::optional<HudPointer> Find(Hud& hud, double x, int from_y, int to_y, const Asked& asked) {
     const int step = from_y < to_y ? 4 : -4;
     for (int y = from_y; y != to_y; y += step) {
-      if (asked(Click(hud, x, y))) return HudPointer{x, static_cast<double>(y)};
+      const std::array<HudRequest, 2> requests = Click(hud, x, y);
+      if (std::any_of(requests.begin(), requests.end(), asked))
+        return HudPointer{x, static_cast<double>(y)};
     }
     return std::nullopt;
   }
@@ -157,7 +162,9 @@ TEST_F(HudTest, ALampIsSwitchedWhereItsNameStands) {
   hud.Toggle(HudPanel::kLights);
   std::vector<HudLampRequest> asked;
   for (int y = 250; y < 480; y += 3) {
-    if (const auto lamp = Click(hud, kWidth - 10.0 - 90.0, y).lamp) asked.push_back(*lamp);
+    for (const HudRequest& request : Click(hud, kWidth - 100.0, y)) {
+      if (request.lamp) asked.push_back(*request.lamp);
+    }
   }
   ASSERT_GE(asked.size(), 2U);
   EXPECT_EQ(asked.front().lamp, 0U);
@@ -182,6 +189,60 @@ TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
   typing.text.clear();
   typing.keys = {HudKey::kEnter};
   EXPECT_EQ(hud.Update(model_, choices_, nullptr, typing).time.instant, "2026-06-21T04:00:00Z");
+}
+
+TEST_F(HudTest, APictureIsAskedForInTheSizeThatIsSeen) {
+  Hud hud;
+  hud.Toggle(HudPanel::kCapture);
+  std::optional<HudCaptureRequest> capture;
+  // From below: the recorder, then the buttons.
+  const auto found = Find(hud, 0.5 * kWidth - 105.0, 260, 80, [&](const HudRequest& request) {
+    capture = request.capture;
+    return capture.has_value();
+  });
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(capture->kind, HudPictureKind::kPng);
+  EXPECT_EQ(capture->width, kWidth);
+  EXPECT_EQ(capture->height, kHeight);
+  EXPECT_FALSE(capture->with_hud);
+}
+
+TEST_F(HudTest, TheHeadingThatIsHeldIsTheOneFlown) {
+  Hud hud;
+  model_.flight.heading_rad = -0.5;
+  hud.Toggle(HudPanel::kFlight);
+  std::optional<HudHold> hold;
+  const auto asked = [&](const HudRequest& request) {
+    hold = request.hold_heading_rad;
+    return hold.has_value();
+  };
+  ASSERT_TRUE(Find(hud, 30.0, 500, 680, asked).has_value());
+  ASSERT_TRUE(hold->value.has_value());
+  EXPECT_NEAR(*hold->value, 2.0 * kPi - 0.5, 1e-9) << "in [0, 2 pi]";
+  model_.autopilot.heading_rad = *hold->value;
+  ASSERT_TRUE(Find(hud, 30.0, 500, 680, asked).has_value());
+  EXPECT_EQ(hold->value, std::nullopt) << "a second click lets it go";
+}
+
+TEST_F(HudTest, LeavingIsAskedOnce) {
+  Hud hud;
+  hud.Toggle(HudPanel::kLeave);
+  const auto quits = [](const HudRequest& request) { return request.quit; };
+  EXPECT_FALSE(At(hud, 1.0, 1.0, false).quit);
+  EXPECT_TRUE(Find(hud, 0.5 * kWidth - 30.0, 330, 410, quits).has_value());
+}
+
+TEST_F(HudTest, PanelsGrowWithTheScale) {
+  Hud once({.scale = 1.0}), twice({.scale = 2.0});
+  const auto panel = [&](Hud& hud, int times) {
+    const Image bare = Drawn(hud, model_, times * kWidth, times * kHeight);
+    hud.Toggle(HudPanel::kAir);
+    return Difference(bare, Drawn(hud, model_, times * kWidth, times * kHeight));
+  };
+  const Box small = panel(once, 1), large = panel(twice, 2);
+  EXPECT_NEAR(large.right - large.left, 2 * (small.right - small.left), 12)
+      << "letters are hinted at their size";
+  EXPECT_NEAR(large.bottom - large.top, 2 * (small.bottom - small.top), 12);
 }
 
 TEST_F(HudTest, KeysClosePanelsFirst) {

@@ -60,6 +60,13 @@ TEST(HudText, LuminancesHaveThreeDigitsThatCount) {
   EXPECT_EQ(LuminanceText(1.6e9), "1.60e+09 cd/m²") << "the sun's disk";
 }
 
+TEST(HudText, RatesOfTimeAreFactors) {
+  EXPECT_EQ(RateText(1.0, false), "x1");
+  EXPECT_EQ(RateText(-3600.0, false), "x-3600");
+  EXPECT_EQ(RateText(0.5, false), "x0.5");
+  EXPECT_EQ(RateText(60.0, true), "paused");
+}
+
 TEST(HudTheme, TheNightIsDimAndHasNoBlue) {
   const HudColours &day = ColoursOf(HudTheme::kDay), &night = ColoursOf(HudTheme::kNight);
   for (const HudColour& colour : {night.text, night.quiet, night.accent, night.warning, night.plate,
