@@ -10,6 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/image.h"
 #include "lut/picture/tone_curve.h"
+#include "lut/sky/sky_view_map.h"
 
 namespace alpenglow {
 namespace {
@@ -25,13 +26,14 @@ class Sky {
       : request_(request),
         medium_(request.air->medium()),
         colour_(medium_.wavelengths_nm),
-        altitude_m_(std::max(request.place.height_m, 0.0)) {}
+        altitude_m_(std::max(request.place.height_m, 0.0)),
+        horizon_rad_(SkyViewMap(medium_, altitude_m_, 1.0).horizon_zenith_angle_rad()) {}
 
   /// @param elevation_deg  over the edge of the sea.
   [[nodiscard]] std::array<double, 3> LinearSrgb(double elevation_deg,
                                                  const SunPosition& sun) const {
-    const ViewRay ray = RayFromAngles(altitude_m_, 90.0 - elevation_deg + Dip_deg(), 0.0,
-                                      90.0 - sun.elevation_rad / kRadiansPerDegree);
+    const ViewRay ray = RayFromAngles(altitude_m_, horizon_rad_ / kRadiansPerDegree - elevation_deg,
+                                      0.0, 90.0 - sun.elevation_rad / kRadiansPerDegree);
     const RaySamples<float> samples = request_.air->Sample(ray, {.dark_samples = true});
     const Bands<float> once = request_.air->Inscatter(request_.air->Scatter(samples), ray.nu);
     const Bands<float> more = request_.diffuse->InscatterAlong(samples, ray.nu);
@@ -44,15 +46,11 @@ class Sky {
   }
 
  private:
-  [[nodiscard]] double Dip_deg() const {
-    return std::acos(medium_.planet_radius_m / (medium_.planet_radius_m + altitude_m_)) /
-           kRadiansPerDegree;
-  }
-
   const DayStripRequest& request_;
   const Medium& medium_;
   BandColour colour_;
   double altitude_m_;
+  double horizon_rad_;  // its zenith angle
 };
 
 using Column = std::array<std::array<double, 3>, kRows>;

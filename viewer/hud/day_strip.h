@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The colours of the sky through one day: what a pilot clicks on to choose the time.
 //
-// Columns are instants, rows elevations in the vertical plane of the sun, the zenith above. Light
+// Columns are instants, rows elevations over the horizon under the sun, the zenith above. Light
 // by AirIntegrator and DiffuseLight, without a moon. Each column is exposed between what a meter
 // would pick for it and a bright day, so that night is dark and yet dusk shows its colours:
 //

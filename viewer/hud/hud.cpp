@@ -85,7 +85,7 @@ HudRequest Hud::Update(const HudModel& model, const HudChoices& choices, const D
   ImGui::NewFrame();
   const Canvas canvas(*ImGui::GetBackgroundDrawList(), ColoursOf(theme_), scale_);
   DrawInstruments(canvas, {input.width, input.height, panels_.MenuHeight()}, model);
-  const HudRequest request =
+  HudRequest request =
       panels_.Draw({model, choices, strip, theme_, choice_, scale_, input.width, input.height});
   if (request.theme) choice_ = *request.theme;
   ImGui::Render();
