@@ -11,6 +11,8 @@
 
 #include "renderer/picture/render.h"
 #include "tests/fixtures/seven_views.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/paint/sky_painter.h"
 #include "viewer/paint/view_difference.h"
 
 namespace alpenglow {
@@ -24,6 +26,18 @@ Image JudgeOf(const SevenView& view, const RenderSettings& settings,
   return judge;
 }
 
+Image PaintedOf(const SevenView& view, const RenderSettings& settings) {
+  const SceneGround ground = LoadGround(view.scene);
+  Eye eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad,
+          view.scene.camera.roll_rad, view.scene.camera.fov_rad};
+  eye.place.height_m = ground.eye_height_m;
+  const PaintedView painted{eye, view.instant, settings.width, settings.height};
+  SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(Quality::kHigh));
+  painter.Settle(painted);
+  painter.Paint(painted, settings.samples_per_pixel);
+  return painter.picture().Read();
+}
+
 void Run(const std::filesystem::path& folder, const RenderSettings& settings) {
   std::filesystem::create_directories(folder);
   int number = 0;
@@ -32,7 +46,15 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings) {
     const Image judge = JudgeOf(view, settings, file);
     WritePng(folder / fmt::format("judge-{}.png", number),
              Develop(judge, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
-    fmt::print("{}\n", view.name);
+    const Image painted = PaintedOf(view, settings);
+    WriteExr(folder / fmt::format("painted-{}.exr", number), painted, {});
+    WritePng(folder / fmt::format("painted-{}.png", number),
+             Develop(painted, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+    const ViewDifference is = DifferenceOf(judge, painted);
+    fmt::print(
+        "{:<24} mean {:6.3f} %  p99 {:6.3f} %  p99.9 {:6.3f} %  worst {:7.2f} %  edges {:4.1f} %\n",
+        view.name, 100.0 * is.mean, 100.0 * is.at_99_percent, 100.0 * is.at_999_permille,
+        100.0 * is.worst, 100.0 * is.edge_share);
   }
 }
 
@@ -50,6 +72,7 @@ int main(int count, char** arguments) {
   settings.samples_per_pixel = count > 4 ? std::atoi(arguments[4]) : 64;
   settings.filter = alpenglow::PixelFilter::Kind::kBox;
   settings.layers = alpenglow::LayersOfEdges();
+  const alpenglow::HeadlessContext context;
   alpenglow::Run(arguments[1], settings);
   return 0;
 }

@@ -2,6 +2,8 @@
 #include "viewer/gl/render_target.h"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "atmosphere/text/error.h"
 
@@ -40,6 +42,19 @@ void RenderTarget::Bind() const {
 void RenderTarget::BindTexture(int unit) const {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, colour_.id());
+}
+
+void RenderTarget::Write(const Image& image) const {
+  ALPENGLOW_ENSURE(image.width, ==, width_);
+  ALPENGLOW_ENSURE(image.height, ==, height_);
+  std::vector<std::array<float, 3>> rows(image.rgb.size());
+  for (int y = 0; y < height_; ++y) {  // OpenGL's row 0 is the lowest
+    std::copy_n(&image.at(0, y), width_,
+                rows.begin() + static_cast<std::ptrdiff_t>(height_ - 1 - y) * width_);
+  }
+  glBindTexture(GL_TEXTURE_2D, colour_.id());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_FLOAT, rows.data());
 }
 
 Image RenderTarget::Read() const {

@@ -22,6 +22,8 @@ class RenderTarget {
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] GLuint framebuffer() const { return framebuffer_.id(); }
 
+  /// Puts red, green and blue there, row 0 at the top; another size than the target's is an error.
+  void Write(const Image& image) const;
   /// Red, green and blue, row 0 at the top.
   [[nodiscard]] Image Read() const;
 

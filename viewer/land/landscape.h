@@ -81,6 +81,13 @@ class Landscape {
   [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
                                                          double half_width_m,
                                                          int most_samples) const;
+  /// What is loaded; never changed once made, so that any thread may ask it.
+  [[nodiscard]] std::shared_ptr<const LoadedHeights> heights() const { return cache_.loaded(); }
+  /// Another range of the finest level, see LandSize.
+  void SetDetail(double detail) {
+    size_.detail = detail;
+    cache_.SetDetail(detail);
+  }
   /// Counts up when heights have come: SampledGrid may have changed.
   [[nodiscard]] int heights_version() const { return heights_version_; }
 

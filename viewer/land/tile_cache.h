@@ -19,6 +19,8 @@ class TileCache {
   TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree, double detail,
             std::size_t most_bytes);
 
+  void SetDetail(double detail) { detail_ = detail; }
+
   /// Takes what has been read, drops what is far, asks for what is near. Returns whether heights
   /// have come. Throws InputError when a file that was named by itself cannot be read; what cannot
   /// be read in a folder is noted and is no ground.

@@ -1,69 +1,116 @@
 // SPDX-License-Identifier: MIT
-// Pictures of sky and terrain on the graphics card, by the same formulas as SceneRenderer
-// (render.h): the shared texts, the same quadrature, the same table of diffuse light.
+// Pictures of sky and land on the graphics card: what the renderer computes is made beside drawing
+// as tables, maps and light of vertices, and the card interpolates.
 //
-// A frame is five passes: the terrain's shadow (when the sun has moved), distance and normal of the
-// terrain, a map of the diffuse light around the eye, the linear picture, and its development for a
-// display. Differences from SceneRenderer: shadows of terrain come from a map of
-// TerrainSurface::kShadowSize texels instead of rays, diffuse light of sky rays from the map.
+// A frame is four passes: what the eye sees of the land (Landscape), what shade takes from rays
+// (ShaftPass), the linear picture, and its development for a display. How far it is from
+// SceneRenderer's: viewer/README.md, and `skyview --explain` of a view.
 #pragma once
 
+#include <array>
+#include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "atmosphere/sun/sun.h"
-#include "lut/diffuse/multiple_scattering.h"
 #include "lut/picture/image.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/scene/scene.h"
+#include "viewer/air/air_follower.h"
 #include "viewer/flight/flight.h"
+#include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
+#include "viewer/ground/ground_follower.h"
+#include "viewer/land/landscape.h"
+#include "viewer/land/surface_map.h"
 #include "viewer/paint/developer.h"
-#include "viewer/paint/terrain_surface.h"
+#include "viewer/paint/exposure_meter.h"
+#include "viewer/paint/paint_sizes.h"
+#include "viewer/shade/shade_follower.h"
+#include "viewer/shade/shaft_pass.h"
 
 namespace alpenglow {
 
-class SkyPainter {
- public:
-  /// @param medium  at most four wavelengths, else InputError.
-  /// @param diffuse solved for `medium`.
-  /// @param mesh    terrain in `frame`; without triangles there is the bare planet.
-  /// @param relief  draw relief finer than the mesh (see MountainSurface).
-  SkyPainter(const Medium& medium, const DiffuseLight& diffuse, const TriangleMesh& mesh,
-             const LocalFrame& frame, bool relief);
-
-  /// Paints the linear picture. The sphere under the eye osculates the ellipsoid there, if the
-  /// medium follows WGS84; the instant says where the sun stands and what season it is.
-  /// @param samples rays a pixel, a square number.
-  void Paint(const Eye& eye, const UtcInstant& instant, int width, int height, int samples = 1);
-
-  /// The picture painted last: linear sRGB [cd/m^2].
-  [[nodiscard]] Image Read() const;
-  /// What MeterEv100 makes of a small copy of the picture.
-  [[nodiscard]] double MeteredEv100();
-  /// Develops the picture into a framebuffer (0: the window) of the picture's size.
-  void Develop(double ev100, GLuint framebuffer) const;
-
- private:
-  void UploadView(const Eye& eye, const SunPosition& sun, int width, int height);
-  void UploadGround(const Eye& eye, const UtcInstant& instant);
-  void PaintDiffuseSky() const;
-  void PaintPicture(const Eye& eye, const RenderTarget& target, float pixel_angle) const;
-
-  Medium medium_;
-  Ellipsoid ellipsoid_;
-  TerrainSurface terrain_;
-  GlVertexArray no_vertices_;
-  GlBuffer air_block_, view_block_, moment_block_, phase_block_, ground_block_;
-  ShaderProgram diffuse_sky_program_, picture_program_, average_program_;
-  GlTexture diffuse_moments_, diffuse_sky_;
-  Developer developer_{ToneCurve::kAgx};
-  GlFramebuffer diffuse_sky_target_;
-  std::optional<RenderTarget> surface_, samples_, picture_, meter_;
-  bool relief_;
+/// When and from where a picture is painted.
+struct PaintedView {
+  Eye eye;
+  UtcInstant now;
+  int width, height;
 };
 
-/// Everything that lights rays: shared texts, uniform blocks and the loops over them, for diffuse
-/// light of this degree.
-[[nodiscard]] std::vector<ShaderPiece> LightTexts(int degree);
+class SkyPainter {
+ public:
+  /// An OpenGL context must be current, now and in all calls. The air is solved here; land is read
+  /// beside drawing. Throws InputError for a medium of more than four wavelengths and for land that
+  /// is named and cannot be read.
+  SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
+             const PaintSizes& sizes);
+
+  void Use(const PaintSizes& sizes);
+  /// Other air; shown when it is solved.
+  void Replace(const Medium& medium) { air_.Replace(medium); }
+
+  /// Takes over what has become ready and asks for what is missing. Never waits.
+  /// @param seconds  since the last call.
+  void Update(const PaintedView& view, double seconds);
+  /// Waits until all is there that the view needs.
+  void Settle(const PaintedView& view);
+
+  /// Paints the linear picture of the view that was updated or settled last.
+  /// @param samples  rays a pixel, spread over it.
+  void Paint(const PaintedView& view, int samples = 1);
+  /// Shows another picture of the view instead: linear, of any size.
+  void Show(const Image& image);
+
+  [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
+  /// Times of its passes are told to it; null: none.
+  void SetTimer(PassTimer* timer) { timer_ = timer; }
+
+  [[nodiscard]] const Landscape& land() const { return land_; }
+  [[nodiscard]] Landscape& land() { return land_; }
+  [[nodiscard]] const AirFollower& air() const { return air_; }
+  [[nodiscard]] const GroundFollower& ground() const { return ground_; }
+  [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
+
+ private:
+  struct Blocks {
+    GlBuffer air, view, ground, ground_light;
+  };
+  [[nodiscard]] SunPosition SunOf(const PaintedView& view) const;
+  void TakeHeights();
+  void UploadAir(const PaintedView& view) const;
+  void UploadView(const PaintedView& view, const glm::dvec2& shift) const;
+  void UploadGround(const PaintedView& view) const;
+  void PaintOnce(const PaintedView& view, const glm::dvec2& shift);
+  void PaintLand(const PaintedView& view);
+  void PaintShafts(const PaintedView& view);
+  void PaintAir(const PaintedView& view, const RenderTarget& target);
+  void Begin(const char* pass) const {
+    if (timer_ != nullptr) timer_->Begin(pass);
+  }
+
+  Scene scene_;
+  Ellipsoid ellipsoid_;
+  PaintSizes sizes_;
+  AirFollower air_;
+  Landscape land_;
+  GroundFollower ground_;
+  ShadeFollower shade_;
+  ShaftPass shaft_pass_;
+  ShaderProgram program_;
+  Blocks blocks_;
+  GlVertexArray no_vertices_;
+  std::optional<SurfaceMap> surface_;
+  std::optional<RenderTarget> picture_;
+  int heights_version_ = -1;
+  PassTimer* timer_ = nullptr;
+};
+
+/// The land of a scene; a mesh is none.
+[[nodiscard]] LandSource LandSourceOf(const Scene& scene);
+
+/// The texts that the picture's fragment stage is made of, but for itself.
+[[nodiscard]] std::vector<ShaderPiece> PictureTexts();
 
 }  // namespace alpenglow

@@ -7,8 +7,9 @@ layout(std140) uniform View {
   vec4 view_forward;    // unit
   vec4 sun;             // unit vector to the apparent sun; angular radius [rad]
   vec4 sun_irradiance;  // above the air, one value a band [W m^-2 nm^-1]
-  vec4 eye;  // altitude of the eye [km]; elevations of the horizon and of the air's upper
-             // end [rad]
+  vec4 eye;  // altitude of the eye [km]; what is added to a pixel's place, in half widths and
+             // heights: rays of a pixel differ by it
 };
 
 #define EYE_ALTITUDE eye.x
+#define PICTURE_SHIFT eye.yz

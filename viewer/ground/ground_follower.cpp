@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/ground/ground_follower.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/ray/single_scattering.h"
+
+namespace alpenglow {
+namespace {
+
+// How far the eye comes before other land is looked at, as a share of its half width.
+constexpr double kNearMiddle = 0.4;
+// The sun moves this far before light is made anew [radii of its disk]: shade of a ridge 5 km away
+// moves by 5 m over level ground.
+constexpr double kSunMoves = 0.2;
+
+double DistanceBetween(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
+                       const GeodeticPosition& b) {
+  GeodeticPosition foot_a = a, foot_b = b;
+  foot_a.height_m = foot_b.height_m = 0.0;
+  return glm::length(LocalFrame(ellipsoid, foot_a).EnuFromGeodetic(foot_b).xyz);
+}
+
+glm::dvec3 Direction(const SunPosition& sun) {
+  return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+}
+
+}  // namespace
+
+/// Keeps the site between positions of the sun.
+class GroundFollower::Maker {
+ public:
+  Maker(GroundCover cover, std::shared_ptr<const ColourDrape> drape, const GroundExtent& extent)
+      : cover_(std::move(cover)), drape_(std::move(drape)), extent_(extent) {}
+
+  Made Make(const Request& request) {
+    const auto begin = std::chrono::steady_clock::now();
+    Made made{LitFor(request), 0.0};
+    made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return made;
+  }
+
+ private:
+  std::shared_ptr<const LitGround> LitFor(const Request& request) {
+    if (!request.ground || !*request.ground) return nullptr;
+    const std::shared_ptr<const GroundSite> site = SiteFor(request);
+    if (!site) return nullptr;
+    const View& view = request.view;
+    const LocalFrame here(site->ground().frame.ellipsoid(), view.eye);
+    Lighting light = LightingOf(view.sun, view.now, view.eye.latitude_rad, site->medium());
+    light.to_sun = site->ground()
+                       .frame
+                       .EnuFromEcef(here.EcefFromEnu(
+                           DirectionFromAngles(view.sun.elevation_rad, view.sun.azimuth_rad)))
+                       .xyz;
+    return std::make_shared<const LitGround>(site, std::move(light));
+  }
+
+  std::shared_ptr<const GroundSite> SiteFor(const Request& request) {
+    if (site_ && air_ == request.air && ground_ == request.ground &&
+        DistanceBetween(site_->ground().frame.ellipsoid(), site_->ground().frame.origin(),
+                        request.view.eye) < 2.0 * kNearMiddle * extent_.half_width_m &&
+        IsNearMiddle(request.view.eye)) {
+      return site_;
+    }
+    const std::optional<ElevationGrid> grid =
+        (*request.ground)(request.view.eye, extent_.half_width_m, extent_.samples);
+    if (!grid) return nullptr;
+    GeodeticPosition foot = request.view.eye;
+    foot.height_m = 0.0;
+    const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
+    const SiteAir air{std::make_shared<const AirIntegrator<float>>(medium),
+                      std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
+    tbb::task_arena alone(1);
+    site_ = alone.execute([&] {
+      return std::make_shared<const GroundSite>(
+          GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot)), cover_, drape_, air);
+    });
+    air_ = request.air;
+    ground_ = request.ground;
+    middle_ = foot;
+    return site_;
+  }
+
+  [[nodiscard]] bool IsNearMiddle(const GeodeticPosition& eye) const {
+    return DistanceBetween(site_->ground().frame.ellipsoid(), middle_, eye) <
+           kNearMiddle * extent_.half_width_m;
+  }
+
+  GroundCover cover_;
+  std::shared_ptr<const ColourDrape> drape_;
+  GroundExtent extent_;
+  std::shared_ptr<const GroundSite> site_;
+  std::shared_ptr<const SolvedAir> air_;
+  std::shared_ptr<const GroundSampler> ground_;
+  GeodeticPosition middle_;
+};
+
+GroundFollower::GroundFollower(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
+                               const GroundExtent& extent)
+    : extent_(extent),
+      maker_([maker = std::make_shared<Maker>(cover, std::move(drape), extent)](
+                 const Request& request) { return maker->Make(request); }) {}
+
+void GroundFollower::SetGround(GroundSampler sampler) {
+  ground_ = std::make_shared<const GroundSampler>(std::move(sampler));
+}
+
+bool GroundFollower::Suits(const Request& asked, const Request& wanted) const {
+  if (asked.air != wanted.air || asked.ground != wanted.ground) return false;
+  const double turned = std::acos(
+      std::clamp(glm::dot(Direction(asked.view.sun), Direction(wanted.view.sun)), -1.0, 1.0));
+  return turned < kSunMoves * wanted.view.sun.angular_radius_rad &&
+         DistanceBetween(kWgs84, asked.view.eye, wanted.view.eye) <
+             kNearMiddle * extent_.half_width_m;
+}
+
+bool GroundFollower::Take() {
+  std::optional<Made> made = maker_.Take();
+  if (!made) return false;
+  lit_ = std::move(made->lit);
+  making_s_ = made->making_s;
+  return true;
+}
+
+bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view) {
+  const Request wanted{air, ground_, view};
+  if (!maker_.Busy() && (!asked_ || !Suits(*asked_, wanted))) {
+    asked_ = wanted;
+    maker_.Ask(wanted);
+  }
+  return Take();
+}
+
+bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const View& view) {
+  maker_.Wait();
+  bool is_new = Follow(air, view);
+  maker_.Wait();
+  is_new = Take() || is_new;
+  return is_new;
+}
+
+LightOfVertices GroundFollower::Light() const {
+  if (!lit_) return {};
+  return [lit = lit_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
+    const LocalFrame& site = lit->site().ground().frame;
+    std::vector<GroundVertex> placed;
+    placed.reserve(vertices.size());
+    for (const LandVertex& vertex : vertices) {
+      const glm::vec3 at(
+          site.EnuFromEcef(anchor.EcefFromEnu(Point<Enu>{glm::dvec3(vertex.position_m)})).xyz);
+      const glm::vec3 normal(
+          site.EnuFromEcef(anchor.EcefFromEnu(Vector<Enu>{glm::dvec3(vertex.normal)})).xyz);
+      placed.push_back({{at.x, at.y, at.z}, {normal.x, normal.y, normal.z}});
+    }
+    return lit->LightOf(placed);
+  };
+}
+
+}  // namespace alpenglow

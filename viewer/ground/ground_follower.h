@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Keeps the light on the land up with a sun that moves and an eye that comes to other land: all of it
+// is made on a thread beside drawing.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "viewer/air/solved_air.h"
+#include "viewer/ground/lit_ground.h"
+#include "viewer/shade/shade_follower.h"
+#include "viewer/work/latest_job.h"
+
+namespace alpenglow {
+
+/// The land whose light is made: as much as stands over its own valleys.
+struct GroundExtent {
+  double half_width_m = 40e3;
+  int samples = 1024;  // a side, at most
+};
+
+class GroundFollower {
+ public:
+  /// @param cover, drape  what the land is made of.
+  GroundFollower(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
+                 const GroundExtent& extent);
+
+  /// Other land, or more of it, as ShadeFollower has it. An empty function: none.
+  void SetGround(GroundSampler sampler);
+
+  struct View {
+    GeodeticPosition eye;
+    SunPosition sun;  // apparent, seen from the eye
+    UtcInstant now;
+  };
+  /// Once a frame: asks for what is missing. True when new light is there.
+  bool Follow(const std::shared_ptr<const SolvedAir>& air, const View& view);
+  /// The same, but what Follow would have in the end is there when it returns.
+  bool Settle(const std::shared_ptr<const SolvedAir>& air, const View& view);
+
+  /// Light on the land around; null without land and before the first is there.
+  [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return lit_; }
+  /// Of vertices in the frame of any anchor; empty without lit().
+  [[nodiscard]] LightOfVertices Light() const;
+  /// Time that the light took to make; 0 before the first.
+  [[nodiscard]] double making_s() const { return making_s_; }
+
+ private:
+  struct Request {
+    std::shared_ptr<const SolvedAir> air;
+    std::shared_ptr<const GroundSampler> ground;
+    View view;
+  };
+  struct Made {
+    std::shared_ptr<const LitGround> lit;
+    double making_s;
+  };
+  class Maker;
+  [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
+  bool Take();
+
+  GroundExtent extent_;
+  std::shared_ptr<const GroundSampler> ground_;
+  std::optional<Request> asked_;
+  std::shared_ptr<const LitGround> lit_;
+  double making_s_ = 0.0;
+  LatestJob<Request, Made> maker_;
+};
+
+}  // namespace alpenglow

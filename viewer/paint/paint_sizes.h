@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// What a quality means for each part of a picture.
+#pragma once
+
+#include "viewer/air/air_follower.h"
+#include "viewer/lamps/lamp_painter.h"
+#include "viewer/land/landscape.h"
+#include "viewer/paint/auto_quality.h"
+#include "viewer/shade/shade_follower.h"
+#include "viewer/shade/shaft_pass.h"
+
+namespace alpenglow {
+
+struct PaintSizes {
+  AirQuality air = AirQuality::kMedium;
+  double land_detail = 96.0;  // LandSize::detail
+  bool has_shafts = true;
+  ShaftDetail shafts;
+  ShadeSize shade;
+  LampQuality lamps;
+  double relief_pixels = 1.0;  // detail of the ground is left out below so many pixels
+};
+
+/// kReference is drawn as kHigh until the renderer's picture is there.
+[[nodiscard]] PaintSizes SizesOf(Quality quality);
+
+}  // namespace alpenglow
