@@ -113,6 +113,11 @@ ALPENGLOW_PASS(way,
                "AirTo to = AirToPoint(direction, km);"
                "picture = to.single + to.diffuse + to.transmittance;");
 
+ALPENGLOW_PASS(all_of_it,
+               "AirTo to = AirToPoint(direction, km);"
+               "picture = km > 60.0 ? SkyRadiance(direction) : to.single + to.diffuse + "
+               "0.1 * to.transmittance - SingleTo(direction, 0.5 * km);");
+
 void SkyAlone(benchmark::State& state) {
   Pass(state, "picture = SkyRadiance(direction);", 512, 512);
 }

@@ -45,7 +45,7 @@ AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality qualit
       quality_(quality),
       eye_(EyeOf(first)),
       last_view_(first),
-      solver_(SolveAir),
+      solver_([](const Solve& solve) { return SolveAir(solve.medium, solve.solution); }),
       maker_(Make) {
   textures_.Upload(air_->tables);
   shown_ = air_;
@@ -56,7 +56,8 @@ AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality qualit
 void AirFollower::Replace(const Medium& medium) {
   Validate(medium);
   RequireFourBands(medium);
-  solver_.Ask(medium);
+  solver_.Ask({medium, AirSolution::kDraft});
+  replaced_at_ = Clock::now();
 }
 
 void AirFollower::SetQuality(AirQuality quality) { quality_ = quality; }
@@ -78,6 +79,18 @@ void AirFollower::TakeFinished() {
   if (const auto made = maker_.Take()) Show(*made);
 }
 
+// Not at once: who moves a slider asks for other air in the next frame.
+void AirFollower::RefineDraft() {
+  constexpr auto kPause = std::chrono::milliseconds(200);
+  if (air_->solution == AirSolution::kFull || solver_.Busy()) return;
+  if (Clock::now() > replaced_at_ + kPause) solver_.Ask({air_->medium, AirSolution::kFull});
+}
+
+AirFollower::Request AirFollower::Wanted(const AirView& view) const {
+  const bool draft = air_->solution == AirSolution::kDraft;
+  return {air_, view, draft ? std::min(quality_, AirQuality::kLow) : quality_};
+}
+
 // Whether tables as wanted should be made now: at once for another medium or size, when they are
 // due while something moves, and exact ones when all stands still.
 bool AirFollower::Asks(const Request& wanted) const {
@@ -90,7 +103,8 @@ bool AirFollower::Asks(const Request& wanted) const {
 
 void AirFollower::Follow(const AirView& view) {
   TakeFinished();
-  const Request wanted{air_, view, quality_};
+  RefineDraft();
+  const Request wanted = Wanted(view);
   if (Asks(wanted)) {
     asked_ = wanted;
     maker_.Ask(wanted);
@@ -102,7 +116,12 @@ void AirFollower::Follow(const AirView& view) {
 void AirFollower::Settle(const AirView& view) {
   solver_.Wait();
   TakeFinished();
-  const Request wanted{air_, view, quality_};
+  if (air_->solution == AirSolution::kDraft) {
+    solver_.Ask({air_->medium, AirSolution::kFull});
+    solver_.Wait();
+    TakeFinished();
+  }
+  const Request wanted = Wanted(view);
   if (asked_ != wanted) {
     asked_ = wanted;
     maker_.Ask(wanted);

@@ -32,7 +32,8 @@ class AirFollower {
   /// Makes small tables for the first frame before it returns, some milliseconds later.
   AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first);
 
-  /// Another medium, solved beside drawing; shown when it is ready. Throws InputError at once for
+  /// Another medium, solved beside drawing; shown when it is ready: a draft first, and what it
+  /// lacks when no other medium has been asked for meanwhile. Throws InputError at once for
   /// one that Validate refuses or of more than four bands.
   void Replace(const Medium& medium);
   void SetQuality(AirQuality quality);
@@ -64,9 +65,16 @@ class AirFollower {
   };
   using Clock = std::chrono::steady_clock;
 
+  struct Solve {
+    Medium medium;
+    AirSolution solution;
+  };
+
   [[nodiscard]] static Made Make(const Request& request);
   void Show(const Made& made);
   void TakeFinished();
+  void RefineDraft();
+  [[nodiscard]] Request Wanted(const AirView& view) const;
   [[nodiscard]] bool Asks(const Request& wanted) const;
 
   std::shared_ptr<const SolvedAir> air_;  // to be shown next
@@ -77,8 +85,8 @@ class AirFollower {
   std::optional<Request> asked_;  // last
   AirView last_view_;
   double making_s_ = 0.0;
-  Clock::time_point rests_until_{};
-  LatestJob<Medium, std::shared_ptr<const SolvedAir>> solver_;
+  Clock::time_point rests_until_{}, replaced_at_{};
+  LatestJob<Solve, std::shared_ptr<const SolvedAir>> solver_;
   LatestJob<Request, Made> maker_;
 };
 

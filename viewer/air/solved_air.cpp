@@ -5,12 +5,16 @@
 
 namespace alpenglow {
 
-std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium) {
+std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
+  constexpr DiffuseLightOptions kDraft{
+      .altitudes = 12, .sun_angles = 24, .zenith_nodes = 8, .azimuth_nodes = 5, .ray_nodes = 6};
   const AirIntegrator<float> air(medium);
   tbb::task_arena one_thread(1);
   return one_thread.execute([&] {
-    return std::make_shared<const SolvedAir>(
-        SolvedAir{medium, DiffuseLight(medium), MakeMediumTables(air)});
+    return std::make_shared<const SolvedAir>(SolvedAir{
+        medium, solution,
+        DiffuseLight(medium, solution == AirSolution::kDraft ? kDraft : DiffuseLightOptions{}),
+        MakeMediumTables(air)});
   });
 }
 

@@ -55,7 +55,7 @@ float HalfSineSquared(vec3 direction) {
 vec4 AerosolPhase(float half_sine_squared) {
   float angle = 2.0 * ArcSineOfRoot(half_sine_squared);
   float node = sqrt(angle * 0.318309886);
-  return texture(air_phase, air_phase_nodes.x + air_phase_nodes.y * node);
+  return textureLod(air_phase, air_phase_nodes.x + air_phase_nodes.y * node, 0.0);
 }
 
 // Angle over the horizon.
@@ -93,17 +93,17 @@ vec4 SkyRadiance(vec3 direction) {
   vec2 at = vec2(air_columns.x + air_columns.y * ColumnOf(direction),
                  RowOf(angle, air_ranges.x, air_sky_rows));
   float h2 = HalfSineSquared(direction);
-  vec4 mix = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] + AerosolPhase(h2) * air_sky_mix[1] +
-             air_sky_mix[2];
-  mix *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, angle < 0.0 ? 1.0 : 0.0, air_shell.w));
-  return AboveAir(angle) ? vec4(0.0) : mix * texture(air_sky, at);
+  vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] + AerosolPhase(h2) * air_sky_mix[1] +
+                air_sky_mix[2];
+  phases *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, angle < 0.0 ? 1.0 : 0.0, air_shell.w));
+  return AboveAir(angle) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
 }
 
 // Of the whole view ray, to space or to the bare ground.
 vec4 TransmittanceToSpace(vec3 direction) {
   float angle = AngleOverHorizon(direction);
   float at = RowOf(angle, air_ranges.x, air_through_rows);
-  return AboveAir(angle) ? vec4(1.0) : texture(air_through, at);
+  return AboveAir(angle) ? vec4(1.0) : textureLod(air_through, at, 0.0);
 }
 
 // From a point at or above the ground [km] towards a sun that the planet does not hide.
@@ -113,7 +113,7 @@ vec4 TransmittanceToSun(float altitude_km, float mu_s) {
       UnitFromSkyCosine(h, max(mu_s, HorizonCosine(h, air_shell.w)), air_shell.z, air_shell.w);
   float y = UnitFromAltitude(h, air_shell.z, air_shell.w);
   vec2 size = vec2(textureSize(air_to_sun, 0));
-  return texture(air_to_sun, vec2(TexelFromUnit(x, size.x), TexelFromUnit(y, size.y)));
+  return textureLod(air_to_sun, vec2(TexelFromUnit(x, size.x), TexelFromUnit(y, size.y)), 0.0);
 }
 
 // Where a point lies in the tables of ways, and what reaches the eye from there.
@@ -145,7 +145,7 @@ AirWay WayTo(vec3 direction, float distance_km) {
   vec2 distances = air_distances.xz + air_distances.yw * w;
   float row = RowOf(angle, air_ranges.y, air_extinction_rows);
   float length_km = clamp(distance_km, entry, near + reach) - entry;
-  vec4 tau = length_km * texture(air_extinction, vec2(distances.y, row));
+  vec4 tau = length_km * textureLod(air_extinction, vec2(distances.y, row), 0.0);
   AirWay way;
   way.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
                 RowOf(angle, air_ranges.y, air_way_rows), distances.x);
@@ -158,15 +158,16 @@ AirWay WayTo(vec3 direction, float distance_km) {
 
 vec4 SingleOf(AirWay way) {
   float h2 = way.half_sine_squared;
-  vec4 mix =
+  vec4 phases =
       PhaseRayleigh(1.0 - 2.0 * h2) * air_single_mix[0] + AerosolPhase(h2) * air_single_mix[1];
-  return mix * way.scattered * texture(air_single, way.at);
+  return phases * way.scattered * textureLod(air_single, way.at, 0.0);
 }
 
 // From the eye to a point.
 AirTo AirToPoint(vec3 direction, float distance_km) {
   AirWay way = WayTo(direction, distance_km);
-  return AirTo(SingleOf(way), way.scattered * texture(air_diffuse, way.at), way.transmittance);
+  return AirTo(SingleOf(way), way.scattered * textureLod(air_diffuse, way.at, 0.0),
+               way.transmittance);
 }
 
 // AirToPoint(direction, distance_km).single alone: light that comes from before a distance.

@@ -67,13 +67,34 @@ TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
   EXPECT_NEAR(follower.eye().mu_s, std::sin(-3.0 * kRadiansPerDegree), 1e-12);
 }
 
-TEST_F(AirFollowerOnGpu, AnotherMediumIsShownWhenItIsSolved) {
+TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
   follower.Replace(MediumPreset("hazy"));
   follower.Follow(ViewAt(2.0, 30.0));
   EXPECT_EQ(follower.air()->medium.name, "earth") << "until then the last one";
+  for (int i = 0; i < 2000 && follower.air() == Earth(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    follower.Follow(ViewAt(2.0, 30.0));
+  }
+  EXPECT_EQ(follower.air()->medium.name, "hazy");
+  EXPECT_EQ(follower.air()->solution, AirSolution::kDraft);
   follower.Settle(ViewAt(2.0, 30.0));
   EXPECT_EQ(follower.air()->medium.name, "hazy");
+  EXPECT_EQ(follower.air()->solution, AirSolution::kFull);
+}
+
+TEST(SolvedAirDraft, IsGoodEnoughForAMoment) {
+  for (const char* name : {"earth", "hazy"}) {
+    const Medium medium = MediumPreset(name);
+    const auto full = SolveAir(medium), draft = SolveAir(medium, AirSolution::kDraft);
+    for (const double mu_s : {1.0, 0.5, 0.1, -0.05}) {
+      const Bands<float> exact = full->diffuse.SkyIrradiance(0.0, mu_s);
+      const Bands<float> quick = draft->diffuse.SkyIrradiance(0.0, mu_s);
+      for (std::size_t band = 0; band < exact.count; ++band)
+        EXPECT_NEAR(quick[band] / exact[band], 1.0F, mu_s > 0.0 ? 0.03F : 0.06F)
+            << name << ", sun " << mu_s;
+    }
+  }
 }
 
 TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
