@@ -72,6 +72,14 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
   return texels;
 }
 
+SkyView ViewOf(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirEye& eye,
+               double fineness) {
+  SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s);
+  for (int* nodes : {&size.sky_rows, &size.ground_rows, &size.azimuths})
+    *nodes = static_cast<int>(std::lround(fineness * *nodes));
+  return SkyView(air, diffuse, eye.altitude_m, eye.mu_s, size);
+}
+
 AirTexels ThroughTexels(const AirIntegrator<float>& air, const AirMap& map, const AirEye& eye,
                         const AirTablesSize& size) {
   AirTexels texels(size.through_rows + size.through_ground_rows, 1);
@@ -109,10 +117,11 @@ void RequireFourBands(const Medium& medium) {
 AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   constexpr double kHighUp_m = 25000.0;
   const bool high_up = altitude_m > kHighUp_m;
-  const auto with = [&](int sky, int columns, int rows, int distances) {
+  const auto with = [&](int sky, double fineness, int columns, int rows, int distances) {
     return AirTablesSize{.sky_columns = sky,
                          .sky_rows = sky,
                          .sky_ground_rows = sky * 2 / 3,
+                         .sky_fineness = fineness,
                          .columns = high_up ? 3 * columns : columns,
                          .rows = rows,
                          .ground_rows = rows,
@@ -125,21 +134,21 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   };
   switch (quality) {
     case AirQuality::kFirst:
-      return with(64, 12, 12, 8);
+      return with(64, 1.0, 12, 12, 8);
     case AirQuality::kLow:
-      return with(128, 24, 32, 12);
+      return with(128, 1.0, 24, 32, 12);
     case AirQuality::kMedium:
-      return with(192, 32, 48, 16);
+      return with(192, 1.25, 32, 48, 16);
     case AirQuality::kHigh:
       break;
   }
-  return with(192, 32, 64, 24);
+  return with(192, 1.5, 32, 64, 24);
 }
 
 AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                         const MediumTables& medium, const AirEye& eye, const AirTablesSize& size) {
   RequireFourBands(air.medium());
-  const SkyView view(air, diffuse, eye.altitude_m, eye.mu_s);
+  const SkyView view = ViewOf(air, diffuse, eye, size.sky_fineness);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
                    static_cast<double>(diffuse.grid().twilight_fall));
   const AirPhases phases(medium);

@@ -31,7 +31,8 @@ namespace alpenglow {
 
 struct AirTablesSize {
   int sky_columns, sky_rows, sky_ground_rows;  // of the sky
-  int columns, rows, ground_rows, distances;   // of ways to a point
+  double sky_fineness;  // of the SkyView that it is read from: times the nodes of SkyViewSizeFor
+  int columns, rows, ground_rows, distances;  // of ways to a point
   int extinction_rows, extinction_ground_rows, extinction_distances;
   int through_rows, through_ground_rows;  // of TransmittanceToSpace
 };

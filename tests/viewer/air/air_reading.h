@@ -40,16 +40,22 @@ struct AirToPoint {
 class AirReading {
  public:
   AirReading(const AirTables& tables, const MediumTables& medium)
-      : tables_(tables), medium_(medium), sun_(std::acos(std::clamp(tables.eye.mu_s, -1.0, 1.0))) {}
-
-  [[nodiscard]] const AirTables& tables() const { return tables_; }
+      : AirReading(tables, medium, tables.eye) {}
+  /// As another eye sees them, under another sun: AirTextures::SetView.
+  AirReading(const AirTables& tables, const MediumTables& medium, const AirEye& eye)
+      : tables_(tables),
+        medium_(medium),
+        mu_s_(eye.mu_s),
+        sun_(std::acos(std::clamp(eye.mu_s, -1.0, 1.0))),
+        dip_(-std::asin(shared::HorizonCosine<double>(std::max(eye.altitude_m, 0.0) / 1000.0,
+                                                      tables.map.radius))) {}
 
   /// @param angle  over the horizon [rad]; azimuth from the sun's, in [0, pi].
   [[nodiscard]] glm::dvec4 Sky(double angle, double azimuth) const {
     const AirMap& map = tables_.map;
     if (map.altitude > map.top && angle > map.sky_range) return glm::dvec4(0.0);
     const AirTablesSize& size = tables_.size;
-    const double mu = std::sin(angle - map.horizon_dip);
+    const double mu = std::sin(angle - dip_);
     const double foot =
         shared::AirFoot<double>(map.altitude, mu, angle < 0.0 ? 1.0 : 0.0, map.radius);
     return Twilight(angle, azimuth, foot) *
@@ -70,7 +76,7 @@ class AirReading {
     const AirMap& map = tables_.map;
     const AirTablesSize& size = tables_.size;
     const bool ground = angle < 0.0;
-    const double mu = std::sin(angle - map.horizon_dip);
+    const double mu = std::sin(angle - dip_);
     const double begin = AirEntry<double>(map.altitude, mu, map.top, map.radius);
     const double end = ground ? AirEndDown<double>(map.altitude, mu, map.radius)
                               : AirEndUp<double>(map.altitude, mu, map.ceiling, map.radius);
@@ -104,16 +110,15 @@ class AirReading {
     return angle < 0.0 ? sky + v * (ground - 1) : v * (sky - 1);
   }
   [[nodiscard]] double SunCosine(double angle, double azimuth) const {
-    const double zenith = 0.5 * kPi + tables_.map.horizon_dip - angle;
+    const double zenith = 0.5 * kPi + dip_ - angle;
     return std::clamp(
         std::cos(zenith) * std::cos(sun_) + std::sin(zenith) * std::sin(sun_) * std::cos(azimuth),
         -1.0, 1.0);
   }
   [[nodiscard]] double Twilight(double angle, double azimuth, double distance_km) const {
     const AirMap& map = tables_.map;
-    return shared::AirTwilight<double>(map.altitude, tables_.eye.mu_s, SunCosine(angle, azimuth),
-                                       distance_km, map.twilight_fall, map.twilight_reference,
-                                       map.radius);
+    return shared::AirTwilight<double>(map.altitude, mu_s_, SunCosine(angle, azimuth), distance_km,
+                                       map.twilight_fall, map.twilight_reference, map.radius);
   }
   [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const glm::vec4& molecules,
                                const glm::vec4& aerosol, const glm::vec4& rest) const {
@@ -125,7 +130,7 @@ class AirReading {
 
   const AirTables& tables_;
   const MediumTables& medium_;
-  double sun_;
+  double mu_s_, sun_, dip_;
 };
 
 }  // namespace alpenglow::tests

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// The air of one eye and one sun evaluated directly, ray by ray, with many nodes in double: what its
+// tables are held against. Errors of rays all over the sphere, most of them near the horizon.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/number/halton.h"
+#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/sky_view_errors.h"
+#include "tests/viewer/air/air_reading.h"
+
+namespace alpenglow::tests {
+
+/// Relative errors, as of a sky view.
+using AirErrors = SkyViewErrors;
+
+class AirJudge {
+ public:
+  AirJudge(const LitAir& air, const AirEye& eye)
+      : exact_(air.medium), air_(air), sky_(air.medium, air.diffuse), eye_(eye) {}
+
+  /// Of the whole ray; in the band.
+  [[nodiscard]] Bands<double> Sky(const AirMap& map, double angle, double azimuth) const {
+    return sky_.Radiance(RayOf(map, angle, azimuth));
+  }
+
+  /// From the eye to a distance.
+  [[nodiscard]] AirToPoint To(const AirMap& map, double angle, double azimuth,
+                              double distance_km) const {
+    ViewRay ray = RayOf(map, angle, azimuth);
+    ray.length_m = 1000.0 * distance_km;
+    const Bands<double> single = exact_.Inscatter(
+        exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), ray.nu);
+    const Bands<float> diffuse = air_.diffuse.InscatterAlong(
+        air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}), ray.nu);
+    const Bands<double> left = exact_.TransmittanceAlong(ray);
+    AirToPoint to{glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(1.0)};
+    for (std::size_t band = 0; band < left.count; ++band) {
+      const auto i = static_cast<glm::length_t>(band);
+      to.single[i] = single[band];
+      to.diffuse[i] = static_cast<double>(diffuse[band]);
+      to.transmittance[i] = left[band];
+    }
+    return to;
+  }
+
+ private:
+  [[nodiscard]] ViewRay RayOf(const AirMap& map, double angle, double azimuth) const {
+    const double mu = std::sin(angle - map.horizon_dip);
+    const double sines = std::sqrt((1.0 - mu) * (1.0 + mu) * (1.0 - eye_.mu_s) * (1.0 + eye_.mu_s));
+    const double nu = std::clamp(mu * eye_.mu_s + sines * std::cos(azimuth), -1.0, 1.0);
+    return {eye_.altitude_m, mu, eye_.mu_s, nu};
+  }
+
+  AirIntegrator<double> exact_;
+  const LitAir& air_;
+  DirectSky sky_;
+  AirEye eye_;
+};
+
+/// A place that land may be seen at.
+struct LandPoint {
+  double angle, azimuth, distance_km;
+};
+
+/// Land between sea level and the ceiling, before the bare planet and behind its horizon.
+inline std::vector<LandPoint> LandPoints(const AirMap& map, int count) {
+  using namespace shared;
+  std::vector<LandPoint> points;
+  for (int i = 1; static_cast<int>(points.size()) < count && i < 20 * count; ++i) {
+    const double v = Halton(i, 2), share = Halton(i, 5), azimuth = kPi * Halton(i, 3);
+    const bool ground = i % 2 == 0;
+    const double angle =
+        ground ? -map.ground_range * v * v * v : std::min(map.air_sky_range, 0.35) * v * v;
+    const double mu = std::sin(angle - map.horizon_dip);
+    const double near = AirEntry<double>(map.altitude, mu, map.ceiling, map.radius);
+    const double end = ground ? AirEndDown<double>(map.altitude, mu, map.radius)
+                              : AirEndUp<double>(map.altitude, mu, map.ceiling, map.radius);
+    if (end > near) points.push_back({angle, azimuth, near + share * (end - near)});
+  }
+  return points;
+}
+
+/// Of the light of all orders in all bands.
+inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
+                           int count) {
+  AirErrors errors;
+  for (const LandPoint& point : LandPoints(map, count)) {
+    const AirToPoint exact = judge.To(map, point.angle, point.azimuth, point.distance_km);
+    const AirToPoint read = reading.To(point.angle, point.azimuth, point.distance_km);
+    for (glm::length_t band = 0; band < 4; ++band) {
+      const double light = exact.single[band] + exact.diffuse[band];
+      if (light > 0.0)
+        errors.sorted.push_back(std::abs(read.single[band] + read.diffuse[band] - light) / light);
+    }
+  }
+  std::sort(errors.sorted.begin(), errors.sorted.end());
+  return errors;
+}
+
+/// Of transmittance, absolute.
+inline AirErrors TransmittanceErrors(const AirJudge& judge, const AirReading& reading,
+                                     const AirMap& map, int count) {
+  AirErrors errors;
+  for (const LandPoint& point : LandPoints(map, count)) {
+    const AirToPoint exact = judge.To(map, point.angle, point.azimuth, point.distance_km);
+    const AirToPoint read = reading.To(point.angle, point.azimuth, point.distance_km);
+    for (glm::length_t band = 0; band < 4; ++band)
+      errors.sorted.push_back(std::abs(read.transmittance[band] - exact.transmittance[band]));
+  }
+  std::sort(errors.sorted.begin(), errors.sorted.end());
+  return errors;
+}
+
+/// Relative to the radiance or to a thousandth of its mean, where that is more.
+inline AirErrors SkyErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
+                           int count) {
+  std::vector<std::pair<double, double>> pairs;
+  double mean = 0.0;
+  for (int i = 1; i <= count; ++i) {
+    const double u = 2.0 * Halton(i, 2) - 1.001, azimuth = kPi * Halton(i, 3);
+    const double v = i % 2 == 0 ? u : u * u * u;
+    const double angle = 0.9999 * v * (v > 0.0 ? map.sky_range : map.ground_range);
+    const Bands<double> exact = judge.Sky(map, angle, azimuth);
+    const glm::dvec4 read = reading.Sky(angle, azimuth);
+    for (std::size_t band = 0; band < exact.count; ++band) {
+      pairs.emplace_back(exact[band], read[static_cast<glm::length_t>(band)]);
+      mean += exact[band];
+    }
+  }
+  mean /= static_cast<double>(pairs.size());
+  AirErrors errors;
+  for (const auto& [exact, read] : pairs)
+    errors.sorted.push_back(std::abs(read - exact) / std::max(exact, 1e-3 * mean));
+  std::sort(errors.sorted.begin(), errors.sorted.end());
+  return errors;
+}
+
+}  // namespace alpenglow::tests

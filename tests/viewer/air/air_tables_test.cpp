@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// The tables of one eye's air, read on the processor, against direct evaluation of every ray.
+#include "viewer/air/air_tables.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/text/error.h"
+#include "tests/viewer/air/air_judge.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr int kRays = 300;
+
+const tests::LitAir& Hazy() {
+  static const tests::LitAir hazy(MediumPreset("hazy"));
+  return hazy;
+}
+
+AirEye EyeUnder(double altitude_m, double elevation_deg) {
+  return {altitude_m, std::sin(elevation_deg * kRadiansPerDegree)};
+}
+
+AirTables TablesOf(const tests::LitAir& air, const AirEye& eye, AirQuality quality) {
+  return MakeAirTables(air.air, air.diffuse, MakeMediumTables(air.air), eye,
+                       AirTablesSizeOf(quality, eye.altitude_m));
+}
+
+/// Root mean square of relative errors; 99 % of rays and bands are below four times as much.
+struct Bounds {
+  double sky, ways, transmittance;
+};
+
+void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality quality,
+                       const Bounds& bounds) {
+  SCOPED_TRACE(fmt::format("{}, {} m, sine of the sun's elevation {}", air.medium.name,
+                           eye.altitude_m, eye.mu_s));
+  const MediumTables medium = MakeMediumTables(air.air);
+  const AirTables tables = TablesOf(air, eye, quality);
+  const tests::AirReading reading(tables, medium);
+  const tests::AirJudge judge(air, eye);
+  const auto expect = [](const tests::AirErrors& errors, double bound, const char* what) {
+    EXPECT_LT(errors.Rms(), bound) << what << ": a third more than measured";
+    EXPECT_LT(errors.Percentile(99.0), 5.0 * bound) << what;
+  };
+  expect(tests::SkyErrors(judge, reading, tables.map, kRays), bounds.sky, "sky");
+  expect(tests::WayErrors(judge, reading, tables.map, kRays), bounds.ways, "ways");
+  expect(tests::TransmittanceErrors(judge, reading, tables.map, kRays), bounds.transmittance,
+         "transmittance");
+}
+
+// --- against direct evaluation ---
+
+TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, 60.0), AirQuality::kHigh, {2e-4, 3e-4, 5e-5});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 6.0), AirQuality::kHigh, {6e-4, 7e-4, 2e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 0.2), AirQuality::kHigh, {8e-4, 1.2e-3, 2e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, -4.0), AirQuality::kHigh, {2e-3, 3e-3, 2e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -10.0), AirQuality::kHigh, {2e-3, 3e-3, 2e-4});
+}
+
+TEST(AirTables, OfGreatHeightsAreThoseOfTheIntegrator) {
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 30.0), AirQuality::kHigh, {5e-4, 1e-3, 4e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, -4.0), AirQuality::kHigh, {2e-3, 2e-3, 4e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(30e3, 6.0), AirQuality::kHigh, {1e-3, 2e-3, 4e-4});
+}
+
+TEST(AirTables, FromAboveTheAirAreThoseOfTheIntegrator) {
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(400e3, 60.0), AirQuality::kHigh, {6e-4, 2e-3, 8e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(400e3, -2.0), AirQuality::kHigh, {3e-3, 6e-3, 8e-4});
+}
+
+TEST(AirTables, OfHazeAreThoseOfTheIntegrator) {
+  ExpectErrorsBelow(Hazy(), EyeUnder(300.0, 30.0), AirQuality::kHigh, {1e-3, 2e-3, 4e-4});
+}
+
+TEST(AirTables, OfLowQualityAreGoodToAPercent) {
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 20.0), AirQuality::kLow, {1e-3, 2e-3, 6e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 2.0), AirQuality::kLow, {2e-3, 8e-3, 2e-3});
+}
+
+// --- hard cases ---
+
+void ExpectSound(const AirTexels& texels, const char* name) {
+  for (const glm::vec4& texel : texels.texel) {
+    for (glm::length_t band = 0; band < 4; ++band) {
+      ASSERT_TRUE(std::isfinite(texel[band])) << name;
+      ASSERT_GE(texel[band], 0.0F) << name;
+    }
+  }
+}
+
+TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
+  for (const double altitude_m : {-100.0, 0.0, 2.0, 8999.0, 9001.0, 99e3, 101e3, 400e3, 1e9}) {
+    for (const double elevation_deg : {90.0, 0.27, 0.0, -0.27, -18.0, -90.0}) {
+      SCOPED_TRACE(fmt::format("{} m, sun at {} degrees", altitude_m, elevation_deg));
+      const AirTables tables =
+          TablesOf(tests::Earth(), EyeUnder(altitude_m, elevation_deg), AirQuality::kFirst);
+      ExpectSound(tables.sky, "sky");
+      ExpectSound(tables.to_space, "to_space");
+      ExpectSound(tables.extinction, "extinction");
+      ExpectSound(tables.single, "single");
+      ExpectSound(tables.diffuse, "diffuse");
+    }
+  }
+}
+
+TEST(AirTables, BelowSeaLevelAreThoseOfSeaLevel) {
+  const AirTables below = TablesOf(tests::Earth(), EyeUnder(-100.0, 20.0), AirQuality::kFirst);
+  const AirTables at = TablesOf(tests::Earth(), EyeUnder(0.0, 20.0), AirQuality::kFirst);
+  EXPECT_EQ(below.sky.texel, at.sky.texel);
+  EXPECT_EQ(below.single.texel, at.single.texel);
+}
+
+TEST(AirTables, UnderASunInTheZenithHaveNoAzimuth) {
+  const AirTables tables = TablesOf(tests::Earth(), EyeUnder(1500.0, 90.0), AirQuality::kFirst);
+  for (int y = 0; y < tables.sky.height; ++y) {
+    const glm::vec4 towards = tables.sky.At(0, y), away = tables.sky.At(tables.sky.width - 1, y);
+    for (glm::length_t band = 0; band < 4; ++band)
+      EXPECT_NEAR(away[band], towards[band], 1e-4F * towards[band]) << "row " << y;
+  }
+}
+
+TEST(AirTables, FarBelowTheHorizonTheSunLeavesNothingScatteredOnce) {
+  const AirTables tables = TablesOf(tests::Earth(), EyeUnder(2.0, -18.0), AirQuality::kFirst);
+  for (const glm::vec4& texel : tables.single.texel)
+    ASSERT_EQ(texel, glm::vec4(0.0F)) << "up to 9 km all is in the planet's shadow";
+}
+
+TEST(AirTables, OfThreeWavelengthsLeaveTheFourthBandDark) {
+  const tests::LitAir air(MediumPreset("bruneton2017"));
+  const AirTables tables = TablesOf(air, EyeUnder(2.0, 30.0), AirQuality::kFirst);
+  for (const glm::vec4& texel : tables.sky.texel) ASSERT_EQ(texel.w, 0.0F);
+  EXPECT_GT(tables.sky.At(0, 0).x, 0.0F);
+}
+
+TEST(AirTables, OfMoreThanFourWavelengthsAreRefused) {
+  EXPECT_THROW(RequireFourBands(MediumPreset("earth", WavelengthSet(8))), InputError);
+}
+
+// --- the map ---
+
+TEST(AirMap, CoordinatesAndTheirInversesAgree) {
+  for (double v = 0.0; v <= 1.0; v += 0.125) {
+    EXPECT_NEAR(shared::AirRowFromAngle<double>(shared::AirAngleFromRow<double>(v, 1.3), 1.3), v,
+                1e-12);
+    EXPECT_NEAR(shared::AirColumnFromAzimuth<double>(shared::AirAzimuthFromColumn<double>(v)), v,
+                1e-12);
+    for (const double crowding : {-0.9, 0.0, 6.0}) {
+      const double share = shared::AirShareFromNode<double>(v, crowding);
+      EXPECT_NEAR(shared::AirNodeFromShare<double>(share, crowding), v, 1e-12);
+    }
+  }
+}
+
+TEST(AirMap, RaysEndAtSeaLevelOrWhereTheyLeaveTheCeiling) {
+  const double radius = 6371.0;
+  for (const double h : {0.1, 5.0, 12.0, 400.0}) {
+    const double down = -0.5;
+    const double ground = shared::AirEndDown<double>(h, down, radius);
+    EXPECT_NEAR(shared::AltitudeAlongRay<double>(h, down, ground, radius), 0.0, 1e-9);
+    const double up = h < 9.0 ? 0.1 : shared::HorizonCosine<double>(h, radius) + 1e-4;
+    const double end = shared::AirEndUp<double>(h, up, 9.0, radius);
+    EXPECT_NEAR(shared::AltitudeAlongRay<double>(h, up, end, radius), 9.0, 1e-6);
+    EXPECT_GT(shared::AltitudeAlongRay<double>(h, up, end + 1.0, radius), 9.0) << "for good";
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
