@@ -6,10 +6,13 @@
 
 #include <cmath>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "tests/viewer/air/air_judge.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow {
@@ -81,6 +84,36 @@ TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
   follower.Settle(ViewAt(2.0, 30.0));
   EXPECT_EQ(follower.air()->medium.name, "hazy");
   EXPECT_EQ(follower.air()->solution, AirSolution::kFull);
+}
+
+// --- what is left alone ---
+
+/// Tables made for one eye, as another sees them: root mean square of relative errors of the sky.
+double ErrorOfOld(const AirEye& made, const AirEye& now) {
+  const tests::LitAir& air = tests::Earth();
+  const MediumTables medium = MakeMediumTables(air.air);
+  const AirTablesSize size = AirTablesSizeOf(AirQuality::kHigh, now.altitude_m);
+  const AirTables old = MakeAirTables(air.air, air.diffuse, medium, made, size);
+  const AirMap map(air.medium, now.altitude_m, now.ceiling_m,
+                   static_cast<double>(air.diffuse.grid().twilight_fall));
+  return tests::SkyErrors(tests::AirJudge(air, now), tests::AirReading(old, medium, now), map, 200)
+      .Rms();
+}
+
+TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
+  const auto sine = [](double degrees) { return std::sin(degrees * kRadiansPerDegree); };
+  const std::vector<std::pair<AirEye, AirEye>> changes{
+      {{1500.0, sine(40.0)}, {1500.0, sine(39.0)}}, {{1500.0, sine(5.0)}, {1500.0, sine(4.9)}},
+      {{1500.0, sine(0.1)}, {1500.0, sine(0.05)}},  {{2.0, sine(-4.0)}, {2.0, sine(-4.03)}},
+      {{2.0, sine(-9.0)}, {2.0, sine(-9.03)}},      {{200.0, sine(20.0)}, {260.0, sine(20.0)}},
+      {{9000.0, sine(20.0)}, {9100.0, sine(20.0)}}, {{30e3, sine(20.0)}, {31e3, sine(20.0)}}};
+  for (const auto& [made, now] : changes) {
+    const double error = ErrorOfOld(made, now);
+    const double guess = AirChange(made, now);
+    EXPECT_LT(error, 2.0 * guess + 1e-3) << now.altitude_m << " m, sun " << now.mu_s;
+    EXPECT_GT(error, 0.1 * guess) << now.altitude_m << " m, sun " << now.mu_s
+                                  << ": tables would be made anew for nothing";
+  }
 }
 
 TEST(SolvedAirDraft, IsGoodEnoughForAMoment) {

@@ -87,7 +87,43 @@ std::vector<tests::Arguments<float>> ArgumentsOf(const Both& both, const std::ve
   return points;
 }
 
-// --- what the driver interpolates ---
+// --- what the driver reads ---
+
+TEST_F(AirTexturesOnGpu, BlockLiesWhereTheDriverLooks) {
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  for (ShaderPiece& piece : AirTableTexts()) pieces.push_back(std::move(piece));
+  pieces.push_back({"main", "void main() { gl_Position = SkyRadiance(vec3(1.0)); }\n"});
+  const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
+  const GLuint block = glGetUniformBlockIndex(program.id(), "AirTables");
+  GLint size = 0;
+  glGetActiveUniformBlockiv(program.id(), block, GL_UNIFORM_BLOCK_DATA_SIZE, &size);
+  EXPECT_EQ(size, static_cast<GLint>(sizeof(AirTablesBlock)));
+  const std::vector<std::pair<const char*, std::size_t>> members{
+      {"air_sun", offsetof(AirTablesBlock, sun)},
+      {"air_frame", offsetof(AirTablesBlock, frame)},
+      {"air_shell", offsetof(AirTablesBlock, shell)},
+      {"air_ranges", offsetof(AirTablesBlock, ranges)},
+      {"air_crowding", offsetof(AirTablesBlock, crowding)},
+      {"air_columns", offsetof(AirTablesBlock, columns)},
+      {"air_sky_rows", offsetof(AirTablesBlock, sky_rows)},
+      {"air_through_rows", offsetof(AirTablesBlock, through_rows)},
+      {"air_way_rows", offsetof(AirTablesBlock, way_rows)},
+      {"air_extinction_rows", offsetof(AirTablesBlock, extinction_rows)},
+      {"air_distances", offsetof(AirTablesBlock, distances)},
+      {"air_phase_nodes", offsetof(AirTablesBlock, phase_nodes)},
+      {"air_sky_mix[0]", offsetof(AirTablesBlock, sky_mix)},
+      {"air_single_mix[0]", offsetof(AirTablesBlock, single_mix)}};
+  for (const auto& [name, expected] : members) {
+    GLuint index = GL_INVALID_INDEX;
+    glGetUniformIndices(program.id(), 1, &name, &index);
+    ASSERT_NE(index, GL_INVALID_INDEX) << name;
+    GLint offset = -1;
+    glGetActiveUniformsiv(program.id(), 1, &index, GL_UNIFORM_OFFSET, &offset);
+    EXPECT_EQ(offset, static_cast<GLint>(expected)) << name;
+  }
+}
+
+// --- what it interpolates ---
 
 void ExpectSkyOfCpu(double altitude_m, double mu_s, double tolerance) {
   SCOPED_TRACE(fmt::format("{} m, sun {}", altitude_m, mu_s));
