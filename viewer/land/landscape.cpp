@@ -24,10 +24,10 @@ constexpr double kReachTime_s = 0.7;  // that a level takes to come in
 struct LandBlock {
   glm::vec4 eye_high, eye_low;
   glm::vec4 east, north, up;
-  glm::vec4 eye_sample, eye_above;
+  glm::vec4 eye_sample, eye_above, eye_view;
   std::array<glm::vec4, kMostLevels> turning;
 };
-static_assert(sizeof(LandBlock) == (7 + kMostLevels) * sizeof(glm::vec4));
+static_assert(sizeof(LandBlock) == (8 + kMostLevels) * sizeof(glm::vec4));
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
@@ -43,7 +43,7 @@ ShaderProgram LandProgram(bool reversed_depth) {
   return ShaderProgram(
       {Piece("viewer/shaders/view_block.glsl"), Piece("viewer/shaders/land_block.glsl"),
        Piece("viewer/shaders/land.vert.glsl")},
-      {Piece("viewer/shaders/octahedral.glsl"),
+      {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
        Piece(reversed_depth ? "viewer/shaders/reversed_depth.glsl"
                             : "viewer/shaders/logarithmic_depth.glsl"),
        Piece("viewer/shaders/land.frag.glsl")},
@@ -323,11 +323,11 @@ void Landscape::RaiseAbove(double seconds) {
   ceiling_m_ = ceiling_m_.value_or(highest) + share * (highest - ceiling_m_.value_or(highest));
 }
 
-void Landscape::Choose(const LandView& view) {
+void Landscape::Choose() {
   around_ = DrawnChunks(tree_, eye_, ranges_,
                         [&](const ChunkKey& key) { return set_->chunks.contains(key); });
   const EyeInAnchor eye(set_->anchor.frame, eye_place_);
-  const ViewPyramid pyramid(eye, view);
+  const ViewPyramid pyramid(eye, view_);
   drawn_.clear();
   for (const DrawnChunk& near : around_) {
     const auto found = set_->chunks.find(near.key);
@@ -342,6 +342,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   ++frame_;
   if (tiles_->tiles().empty()) return;
   eye_place_ = eye;
+  view_ = view;
   eye_ = EyeAt(eye);
   if (cache_.Update(eye_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
@@ -352,7 +353,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   FinishLight(seconds);
   AskForChunks();
   AskForLight();
-  Choose(view);
+  Choose();
   RaiseAbove(seconds);
   Evict(*set_);
 }
@@ -386,6 +387,11 @@ void Landscape::UploadBlock() {
                            eye_.size.column_m, eye_.size.row_m));
   block.eye_above = glm::vec4(static_cast<float>(eye_.above_m), static_cast<float>(fading_),
                               reversed_depth_ ? 1.0F : 0.0F, 0.0F);
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  const double columns = viewport[2], rows = viewport[3];
+  block.eye_view = glm::vec4(
+      glm::dvec4(columns, rows, glm::length(view_.right) / columns, glm::length(view_.up) / rows));
   for (std::size_t level = 0; level < ranges_.size(); ++level) {
     // Float's rounding must not leave a vertex on the line short of the end.
     const double end = 0.999 * ranges_[level].end_m;
@@ -412,7 +418,11 @@ void Landscape::Draw(GLuint view_binding) {
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
+  // Over the ground no slope that faces away is seen before one that faces the eye.
+  const std::optional<double> ground = GroundUnder(eye_place_);
+  if (ground && eye_place_.height_m > *ground) glEnable(GL_CULL_FACE);
   set_->buffers.Draw(drawn_, Other(shown_));
+  glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }

@@ -147,7 +147,7 @@ class Landscape {
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
   void Evict(ChunkSet& set) const;
   void FinishLight(double seconds);
-  void Choose(const LandView& view);
+  void Choose();
   void RaiseAbove(double seconds);
   void UploadBlock();
 
@@ -158,6 +158,7 @@ class Landscape {
   TileCache cache_;
   GeodeticPosition eye_place_;
   LandEye eye_;
+  LandView view_;
   std::optional<double> ceiling_m_;  // of the ground about the eye, over the ellipsoid
   std::unique_ptr<ChunkSet> set_, next_set_;
   LandDemand demand_;

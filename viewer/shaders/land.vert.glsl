@@ -10,8 +10,7 @@ in vec4 sky, coarse_sky;  // irradiance per unit solar irradiance, in bands
 in vec2 sun_over_edge;    // height of the sun over the terrain's edge: own, coarser
 in vec4 new_sky, new_coarse_sky;
 in vec2 new_sun_over_edge;
-out vec3 from_eye;  // [m], east, north, up at the eye
-out vec3 facing;    // normal, in the same frame
+out vec3 facing;  // normal, in the eye's frame: east, north, up
 out vec4 sky_light;
 out float sun_height;
 
@@ -30,7 +29,7 @@ void main() {
   float turned = Turned();
   // At the ends exactly the one or the other: chunks that meet have the same vertices there.
   vec3 at = turned == 1.0 ? coarse_position : mix(position, coarse_position, turned);
-  from_eye = InEyeFrame((at - eye_high.xyz) - eye_low.xyz);
+  vec3 from_eye = InEyeFrame((at - eye_high.xyz) - eye_low.xyz);
   facing = InEyeFrame(mix(normal.xyz, coarse_normal.xyz, turned));
   sky_light = mix(mix(sky, coarse_sky, turned), mix(new_sky, new_coarse_sky, turned), eye_above.y);
   sun_height = mix(mix(sun_over_edge.x, sun_over_edge.y, turned),

@@ -57,9 +57,10 @@ TEST_F(Glslang, AcceptsEveryShaderOfTheViewer) {
   };
   ExpectAccepted({view, piece("viewer/shaders/land_block.glsl")}, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
-    ExpectAccepted({piece("viewer/shaders/octahedral.glsl"),
-                    piece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
-                   "land.frag.glsl");
+    ExpectAccepted(
+        {piece("viewer/shaders/land_block.glsl"), piece("viewer/shaders/octahedral.glsl"),
+         piece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
+        "land.frag.glsl");
   }
   for (const char* stage : {"average.frag.glsl", "empty.frag.glsl", "full_screen.vert.glsl",
                             "shadow.vert.glsl", "terrain.frag.glsl"}) {
