@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/land_chunk.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
+#include <map>
+#include <set>
+
+#include "renderer/terrain/mesh.h"
+#include "tests/viewer/land/land_files.h"
+
+namespace alpenglow {
+namespace {
+
+using namespace tests;
+
+constexpr int kTop = 4;  // 240 samples in one chunk
+
+class LandChunks : public LandFolder {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    WriteTile(folder_ / "a.tif", 0, 0);
+    heights_.emplace(AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt}));
+  }
+  [[nodiscard]] LandChunk Chunk(int level, int column, int row) const {
+    return MakeChunk(*heights_, {level, column, row}, kTop, anchor_);
+  }
+
+  std::optional<LoadedHeights> heights_;
+  LandAnchor anchor_{LocalFrame(kWgs84, PlaceOfSample(120.0, 120.0, 0.0)), 120, 120};
+};
+
+glm::dvec3 Position(const LandChunk& chunk, int i, int j) {
+  const auto& p = chunk.vertices[static_cast<std::size_t>(j * kChunkSide + i)].position_m;
+  return {p[0], p[1], p[2]};
+}
+glm::dvec3 CoarsePosition(const LandChunk& chunk, int i, int j) {
+  const auto& p = chunk.vertices[static_cast<std::size_t>(j * kChunkSide + i)].coarse_position_m;
+  return {p[0], p[1], p[2]};
+}
+glm::dvec3 Normal(const LandChunk& chunk, int i, int j) {
+  const auto& n = chunk.vertices[static_cast<std::size_t>(j * kChunkSide + i)].normal;
+  return glm::dvec3(n[0], n[1], n[2]) / 32767.0;
+}
+
+TEST_F(LandChunks, TheFinestLevelIsTheRenderersMesh) {
+  const TriangleMesh mesh =
+      MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, anchor_.frame);
+  std::set<std::array<std::uint32_t, 3>> cut;  // each triangle from its least corner on
+  const auto turned = [](std::array<std::uint32_t, 3> t) {
+    while (t[0] > t[1] || t[0] > t[2]) t = {t[1], t[2], t[0]};
+    return t;
+  };
+  for (const auto& triangle : mesh.triangles) cut.insert(turned(triangle));
+  for (const auto& [column, row] : {std::pair{0, 0}, {5, 7}, {14, 14}}) {
+    const LandChunk chunk = Chunk(0, column, row);
+    const auto sample = [&](std::uint32_t v) {
+      return static_cast<std::uint32_t>((16 * row + static_cast<int>(v) / kChunkSide) *
+                                            kTileSamples +
+                                        16 * column + static_cast<int>(v) % kChunkSide);
+    };
+    for (std::uint32_t v = 0; v < kChunkVertices; ++v) {
+      ASSERT_EQ(chunk.vertices[v].position_m, mesh.positions[sample(v)]) << v;
+      const auto& n = mesh.normals[sample(v)];
+      const glm::dvec3 off =
+          Normal(chunk, static_cast<int>(v) % kChunkSide, static_cast<int>(v) / kChunkSide) -
+          glm::dvec3(n[0], n[1], n[2]);
+      ASSERT_LT(glm::length(off), 6e-5) << "16 bits a coordinate";
+    }
+    ASSERT_EQ(chunk.triangles.size(), static_cast<std::size_t>(kChunkIndices));
+    for (std::size_t i = 0; i < chunk.triangles.size(); i += 3) {
+      const std::array<std::uint32_t, 3> triangle{sample(chunk.triangles[i]),
+                                                  sample(chunk.triangles[i + 1]),
+                                                  sample(chunk.triangles[i + 2])};
+      ASSERT_TRUE(cut.contains(turned(triangle))) << "cut along the other diagonal";
+    }
+  }
+}
+
+TEST_F(LandChunks, NeighboursShareTheirVerticesToTheBit) {
+  for (int level = 0; level < 3; ++level) {
+    SCOPED_TRACE(level);
+    const LandChunk west = Chunk(level, 1, 1), east = Chunk(level, 2, 1),
+                    south = Chunk(level, 1, 2);
+    for (int k = 0; k < kChunkSide; ++k) {
+      ASSERT_EQ(Position(west, 16, k), Position(east, 0, k));
+      ASSERT_EQ(CoarsePosition(west, 16, k), CoarsePosition(east, 0, k));
+      ASSERT_EQ(Normal(west, 16, k), Normal(east, 0, k));
+      ASSERT_EQ(Position(west, k, 16), Position(south, k, 0));
+      ASSERT_EQ(CoarsePosition(west, k, 16), CoarsePosition(south, k, 0));
+    }
+  }
+}
+
+// The last chunk of each level ends at sample 240, which is no multiple of 16 2^k.
+TEST_F(LandChunks, WhollyTurnedAChunkLiesOnTheNextLevelsTriangles) {
+  for (int level = 0; level + 1 < kTop; ++level) {
+    for (const int at : {0, 240 / (16 << level) - (240 % (16 << level) == 0 ? 1 : 0)}) {
+      SCOPED_TRACE(level);
+      const LandChunk fine = Chunk(level, at, at), coarse = Chunk(level + 1, at / 2, at / 2);
+      for (int j = 0; j < kChunkSide; ++j) {
+        for (int i = 0; i < kChunkSide; ++i) {
+          const std::size_t v = static_cast<std::size_t>(j * kChunkSide + i);
+          if (std::find(fine.triangles.begin(), fine.triangles.end(), v) == fine.triangles.end())
+            continue;
+          const int x = i + 16 * (at % 2), y = j + 16 * (at % 2);
+          // The coarse vertices around; at the rim the last one is the rim itself.
+          const auto ends = [&](int k, int k_fine, int last) {
+            const bool rim = k % 2 != 0 && k_fine + 16 * at == last;
+            return std::pair{rim ? (k + 1) / 2 : k / 2, (k + 1) / 2};
+          };
+          const int last = (240 + (1 << level) - 1) >> level;
+          const auto [west, east] = ends(x, i, last);
+          const auto [north, south] = ends(y, j, last);
+          const glm::dvec3 mean =
+              0.5 * (Position(coarse, west, north) + Position(coarse, east, south));
+          ASSERT_LT(glm::length(CoarsePosition(fine, i, j) - mean), 3e-3)
+              << "floats at 10 km; cells are cut from north-west to south-east";
+        }
+      }
+    }
+  }
+}
+
+TEST_F(LandChunks, TheLandEndsAtTheSameRimAtEveryLevel) {
+  const auto end_of = [&](int level) {
+    const int last = (240 + (1 << level) - 1) >> level;
+    const int chunk = (last - 1) / kChunkCells;
+    return Position(Chunk(level, chunk, 0), last - kChunkCells * chunk, 0);
+  };
+  const glm::dvec3 rim = end_of(0);
+  for (int level = 1; level <= kTop; ++level) {
+    const glm::dvec3 off = end_of(level) - rim;
+    EXPECT_LT(std::hypot(off.x, off.y), 1.0) << level << ": the corner keeps its place and height";
+  }
+}
+
+TEST_F(LandChunks, CoarseSidesHaveOnlyVerticesOfTheNextLevelAndCoverTheSameGround) {
+  for (const int level : {0, 1}) {
+    const LandChunk chunk = Chunk(level, 3, 3);
+    for (unsigned sides = 0; sides < 16; ++sides) {
+      SCOPED_TRACE(sides);
+      const auto kept = WithCoarseSides(chunk.triangles, chunk.ends, sides);
+      double doubled_area = 0.0;
+      for (std::size_t t = 0; t < kept.size(); t += 3) {
+        std::array<glm::dvec2, 3> at;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const int x = kept[t + c] % kChunkSide, y = kept[t + c] / kChunkSide;
+          at[c] = {x, y};
+          EXPECT_FALSE((sides & kNorthSide) != 0 && y == 0 && x % 2 != 0);
+          EXPECT_FALSE((sides & kEastSide) != 0 && x == 16 && y % 2 != 0);
+          EXPECT_FALSE((sides & kSouthSide) != 0 && y == 16 && x % 2 != 0);
+          EXPECT_FALSE((sides & kWestSide) != 0 && x == 0 && y % 2 != 0);
+        }
+        const glm::dvec2 a = at[1] - at[0], b = at[2] - at[0];
+        EXPECT_LE(a.x * b.y - a.y * b.x, 0.0) << "seen from above, rows run southwards";
+        doubled_area -= a.x * b.y - a.y * b.x;
+      }
+      EXPECT_DOUBLE_EQ(doubled_area, 2.0 * 256.0) << "no hole, nothing twice";
+    }
+  }
+}
+
+TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
+  const LandChunk chunk = Chunk(1, 2, 2);
+  const auto light = LightOfChunk(chunk, anchor_.frame, [](const LocalFrame&, auto vertices) {
+    std::vector<VertexLight> lit;
+    for (const LandVertex& vertex : vertices)
+      lit.push_back({{1e-3F * vertex.position_m.x, 0.25F, 0.5F, 1.0F}, 2.0F * vertex.normal.z});
+    return lit;
+  });
+  for (std::size_t v = 0; v < light.size(); ++v) {
+    const float x = 1e-3F * chunk.vertices[v].coarse_position_m[0];
+    EXPECT_NEAR(glm::unpackHalf1x16(light[v].coarse_sky[0]), x, 1e-3F + 1e-3F * std::abs(x))
+        << "half floats: linear light stays linear";
+    EXPECT_EQ(glm::unpackHalf1x16(light[v].sky[1]), 0.25F);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// Elevation models for tests: tiles of mountains of noise.
+#pragma once
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "tests/fixtures/rough_land.h"
+#include "tests/fixtures/temporary_folder.h"
+#include "viewer/land/land_source.h"
+#include "viewer/land/loaded_heights.h"
+
+namespace alpenglow::tests {
+
+inline constexpr double kTileStep_deg = 1.0 / 2400.0;  // 46 m
+inline constexpr int kTileSamples = 241;               // a side: a tenth of a degree
+inline constexpr double kWest_deg = 8.0, kNorth_deg = 46.7;
+
+/// Whole metres.
+inline float HeightOfSample(int column, int row) {
+  return static_cast<float>(std::round(RoughLand(32.0 * column, -46.0 * row)));
+}
+
+/// Writes a tile of every `stride`-th sample from sample (column, row) of the land on.
+inline void WriteTile(const std::filesystem::path& file, int first_column, int first_row,
+                      int samples = kTileSamples, int stride = 1) {
+  GDALRegister_GTiff();
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  GDALDataset* const dataset =
+      driver->Create(file.c_str(), samples, samples, 1, GDT_Float32, nullptr);
+  const double step_deg = stride * kTileStep_deg;
+  std::array<double, 6> corner{
+      kWest_deg + first_column * kTileStep_deg - 0.5 * step_deg, step_deg, 0.0,
+      kNorth_deg - first_row * kTileStep_deg + 0.5 * step_deg,   0.0,      -step_deg};
+  dataset->SetGeoTransform(corner.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  dataset->SetSpatialRef(&crs);
+  std::vector<float> heights;
+  for (int row = 0; row < samples; ++row)
+    for (int column = 0; column < samples; ++column)
+      heights.push_back(HeightOfSample(first_column + stride * column, first_row + stride * row));
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, samples, samples, heights.data(),
+                                                samples, samples, GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+}
+
+/// A folder of side x side tiles.
+class LandFolder : public TemporaryFolder {
+ protected:
+  void WriteTiles(int side) const {
+    for (int row = 0; row < side; ++row)
+      for (int column = 0; column < side; ++column)
+        WriteTile(folder_ / ("tile" + std::to_string(row) + std::to_string(column) + ".tif"),
+                  (kTileSamples - 1) * column, (kTileSamples - 1) * row);
+  }
+};
+
+/// All tiles of a source, whole.
+inline LoadedHeights AllHeights(const LandSource& source) {
+  const auto tiles = std::make_shared<const LandTiles>(source);
+  std::vector<std::shared_ptr<const HeightPyramid>> heights;
+  for (std::size_t tile = 0; tile < tiles->tiles().size(); ++tile)
+    heights.push_back(ReadLandTile(*tiles, static_cast<int>(tile), 0).heights);
+  return {tiles, heights};
+}
+
+/// A place on the land, in samples.
+inline GeodeticPosition PlaceOfSample(double column, double row, double height_m) {
+  return {(kNorth_deg - row * kTileStep_deg) * kRadiansPerDegree,
+          (kWest_deg + column * kTileStep_deg) * kRadiansPerDegree, height_m};
+}
+
+}  // namespace alpenglow::tests

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/land_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "atmosphere/text/error.h"
+#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/terrain.h"
+#include "tests/viewer/land/land_files.h"
+
+namespace alpenglow {
+namespace {
+
+using namespace tests;
+using ::testing::HasSubstr;
+
+class LandSourceFiles : public LandFolder {};
+
+void ExpectSameGrid(const ElevationGrid& extent, const ElevationGrid& grid) {
+  EXPECT_TRUE(extent.height_m.empty());
+  EXPECT_EQ(extent.columns, grid.columns);
+  EXPECT_EQ(extent.rows, grid.rows);
+  EXPECT_EQ(extent.west_rad, grid.west_rad);
+  EXPECT_EQ(extent.north_rad, grid.north_rad);
+  EXPECT_EQ(extent.step_lon_rad, grid.step_lon_rad);
+  EXPECT_EQ(extent.step_lat_rad, grid.step_lat_rad);
+}
+
+TEST_F(LandSourceFiles, TheExtentOfAFileIsThatOfTheModel) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  ExpectSameGrid(ReadElevationExtent(folder_ / "a.tif"),
+                 ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid);
+}
+
+TEST(LandSourceRange, TheExtentOfTheRangeIsThatOfTheRange) {
+  for (const double latitude_deg : {46.5, 89.8, -89.9}) {
+    SCOPED_TRACE(latitude_deg);
+    const GeodeticPosition centre{latitude_deg * kRadiansPerDegree, 0.14, 0.0};
+    ExpectSameGrid(BuiltInRangeExtent(centre), BuiltInRange(centre));
+  }
+}
+
+TEST_F(LandSourceFiles, EverySampleOfATileIsASampleOfTheLattice) {
+  WriteTiles(2);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  const LandLattice& lattice = heights.tiles().lattice();
+  ASSERT_EQ(lattice.last_column, 2 * (kTileSamples - 1));
+  ASSERT_EQ(lattice.last_row, 2 * (kTileSamples - 1));
+  const HeightBlock block = heights.Block(0, 0, 0, 2 * kTileSamples - 1, 2 * kTileSamples - 1);
+  for (int row = 0; row <= lattice.last_row; ++row)
+    for (int column = 0; column <= lattice.last_column; ++column)
+      ASSERT_EQ(block.at(column, row), HeightOfSample(column, row)) << column << " " << row;
+}
+
+TEST_F(LandSourceFiles, TwoTilesAgreeOnTheirSharedSamplesAtEveryLevel) {
+  WriteTile(folder_ / "west.tif", 0, 0);
+  WriteTile(folder_ / "east.tif", kTileSamples - 1, 0);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  const auto& tiles = heights.heights();
+  const int shared = kTileSamples - 1;
+  for (int level = 0; level <= 4; ++level) {  // 240 is 15 times 2^4
+    for (int row = 0; row < kTileSamples; row += 1 << level)
+      ASSERT_EQ(tiles[0]->At(level, shared, row), tiles[1]->At(level, shared, row)) << level;
+  }
+}
+
+TEST_F(LandSourceFiles, ALevelIsTheBinomialMeanOfTheFinerOne) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  const HeightPyramid& tile = *heights.heights()[0];
+  for (int level = 1; level < 5; ++level) {
+    const int step = 1 << (level - 1);
+    for (const int at : {2 * step, 6 * step}) {
+      double mean = 0.0;
+      for (int row = -1; row <= 1; ++row)
+        for (int column = -1; column <= 1; ++column)
+          mean += (2 - std::abs(row)) * (2 - std::abs(column)) / 16.0 *
+                  static_cast<double>(tile.At(level - 1, at + column * step, at + row * step));
+      EXPECT_NEAR(static_cast<double>(tile.At(level, at, at)), mean, 1e-3) << "float of 1500 m";
+    }
+  }
+}
+
+TEST(LandHeightPyramid, WhatIsFinerThanItHasLiesBetweenItsSamples) {
+  std::vector<float> heights;
+  for (int row = 0; row < kTileSamples; row += 4)
+    for (int column = 0; column < kTileSamples; column += 4)
+      heights.push_back(HeightOfSample(column, row));
+  const HeightPyramid coarse({0, 0, kTileSamples - 1, kTileSamples - 1}, 2, heights);
+  EXPECT_EQ(coarse.At(0, 8, 12), HeightOfSample(8, 12));
+  EXPECT_FLOAT_EQ(coarse.At(0, 9, 12),
+                  0.75F * HeightOfSample(8, 12) + 0.25F * HeightOfSample(12, 12));
+  EXPECT_FLOAT_EQ(coarse.At(0, 8, 14), 0.5F * HeightOfSample(8, 12) + 0.5F * HeightOfSample(8, 16));
+}
+
+TEST_F(LandSourceFiles, TilesOfTwoSpacingsMeetOnTheFinerOnesLattice) {
+  WriteTile(folder_ / "a_fine.tif", 0, 0);
+  WriteTile(folder_ / "b_coarse.tif", 240, 0, 61, 4);  // every fourth sample
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  const LandTiles& tiles = heights.tiles();
+  EXPECT_EQ(tiles.tiles()[0].level, 0);
+  EXPECT_EQ(tiles.tiles()[1].level, 2);
+  ASSERT_EQ(tiles.lattice().last_column, 480);
+  const HeightBlock block = heights.Block(0, 236, 100, 12, 1);
+  EXPECT_EQ(block.at(239, 100), HeightOfSample(239, 100));
+  EXPECT_EQ(block.at(240, 100), HeightOfSample(240, 100));
+  EXPECT_EQ(block.at(244, 100), HeightOfSample(244, 100));
+  EXPECT_FLOAT_EQ(block.at(242, 100),
+                  0.5F * HeightOfSample(240, 100) + 0.5F * HeightOfSample(244, 100));
+}
+
+TEST_F(LandSourceFiles, TheGroundUnderAPlaceIsWhereTheRenderersRayMeetsIt) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  const GeodeticPosition middle = PlaceOfSample(120.0, 120.0, 0.0);
+  const LocalFrame frame(kWgs84, middle);
+  const Terrain terrain(
+      MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
+  for (int i = 0; i < 500; ++i) {
+    const double column = 0.3 + 239.4 * std::fmod(0.754877666 * i, 1.0);
+    const double row = 0.3 + 239.4 * std::fmod(0.569840296 * i, 1.0);
+    const GeodeticPosition high = PlaceOfSample(column, row, 9000.0);
+    const LocalFrame there(kWgs84, high);
+    const glm::dvec3 down = frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{{0.0, 0.0, -1.0}})).xyz;
+    const auto hit = terrain.Intersect(frame.EnuFromGeodetic(high).xyz, down);
+    const auto ground = heights.HeightUnder(high.latitude_rad, high.longitude_rad);
+    ASSERT_TRUE(hit && ground) << column << " " << row;
+    ASSERT_NEAR(*ground, 9000.0 - hit->distance_m, 0.01)
+        << "the renderer's vertices are floats: 1 mm at 10 km, more on a slope";
+  }
+  EXPECT_FALSE(heights.HeightUnder(0.0, 0.0)) << "far away is no ground";
+}
+
+TEST_F(LandSourceFiles, ASampledGridIsTheLandAroundAPlace) {
+  WriteTiles(2);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  const GeodeticPosition place = PlaceOfSample(240.0, 240.0, 0.0);
+  const auto near = heights.SampledGrid(place, 1000.0, 64);
+  ASSERT_TRUE(near);
+  EXPECT_LE(std::max(near->columns, near->rows), 64);
+  EXPECT_NEAR(*near->HeightAt(place.latitude_rad, place.longitude_rad),
+              static_cast<double>(HeightOfSample(240, 240)), 0.01)
+      << "within 1 km every sample fits";
+  const auto all = heights.SampledGrid(place, 30e3, 64);
+  ASSERT_TRUE(all);
+  EXPECT_LE(std::max(all->columns, all->rows), 64);
+  EXPECT_GT(all->columns * all->step_lon_rad, 0.9 * 0.2 * kRadiansPerDegree);
+  EXPECT_FALSE(heights.SampledGrid({0.0, 0.0, 0.0}, 30e3, 64));
+}
+
+TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
+  const auto fault = [](const LandSource& source) -> std::string {
+    try {
+      const LandTiles tiles(source);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(fault({{folder_ / "none.tif"}, VoidPolicy::kFill, std::nullopt}),
+              HasSubstr("none.tif"));
+  EXPECT_THAT(fault({{folder_}, VoidPolicy::kFill, std::nullopt}), HasSubstr("no elevation model"));
+  WriteTile(folder_ / "good.tif", 0, 0);
+  WriteText(folder_ / "broken.tif", "this is no TIFF");
+  const LandTiles tiles({{folder_}, VoidPolicy::kFill, std::nullopt});
+  EXPECT_EQ(tiles.tiles().size(), 1U);
+  ASSERT_EQ(tiles.notes().size(), 1U);
+  EXPECT_THAT(tiles.notes()[0], HasSubstr("broken.tif"));
+}
+
+}  // namespace
+}  // namespace alpenglow
