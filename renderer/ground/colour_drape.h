@@ -30,6 +30,10 @@ class BandsOfColour {
 
   /// @param rgb  linear sRGB.
   [[nodiscard]] BandLight Albedo(const std::array<double, 3>& rgb) const;
+  /// What a channel adds to the albedo.
+  [[nodiscard]] const BandLight& OfPrimary(std::size_t channel) const {
+    return of_primary_[channel];
+  }
 
  private:
   std::array<BandLight, 3> of_primary_;

@@ -71,6 +71,11 @@ bool GroundMaterial::HasGloss() const {
   return cover_.kind == Kind::kWater || cover_.kind == Kind::kBlinnPhong || cover_.sea_level_m;
 }
 
+std::optional<double> GroundMaterial::WaterLine_m() const {
+  if (!cover_.sea_level_m) return std::nullopt;
+  return *cover_.sea_level_m + kWaterLine_m;
+}
+
 BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, const glm::dvec3& point, double normal_up,
                                    const MountainSurface& season) const {
   if (drape_) {
@@ -82,7 +87,8 @@ BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, const glm::dvec3& poin
 
 GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& point,
                                       double normal_up, const MountainSurface& season) const {
-  if (cover_.sea_level_m && at.altitude_m <= *cover_.sea_level_m + kWaterLine_m)
+  const auto water_line_m = WaterLine_m();
+  if (water_line_m && at.altitude_m <= *water_line_m)
     return {*this, Kind::kWater, BandLight(albedo_.count)};
   if (cover_.kind == Kind::kWater || cover_.kind == Kind::kSnow)
     return {*this, cover_.kind, BandLight(albedo_.count)};
@@ -90,7 +96,8 @@ GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& p
 }
 
 GroundPatch GroundMaterial::OfPlanet(const BandLight& planet_albedo) const {
-  if (cover_.sea_level_m && *cover_.sea_level_m + kWaterLine_m >= 0.0)
+  const auto water_line_m = WaterLine_m();
+  if (water_line_m && *water_line_m >= 0.0)
     return {*this, Kind::kWater, planet_albedo};
   if (cover_.kind == Kind::kMountain) return {*this, cover_.kind, planet_albedo};
   return {*this, cover_.kind, albedo_};

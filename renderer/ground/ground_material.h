@@ -63,6 +63,18 @@ class GroundMaterial {
   /// Whether any of it mirrors the sky.
   [[nodiscard]] bool HasGloss() const;
 
+  [[nodiscard]] const GroundCover& cover() const { return cover_; }
+  [[nodiscard]] const ColourDrape* drape() const { return drape_.get(); }
+  [[nodiscard]] const BandsOfColour& bands_of_colour() const { return bands_of_colour_; }
+  /// Of the cover's one colour.
+  [[nodiscard]] const BandLight& albedo() const { return albedo_; }
+  [[nodiscard]] const RoughDiffuse& rough() const { return rough_; }
+  [[nodiscard]] const Glossy& glossy() const { return glossy_; }
+  [[nodiscard]] const Water& water() const { return water_; }
+  [[nodiscard]] const Snow& snow() const { return snow_; }
+  /// The highest ground that is sea; nothing: there is none.
+  [[nodiscard]] std::optional<double> WaterLine_m() const;
+
  private:
   friend class GroundPatch;
   [[nodiscard]] BandLight AlbedoAt(const GroundPoint& at, const glm::dvec3& point, double normal_up,

@@ -283,9 +283,10 @@ class Balance {
   }
 
   [[nodiscard]] double At(double mu) const { return AtRoot(std::sqrt(mu)); }
+  [[nodiscard]] const std::array<double, Snow::kBalanceNodes>& nodes() const { return factor_; }
 
  private:
-  static constexpr std::size_t kNodes = 65;
+  static constexpr std::size_t kNodes = Snow::kBalanceNodes;
 
   static double MuOf(std::size_t node) {
     const double root = static_cast<double>(node) / (kNodes - 1);
@@ -312,12 +313,16 @@ class Balance {
   std::array<double, kNodes> factor_;
 };
 
-double Balanced(double mu) {
+const Balance& TheBalance() {
   static const Balance balance;
-  return balance.At(mu);
+  return balance;
 }
 
+double Balanced(double mu) { return TheBalance().At(mu); }
+
 }  // namespace
+
+const std::array<double, Snow::kBalanceNodes>& Snow::BalanceNodes() { return TheBalance().nodes(); }
 
 Snow::Snow(double grain_diameter_m, std::span<const double> wavelengths_nm)
     : y_(wavelengths_nm.size()) {

@@ -76,6 +76,11 @@ class RoughDiffuse {
   /// Share of the light from a direction that is sent on (and of an even sky that is seen in it).
   [[nodiscard]] Bands<float> Albedo(const Bands<float>& albedo, double mu) const;
 
+  /// What reflectance.glsl has of a roughness.
+  [[nodiscard]] double roughness() const { return roughness_; }
+  [[nodiscard]] double scale() const { return scale_; }
+  [[nodiscard]] double mean_single() const { return mean_single_; }
+
  private:
   // Albedo of light reflected once between facets that absorb nothing.
   [[nodiscard]] double Single(double mu) const;
@@ -94,6 +99,8 @@ class Glossy {
   Glossy(double roughness, double f0);
 
   [[nodiscard]] double exponent() const { return exponent_; }
+  [[nodiscard]] double f0() const { return f0_; }
+  [[nodiscard]] double normalisation() const { return normalisation_; }
   /// Of the coat alone.
   [[nodiscard]] double Coat(const ReflectionAngles& at) const;
   /// Of both. @param albedo  of the body.
@@ -125,6 +132,8 @@ class Water {
 
   /// Mean square of the waves' slope, both directions together.
   [[nodiscard]] double slope_variance() const { return variance_; }
+  /// Of light from under the surface: pi times radiance over irradiance, sun and eye at the zenith.
+  [[nodiscard]] const Bands<float>& under_surface() const { return under_surface_; }
   /// Distribution of the glitter [1/sr].
   [[nodiscard]] double Glitter(const ReflectionAngles& at) const;
   /// Of glitter and light from under the surface.
@@ -138,7 +147,7 @@ class Water {
 
  private:
   double variance_;
-  Bands<float> under_surface_;  // pi times radiance over irradiance, sun and eye at the zenith
+  Bands<float> under_surface_;
 };
 
 /// Deep clean snow by the asymptotic theory of Kokhanovsky, Zege (2004), Appl. Opt. 43, 1589:
@@ -159,6 +168,11 @@ class Snow {
   [[nodiscard]] Bands<float> Albedo(double mu) const;
   /// The same of an even sky: exp(-y).
   [[nodiscard]] Bands<float> SphericalAlbedo() const;
+
+  [[nodiscard]] const Bands<float>& y() const { return y_; }
+  /// The factor of each direction, at even steps of the root of mu from 0 to 1.
+  static constexpr std::size_t kBalanceNodes = 65;
+  [[nodiscard]] static const std::array<double, kBalanceNodes>& BalanceNodes();
 
  private:
   Bands<float> y_;

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: MIT
-// What ground_light.glsl reads of C++, byte for byte, as uniform_blocks.h does it.
+// What ground_light.glsl and ground_surface.glsl read of C++: uniform blocks byte for byte, as
+// uniform_blocks.h does it, textures, and the texts put together for what the ground is made of.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <glm/vec4.hpp>
+#include <vector>
 
+#include "renderer/ground/ground_material.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+#include "viewer/ground/drape_texels.h"
 #include "viewer/ground/lit_ground.h"
+#include "viewer/ground/sea_mirror.h"
 
 namespace alpenglow {
 
@@ -18,6 +26,43 @@ static_assert(sizeof(GroundLightBlock) == 4 * sizeof(glm::vec4));
 static_assert(offsetof(GroundLightBlock, ground_view) == 3 * sizeof(glm::vec4));
 
 /// @param pixel_angle_rad  between neighbouring pixels; larger: coarser detail.
-[[nodiscard]] GroundLightBlock GroundLightBlockOf(const LitGround& ground, double pixel_angle_rad);
+[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, double pixel_angle_rad);
+
+/// `block GroundSurface` of ground_surface.glsl.
+struct GroundSurfaceBlock {
+  glm::vec4 cover_albedo, rough, coat, water, under_water, snow_y;
+  glm::vec4 drape_red, drape_green, drape_blue, drape_place, drape_eye;
+  std::array<glm::vec4, 17> by_root_mu;
+};
+static_assert(sizeof(GroundSurfaceBlock) == 28 * sizeof(glm::vec4));
+static_assert(offsetof(GroundSurfaceBlock, drape_red) == 6 * sizeof(glm::vec4));
+static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4));
+
+/// What does not change with the eye.
+[[nodiscard]] GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material);
+/// With the place of a draped picture.
+/// @param eye_x_m, eye_y_m  of the eye in the frame of the ground.
+[[nodiscard]] GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
+                                        double eye_x_m, double eye_y_m);
+
+/// GroundRadiance and PlanetRadiance for this material; to be read after the shared texts,
+/// air_block, view_block, sun_light and TransmittanceToSun.
+[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material);
+
+/// The samplers of these texts.
+class GroundTextures {
+ public:
+  /// @param diffuse  of the air over the ground.
+  explicit GroundTextures(const DiffuseLight& diffuse);
+
+  void SetSeaMirror(const std::vector<BandTexel>& texels) const;
+  void SetDrape(const DrapeTexels& texels) const;
+
+  /// Binds to three texture units from the first on, and the samplers of a program to them.
+  void Bind(const ShaderProgram& program, int first_unit) const;
+
+ private:
+  GlTexture level_sky_, sea_mirror_, drape_;
+};
 
 }  // namespace alpenglow

@@ -52,13 +52,41 @@ vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
   return sky_irradiance * OpenSkyOn(normal, up) / max(OpenSkyOn(mesh_normal, up), 1e-12);
 }
 
+// The terrain.
 // @param point_m  from the eye; mesh_normal: unit, without finer relief; sun_x, sky_irradiance: of
 //     VertexLight (lit_ground.h); to_eye: unit.
 vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
+#if GROUND_COVER == WATER_COVER
+  return WaterRadiance(at.up, SunAcross(at, at.up, sun_x),
+                       SkyOn(at.up, mesh_normal, at.up, sky_irradiance), to_eye);
+#else
+  float altitude = 1e3 * at.altitude;
   vec3 normal = DetailedNormal(at.offset, mesh_normal, at.footprint);
-  vec4 direct = max(dot(normal, sun.xyz), 0.0) * SunAcross(at, mesh_normal, sun_x);
-  vec4 sky = SkyOn(normal, mesh_normal, at.up, sky_irradiance);
-  vec4 albedo = GroundAlbedo(at.offset, 1e3 * at.altitude, dot(mesh_normal, at.up), at.footprint);
-  return albedo / 3.14159265359 * (direct + sky);
+  vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), at.footprint);
+  vec4 across = SunAcross(at, mesh_normal, sun_x);
+  vec4 radiance = CoverRadiance(albedo, normal, across,
+                                SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
+#if HAS_SEA
+  if (altitude <= water.y) {
+    radiance = WaterRadiance(at.up, SunAcross(at, at.up, sun_x),
+                             SkyOn(at.up, mesh_normal, at.up, sky_irradiance), to_eye);
+  }
+#endif
+  return radiance;
+#endif
+}
+
+// The bare planet beyond the terrain, as GroundMaterial::OfPlanet has it.
+vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
+  GroundPlace at = GroundPlaceAt(point_m);
+  vec4 across = SunAcross(at, at.up, 1e9);
+  vec4 sky_irradiance = LevelSky(dot(at.up, sun.xyz));
+#if PLANET_IS_WATER
+  return WaterRadiance(at.up, across, sky_irradiance, to_eye);
+#elif GROUND_COVER == MOUNTAIN_COVER
+  return (max(dot(at.up, sun.xyz), 0.0) * across + sky_irradiance) * ground_albedo / 3.14159265359;
+#else
+  return CoverRadiance(cover_albedo, at.up, across, sky_irradiance, to_eye);
+#endif
 }

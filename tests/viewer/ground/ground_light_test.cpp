@@ -23,12 +23,13 @@ using GroundOnGpu = tests::Headless;
 constexpr double kEye_m = 4000.0;
 constexpr double kPixel_rad = 8e-4;
 
-std::vector<ShaderPiece> Texts() {
+std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
   std::vector<ShaderPiece> pieces = SharedTexts();
-  for (const char* name : {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                           "viewer/shaders/sun_light.glsl", "viewer/shaders/sun_transmittance.glsl",
-                           "viewer/shaders/ground.glsl", "viewer/shaders/ground_light.glsl"})
+  for (const char* name :
+       {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+        "viewer/shaders/sun_light.glsl", "viewer/shaders/sun_transmittance.glsl"})
     pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  for (ShaderPiece& piece : GroundTexts(material)) pieces.push_back(std::move(piece));
   return pieces;
 }
 
@@ -43,7 +44,11 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
 /// What the shaders read for an eye over the origin of the site.
 class Blocks {
  public:
-  explicit Blocks(const LitGround& lit) : lit_(lit) {}
+  Blocks(const LitGround& lit, const Lighting& light, double eye_m)
+      : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().diffuse) {
+    textures_.SetSeaMirror(SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().diffuse,
+                                         lit.site().material().water(), lit.lighting().to_sun));
+  }
 
   void Upload(const ShaderProgram& program) const {
     const GroundSite& site = lit_.site();
@@ -51,7 +56,7 @@ class Blocks {
     Bind(program, "Air", 0, air_, AirBlockOf(site.medium()));
     ViewBlock view{};
     view.sun = {glm::vec3(light.to_sun), light.sun_radius_rad};
-    view.eye = {kEye_m / 1e3, 0.0, 0.0, 0.0};
+    view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
     const GroundPoint origin = site.geometry().GroundAt({0.0, 0.0, 0.0}, 0.0);
     GroundBlock ground = GroundBlockOf(light.surface, origin.east_m, origin.north_m, true);
@@ -59,12 +64,16 @@ class Blocks {
     ground.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
     Bind(program, "Ground", 2, ground_, ground);
-    Bind(program, "GroundLight", 3, light_, GroundLightBlockOf(lit_, kPixel_rad));
+    Bind(program, "GroundLight", 3, light_, GroundLightBlockOf(lit_.tilt(), kPixel_rad));
+    Bind(program, "GroundSurface", 4, surface_, GroundSurfaceBlockOf(site.material()));
+    textures_.Bind(program, 0);
   }
 
  private:
   const LitGround& lit_;
-  GlBuffer air_, view_, ground_, light_;
+  double eye_m_;
+  GroundTextures textures_;
+  GlBuffer air_, view_, ground_, light_, surface_;
 };
 
 struct Case {
@@ -73,9 +82,21 @@ struct Case {
   glm::dvec3 to_eye;
 };
 
-std::vector<Case> CasesOn(const LitGround& lit) {
+GroundVertex VertexAt(const Hit& hit) {
+  GroundVertex vertex{};
+  for (const glm::length_t axis : {0, 1, 2}) {
+    const auto k = static_cast<std::size_t>(axis);
+    vertex.position_m[k] = static_cast<float>(hit.point[axis]);
+    vertex.normal[k] = static_cast<float>(hit.mesh_normal[axis]);
+  }
+  return vertex;
+}
+
+const glm::dvec3 kEye(0.0, 0.0, kEye_m);
+
+/// Places of the terrain that see all of the sun or nothing: the renderer takes a point of it.
+std::vector<Case> LandCases(const LitGround& lit) {
   const Terrain& terrain = *lit.site().ground().terrain;
-  const glm::dvec3 eye(0.0, 0.0, kEye_m);
   std::vector<Case> cases;
   for (int i = 1; i <= 400; ++i) {
     const glm::dvec3 above(6000.0 * (Halton(i, 2) - 0.5), 6000.0 * (Halton(i, 3) - 0.5), 9000.0);
@@ -85,51 +106,58 @@ std::vector<Case> CasesOn(const LitGround& lit) {
     c.hit.point = found->smooth_point;
     c.hit.mesh_normal = found->normal;
     c.hit.geometric_normal = found->geometric_normal;
-    c.hit.distance_m = glm::length(c.hit.point - eye);
-    c.hit.footprint_m = kPixel_rad * c.hit.distance_m;
+    c.hit.footprint_m = kPixel_rad * glm::length(c.hit.point - kEye);
     c.hit.normal = MountainSurface::DetailedNormal(
         lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m), c.hit.mesh_normal);
-    c.to_eye = glm::normalize(eye - c.hit.point);
-    GroundVertex vertex{};
-    for (const glm::length_t axis : {0, 1, 2}) {
-      const auto k = static_cast<std::size_t>(axis);
-      vertex.position_m[k] = static_cast<float>(c.hit.point[axis]);
-      vertex.normal[k] = static_cast<float>(c.hit.mesh_normal[axis]);
-    }
-    c.light = lit.At(vertex);
+    c.to_eye = glm::normalize(kEye - c.hit.point);
+    c.light = lit.At(VertexAt(c.hit));
     const double over_plane =
         glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;
-    const bool cut = std::abs(over_plane) < 1.0 || std::abs(c.light.sun_x) < 1.0F;
-    if (!cut) cases.push_back(c);  // of the disk the renderer takes one point
+    if (std::abs(over_plane) > 1.0 && std::abs(c.light.sun_x) > 1.0F) cases.push_back(c);
   }
   return cases;
 }
 
-/// Ascending relative differences of the mean over bands.
-std::vector<double> Differences(const LitGround& lit) {
-  const std::vector<Case> cases = CasesOn(lit);
-  const Blocks blocks(lit);
+/// Places of the planet that an eye sees beyond the mountains, in all directions.
+std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
+  std::vector<Case> cases;
+  for (int i = 1; i <= 300; ++i) {
+    const double azimuth = 2.0 * kPi * Halton(i, 2);
+    const double dip = std::atan(eye_m / (25e3 * std::pow(8.0, Halton(i, 3))));
+    const glm::dvec3 direction(std::cos(dip) * std::cos(azimuth), std::cos(dip) * std::sin(azimuth),
+                               -std::sin(dip));
+    const SceneGround bare{lit.site().ground().frame, std::nullopt, 0.0, "", true};
+    Case c;
+    c.hit = SceneGeometry(bare, lit.site().medium(), false)
+                .Trace({0.0, 0.0, eye_m}, direction, kPixel_rad);
+    c.to_eye = -direction;
+    if (c.hit.kind == HitKind::kPlanet) cases.push_back(c);
+  }
+  return cases;
+}
+
+/// Ascending relative differences of the mean over bands, for a function of land (a normal, light)
+/// or of the planet.
+std::vector<double> Differences(const LitGround& lit, const Lighting& light, double eye_m,
+                                const std::vector<Case>& cases, const std::string& function) {
+  const Blocks blocks(lit, light, eye_m);
   std::vector<double> gpu(cases.size(), 0.0), differences;
   for (std::size_t band = 0; band < 4; ++band) {
     std::vector<tests::Arguments<float>> points;
     for (const Case& c : cases) {
       points.push_back({static_cast<float>(c.hit.point.x), static_cast<float>(c.hit.point.y),
-                        static_cast<float>(c.hit.point.z - kEye_m),
+                        static_cast<float>(c.hit.point.z - eye_m),
                         static_cast<float>(c.hit.mesh_normal.x),
                         static_cast<float>(c.hit.mesh_normal.y), c.light.sun_x, c.light.sky[band]});
     }
-    const std::string expression =
-        "GroundRadiance(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * "
-        "a[4])), a[5], vec4(a[6]), normalize(-vec3(a[0], a[1], a[2])))[" +
-        std::to_string(band) + "]";
     const std::vector<float> values = tests::EvaluateOnGpu(
-        Texts(), expression, points, [&](const ShaderProgram& program) { blocks.Upload(program); });
+        Texts(lit.site().material()), function + "[" + std::to_string(band) + "]", points,
+        [&](const ShaderProgram& program) { blocks.Upload(program); });
     for (std::size_t i = 0; i < cases.size(); ++i) gpu[i] += static_cast<double>(values[i]);
   }
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Case& c = cases[i];
     const GroundRadiance judge = lit.site().light().Towards(
-        c.hit, c.to_eye, {lit.lighting(), nullptr}, LampNodes{}, {0.0, 0.0});
+        cases[i].hit, cases[i].to_eye, {light, nullptr}, LampNodes{}, {0.0, 0.0});
     double sum = 0.0;
     for (std::size_t band = 0; band < 4; ++band) {
       sum += static_cast<double>(judge.natural[band]) /
@@ -141,15 +169,99 @@ std::vector<double> Differences(const LitGround& lit) {
   return differences;
 }
 
+std::vector<double> LandDifferences(const LitGround& lit) {
+  return Differences(
+      lit, lit.lighting(), kEye_m, LandCases(lit),
+      "GroundRadiance(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * "
+      "a[4])), a[5], vec4(a[6]), normalize(-vec3(a[0], a[1], a[2])))");
+}
+
+/// Under the sky of a plain as wide as the view.
+std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
+  Lighting light = lit.lighting();
+  const SolvedAir& air = lit.site().air();
+  light.on_terrain =
+      std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
+  return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
+                     "PlanetRadiance(vec3(a[0], a[1], a[2]), normalize(-vec3(a[0], a[1], a[2])))");
+}
+
+double Quantile(const std::vector<double>& ascending, double share) {
+  return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
+}
+
+GLint OffsetOf(const ShaderProgram& program, const char* member) {
+  GLuint index = GL_INVALID_INDEX;
+  glGetUniformIndices(program.id(), 1, &member, &index);
+  if (index == GL_INVALID_INDEX) return -1;
+  GLint offset = -1;
+  glGetActiveUniformsiv(program.id(), 1, &index, GL_UNIFORM_OFFSET, &offset);
+  return offset;
+}
+
+TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
+  const auto site = tests::RoughSite();
+  std::vector<ShaderPiece> pieces = Texts(site->material());
+  pieces.push_back({"main", "void main() { gl_Position = sky_level + cover_albedo; }\n"});
+  const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
+  int member = 0;
+  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "ground_view"})
+    EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
+  member = 0;
+  for (const char* name :
+       {"cover_albedo", "rough", "coat", "water", "under_water", "snow_y", "drape_red",
+        "drape_green", "drape_blue", "drape_place", "drape_eye", "by_root_mu[0]"})
+    EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
+}
+
 TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
   const auto site = tests::RoughSite();
   for (const double elevation_deg : {50.0, 12.0, -3.0}) {
     const std::vector<double> differences =
-        Differences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-    EXPECT_LT(differences[differences.size() / 2], elevation_deg > 0.0 ? 4e-3 : 1e-2)
-        << elevation_deg;
-    EXPECT_LT(differences[differences.size() * 9 / 10], 0.03)
+        LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
+    EXPECT_LT(Quantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
+    EXPECT_LT(Quantile(differences, 0.9), 0.03)
         << "the sky's light on relief is corrected by that of an open place";
+  }
+}
+
+TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
+  GroundCover cover;
+  struct Bound {
+    GroundCover::Kind kind;
+    double median, most;
+  };
+  for (const auto& [kind, median, most] : {Bound{GroundCover::Kind::kLambert, 4e-3, 0.03},
+                                           {GroundCover::Kind::kOrenNayar, 4e-3, 0.03},
+                                           {GroundCover::Kind::kSnow, 0.01, 0.07},
+                                           {GroundCover::Kind::kBlinnPhong, 0.03, 0.1}}) {
+    cover.kind = kind;
+    const auto site = tests::RoughSite(cover);
+    for (const double elevation_deg : {50.0, 12.0}) {
+      const std::vector<double> differences =
+          LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
+      EXPECT_LT(Quantile(differences, 0.5), median) << elevation_deg;
+      EXPECT_LT(Quantile(differences, 0.9), most) << elevation_deg;
+    }
+  }
+}
+
+TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
+  GroundCover land, sea;
+  sea.sea_level_m = 0.0;
+  for (const GroundCover& cover : {land, sea}) {
+    const auto site = tests::RoughSite(cover);
+    for (const double elevation_deg : {50.0, 12.0, 2.0, -2.0}) {
+      const LitGround lit(site, tests::RoughSun(*site, elevation_deg));
+      for (const double eye_m : {1e3, 40e3}) {
+        const std::vector<double> differences = PlanetDifferences(lit, eye_m);
+        EXPECT_LT(Quantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
+            << elevation_deg << " " << eye_m;
+        EXPECT_LT(Quantile(differences, 0.98), elevation_deg > 0.0 ? 0.06 : 0.12)
+            << "the judge's sky is linear between sectors of 22.5 degrees, and in twilight between "
+               "suns a degree apart";
+      }
+    }
   }
 }
 

@@ -12,6 +12,7 @@
 #include "tests/fixtures/temporary_folder.h"
 #include "viewer/embedded_text.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/ground/ground_block.h"
 #include "viewer/paint/sky_painter.h"
 
 namespace alpenglow {
@@ -28,6 +29,9 @@ class Glslang : public TemporaryFolder {
   /// Checks `stage`, a file of the viewer named "....vert.glsl" or "....frag.glsl", after `texts`.
   void ExpectAccepted(std::vector<ShaderPiece> texts, const std::string& stage) const {
     texts.push_back({stage, std::string(viewer::EmbeddedText("viewer/shaders/" + stage))});
+    ExpectTextAccepted(texts, stage);
+  }
+  void ExpectTextAccepted(const std::vector<ShaderPiece>& texts, const std::string& stage) const {
     const std::filesystem::path file =
         folder_ / stage.substr(0, stage.size() - std::string(".glsl").size());
     WriteText(file, ComposeShader(texts));
@@ -88,6 +92,25 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
          {"lamp_glow.frag.glsl", "lamp_core.frag.glsl", "lamp_disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
+TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
+  for (const auto kind :
+       {GroundCover::Kind::kMountain, GroundCover::Kind::kLambert, GroundCover::Kind::kOrenNayar,
+        GroundCover::Kind::kBlinnPhong, GroundCover::Kind::kWater, GroundCover::Kind::kSnow}) {
+    GroundCover cover;
+    cover.kind = kind;
+    if (kind == GroundCover::Kind::kLambert) cover.sea_level_m = 0.0;
+    std::vector<ShaderPiece> texts = SharedTexts();
+    for (const char* name :
+         {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+          "viewer/shaders/sun_light.glsl", "viewer/shaders/sun_transmittance.glsl"})
+      texts.push_back({name, std::string(viewer::EmbeddedText(name))});
+    const std::vector<double> bands{450.0, 550.0, 650.0};
+    for (ShaderPiece& piece : GroundTexts(GroundMaterial(cover, nullptr, bands)))
+      texts.push_back(std::move(piece));
+    texts.push_back({"main",
+                     "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
+                     "GroundRadiance(p, p, 1.0, vec4(1.0), p) + PlanetRadiance(p, p);\n}\n"});
+    ExpectTextAccepted(texts, "ground.frag.glsl");
   }
 }
 

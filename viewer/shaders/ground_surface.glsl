@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// How surfaces of the ground send light on: reflectance.glsl with the values of one scene,
+// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind, HAS_SEA and HAS_DRAPE are 1
+// or 0: software drivers walk through both sides of every branch.
+#define MOUNTAIN_COVER 0
+#define LAMBERT_COVER 1
+#define OREN_NAYAR_COVER 2
+#define BLINN_PHONG_COVER 3
+#define WATER_COVER 4
+#define SNOW_COVER 5
+#define WATER_INDEX 1.34
+
+layout(std140) uniform GroundSurface {
+  vec4 cover_albedo;  // of a cover of one colour
+  vec4 rough;         // RoughDiffuse: roughness, scale, mean albedo
+  vec4 coat;          // Glossy: exponent, reflectance at normal incidence, normalisation
+  vec4 water;         // variance of slopes; the highest ground that is sea [m]
+  vec4 under_water;   // by band
+  vec4 snow_y;        // by band
+  vec4 drape_red;     // albedo of colours by band
+  vec4 drape_green;
+  vec4 drape_blue;
+  vec4 drape_place;  // of the picture in the mesh's frame: west, south [m]; 1 / size [1/m]
+  vec4 drape_eye;    // of the eye there [m]
+  // At even steps of the root of a cosine: of snow the factor of a direction, of a coat the share of
+  // an even sky that it shows.
+  vec4 by_root_mu[17];
+};
+
+uniform sampler2D sea_mirror;  // SeaMirror of sea_mirror.h
+uniform sampler2D level_sky;   // LevelSky of sea_mirror.h
+#if HAS_DRAPE
+uniform sampler2D drape;  // linear sRGB; 1 where there is a picture
+#endif
+
+// Cosines of normal and light, normal and eye, light and eye: AnglesBetween of reflectance.h.
+vec3 ReflectionAngles(vec3 normal, vec3 to_light, vec3 to_eye) {
+  return vec3(clamp(dot(normal, to_light), 1e-4, 1.0), clamp(dot(normal, to_eye), 1e-4, 1.0),
+              clamp(dot(to_light, to_eye), -1.0, 1.0));
+}
+
+// Irradiance of the sky on a level at altitude 0, per unit solar irradiance.
+vec4 LevelSky(float mu_s) {
+  float x = (AngleOfSine(clamp(mu_s, -1.0, 1.0)) - LEVEL_SKY_LOWEST) / LEVEL_SKY_RANGE;
+  return texture(level_sky, vec2(TexelFromUnit(clamp(x, 0.0, 1.0), LEVEL_SKY_NODES), 0.5));
+}
+
+vec4 WaterBrdf(vec3 angles) {
+  float glitter = WaveGlitter(angles.x, angles.y, angles.z, water.x, WATER_INDEX);
+  float through = WaterTransmitted(angles.x, WATER_INDEX) * WaterTransmitted(angles.y, WATER_INDEX);
+  return vec4(glitter) + through / 3.14159265359 * under_water;
+}
+
+// What waves show of the sky [1/sr].
+vec4 SkyInWater(vec3 up, vec3 to_eye) {
+  float mu_eye = clamp(dot(up, to_eye), 0.0, 1.0);
+  float mu_s = dot(up, sun.xyz);
+  vec3 flat_eye = to_eye - mu_eye * up;
+  vec3 flat_sun = sun.xyz - mu_s * up;
+  float lengths = max(length(flat_eye) * length(flat_sun), 1e-9);
+  float apart = clamp(dot(flat_eye, flat_sun) / lengths, -1.0, 1.0);  // eye and sun: opposite, 1
+  vec2 unit = vec2(sqrt(0.5 * (1.0 + apart)), sqrt(mu_eye));
+  vec2 texel = vec2(TexelFromUnit(unit.x, SEA_MIRROR_SIDE), TexelFromUnit(unit.y, SEA_MIRROR_SIDE));
+  return texture(sea_mirror, texel) * LevelSky(mu_s);
+}
+
+// Radiance of water under a sun across whose beams the irradiance is `across`, and a sky.
+vec4 WaterRadiance(vec3 up, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
+  vec3 angles = ReflectionAngles(up, sun.xyz, to_eye);
+  vec4 body = WaterLetsIn(WATER_INDEX, angles.y) * under_water;
+  return max(dot(up, sun.xyz), 0.0) * across * WaterBrdf(angles) +
+         body / 3.14159265359 * sky_irradiance + SkyInWater(up, to_eye);
+}
+
+float ByRootOf(float mu) {
+  float at = 64.0 * sqrt(mu);
+  int node = min(int(at), 63);
+  int next = node + 1;
+  return mix(by_root_mu[node / 4][node % 4], by_root_mu[next / 4][next % 4], at - float(node));
+}
+
+vec4 SnowBrdf(vec3 angles) {
+  float r0 =
+      SnowWithoutAbsorption(angles.x, angles.y, angles.z) * ByRootOf(angles.x) * ByRootOf(angles.y);
+  return r0 / 3.14159265359 * exp(-snow_y * (SnowEscape(angles.x) * SnowEscape(angles.y) / r0));
+}
+
+vec4 RoughBrdf(vec4 albedo, vec3 angles) {
+  float once = RoughOnce(angles.x, angles.y, angles.z, rough.x, rough.y);
+  float lost = (1.0 - RoughSingle(angles.x, rough.x, rough.y)) *
+               (1.0 - RoughSingle(angles.y, rough.x, rough.y));
+  float again = lost / (max(1.0 - rough.z, 1e-9) * 3.14159265359);
+  vec4 sent;
+  for (int band = 0; band < 4; ++band)
+    sent[band] = albedo[band] * once + again * RoughAgain(albedo[band], rough.z);
+  return sent;
+}
+
+vec4 RoughAlbedo(vec4 albedo, float mu) {
+  float once = RoughSingle(mu, rough.x, rough.y);
+  vec4 sent;
+  for (int band = 0; band < 4; ++band)
+    sent[band] = albedo[band] * once + (1.0 - once) * RoughAgain(albedo[band], rough.z);
+  return sent;
+}
+
+vec4 GlossyBrdf(vec4 albedo, vec3 angles) {
+  float cos_light = HalfCosLight(angles.z);
+  float lobe = CoatLobe(HalfMu(angles.x, angles.y, cos_light), cos_light, coat.y, coat.x, coat.z);
+  return vec4(lobe) + BodyUnderCoat(angles.x, angles.y, coat.y) * albedo;
+}
+
+// Of the land's cover, water apart.
+vec4 CoverBrdf(vec4 albedo, vec3 angles) {
+#if GROUND_COVER == OREN_NAYAR_COVER
+  return RoughBrdf(albedo, angles);
+#elif GROUND_COVER == BLINN_PHONG_COVER
+  return GlossyBrdf(albedo, angles);
+#elif GROUND_COVER == SNOW_COVER
+  return SnowBrdf(angles);
+#else
+  return albedo / 3.14159265359;
+#endif
+}
+
+// Share of an even sky that is sent to the eye, but for what is mirrored.
+vec4 CoverBodyAlbedo(vec4 albedo, float mu_eye) {
+#if GROUND_COVER == OREN_NAYAR_COVER
+  return RoughAlbedo(albedo, mu_eye);
+#elif GROUND_COVER == BLINN_PHONG_COVER
+  return (1.0 - coat.y) * CoatPassed(mu_eye) * albedo;
+#elif GROUND_COVER == SNOW_COVER
+  return exp(-snow_y * SnowEscape(mu_eye));
+#else
+  return albedo;
+#endif
+}
+
+// What a glossy coat shows of the sky, taken to be even.
+vec4 SkyInCoat(float mu_eye, vec4 sky_irradiance) {
+#if GROUND_COVER == BLINN_PHONG_COVER
+  return ByRootOf(mu_eye) / 3.14159265359 * sky_irradiance;
+#else
+  return vec4(0.0);
+#endif
+}
+
+// Radiance of land.
+vec4 CoverRadiance(vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
+  vec3 angles = ReflectionAngles(normal, sun.xyz, to_eye);
+  return max(dot(normal, sun.xyz), 0.0) * across * CoverBrdf(albedo, angles) +
+         CoverBodyAlbedo(albedo, angles.y) / 3.14159265359 * sky_irradiance +
+         SkyInCoat(angles.y, sky_irradiance);
+}
+
+// Albedo of the land's body there.
+// @param offset  from the eye in the plane of the pattern [m]; altitude [m].
+vec4 LandAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
+#if GROUND_COVER == MOUNTAIN_COVER
+  vec4 albedo = GroundAlbedo(offset, altitude, normal_up, footprint);
+#else
+  vec4 albedo = cover_albedo;
+#endif
+#if HAS_DRAPE
+  vec2 foot = (offset + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
+  vec2 at = (foot - drape_place.xy) * drape_place.zw;
+  float level = log2(max(footprint * drape_place.z * float(textureSize(drape, 0).x), 1.0));
+  vec4 rgb = textureLod(drape, clamp(at, 0.0, 1.0), level);
+  vec4 draped = clamp(rgb.x * drape_red + rgb.y * drape_green + rgb.z * drape_blue, 0.0, 1.0);
+  bool within = all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
+  albedo = within && rgb.w > 0.5 ? draped : albedo;
+#endif
+  return albedo;
+}
