@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/disk_light.h"
 
 namespace alpenglow {
 
@@ -27,10 +28,6 @@ double DiskSolidAngle(double radius_rad) {
   return 4.0 * kPi * half_sine * half_sine;
 }
 
-double LimbDarkening(double rho) {
-  constexpr double kDarkening = 0.6;
-  const double mu = std::sqrt(std::max(1.0 - rho * rho, 0.0));
-  return (1.0 - kDarkening * (1.0 - mu)) / (1.0 - kDarkening / 3.0);
-}
+double LimbDarkening(double rho) { return shared::SunLimbDarkening(rho); }
 
 }  // namespace alpenglow

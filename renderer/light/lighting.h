@@ -5,8 +5,10 @@
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/sun/moon_disk.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/sun/time.h"
 #include "renderer/effect/effects.h"
@@ -21,8 +23,9 @@ namespace alpenglow {
 struct Lighting {
   glm::dvec3 to_sun;  // unit
   double sun_radius_rad;
-  BandLight irradiance;     // of the sun above the air, W m^-2 nm^-1
-  MountainSurface surface;  // as the season covers it
+  BandLight irradiance;                         // of the sun above the air, W m^-2 nm^-1
+  MountainSurface surface;                      // as the season covers it
+  std::optional<MoonDisk> moon = std::nullopt;  // as a thing to see: it lights nothing yet
   EffectSet effects = EffectSet::All();
   /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
   std::shared_ptr<const TerrainLight> on_terrain = nullptr;

@@ -59,6 +59,13 @@ BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& th
   return scale * (light.irradiance * through.transmittance);
 }
 
+BandLight SceneState::Moonlight(const glm::dvec3& direction, const AirAlongRay& through,
+                                const Lighting& light) const {
+  const double radiance = light.moon ? MoonRadiance(*light.moon, direction) : 0.0;
+  if (radiance == 0.0) return BandLight(light.irradiance.count);
+  return static_cast<float>(radiance) * (light.irradiance * through.transmittance);
+}
+
 Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                          const PictureFrame& frame, const LampTile& near,
                          std::array<double, 2> disk_sample) const {
@@ -75,7 +82,8 @@ Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraR
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
     shaded.radiance =
-        shaded.radiance + through.fog * SunDisk(ray.direction, through.air, frame.light);
+        shaded.radiance + through.fog * (SunDisk(ray.direction, through.air, frame.light) +
+                                         Moonlight(ray.direction, through.air, frame.light));
     return shaded;
   }
   const GroundRadiance sent = frame.model->ground_light.Towards(

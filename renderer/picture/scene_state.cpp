@@ -34,11 +34,13 @@ LampPlan SceneState::PlanLamps(const PictureFrame& frame) const {
       });
 }
 
+GeodeticPosition SceneState::EyeOf(const Shot& shot) const {
+  if (const auto pose = shot.middle()) return pose->place;
+  return {scene.place.latitude_rad, scene.place.longitude_rad, ground.eye_height_m};
+}
+
 SunPosition SceneState::ApparentSun(const Shot& shot) const {
-  GeodeticPosition eye = scene.place;
-  eye.height_m = ground.eye_height_m;
-  if (const auto pose = shot.middle()) eye = pose->place;
-  return ApparentSunAt(eye, shot.instant);
+  return ApparentSunAt(EyeOf(shot), shot.instant);
 }
 
 CameraStand SceneState::StandOf(const Shot& shot) const {
@@ -47,8 +49,13 @@ CameraStand SceneState::StandOf(const Shot& shot) const {
 }
 
 Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) const {
-  Lighting light = LightingOf(ApparentSun(shot), shot.instant, scene.place.latitude_rad, medium);
+  const SunPosition sun = ApparentSun(shot);
+  Lighting light = LightingOf(sun, shot.instant, scene.place.latitude_rad, medium);
   light.to_sun = stand.frame_from_enu * light.to_sun;
+  if (!medium.follows_wgs84) return light;  // no other planet has this moon
+  light.moon = ApparentMoonDisk(EyeOf(shot), shot.instant, sun.distance_au);
+  light.moon->to_moon = stand.frame_from_enu * light.moon->to_moon;
+  light.moon->to_sun = stand.frame_from_enu * light.moon->to_sun;
   return light;
 }
 

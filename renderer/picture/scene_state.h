@@ -62,6 +62,9 @@ struct SceneState {
                              std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
+  [[nodiscard]] BandLight Moonlight(const glm::dvec3& direction, const AirAlongRay& through,
+                                    const Lighting& light) const;
+  [[nodiscard]] GeodeticPosition EyeOf(const Shot& shot) const;
   [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
   [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
   [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;

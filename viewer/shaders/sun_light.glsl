@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The sun as a disk: what stands of it over the horizon, and how bright it is (sun_disk.h).
+// Sun and moon as disks: what stands of the sun over the horizon, and how bright they are
+// (sun_disk.h, moon_disk.h).
+
+uniform vec4 moon;      // unit vector to the apparent moon, in the frame of the eye; angular radius
+uniform vec4 moon_lit;  // unit vector from the moon to the sun; radiance per irradiance, 0: no moon
 
 // The angle of a sine in [-1, 1]: asin() and acos() of
 // some drivers are good to 1e-4, a fiftieth of the disk.
@@ -25,8 +29,22 @@ float SunDiskRadiance(vec3 direction, float width) {
   float rho = 2.0 * asin(min(0.5 * length(direction - sun.xyz), 1.0)) / radius;
   float covered = clamp((1.0 - rho) * radius / width + 0.5, 0.0, 1.0);
   if (covered <= 0.0) return 0.0;
-  float mu = sqrt(max(1.0 - rho * rho, 0.0));
-  float darkening = (1.0 - 0.6 * (1.0 - mu)) / 0.8;
   float half_sine = sin(0.5 * radius);
-  return covered * darkening / (4.0 * 3.14159265359 * half_sine * half_sine);
+  return covered * SunLimbDarkening(rho) / (4.0 * 3.14159265359 * half_sine * half_sine);
+}
+
+// Radiance of the moon's disk outside the air, per unit of solar irradiance [1/sr], times the share
+// of a pixel that the disk covers; the same in all bands.
+vec4 MoonRadiance(vec3 direction, float width) {
+  vec3 beside = direction - moon.xyz;
+  vec3 at = (beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
+  float rho = length(at);
+  float covered = clamp((1.0 - rho) * moon.w / width + 0.5, 0.0, 1.0);
+  if (covered <= 0.0 || dot(direction, moon.xyz) <= 0.0) return vec4(0.0);
+  // What a pixel beyond the limb has of the disk is as bright as the limb.
+  const float kLimb = 0.999;
+  at *= min(kLimb / max(rho, 1e-6), 1.0);
+  float mu_seen = sqrt(1.0 - dot(at, at));
+  float mu_lit = dot(at - mu_seen * moon.xyz, moon_lit.xyz);
+  return vec4(covered * moon_lit.w * LommelSeeliger(mu_lit, mu_seen));
 }

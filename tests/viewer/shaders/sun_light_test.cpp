@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
+#include "atmosphere/sun/moon_disk.h"
 #include "atmosphere/sun/sun_disk.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
@@ -48,6 +50,41 @@ TEST_F(SunLight, OfADiskThatRisesIsThatOfTheRenderer) {
     EXPECT_NEAR(double{centre[i]}, disk.mu_s_effective, 2e-3 * double{kRadius_rad})
         << "in radii; a sliver's centre is a ratio of what is left of it";
   }
+}
+
+TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
+  MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05};
+  moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  for (const char* name : {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"})
+    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  std::vector<tests::Arguments<float>> points;
+  std::vector<double> expected;
+  for (double right = -1.3; right <= 1.3; right += 0.1) {
+    for (double up = -1.3; up <= 1.3; up += 0.1) {
+      const glm::dvec3 beside = right * glm::dvec3(0.0, 1.0, 0.0) + up * glm::dvec3(-0.8, 0.0, 0.6);
+      const glm::dvec3 direction = glm::normalize(moon.to_moon + moon.radius_rad * beside);
+      if (std::abs(std::hypot(right, up) - 1.0) < 0.02) continue;  // partly covered
+      points.push_back({static_cast<float>(direction.x), static_cast<float>(direction.y),
+                        static_cast<float>(direction.z)});
+      expected.push_back(MoonRadiance(moon, direction));
+    }
+  }
+  const std::vector<float> found =
+      tests::EvaluateOnGpu(pieces, "MoonRadiance(vec3(a[0], a[1], a[2]), 1e-5).x", points,
+                           [&](const ShaderProgram& program) {
+                             glUniform4f(program.Uniform("moon"), 0.6F, 0.0F, 0.8F, 0.0045F);
+                             const glm::vec3 lit(moon.to_sun);
+                             glUniform4f(program.Uniform("moon_lit"), lit.x, lit.y, lit.z, 0.05F);
+                           });
+  int seen = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (expected[i] > 0.0) ++seen;
+    EXPECT_NEAR(static_cast<double>(found[i]), expected[i], 2e-3 * 0.05)
+        << "directions in float place it to 1e-5 radii; near the limb light changes by a tenth in "
+           "a thousandth of a radius";
+  }
+  EXPECT_GT(seen, 100);
 }
 
 }  // namespace

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/sun/moon.h"
+
+#include <erfa.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/root.h"
+#include "atmosphere/sun/apparent_place.h"
+#include "atmosphere/sun/refraction.h"
+
+namespace alpenglow {
+namespace {
+
+// Geometric, as bodies move about the barycentre.
+BodyState MoonOf(const BodyState& earth, const UtcInstant& instant, double delta_t_s) {
+  const TerrestrialTime time = TerrestrialTimeAt(instant, delta_t_s);
+  double pv[2][3];
+  eraMoon98(time.day, time.part, pv);
+  return {earth.position_au + glm::dvec3(pv[0][0], pv[0][1], pv[0][2]),
+          earth.velocity_au_per_day + glm::dvec3(pv[1][0], pv[1][1], pv[1][2])};
+}
+
+/// Position angle on the sky of a direction, seen from another: from north over east.
+double PositionAngle(const glm::dvec3& of, const glm::dvec3& at) {
+  const glm::dvec3 pole(0.0, 0.0, 1.0);
+  const glm::dvec3 east = glm::cross(pole, at);
+  const glm::dvec3 north = glm::cross(at, east);
+  const double angle = std::atan2(glm::dot(of, east), glm::dot(of, north));
+  return angle < 0.0 ? angle + 2.0 * kPi : angle;
+}
+
+double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+constexpr double kDay_s = 86400.0;
+constexpr double kStep_s = 1200.0;
+constexpr int kSteps = static_cast<int>(30.0 * kDay_s / kStep_s);
+
+/// How far the upper limb stands over the sea horizon [rad], some seconds after an instant.
+class LimbOverHorizon {
+ public:
+  LimbOverHorizon(const GeodeticPosition& place, const UtcInstant& from)
+      : place_(place),
+        from_(from),
+        horizon_rad_(SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
+                         .true_elevation_rad) {}
+
+  double operator()(double after_s) const {
+    const MoonPosition moon = MoonAt(place_, AddSeconds(from_, after_s));
+    return moon.elevation_rad + moon.angular_radius_rad - horizon_rad_;
+  }
+
+ private:
+  GeodeticPosition place_;
+  UtcInstant from_;
+  double horizon_rad_;
+};
+
+struct Sample {
+  double time_s, value;
+  [[nodiscard]] bool IsAbove() const { return value >= 0.0; }
+};
+
+/// Where the parabola through three samples at even steps turns; the middle one if it does not.
+double TurnOf(const Sample& before, const Sample& here, const Sample& after) {
+  const double bend = before.value - 2.0 * here.value + after.value;
+  const double steps = bend != 0.0 ? 0.5 * (before.value - after.value) / bend : 0.0;
+  return here.time_s + steps * kStep_s;
+}
+
+/// Samples of the step that follows `here`. Where the moon only just rises or sets, both may fall
+/// into one step, beside the highest or lowest place of its path, which the parabola finds within
+/// seconds.
+std::vector<Sample> SamplesOfStep(const LimbOverHorizon& limb, const Sample& before,
+                                  const Sample& here) {
+  const double end_s = here.time_s + kStep_s;
+  const Sample next{end_s, limb(end_s)};
+  const double turn_s = TurnOf(before, here, next);
+  if (here.IsAbove() != next.IsAbove() || !(turn_s > here.time_s && turn_s < end_s))
+    return {here, next};
+  return {here, {turn_s, limb(turn_s)}, next};
+}
+
+std::optional<UtcInstant> NextChange(const GeodeticPosition& place, const UtcInstant& after,
+                                     bool rising) {
+  constexpr double kTolerance_s = 0.01;
+  const LimbOverHorizon limb(place, after);
+  Sample before{-kStep_s, limb(-kStep_s)}, here{0.0, limb(0.0)};
+  for (int step = 0; step < kSteps; ++step) {
+    const std::vector<Sample> samples = SamplesOfStep(limb, before, here);
+    for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+      if (samples[i].IsAbove() == rising || samples[i + 1].IsAbove() != rising) continue;
+      return AddSeconds(
+          after, BracketedRoot(limb, samples[i].time_s, samples[i + 1].time_s, kTolerance_s));
+    }
+    before = here;
+    here = samples.back();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double MoonPosition::IlluminatedFraction() const { return 0.5 * (1.0 + std::cos(phase_angle_rad)); }
+
+MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant) {
+  return MoonAt(place, instant, DeltaT(instant));
+}
+
+MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant, double delta_t_s) {
+  const EarthAndSun bodies = EarthAndSunAt(instant, delta_t_s);
+  const BodyState moon = MoonOf(bodies.earth, instant, delta_t_s);
+  const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, delta_t_s);
+  const ApparentPlace seen = SeenFrom(place, ecef_from_gcrs, bodies, moon);
+  const glm::dvec3 sun_au = bodies.sun.position_au - moon.position_au;
+  const Vector<Ecef> to_sun{glm::normalize(ecef_from_gcrs * sun_au)};
+  // Not the way of the light about the barycentre: the observer flies along with the moon.
+  const glm::dvec3 from_centre_m =
+      ecef_from_gcrs * (moon.position_au - bodies.earth.position_au) * kAstronomicalUnit_m;
+  const double distance_m = glm::length(from_centre_m - EcefFromGeodetic(kWgs84, place).xyz);
+  return {seen.elevation_rad,
+          seen.azimuth_rad,
+          distance_m,
+          std::asin(kMoonRadius_m / distance_m),
+          seen.direction,
+          to_sun,
+          glm::length(sun_au),
+          AngleBetween(to_sun.xyz, -seen.direction.xyz),
+          PositionAngle(to_sun.xyz, seen.direction.xyz)};
+}
+
+MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant) {
+  MoonPosition moon = MoonAt(place, instant);
+  moon.elevation_rad += RefractionFromHeight(moon.elevation_rad, place.height_m);
+  return moon;
+}
+
+std::optional<UtcInstant> NextMoonrise(const GeodeticPosition& place, const UtcInstant& after) {
+  return NextChange(place, after, true);
+}
+
+std::optional<UtcInstant> NextMoonset(const GeodeticPosition& place, const UtcInstant& after) {
+  return NextChange(place, after, false);
+}
+
+}  // namespace alpenglow
