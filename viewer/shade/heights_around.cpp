@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <cstdint>
+#include <vector>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/terrain/cell_diagonal.h"
 
 namespace alpenglow {
 namespace {
@@ -40,22 +42,55 @@ Place ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double x_m,
           (grid.north_rad - at.latitude_rad) / grid.step_lat_rad, -z_m};
 }
 
-float HeightAt(const ElevationGrid& grid, const Place& place) {
-  const double last_column = grid.columns - 1, last_row = grid.rows - 1;
-  if (!(place.column >= 0.0 && place.column <= last_column && place.row >= 0.0 &&
-        place.row <= last_row))
-    return HeightRaster::kNothing;
-  const int column = std::min(static_cast<int>(place.column), std::max(grid.columns - 2, 0));
-  const int row = std::min(static_cast<int>(place.row), std::max(grid.rows - 2, 0));
-  const auto x = static_cast<float>(place.column - column);
-  const auto y = static_cast<float>(place.row - row);
-  const int right = std::min(column + 1, grid.columns - 1);
-  const int below = std::min(row + 1, grid.rows - 1);
-  const float north = (1.0F - x) * grid.at(row, column) + x * grid.at(row, right);
-  const float south = (1.0F - x) * grid.at(below, column) + x * grid.at(below, right);
-  const float height = (1.0F - y) * north + y * south;
-  return std::isnan(height) ? HeightRaster::kNothing : height - static_cast<float>(place.drop_m);
-}
+/// The samples as triangles.
+class Facets {
+ public:
+  explicit Facets(const ElevationGrid& grid) : grid_(grid) {
+    for (int row = 0; row + 1 < grid.rows; ++row) {
+      for (int column = 0; column + 1 < grid.columns; ++column)
+        falling_.push_back(FallingDiagonalFits(Around(row, column)));
+    }
+  }
+
+  [[nodiscard]] float HeightAt(const Place& place) const {
+    if (!(place.column >= 0.0 && place.column < grid_.columns - 1 && place.row >= 0.0 &&
+          place.row < grid_.rows - 1))
+      return HeightRaster::kNothing;
+    const int column = static_cast<int>(place.column), row = static_cast<int>(place.row);
+    const float height = Between(row, column, static_cast<float>(place.column - column),
+                                 static_cast<float>(place.row - row));
+    return std::isnan(height) ? HeightRaster::kNothing : height - static_cast<float>(place.drop_m);
+  }
+
+ private:
+  [[nodiscard]] CellHeights Around(int row, int column) const {
+    CellHeights around{};
+    for (int i = 0; i < 16; ++i) {
+      around[static_cast<std::size_t>(i)] =
+          static_cast<double>(grid_.at(std::clamp(row + i / 4 - 1, 0, grid_.rows - 1),
+                                       std::clamp(column + i % 4 - 1, 0, grid_.columns - 1)));
+    }
+    return around;
+  }
+
+  // @param x, y  from the cell's north-western corner, east and south, in [0, 1].
+  [[nodiscard]] float Between(int row, int column, float x, float y) const {
+    const float* north = &grid_.height_m[grid_.index(row, column)];
+    const float* south = north + grid_.columns;
+    const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.columns - 1) +
+                      static_cast<std::size_t>(column);
+    if (falling_[cell]) {
+      return x > y ? north[0] + x * (north[1] - north[0]) + y * (south[1] - north[1])
+                   : north[0] + x * (south[1] - south[0]) + y * (south[0] - north[0]);
+    }
+    return x + y < 1.0F
+               ? north[0] + x * (north[1] - north[0]) + y * (south[0] - north[0])
+               : south[1] + (1.0F - x) * (south[0] - south[1]) + (1.0F - y) * (north[1] - south[1]);
+  }
+
+  const ElevationGrid& grid_;
+  std::vector<std::uint8_t> falling_;  // whether a cell is cut from north-west to south-east
+};
 
 /// A coarse net of exact places.
 struct Net {
@@ -88,10 +123,11 @@ HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame, d
                                       raster.first_y_m + raster.cell_m * kStride * row));
     }
   }
+  const Facets facets(grid);
   raster.z_m.reserve(raster.index(0, side));
   for (int row = 0; row < side; ++row) {
     for (int column = 0; column < side; ++column)
-      raster.z_m.push_back(HeightAt(grid, net.At(column, row)));
+      raster.z_m.push_back(facets.HeightAt(net.At(column, row)));
   }
   return raster;
 }

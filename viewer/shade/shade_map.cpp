@@ -20,8 +20,6 @@ constexpr double kHighestSun_rad = 80.0 * kRadiansPerDegree;
 constexpr float kNoShade_m = -1e5F;
 // Shade counts where it stands this much over the ground: less is a matter of interpolation.
 constexpr float kLeastShade_m = 0.5F;
-// Steps along u in a cell: a crest is found within half a step.
-constexpr int kSteps = 2;
 
 /// A line of heights at even steps, between the nodes of a raster.
 class Profile {
@@ -99,6 +97,7 @@ ShadeMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int mos
 struct Sweep {
   const HeightRaster& heights;
   float lowest_m;
+  int steps;                    // of a cell along u: a crest is found within half a step
   std::array<float, 3> fall_m;  // of each beam in a step
 
   void Line(int line, ShadeMap& map) const;
@@ -108,21 +107,21 @@ struct Sweep {
 void Sweep::Line(int line, ShadeMap& map) const {
   const double v_m = map.first_v_m + map.cell_m * line;
   const glm::dvec3 first = map.first_u_m * map.sunwards + v_m * map.across;
-  const glm::dvec3 step = map.cell_m / kSteps * map.sunwards;
+  const glm::dvec3 step = map.cell_m / steps * map.sunwards;
   const Profile profile(heights, glm::dvec2(first), glm::dvec2(step));
   glm::vec2* nodes =
       &map.height[static_cast<std::size_t>(line) * static_cast<std::size_t>(map.columns)];
   std::array<float, 3> shade_m;  // of beams from the bottom, the middle and the top of the disk
   shade_m.fill(kNoShade_m);
-  for (int i = (map.columns - 1) * kSteps; i >= 0; --i) {
+  for (int i = (map.columns - 1) * steps; i >= 0; --i) {
     const float ground_m = profile.At(i);
     for (std::size_t beam = 0; beam < 3; ++beam)
       shade_m[beam] = std::max(shade_m[beam] - fall_m[beam], ground_m);
-    if (i % kSteps != 0) continue;
+    if (i % steps != 0) continue;
     const auto [bottom, middle, top] = shade_m;
-    nodes[i / kSteps] = {middle, 0.5F * (bottom - top)};
+    nodes[i / steps] = {middle, 0.5F * (bottom - top)};
     if (bottom < std::max(ground_m, lowest_m) + kLeastShade_m) continue;
-    Widen(map, map.first_u_m + map.cell_m * (i / kSteps), v_m, double{bottom});
+    Widen(map, map.first_u_m + map.cell_m * (i / steps), v_m, double{bottom});
   }
 }
 
@@ -149,10 +148,12 @@ ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, doubl
   if (elevation < kLowestSun_rad || elevation > kHighestSun_rad || heights.z_m.empty()) return {};
   ShadeMap map = EmptyMap(heights, to_sun, most_side);
   map.height.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.lines));
-  Sweep sweep{heights, LowestOf(heights), {}};
+  // Twice a cell of the map, and no less often than there are heights.
+  const int steps = std::max(2, static_cast<int>(std::lround(map.cell_m / heights.cell_m)));
+  Sweep sweep{heights, LowestOf(heights), steps, {}};
   for (std::size_t beam = 0; beam < 3; ++beam) {
     const double at = elevation + (static_cast<double>(beam) - 1.0) * radius_rad;
-    sweep.fall_m[beam] = static_cast<float>(map.cell_m / kSteps * std::tan(at));
+    sweep.fall_m[beam] = static_cast<float>(map.cell_m / steps * std::tan(at));
   }
   for (int line = 0; line < map.lines; ++line) sweep.Line(line, map);
   if (!(map.low_u_m < map.high_u_m)) return {};
