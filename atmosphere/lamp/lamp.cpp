@@ -82,7 +82,7 @@ double RelativeIntensity(const LampProfile& profile, const glm::dvec3& cosines) 
     case LampProfile::Kind::kIsotropic:
       return 1.0;
     case LampProfile::Kind::kCosinePower:
-      return shared::CosinePowerShare(cosines.x, profile.exponent);
+      return cosines.x > 0.0 ? std::pow(cosines.x, profile.exponent) : 0.0;
     case LampProfile::Kind::kCone:
       return shared::SpotShare(cosines.x, std::cos(profile.inner_rad), std::cos(profile.outer_rad));
     case LampProfile::Kind::kTable:

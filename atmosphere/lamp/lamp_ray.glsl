@@ -13,17 +13,20 @@ SHARED Length LampColumn(Length span, Number rho_a, Number rho_b, Number rise_ov
                 span * (rho_a - rho_b) / divisor);
 }
 
+// The same by a Pade approximant of the hyperbolic tangent, without a choice: the rise has at most
+// a few scale heights. Relative error 1e-7 at 1, 2.5e-3 at 8, 5e-2 at 16.
+SHARED Length GentleLampColumn(Length span, Number rho_a, Number rho_b, Number rise_over_h) {
+  Number y = Number(0.25) * rise_over_h * rise_over_h;
+  Number mean = Number(0.5) * (rho_a + rho_b);
+  return span * mean * (Number(945.0) + y * (Number(105.0) + y)) /
+         (Number(945.0) + y * (Number(420.0) + Number(15.0) * y));
+}
+
 // Of a spot, relative: 1 inside, 0 outside, smooth in the cosine to its axis between.
 SHARED Number SpotShare(Number cosine, Number cos_inner, Number cos_outer) {
   Number t = (cosine - cos_outer) / (cos_inner - cos_outer);
   t = min(max(t, Number(0.0)), Number(1.0));
   return t * t * (Number(3.0) - Number(2.0) * t);
-}
-
-// Of a lamp whose light falls by a power of the cosine to its axis, relative; none behind it.
-SHARED Number CosinePowerShare(Number cosine, Number exponent) {
-  Number ahead = select(cosine > Number(0.0), cosine, Number(1.0));
-  return select(cosine > Number(0.0), pow(ahead, exponent), Number(0.0));
 }
 
 // Share per solid angle [1/sr] of light that a soft disk of angular radius `radius` spreads around

@@ -53,11 +53,9 @@ class LampPacking {
   [[nodiscard]] glm::vec3 Turned(const glm::dvec3& of_ground) const {
     return view_.eye_from_ground * of_ground;
   }
+  /// Cosines at which a cone is full and dark.
   [[nodiscard]] static glm::vec2 Edges(const LampProfile& profile) {
-    if (profile.kind == LampProfile::Kind::kCone) {
-      return {std::cos(profile.inner_rad), std::cos(profile.outer_rad)};
-    }
-    return {profile.exponent, 0.0};
+    return {std::cos(profile.inner_rad), std::cos(profile.outer_rad)};
   }
   [[nodiscard]] static glm::vec3 Densities(const LampAir& air, double z) {
     glm::dvec3 densities(0.0);

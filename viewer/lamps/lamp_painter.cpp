@@ -18,9 +18,9 @@ namespace {
 
 enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit };
 
-/// Cores end at so many steps of the lattice from their lamp: there 1/angle is straight between its
-/// points to 3e-4, and so is what fades.
-constexpr double kCoreBegin_steps = 5.0, kCoreEnd_steps = 20.0;
+/// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
+/// 1 / angle is straight enough between its points.
+constexpr double kCoreBegin_steps = 3.0, kCoreEnd_steps = 12.0;
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
@@ -85,8 +85,11 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   ALPENGLOW_ENSURE(quality.nodes, <=, 32);
   std::vector<ShaderPiece> texts = SharedTexts();
   texts.push_back(Piece("viewer/shaders/view_block.glsl"));
+  std::vector<ShaderPiece> corners = texts;
   texts.insert(texts.end(), texts_.begin(), texts_.end());
-  const std::vector<ShaderPiece> corners = Together(texts, {"viewer/shaders/lamp_corners.glsl"});
+  // The last is of pixels.
+  corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
+  corners.push_back(Piece("viewer/shaders/lamp_corners.glsl"));
   if (quality.step > 1) {
     glow_program_.emplace(std::vector{Piece("viewer/shaders/full_screen.vert.glsl")},
                           Together(texts, {"viewer/shaders/lamp_glow.frag.glsl"}));
@@ -203,6 +206,8 @@ void LampPainter::PaintGlow(int width, int height) {
   const int columns = (width + quality_.step - 1) / quality_.step + 1;
   const int rows = (height + quality_.step - 1) / quality_.step + 1;
   if (!lattice_ || lattice_->width() != columns || lattice_->height() != rows) {
+    // It binds what it makes: not in the place of the surface map.
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLatticeUnit));
     lattice_.emplace(columns, rows, RenderTarget::Depth::kNone);
   }
   Bind();

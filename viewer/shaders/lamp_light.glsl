@@ -11,7 +11,6 @@
 // rest. The air of a lamp lies over the plane that touches the sphere between it and the eye.
 #define LAMP_MOST 64
 #define LAMP_EVEN 0
-#define LAMP_POWER 1
 #define LAMP_CONE 2
 #define LAMP_TABLE 3
 
@@ -20,12 +19,12 @@ struct Lamp {
   vec4 intensity;  // in its brightest direction [W sr^-1 nm^-1]
   vec4 axis;       // unit; kind of its profile
   vec4 side;       // unit; layer of its table
-  vec4 profile;    // cosines inside which a cone is full and outside which it is dark (or exponent,
-                   // nothing); distance; 1 where the eye is inside of it
-  vec4 up;         // of its air; altitude of the eye
-  vec4 at_eye;     // densities of molecules, aerosol, fog; altitude of the lamp
-  vec4 at_lamp;    // densities there; its own radius
-  vec4 glow;       // mean of its profile; layer of glow_map; 1 with a core of its own; unused
+  vec4
+      profile;  // cosines inside which a cone is full and outside which it is dark; distance; 1 where the eye is inside of it
+  vec4 up;      // of its air; altitude of the eye
+  vec4 at_eye;  // densities of molecules, aerosol, fog; altitude of the lamp
+  vec4 at_lamp;  // densities there; its own radius
+  vec4 glow;     // mean of its profile; layer of glow_map; 1 with a core of its own; unused
 };
 
 layout(std140) uniform Lamps {
@@ -69,9 +68,14 @@ float LampPhaseMie(float cosine, float angle) {
 #endif
 }
 
+// Of molecules and aerosol, whose scale heights are more than lamps are apart in height; and of fog.
 vec3 LampColumns(float span, vec3 from, vec3 to, vec3 rise) {
-  return vec3(LampColumn(span, from.x, to.x, rise.x), LampColumn(span, from.y, to.y, rise.y),
-              LampColumn(span, from.z, to.z, rise.z));
+  vec3 columns = vec3(GentleLampColumn(span, from.x, to.x, rise.x),
+                      GentleLampColumn(span, from.y, to.y, rise.y), 0.0);
+#ifdef LAMP_FOG
+  columns.z = LampColumn(span, from.z, to.z, rise.z);
+#endif
+  return columns;
 }
 
 vec4 LampDepth(vec3 columns) {
@@ -97,7 +101,6 @@ float LampShare(Lamp lamp, vec3 cosines) {
   float share = 1.0;
 #ifdef LAMP_SPOTS
   if (kind == LAMP_CONE) share = SpotShare(cosines.x, lamp.profile.x, lamp.profile.y);
-  if (kind == LAMP_POWER) share = CosinePowerShare(cosines.x, lamp.profile.x);
 #endif
 #ifdef LAMP_TABLES
   if (kind == LAMP_TABLE) {
@@ -125,7 +128,7 @@ vec3 LampCosines(Lamp lamp, vec3 direction) {
 vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
 #ifdef LAMP_SPOTS
   int kind = int(lamp.axis.w + 0.5);
-  float edge = kind == LAMP_CONE ? lamp.profile.y : kind == LAMP_POWER ? 0.0 : -1.0;
+  float edge = kind == LAMP_CONE ? lamp.profile.y : -1.0;
   if (edge < 0.0) return angles;
   float a = length(vec2(along, across));
   float half_angle = acos(clamp(edge / max(a, 1e-6), -1.0, 1.0));
