@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/places.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/time_zone.h"
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/fault_of.h"
+
+namespace alpenglow {
+namespace {
+
+using ::testing::HasSubstr;
+
+double Sea(const GeodeticPosition&) { return 0.0; }
+double Degrees(double radians) { return radians / kRadiansPerDegree; }
+
+TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
+  const UtcInstant winter = ParseInstant("2026-01-15T12:00:00Z");
+  std::set<std::string> names;
+  for (const NamedPlace& place : NamedPlaces()) {
+    EXPECT_TRUE(names.insert(place.name).second) << place.name << " is there twice";
+    EXPECT_EQ(place.code.size(), place.kind == PlaceKind::kAirport ? 4U : 0U) << place.name;
+    const std::string local = FormatInZone(winter, place.zone);
+    if (place.kind == PlaceKind::kPole) continue;
+    const double hours = std::stod(local.substr(19, 3));
+    const double of_sun = Degrees(place.place.longitude_rad) / 15.0;
+    EXPECT_LT(std::abs(std::remainder(hours - of_sun, 24.0)), 3.3)
+        << place.name << ": Lhasa keeps the time of Beijing";
+  }
+  EXPECT_GT(names.size(), 100U);
+}
+
+TEST(Places, HeightsAreThoseOfTheEarth) {
+  for (const NamedPlace& place : NamedPlaces()) {
+    const double most_m = place.kind == PlaceKind::kPeak ? 8850.0 : 4100.0;
+    const double least_m = place.kind == PlaceKind::kPeak ? 1000.0 : -10.0;
+    EXPECT_GE(place.place.height_m, least_m) << place.name;
+    EXPECT_LE(place.place.height_m, most_m) << place.name;
+  }
+}
+
+TEST(Places, AnAirportIsNearTheCityThatItServes) {
+  for (const auto& [airport, city] : {std::pair{"LSZH", "Zürich"},
+                                      {"KJFK", "New York"},
+                                      {"EGLL", "London"},
+                                      {"NZQN", "Queenstown"},
+                                      {"YSSY", "Sydney"},
+                                      {"RJTT", "Tokyo"},
+                                      {"SLLP", "La Paz"},
+                                      {"FACT", "Cape Town"},
+                                      {"PANC", "Anchorage"},
+                                      {"SBRJ", "Rio de Janeiro"},
+                                      {"ENTC", "Tromsø"},
+                                      {"KDEN", "Denver"}}) {
+    const GeodeticPosition a = PlaceNamed(airport).place, b = PlaceNamed(city).place;
+    const double north_km = 6371.0 * (a.latitude_rad - b.latitude_rad);
+    const double east_km = 6371.0 * (a.longitude_rad - b.longitude_rad) * std::cos(a.latitude_rad);
+    EXPECT_LT(std::hypot(north_km, east_km), 35.0) << airport;
+  }
+}
+
+TEST(Places, AreFoundByCodeNameAndBeginningWithoutCaseAndAccents) {
+  EXPECT_EQ(PlaceNamed("LSZH").name, "Zürich Airport");
+  EXPECT_EQ(PlaceNamed("kjfk").name, "New York JFK");
+  EXPECT_EQ(PlaceNamed("Mont Blanc").place.height_m, 4806.0);
+  EXPECT_EQ(PlaceNamed("zurich").kind, PlaceKind::kCity) << "the whole name before a beginning";
+  EXPECT_EQ(PlaceNamed("TROMSØ").name, "Tromsø");
+  EXPECT_EQ(PlaceNamed("tromso").name, "Tromsø");
+  EXPECT_EQ(PlaceNamed("grossglockner").name, "Großglockner");
+  EXPECT_EQ(PlaceNamed("fuji").name, "Mount Fuji") << "a word in the name";
+  EXPECT_EQ(PlaceNamed("chomo").name, "Mount Everest");
+  EXPECT_EQ(PlaceNamed("  st helens ").name, "Mount St. Helens");
+  EXPECT_EQ(PlaceNamed("ohare").name, "Chicago O'Hare");
+}
+
+TEST(Places, OthersAreRefusedWithWhatCouldBeMeant) {
+  const auto fault = [](const char* text) {
+    return tests::FaultOf([&] { return PlaceNamed(text).name; });
+  };
+  EXPECT_THAT(fault("Mattehorn"), HasSubstr("did you mean Matterhorn?"));
+  EXPECT_THAT(fault("LSZG"), HasSubstr("did you mean"));
+  EXPECT_THAT(fault("Mount"), HasSubstr("could be Mount "));
+  EXPECT_THAT(fault("qqqqqqqqqq"), HasSubstr("there is no place \"qqqqqqqqqq\" in the list"));
+  EXPECT_THAT(fault(""), HasSubstr("there is no place"));
+}
+
+TEST(Places, ASearchGivesTheBestFirstAndNoMoreThanAskedFor) {
+  const auto found = FindPlaces("z");
+  ASSERT_GE(found.size(), 2U);
+  EXPECT_EQ(FindPlaces("mo", 3).size(), 3U);
+  EXPECT_EQ(FindPlaces("zurich")[0]->kind, PlaceKind::kCity);
+  EXPECT_EQ(FindPlaces("zurich")[1]->code, "LSZH");
+  EXPECT_TRUE(FindPlaces("").empty());
+}
+
+TEST(Places, AnEyeStandsOnTheRunwayAndFliesOverTheCity) {
+  const Eye zurich = EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
+  EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
+  EXPECT_NEAR(Degrees(zurich.heading_rad), 155.0, 1e-9) << "runway 16, five degrees of it grid";
+  const Eye lhasa = EyeAt(PlaceNamed("Lhasa"), {}, Sea);
+  EXPECT_EQ(lhasa.place.height_m, 3656.0 + 600.0) << "without terrain";
+}
+
+TEST(Places, TheZoneIsTheScenesThenThatOfTheNearestPlaceThenTheLongitudes) {
+  const GeodeticPosition alps = PlaceFromDegrees(46.5, 8.0, 0.0);
+  EXPECT_EQ(ZoneNear(alps, "Europe/Rome", alps), "Europe/Rome");
+  EXPECT_EQ(ZoneNear(alps, std::nullopt, alps), "Europe/Zurich");
+  const GeodeticPosition japan = PlaceFromDegrees(35.3, 138.8, 0.0);
+  EXPECT_EQ(ZoneNear(japan, "Europe/Rome", alps), "Asia/Tokyo") << "the scene is far";
+  const GeodeticPosition pacific = PlaceFromDegrees(0.0, -150.0, 0.0);
+  EXPECT_EQ(ZoneNear(pacific, std::nullopt, alps), "Etc/GMT+10");
+  for (double longitude = -180.0; longitude <= 180.0; longitude += 5.0) {
+    const std::string zone = ZoneNear(PlaceFromDegrees(-55.0, longitude, 0.0), std::nullopt, alps);
+    EXPECT_NO_THROW(static_cast<void>(TimeZone(zone))) << zone;
+  }
+}
+
+TEST(Places, LocalTimeNamesItsZone) {
+  const UtcInstant now = ParseInstant("2026-06-21T04:00:00Z");
+  EXPECT_EQ(LocalTimeText(now, "Asia/Tokyo"), "2026-06-21 13:00:00 +09:00 Asia/Tokyo");
+  EXPECT_EQ(LocalTimeText(now, "Etc/GMT+10"), "2026-06-20 18:00:00 -10:00 by longitude");
+}
+
+}  // namespace
+}  // namespace alpenglow

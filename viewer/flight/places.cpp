@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "atmosphere/text/toml_table.h"
+#include "viewer/embedded_text.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::size_t kFields = 9;
+
+using Fields = std::array<std::string_view, kFields>;
+
+Fields FieldsOf(std::string_view line) {
+  Fields fields;
+  for (std::size_t i = 0; i < kFields; ++i) {
+    const std::size_t comma = std::min(line.find(','), line.size());
+    fields[i] = line.substr(0, comma);
+    line.remove_prefix(std::min(comma + 1, line.size()));
+  }
+  return fields;
+}
+
+double NumberOf(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  ALPENGLOW_ENSURE(whole, ==, true);
+  return value;
+}
+
+PlaceKind KindOf(std::string_view text) {
+  constexpr std::array<std::string_view, 4> kNames{"airport", "peak", "city", "pole"};
+  const auto at = std::find(kNames.begin(), kNames.end(), text) - kNames.begin();
+  ALPENGLOW_ENSURE(at, <, std::ptrdiff_t{4});
+  return static_cast<PlaceKind>(at);
+}
+
+NamedPlace PlaceOf(const Fields& fields) {
+  NamedPlace place{};
+  place.kind = KindOf(fields[0]);
+  place.code = fields[1];
+  place.name = fields[2];
+  place.also = fields[3];
+  place.place = PlaceFromDegrees(NumberOf(fields[4]), NumberOf(fields[5]), NumberOf(fields[6]));
+  place.heading_rad = NumberOf(fields[7]) * kRadiansPerDegree;
+  place.zone = fields[8];
+  return place;
+}
+
+std::vector<NamedPlace> ReadPlaces() {
+  std::string_view text = viewer::EmbeddedText("viewer/data/places.csv");
+  std::vector<NamedPlace> places;
+  bool has_header = false;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.empty() || line.front() == '#') continue;
+    if (std::exchange(has_header, true)) places.push_back(PlaceOf(FieldsOf(line)));
+  }
+  return places;
+}
+
+/// What a letter of Latin-1, Latin Extended-A (two bytes of UTF-8) is without its accent.
+std::string_view WithoutAccent(int code_point) {
+  struct Range {
+    int first, last;
+    std::string_view letter;
+  };
+  constexpr Range kRanges[] = {
+      {0xC0, 0xC5, "a"},    {0xC6, 0xC6, "ae"},  {0xC7, 0xC7, "c"},   {0xC8, 0xCB, "e"},
+      {0xCC, 0xCF, "i"},    {0xD0, 0xD0, "d"},   {0xD1, 0xD1, "n"},   {0xD2, 0xD6, "o"},
+      {0xD8, 0xD8, "o"},    {0xD9, 0xDC, "u"},   {0xDD, 0xDD, "y"},   {0xDE, 0xDE, "th"},
+      {0xDF, 0xDF, "ss"},   {0xE0, 0xE5, "a"},   {0xE6, 0xE6, "ae"},  {0xE7, 0xE7, "c"},
+      {0xE8, 0xEB, "e"},    {0xEC, 0xEF, "i"},   {0xF0, 0xF0, "d"},   {0xF1, 0xF1, "n"},
+      {0xF2, 0xF6, "o"},    {0xF8, 0xF8, "o"},   {0xF9, 0xFC, "u"},   {0xFD, 0xFD, "y"},
+      {0xFE, 0xFE, "th"},   {0xFF, 0xFF, "y"},   {0x100, 0x105, "a"}, {0x106, 0x10D, "c"},
+      {0x10E, 0x111, "d"},  {0x112, 0x11B, "e"}, {0x11C, 0x123, "g"}, {0x124, 0x127, "h"},
+      {0x128, 0x131, "i"},  {0x139, 0x142, "l"}, {0x143, 0x148, "n"}, {0x14C, 0x151, "o"},
+      {0x152, 0x153, "oe"}, {0x154, 0x159, "r"}, {0x15A, 0x161, "s"}, {0x162, 0x167, "t"},
+      {0x168, 0x173, "u"},  {0x179, 0x17E, "z"}};
+  for (const Range& range : kRanges) {
+    if (code_point >= range.first && code_point <= range.last) return range.letter;
+  }
+  return "";
+}
+
+/// Letters and digits in lower case without accents; what lies between them is one blank.
+std::string Folded(std::string_view text) {
+  std::string folded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte >= 0xC2 && byte <= 0xC5 && i + 1 < text.size()) {
+      folded +=
+          WithoutAccent(((byte & 0x1F) << 6) | (static_cast<unsigned char>(text[++i]) & 0x3F));
+    } else if ((byte >= 'a' && byte <= 'z') || (byte >= '0' && byte <= '9')) {
+      folded += static_cast<char>(byte);
+    } else if (byte >= 'A' && byte <= 'Z') {
+      folded += static_cast<char>(byte - 'A' + 'a');
+    } else if (byte != '\'' && !folded.empty() && folded.back() != ' ') {
+      folded += ' ';
+    }
+  }
+  while (!folded.empty() && folded.back() == ' ') folded.pop_back();
+  return folded;
+}
+
+/// 0 the whole name, 1 its beginning, 2 the beginning of a word in it, 3 neither.
+int RankOf(const std::string& name, const std::string& text) {
+  if (name == text) return 0;
+  if (name.starts_with(text)) return 1;
+  return name.find(" " + text) != std::string::npos ? 2 : 3;
+}
+
+/// A beginning of the other name counts less than one of the name.
+int RankOf(const NamedPlace& place, const std::string& text) {
+  const int of_other = RankOf(Folded(place.also), text);
+  return std::min({RankOf(Folded(place.code), text), RankOf(Folded(place.name), text),
+                   of_other == 1 ? 2 : of_other});
+}
+
+struct Ranked {
+  int rank;
+  const NamedPlace* place;
+};
+
+/// Best first, in the order of the list among equals.
+std::vector<Ranked> RankedPlaces(std::string_view text) {
+  constexpr int kNone = 3;
+  const std::string folded = Folded(text);
+  std::vector<Ranked> ranked;
+  if (folded.empty()) return ranked;
+  for (const NamedPlace& place : NamedPlaces()) {
+    const int rank = RankOf(place, folded);
+    if (rank < kNone) ranked.push_back({rank, &place});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });
+  return ranked;
+}
+
+[[noreturn]] void FailUnknown(std::string_view text) {
+  std::vector<std::string> known;
+  for (const NamedPlace& place : NamedPlaces()) {
+    for (const std::string& name : {place.code, place.name, place.also}) {
+      if (!name.empty()) known.push_back(Folded(name));
+    }
+  }
+  const std::optional<std::string> nearest = NearestName(Folded(text), known);
+  if (!nearest) throw InputError(fmt::format("there is no place \"{}\" in the list", text));
+  throw InputError(fmt::format("there is no place \"{}\" in the list; did you mean {}?", text,
+                               RankedPlaces(*nearest).front().place->name));
+}
+
+double Distance(const GeodeticPosition& a, const GeodeticPosition& b) {
+  const glm::dvec3 apart = (EcefFromGeodetic(kWgs84, {a.latitude_rad, a.longitude_rad, 0.0}) -
+                            EcefFromGeodetic(kWgs84, {b.latitude_rad, b.longitude_rad, 0.0}))
+                               .xyz;
+  return std::sqrt(apart.x * apart.x + apart.y * apart.y + apart.z * apart.z);
+}
+
+}  // namespace
+
+std::span<const NamedPlace> NamedPlaces() {
+  static const std::vector<NamedPlace> places = ReadPlaces();
+  return places;
+}
+
+std::vector<const NamedPlace*> FindPlaces(std::string_view text, std::size_t most) {
+  std::vector<const NamedPlace*> found;
+  for (const Ranked& ranked : RankedPlaces(text)) {
+    if (found.size() < most) found.push_back(ranked.place);
+  }
+  return found;
+}
+
+const NamedPlace& PlaceNamed(std::string_view text) {
+  const std::vector<Ranked> ranked = RankedPlaces(text);
+  if (ranked.empty()) FailUnknown(text);
+  const bool is_only = ranked.size() == 1 || ranked[1].rank > ranked[0].rank;
+  if (is_only || ranked[0].rank == 0) return *ranked[0].place;
+  std::vector<std::string> names;
+  for (const NamedPlace* place : FindPlaces(text)) names.push_back(place->name);
+  throw InputError(fmt::format("place \"{}\" could be {}", text, fmt::join(names, ", ")));
+}
+
+Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground) {
+  constexpr double kNoTerrain_m = 500.0;
+  const double above_m = there.kind == PlaceKind::kAirport ? 2.0
+                         : there.kind == PlaceKind::kPeak  ? 100.0
+                                                           : 600.0;
+  const double terrain_m = ground(there.place);
+  const bool has_terrain = there.place.height_m - terrain_m < kNoTerrain_m;
+  Eye eye = before;
+  eye.place = there.place;
+  eye.place.height_m = (has_terrain ? terrain_m : there.place.height_m) + above_m;
+  eye.pitch_rad = eye.roll_rad = 0.0;
+  if (there.kind == PlaceKind::kAirport) {
+    eye.heading_rad = std::remainder(there.heading_rad, 2.0 * kPi);
+  }
+  return eye;
+}
+
+std::string ZoneNear(const GeodeticPosition& place, const std::optional<std::string>& scene_zone,
+                     const GeodeticPosition& scene_place) {
+  constexpr double kOfScene_m = 300e3, kOfList_m = 150e3;
+  if (scene_zone && Distance(place, scene_place) < kOfScene_m) return *scene_zone;
+  const auto places = NamedPlaces();
+  const auto nearest =
+      std::min_element(places.begin(), places.end(), [&](const NamedPlace& a, const NamedPlace& b) {
+        return Distance(place, a.place) < Distance(place, b.place);
+      });
+  if (Distance(place, nearest->place) < kOfList_m) return nearest->zone;
+  const double turns = std::remainder(place.longitude_rad, 2.0 * kPi) / (2.0 * kPi);
+  const int ahead_h = static_cast<int>(std::lround(24.0 * turns));
+  if (ahead_h == 0) return "Etc/GMT";
+  // POSIX counts westwards.
+  return fmt::format("Etc/GMT{}{}", ahead_h > 0 ? "-" : "+", std::abs(ahead_h));
+}
+
+std::string LocalTimeText(const UtcInstant& instant, const std::string& zone) {
+  const std::string text = FormatInZone(instant, zone);  // "2026-06-21T13:00:00+09:00"
+  const std::string name = zone.starts_with("Etc/GMT") ? "by longitude" : zone;
+  return fmt::format("{} {} {} {}", text.substr(0, 10), text.substr(11, 8), text.substr(19), name);
+}
+
+}  // namespace alpenglow
