@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight/track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "viewer/flight/standard_air.h"
+
+namespace alpenglow {
+namespace {
+
+/// Of the chord that the camera looks along.
+constexpr double kChord_s = 4.0;
+
+bool HasTimes(const Track& track) {
+  return std::all_of(track.points.begin(), track.points.end(),
+                     [](const TrackPoint& point) { return point.utc.has_value(); });
+}
+
+double Distance(const GeodeticPosition& a, const GeodeticPosition& b) {
+  return glm::length((EcefFromGeodetic(kWgs84, a) - EcefFromGeodetic(kWgs84, b)).xyz);
+}
+
+/// The points with their times.
+std::vector<CameraPathPoint> Knots(const Track& track, const TrackStyle& style) {
+  constexpr double kSamePlace_m = 0.5;
+  const bool timed = HasTimes(track);
+  std::vector<CameraPathPoint> knots;
+  for (const TrackPoint& point : track.points) {
+    CameraPathPoint knot;
+    knot.pose.place = point.place;
+    knot.utc = timed ? point.utc : std::nullopt;
+    if (!knots.empty()) {
+      const double way_m = Distance(point.place, knots.back().pose.place);
+      if (!timed && way_m < kSamePlace_m) continue;
+      knot.time_s = timed ? SecondsBetween(*knots.front().utc, *point.utc)
+                          : knots.back().time_s + way_m / style.speed_m_per_s;
+      if (!(knot.time_s > knots.back().time_s)) continue;
+    }
+    knots.push_back(knot);
+  }
+  if (knots.size() < 2) throw InputError("the track has fewer than two points apart");
+  return knots;
+}
+
+/// Heights over the sea, of points at even times: over the ground, as smooth as 5 of them.
+void LiftOverGround(const Track& track, const TrackStyle& style, const GroundHeight& ground,
+                    std::vector<CameraPathPoint>& points) {
+  constexpr std::size_t kReach = 2;
+  std::vector<double> ground_m, wanted_m;
+  for (const CameraPathPoint& point : points) {
+    const double over_m =
+        track.heights == TrackHeights::kOnGround ? style.over_ground_m : point.pose.place.height_m;
+    ground_m.push_back(ground(point.pose.place));
+    wanted_m.push_back(ground_m.back() + over_m);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t first = i - std::min(i, kReach);
+    const std::size_t last = std::min(i + kReach, points.size() - 1);
+    double sum_m = 0.0;
+    for (std::size_t k = first; k <= last; ++k) sum_m += wanted_m[k];
+    // Never nearer to the ground than half of what is wanted.
+    points[i].pose.place.height_m =
+        std::max(sum_m / static_cast<double>(last - first + 1), 0.5 * (ground_m[i] + wanted_m[i]));
+  }
+}
+
+/// From one place to another, in the frame of their middle.
+glm::dvec3 Chord(const GeodeticPosition& from, const GeodeticPosition& to,
+                 const GeodeticPosition& middle) {
+  const LocalFrame frame(kWgs84, middle);
+  return frame.EnuFromGeodetic(to).xyz - frame.EnuFromGeodetic(from).xyz;
+}
+
+/// Looks along the chords. What stands looks on as before.
+void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
+  constexpr double kStands_m = 1.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double t = points[i].time_s;
+    CameraPose& pose = points[i].pose;
+    const GeodeticPosition from =
+        places.PoseAt(std::max(t - 0.5 * kChord_s, places.begin_s())).place;
+    const GeodeticPosition to = places.PoseAt(std::min(t + 0.5 * kChord_s, places.end_s())).place;
+    const glm::dvec3 chord = Chord(from, to, pose.place);
+    const double level_m = std::hypot(chord.x, chord.y);
+    if (level_m > kStands_m) {
+      pose.heading_rad = std::atan2(chord.x, chord.y);
+      pose.pitch_rad = std::atan2(chord.z, level_m);
+    } else if (i > 0) {
+      pose.heading_rad = points[i - 1].pose.heading_rad;
+    }
+  }
+}
+
+/// Banks as wings would in the turns of the headings.
+void Bank(std::vector<CameraPathPoint>& points) {
+  constexpr double kMost_rad = 35.0 * kRadiansPerDegree;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const CameraPathPoint &before = points[i - 1], &after = points[i + 1];
+    const double seconds = after.time_s - before.time_s;
+    const double turn = std::remainder(after.pose.heading_rad - before.pose.heading_rad, 2.0 * kPi);
+    const double speed = Distance(before.pose.place, after.pose.place) / seconds;
+    points[i].pose.roll_rad = std::clamp(
+        std::atan(speed * turn / seconds / kStandardGravity_m_per_s2), -kMost_rad, kMost_rad);
+  }
+}
+
+std::vector<CameraPathPoint> EvenPoints(const CameraPath& knots, const TrackStyle& style) {
+  const double span_s = knots.end_s() - knots.begin_s();
+  const int count = static_cast<int>(std::clamp(std::ceil(span_s), 200.0, 20000.0));
+  std::vector<CameraPathPoint> points;
+  for (int i = 0; i <= count; ++i) {
+    const double time_s = i == count ? knots.end_s() : knots.begin_s() + span_s * i / count;
+    CameraPose pose = knots.PoseAt(time_s);
+    pose.fov_rad = style.fov_rad;
+    points.push_back({time_s, pose, knots.UtcAt(time_s)});
+  }
+  return points;
+}
+
+}  // namespace
+
+CameraPath PathAlong(const Track& track, const TrackStyle& style, const GroundHeight& ground) {
+  RequireInRange(style.speed_m_per_s, 0.1, 1e5, "speed of the track");
+  RequireInRange(style.over_ground_m, 0.0, 1e6, "height over the ground of the track");
+  const CameraPath knots(Knots(track, style));
+  std::vector<CameraPathPoint> points = EvenPoints(knots, style);
+  if (track.heights != TrackHeights::kSea) LiftOverGround(track, style, ground, points);
+  LookAlong(CameraPath(points), points);
+  Bank(points);
+  return CameraPath(std::move(points));
+}
+
+}  // namespace alpenglow

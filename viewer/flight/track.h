@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// A track as the path of a camera that looks along it.
+//
+//   bank = atan(v psi' / g), to 35 degrees           psi' is the turn of the path per second
+//
+// The camera goes through all points of the track on the smooth curve of CameraPath. Where it looks
+// is where the chord of the curve points, over 4 s: receivers are not as steady as wings.
+#pragma once
+
+#include "renderer/camera/camera_path.h"
+#include "viewer/flight/flight.h"
+#include "viewer/flight/track_file.h"
+
+namespace alpenglow {
+
+struct TrackStyle {
+  double speed_m_per_s = 60.0;   // of a track without times
+  double over_ground_m = 100.0;  // of a track without heights
+  double fov_rad = 1.0471975511965976;
+};
+
+/// Its points are one every second at most, 200 at least and 20000 at most. Instants are those of
+/// the track, when all of its points have one and later points later ones; else it is flown with an
+/// even speed. Points that are less than 0.5 m or no time after the one before them are passed
+/// over. Throws InputError when fewer than two are left, or the style's numbers are not positive.
+[[nodiscard]] CameraPath PathAlong(const Track& track, const TrackStyle& style,
+                                   const GroundHeight& ground);
+
+}  // namespace alpenglow
