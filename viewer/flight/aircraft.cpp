@@ -2,6 +2,7 @@
 #include "viewer/flight/aircraft.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -305,6 +306,12 @@ AircraftState OnGround(const AircraftState& state, const Ellipsoid& ellipsoid,
 }
 
 }  // namespace
+
+const char* NameOf(GroundContact contact) {
+  constexpr std::array<const char*, 4> kNames{"", "rolling", "scraping over the ground",
+                                              "standing"};
+  return kNames[static_cast<std::size_t>(contact)];
+}
 
 double StallSpeed(const AircraftKind& kind, double height_m) {
   return std::sqrt(

@@ -81,9 +81,12 @@ struct Stick {
   double brake = 0.0;
 };
 
-/// How it stands with the ground: rolling on wheels, scraping over it (hard, or not upright), or
-/// standing.
+/// How it stands with the ground: rolling on wheels, scraping over it (a touch at more than 3 m/s,
+/// not upright, or a slope of more than 30 degrees), or standing. Nothing breaks: full throttle
+/// takes off again.
 enum class GroundContact { kNone, kRolling, kScraping, kStanding };
+/// "rolling", "scraping over the ground", "standing"; "" in the air.
+[[nodiscard]] const char* NameOf(GroundContact contact);
 
 /// All that a flight depends on. Directions are unit vectors.
 struct AircraftState {

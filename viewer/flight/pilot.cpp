@@ -21,8 +21,9 @@ constexpr double kOnGround_m = 15.0;  // so near to it a flight begins on its wh
 Pilot::Pilot(const Eye& eye, const Ellipsoid& ellipsoid)
     : ellipsoid_(ellipsoid), eye_(eye), first_fov_rad_(eye.fov_rad) {}
 
-void Pilot::SetTrack(std::shared_ptr<const CameraPath> track) {
+void Pilot::SetTrack(std::shared_ptr<const CameraPath> track, Lens lens) {
   track_ = std::move(track);
+  track_lens_ = lens;
   track_s_ = track_ ? track_->begin_s() : 0.0;
   if (!track_ && mode_ == FlightMode::kTrack) mode_ = FlightMode::kFree;
 }
@@ -74,6 +75,7 @@ void Pilot::Advance(const PilotControls& controls, double seconds, const GroundH
   if (mode_ == FlightMode::kFree) {
     eye_ = FreeFlight(eye_, controls.camera, ellipsoid_, ground, free_factor_, seconds);
   } else if (mode_ == FlightMode::kAircraft) {
+    LeaveTheGround(ground);
     FlyAircraft(controls.stick, flight_factor_ * seconds, ground);
   } else {
     SkipTrack(track_factor_ * seconds);
@@ -84,6 +86,15 @@ void Pilot::Advance(const PilotControls& controls, double seconds, const GroundH
       (EcefFromGeodetic(ellipsoid_, eye_.place) - EcefFromGeodetic(ellipsoid_, before)).xyz;
   speed_m_per_s_ = glm::length(way) / seconds;
   vertical_speed_m_per_s_ = (eye_.place.height_m - before.height_m) / seconds;
+}
+
+void Pilot::LeaveTheGround(const GroundHeight& ground) {
+  constexpr double kDeep_m = 30.0, kOver_m = 150.0;
+  GeodeticPosition place = GeodeticFromEcef(ellipsoid_, aircraft_.place);
+  const double ground_m = ground(place);
+  if (place.height_m > ground_m - kDeep_m) return;
+  place.height_m = ground_m + kOver_m;
+  aircraft_.place = EcefFromGeodetic(ellipsoid_, place);
 }
 
 void Pilot::LookAround(const PilotControls& controls) {
@@ -118,7 +129,7 @@ void Pilot::Show(const GroundHeight& ground) {
   } else if (mode_ == FlightMode::kTrack) {
     const double fov_rad = eye_.fov_rad;
     eye_ = Turned(EyeOf(track_->PoseAt(track_s_)), look_right_rad_, look_up_rad_);
-    eye_.fov_rad = fov_rad;
+    if (track_lens_ == Lens::kOfEye) eye_.fov_rad = fov_rad;
   }
   eye_ = KeptAbove(eye_, ground(eye_.place), kStanding_m);
 }

@@ -45,11 +45,14 @@ class Pilot {
   [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
   /// Puts the eye somewhere else, in the mode that it is in; leaves a track for the free camera.
   void PutAt(const Eye& eye, const GroundHeight& ground);
-  /// What kTrack follows. Gives it up when there is none.
-  void SetTrack(std::shared_ptr<const CameraPath> track);
+  /// What kTrack follows, from its beginning. Gives it up when there is none.
+  /// @param lens  whose field of view is seen: the eye's own, or that of the track (a replay)
+  enum class Lens { kOfEye, kOfTrack };
+  void SetTrack(std::shared_ptr<const CameraPath> track, Lens lens = Lens::kOfEye);
   [[nodiscard]] bool HasTrack() const { return track_ != nullptr; }
 
-  /// Lets real seconds pass.
+  /// Lets real seconds pass. Where the ground has come up over the aircraft by more than 30 m (its
+  /// terrain was loaded), it flies on 150 m over it.
   void Advance(const PilotControls& controls, double seconds, const GroundHeight& ground);
 
   /// Faster (+1) or slower (-1), by half: the free camera 1/64 to 64, the track 1/8 to 64; the
@@ -81,6 +84,7 @@ class Pilot {
   void FlyAircraft(const Stick& stick, double seconds, const GroundHeight& ground);
   [[nodiscard]] AircraftState NextState(Autopilot& autopilot, const Stick& stick, double step_s,
                                         const GroundHeight& ground) const;
+  void LeaveTheGround(const GroundHeight& ground);
   void LookAround(const PilotControls& controls);
   void Show(const GroundHeight& ground);
 
@@ -98,6 +102,7 @@ class Pilot {
   double rest_s_ = 0.0;  // not flown yet, less than a step
 
   std::shared_ptr<const CameraPath> track_;
+  Lens track_lens_ = Lens::kOfEye;
   double track_s_ = 0.0;
 };
 

@@ -159,6 +159,27 @@ TEST(Pilot, ATrackIsFollowedToItsEndAndKeepsTheFieldOfView) {
   EXPECT_EQ(pilot.mode(), FlightMode::kFree);
 }
 
+TEST(Pilot, AReplayIsSeenThroughItsOwnLens) {
+  Pilot pilot(EyeAt(1500.0), kWgs84);
+  CameraPose narrow{PlaceFromDegrees(46.0, 8.0, 1000.0)};
+  narrow.fov_rad = 0.3;
+  pilot.SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{{0.0, narrow}}),
+                 Pilot::Lens::kOfTrack);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kTrack, Sea));
+  EXPECT_EQ(pilot.eye().fov_rad, 0.3);
+}
+
+TEST(Pilot, WhereTerrainIsLoadedOverTheAircraftItFliesOnOverIt) {
+  double ground_m = 0.0;
+  const GroundHeight ground = [&](const GeodeticPosition&) { return ground_m; };
+  Pilot pilot(EyeAt(800.0), kWgs84);
+  ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, ground));
+  ground_m = 2000.0;
+  pilot.Advance({}, 1.0, ground);
+  EXPECT_NEAR(pilot.eye().place.height_m, 2150.0, 5.0);
+  EXPECT_EQ(pilot.Readout(ground).aircraft->contact, GroundContact::kNone);
+}
+
 TEST(Pilot, PutSomewhereElseItFliesOnThere) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
