@@ -17,6 +17,7 @@
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/skyview_options.h"
 #include "viewer/window.h"
@@ -232,6 +233,8 @@ int Run(const SkyviewOptions& options) {
           : std::make_unique<Window>(WindowSettings{size.width, size.height, options.fullscreen,
                                                     options.vsync == "on" && !options.benchmark});
   if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
+  if (window) RequireDrawable(std::max(window->width(), 1), std::max(window->height(), 1));
+  if (headless) RequireDrawable(size.width, size.height);
   Flythrough flight(scene, start);
   flight.Place(PlacementOf(options));
   if (!flight.terrain_message().empty())

@@ -17,6 +17,12 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An option asks for what this machine cannot do; names it. Exit status 2.
+class OptionError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// An output could not be written; names the file. Exit status 4.
 class OutputError : public std::runtime_error {
  public:

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <new>
 #include <optional>
 
 #include "atmosphere/dialect/instruction_set.h"
@@ -66,6 +67,8 @@ int RunProgram(const std::string& name, const std::function<int()>& body) {
     const int status = body();
     FlushStandardOutput();
     return status;
+  } catch (const OptionError& error) {
+    return Report(name, error.what(), 2);
   } catch (const InputError& error) {
     return Report(name, error.what(), 3);
   } catch (const OutputError& error) {
@@ -75,6 +78,8 @@ int RunProgram(const std::string& name, const std::function<int()>& body) {
   } catch (const Stopped& stopped) {
     return Report(name, stopped.signal == SIGINT ? "interrupted" : "terminated",
                   128 + stopped.signal);
+  } catch (const std::bad_alloc&) {
+    return Report(name, "internal error: there is no memory left", 70);
   } catch (const std::exception& error) {
     return Report(name, fmt::format("internal error: {}", error.what()), 70);
   } catch (...) {

@@ -13,10 +13,10 @@
 
 namespace alpenglow {
 
-/// Runs `body` and maps failures to exit statuses, one line on standard error each: InputError 3,
-/// OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else 70. Output
-/// that standard output did not take is an OutputError too. Installs handlers for SIGINT and
-/// SIGTERM that make Interrupted() true; the second signal of a kind ends the program at once.
+/// Runs `body` and maps failures to exit statuses, one line on standard error each: OptionError 2,
+/// InputError 3, OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else
+/// 70. Output that standard output did not take is an OutputError too. Installs handlers for SIGINT
+/// and SIGTERM that make Interrupted() true; the second signal of a kind ends the program at once.
 /// SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over the limit and a result that nobody reads
 /// are OutputErrors, and a terminal that goes away takes the messages with it, but not the work.
 /// Whoever closed standard error gets no messages, in no file either (OccupyStandardDescriptors).

@@ -138,6 +138,15 @@ TEST_F(SkyviewWindow, OfADisplayThatGoesTheRecordIsWholeAndTheStatusFive) {
   }
 }
 
+TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='40000x8 40000x8'", "--record f.csv");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("--size 40000x8"));
+  EXPECT_THAT(outcome.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
+}
+
 TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {
   if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9 key:299,1 16x9 key:299,1 16x9'", "");

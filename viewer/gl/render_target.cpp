@@ -1,13 +1,58 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/gl/render_target.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <vector>
 
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
+namespace {
+
+struct FormatRow {
+  GLint internal;
+  GLenum format, type;
+  int bytes;
+};
+
+const FormatRow& RowOf(PixelFormat format) {
+  static constexpr FormatRow kRows[] = {
+      {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
+      {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8},
+      {GL_R11F_G11F_B10F, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV, 4},
+      {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},
+  };
+  return kRows[static_cast<std::size_t>(format)];
+}
+
+// Memory is asked for here, and refused by the next error.
+void Allocate(const GlTexture& texture, int width, int height, const FormatRow& row) {
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  glBindTexture(GL_TEXTURE_2D, texture.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, row.internal, width, height, 0, row.format, row.type, nullptr);
+  const GLenum error = glGetError();
+  if (error == GL_OUT_OF_MEMORY) {
+    throw DisplayError(
+        fmt::format("the graphics card has no memory for a picture of {}x{}", width, height));
+  }
+  ALPENGLOW_ENSURE(error, ==, static_cast<GLenum>(GL_NO_ERROR));
+  ClampAndFilter(GL_TEXTURE_2D, false);
+}
+
+// OpenGL's row 0 is the lowest.
+template <typename Pixel>
+void TurnUpsideDown(std::vector<Pixel>& pixels, std::size_t row) {
+  const std::size_t rows = pixels.size() / row;
+  for (std::size_t y = 0; y < rows / 2; ++y) {
+    std::swap_ranges(&pixels[y * row], &pixels[y * row] + row, &pixels[(rows - 1 - y) * row]);
+  }
+}
+
+}  // namespace
+
+int BytesOf(PixelFormat format) { return RowOf(format).bytes; }
 
 void ClampAndFilter(GLenum target, bool linear) {
   const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
@@ -17,17 +62,19 @@ void ClampAndFilter(GLenum target, bool linear) {
   glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-RenderTarget::RenderTarget(int width, int height, Depth depth) : width_(width), height_(height) {
+RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>& formats,
+                           Depth depth)
+    : width_(width), height_(height), colours_(formats.size()) {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glBindTexture(GL_TEXTURE_2D, colour_.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
-  ClampAndFilter(GL_TEXTURE_2D, false);
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_.id(), 0);
+  std::vector<GLenum> outputs;
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    Allocate(colours_[i], width, height, RowOf(formats[i]));
+    outputs.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+    glFramebufferTexture2D(GL_FRAMEBUFFER, outputs.back(), GL_TEXTURE_2D, colours_[i].id(), 0);
+  }
+  glDrawBuffers(static_cast<GLsizei>(outputs.size()), outputs.data());
   if (depth == Depth::k32Bit) {
-    glBindTexture(GL_TEXTURE_2D, depth_.id());
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT,
-                 GL_FLOAT, nullptr);
-    ClampAndFilter(GL_TEXTURE_2D, false);
+    Allocate(depth_, width, height, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4});
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.id(), 0);
   }
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
@@ -39,32 +86,57 @@ void RenderTarget::Bind() const {
   glViewport(0, 0, width_, height_);
 }
 
-void RenderTarget::BindTexture(int unit) const {
+void RenderTarget::BindTexture(int unit, std::size_t output) const {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, colour_.id());
+  glBindTexture(GL_TEXTURE_2D, colours_[output].id());
 }
 
-void RenderTarget::Write(const Image& image) const {
-  ALPENGLOW_ENSURE(image.width, ==, width_);
-  ALPENGLOW_ENSURE(image.height, ==, height_);
-  std::vector<std::array<float, 3>> rows(image.rgb.size());
-  for (int y = 0; y < height_; ++y) {  // OpenGL's row 0 is the lowest
-    std::copy_n(&image.at(0, y), width_,
-                rows.begin() + static_cast<std::ptrdiff_t>(height_ - 1 - y) * width_);
-  }
-  glBindTexture(GL_TEXTURE_2D, colour_.id());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_FLOAT, rows.data());
-}
-
-Image RenderTarget::Read() const {
-  Image image(width_, height_);
+template <typename Pixel>
+void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLenum format,
+                            GLenum type) const {
+  pixels.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(output));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, GL_RGB, GL_FLOAT, image.rgb.data());
-  for (int y = 0; y < height_ / 2; ++y) {  // OpenGL's row 0 is the lowest
-    std::swap_ranges(&image.at(0, y), &image.at(0, y) + width_, &image.at(0, height_ - 1 - y));
-  }
+  glReadPixels(0, 0, width_, height_, format, type, pixels.data());
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  TurnUpsideDown(pixels, static_cast<std::size_t>(width_));
+}
+
+Image RenderTarget::Read(std::size_t output) const {
+  Image image(width_, height_);
+  ReadInto(image.rgb, output, GL_RGB, GL_FLOAT);
+  return image;
+}
+
+std::vector<glm::vec4> RenderTarget::ReadValues(std::size_t output) const {
+  std::vector<glm::vec4> values;
+  ReadInto(values, output, GL_RGBA, GL_FLOAT);
+  return values;
+}
+
+std::vector<std::array<std::uint16_t, 4>> RenderTarget::ReadHalves(std::size_t output) const {
+  std::vector<std::array<std::uint16_t, 4>> halves;
+  ReadInto(halves, output, GL_RGBA, GL_HALF_FLOAT);
+  return halves;
+}
+
+DisplayImage RenderTarget::ReadBytes(std::size_t output) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(output));
+  DisplayImage image = ReadFramebuffer(framebuffer_.id(), width_, height_);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  return image;
+}
+
+DisplayImage ReadFramebuffer(GLuint framebuffer, int width, int height) {
+  const std::size_t row = 3 * static_cast<std::size_t>(width);
+  DisplayImage image{width, height, {}};
+  image.rgb.resize(row * static_cast<std::size_t>(height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  TurnUpsideDown(image.rgb, row);
   return image;
 }
 

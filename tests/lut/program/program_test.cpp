@@ -73,6 +73,7 @@ TEST(Program, StatusOfTheBodyIsTheStatusOfTheProgram) {
 
 TEST(Program, EveryKindOfFailureHasItsStatusAndOneLine) {
   const std::vector<std::pair<int, std::function<int()>>> cases = {
+      {2, []() -> int { throw OptionError("--size 99999x1"); }},
       {3, []() -> int { throw InputError("x.toml:3: key g"); }},
       {4, []() -> int { throw OutputError("out.exr"); }},
       {5, []() -> int { throw DisplayError("OpenGL 2.1"); }},

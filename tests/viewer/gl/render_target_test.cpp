@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/gl/render_target.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/gl/shader.h"
+
+namespace alpenglow {
+namespace {
+
+class RenderTargets : public tests::Headless {
+ protected:
+  static void Draw(const RenderTarget& target, const std::string& outputs) {
+    const ShaderProgram program(
+        {{"vertex",
+          "void main() { vec2 p = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);\n"
+          "gl_Position = vec4(2.0 * p - 1.0, 0.5, 1.0); }"}},
+        {{"fragment", outputs}});
+    const GlVertexArray none;
+    target.Bind();
+    glBindVertexArray(none.id());
+    program.Use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    CheckGl("RenderTargets");
+  }
+};
+
+constexpr const char* kFourOutputs =
+    "layout(location = 0) out vec4 a; layout(location = 1) out vec4 b;\n"
+    "layout(location = 2) out vec3 c; layout(location = 3) out vec4 d;\n"
+    "void main() {\n"
+    "  a = vec4(gl_FragCoord.xy, -1e-7, 1e9);\n"
+    "  b = vec4(gl_FragCoord.y, 1.0 / 3.0, 65504.0, -2.0);\n"
+    "  c = vec3(0.5, 1000.0, 3.0);\n"
+    "  d = vec4(gl_FragCoord.y / 4.0, 0.2, 1.0, 0.0); }\n";
+
+TEST_F(RenderTargets, SeveralOutputsOfOneDrawAreReadEachInItsOwnFormat) {
+  const RenderTarget target(
+      4, 3,
+      {PixelFormat::kRgba32F, PixelFormat::kRgba16F, PixelFormat::kR11G11B10, PixelFormat::kRgba8},
+      RenderTarget::Depth::k32Bit);
+  Draw(target, kFourOutputs);
+  const std::vector<glm::vec4> a = target.ReadValues(0);
+  ASSERT_EQ(a.size(), 12U);
+  EXPECT_EQ(a[0], glm::vec4(0.5F, 2.5F, -1e-7F, 1e9F)) << "the first row is the highest";
+  EXPECT_EQ(a[11], glm::vec4(3.5F, 0.5F, -1e-7F, 1e9F));
+  const std::vector<std::array<std::uint16_t, 4>> b = target.ReadHalves(1);
+  EXPECT_EQ(b[0], (std::array<std::uint16_t, 4>{0x4100, 0x3555, 0x7BFF, 0xC000}))
+      << "2.5, 1/3, the largest half and -2 in bits of binary16";
+  EXPECT_NEAR(target.ReadValues(1)[0].y, 1.0 / 3.0, 2e-4) << "eleven bits";
+  EXPECT_NEAR(target.Read(2).at(0, 0)[1], 1000.0, 16.0) << "six bits";
+  const DisplayImage d = target.ReadBytes(3);
+  EXPECT_EQ(d.width, 4);
+  EXPECT_EQ(d.rgb[0], std::lround(255 * 2.5 / 4.0)) << "of the highest row";
+  EXPECT_EQ(d.rgb[1], 51);
+  EXPECT_EQ(target.Read().at(3, 2)[0], 3.5F) << "reading one output leaves the others";
+}
+
+TEST_F(RenderTargets, BytesOfAPixelAreThoseThatItIsReadIn) {
+  EXPECT_EQ(BytesOf(PixelFormat::kRgba32F), 16);
+  EXPECT_EQ(BytesOf(PixelFormat::kRgba16F), 8);
+  EXPECT_EQ(BytesOf(PixelFormat::kR11G11B10), 4);
+  EXPECT_EQ(BytesOf(PixelFormat::kRgba8), 4);
+}
+
+TEST_F(RenderTargets, APictureWithoutMemoryForItIsADisplayError) {
+  GLint side = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
+  glTexImage2D(GL_PROXY_TEXTURE_2D, 0, GL_RGBA32F, side, side, 0, GL_RGBA, GL_FLOAT, nullptr);
+  GLint held = 0;
+  glGetTexLevelParameteriv(GL_PROXY_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &held);
+  if (held == side) GTEST_SKIP() << "this driver has memory for all that it draws";
+  EXPECT_THROW(RenderTarget(side, side, RenderTarget::Depth::kNone), DisplayError);
+}
+
+}  // namespace
+}  // namespace alpenglow
