@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/capture/video.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/text/error.h"
+#include "lut/program/atomic_file.h"
+#include "lut/program/descriptor.h"
+#include "lut/program/program.h"
+
+extern char** environ;
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string LastSystemError() { return std::generic_category().message(errno); }
+
+std::optional<fs::path> OnPath(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path candidate = fs::path(folder.empty() ? "." : folder) / program;
+    if (fs::is_regular_file(candidate) && access(candidate.c_str(), X_OK) == 0) return candidate;
+  }
+  return std::nullopt;
+}
+
+fs::path Ffmpeg() {
+  const std::optional<fs::path> program = OnPath("ffmpeg");
+  if (!program) throw OutputError("a film needs ffmpeg, which is not on the PATH");
+  return *program;
+}
+
+std::string CommentOf(const Metadata& metadata) {
+  std::string comment = ProducerText();
+  for (const auto& [name, value] : metadata) comment += fmt::format("; {}={}", name, value);
+  return comment;
+}
+
+std::vector<std::string> ArgumentsOf(const fs::path& file, const VideoSettings& settings) {
+  std::vector<std::string> arguments{
+      "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+      // What comes in.
+      "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size",
+      fmt::format("{}x{}", settings.width, settings.height), "-framerate",
+      fmt::format("{}", settings.frames_per_s), "-i", "pipe:0",
+      // What goes out: 4:2:0 has even sides.
+      "-vf",
+      "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+      "-c:v", "libx264", "-crf", "17", "-colorspace", "bt709", "-color_primaries", "bt709",
+      "-color_trc", "iec61966-2-1", "-color_range", "tv", "-metadata",
+      "comment=" + CommentOf(settings.metadata)};
+  if (file.extension() != ".mkv") {
+    arguments.insert(arguments.end(), {"-movflags", "+faststart"});
+  }
+  arguments.push_back("file:" + file.string());
+  return arguments;
+}
+
+/// A process that reads frames from a socket, which tells without a signal when nobody reads any
+/// longer. It goes with the object.
+class Encoder {
+ public:
+  Encoder(const fs::path& program, std::vector<std::string> arguments, const fs::path& said)
+      : said_(said) {
+    std::array<int, 2> ends{-1, -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+      throw OutputError("ffmpeg cannot be fed: " + LastSystemError());
+    }
+    feed_ = Descriptor(ends[0]);
+    const Descriptor its_end(ends[1]);
+    Spawn(program, std::move(arguments), its_end.number());
+  }
+  ~Encoder() {
+    if (process_ <= 0) return;
+    kill(process_, SIGKILL);
+    static_cast<void>(Wait());
+  }
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+
+  void Take(const std::vector<std::uint8_t>& bytes) {
+    std::size_t sent = 0;
+    while (sent < bytes.size()) {
+      const ssize_t count =
+          send(feed_.number(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) Finish();  // it has ended, and says why
+      if (count <= 0) throw OutputError("ffmpeg ended before the film did");
+      sent += static_cast<std::size_t>(count);
+    }
+  }
+
+  /// Ends the film. Throws OutputError when ffmpeg did not make it.
+  void Finish() {
+    feed_ = Descriptor(-1);
+    const int status = Wait();
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+      throw OutputError("ffmpeg: " + LastWords());
+    }
+  }
+
+ private:
+  // In a group of its own: a Ctrl-C is for us, who then end it.
+  void Spawn(const fs::path& program, std::vector<std::string> arguments, int its_end) {
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, its_end, STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, said_.c_str(), O_WRONLY | O_CREAT,
+                                     0600);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    const int error =
+        posix_spawn(&process_, program.c_str(), &files, &attributes, pointers.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&files);
+    if (error == 0) return;
+    process_ = 0;
+    throw OutputError("ffmpeg cannot be started: " + std::generic_category().message(error));
+  }
+
+  int Wait() {
+    int status = 0;
+    while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = 0;
+    return status;
+  }
+
+  [[nodiscard]] std::string LastWords() const {
+    std::ifstream file(said_);
+    std::string last = "it gives no reason";
+    for (std::string line; std::getline(file, line);) {
+      if (!line.empty()) last = line;
+    }
+    return last;
+  }
+
+  fs::path said_;  // what it says goes there
+  Descriptor feed_{-1};
+  pid_t process_ = 0;
+};
+
+/// A file of what ffmpeg says, gone with the object.
+class Notes {
+ public:
+  Notes() : name_((fs::temp_directory_path() / "alpenglow_ffmpeg_XXXXXX").string()) {
+    const Descriptor made(mkstemp(name_.data()));
+    if (!made.valid()) throw OutputError(name_ + ": cannot be written: " + LastSystemError());
+  }
+  ~Notes() {
+    std::error_code ignored;
+    fs::remove(name_, ignored);
+  }
+  Notes(const Notes&) = delete;
+  Notes& operator=(const Notes&) = delete;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
+}  // namespace
+
+void RequireVideo(const fs::path& file) {
+  const fs::path kind = file.extension();
+  if (kind != ".mp4" && kind != ".mov" && kind != ".mkv") {
+    throw InputError(
+        fmt::format("\"{}\" is no film's name; it must end in .mp4, .mov or .mkv", file.string()));
+  }
+  static_cast<void>(Ffmpeg());
+}
+
+void WriteVideo(const fs::path& file, const VideoSettings& settings, int frames,
+                const std::function<DisplayImage(int)>& frame) {
+  RequireVideo(file);
+  WriteFileAtomically(file, [&](const fs::path& temporary) {
+    const Notes notes;
+    Encoder encoder(Ffmpeg(), ArgumentsOf(temporary, settings), notes.name());
+    for (int number = 0; number < frames; ++number) {
+      ThrowIfInterrupted();
+      const DisplayImage image = frame(number);
+      ALPENGLOW_ENSURE(image.width, ==, settings.width);
+      ALPENGLOW_ENSURE(image.height, ==, settings.height);
+      encoder.Take(image.rgb);
+    }
+    encoder.Finish();
+  });
+}
+
+}  // namespace alpenglow
