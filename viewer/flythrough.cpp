@@ -10,6 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 #include "renderer/series/provenance.h"
+#include "viewer/capture/screenshot_name.h"
 
 namespace alpenglow {
 namespace {
@@ -30,13 +31,6 @@ SkyPainter PainterOf(const Scene& scene, const SceneGround& ground) {
   return SkyPainter(medium, DiffuseLight(medium),
                     ground.terrain ? ground.terrain->mesh() : TriangleMesh{}, ground.frame,
                     scene.terrain.kind != TerrainSource::Kind::kMesh);
-}
-
-std::filesystem::path NextScreenshot() {
-  for (int number = 1;; ++number) {
-    const std::filesystem::path file = fmt::format("skyview-{:04d}.png", number);
-    if (!std::filesystem::exists(file)) return file;
-  }
 }
 
 double Degrees(double radians) { return radians / kRadiansPerDegree; }
@@ -114,7 +108,7 @@ void Flythrough::Do(Command command) {
       eye_ = Zoomed(eye_, kZoomStep);
       break;
     case Command::kScreenshot:
-      if (width_ > 0) WritePicture(NextScreenshot(), width_, height_);
+      if (width_ > 0) WritePicture(NextScreenshot(".").replace_extension(".png"), width_, height_);
       break;
     case Command::kHud:
       hud_ = !hud_;
@@ -175,6 +169,14 @@ void Flythrough::WriteReplay(const CameraPath& path,
     recorder.Note(along_s, eye_, now_);
     WritePicture(files[i], size.width, size.height);
   }
+}
+
+DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
+  constexpr int kSamples = 4;
+  Show(frame);
+  painter_.Paint(eye_, now_, size.width, size.height, kSamples);
+  ev100_ = AdaptedEv100(ev100_, painter_.MeteredEv100(), seconds);
+  return Develop(painter_.Read(), *ev100_, ToneCurve::kAgx);
 }
 
 std::string Flythrough::HudText() const {

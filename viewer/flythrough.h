@@ -64,6 +64,9 @@ class Flythrough {
   void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
                    const ImageSize& size, FlightRecorder& recorder);
 
+  /// A picture of a film, `seconds` after the one before: developed, the exposure adapted.
+  [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
+
   [[nodiscard]] const Eye& eye() const { return eye_; }
   [[nodiscard]] const UtcInstant& now() const { return now_; }
   [[nodiscard]] bool quit() const { return quit_; }

@@ -14,6 +14,7 @@
 #include "renderer/scene/scene_files.h"
 #include "renderer/series/frame_times.h"
 #include "viewer/benchmark.h"
+#include "viewer/capture/video.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl/gl_context.h"
@@ -165,6 +166,18 @@ void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, F
   }
 }
 
+void WriteFilm(const SkyviewOptions& options, const CameraPath& path, const ImageSize& size,
+               Flythrough& flight) {
+  const double length_s = path.end_s() - path.begin_s();
+  const int frames = 1 + static_cast<int>(length_s * options.fps);
+  const VideoSettings settings{
+      size.width, size.height, options.fps, {{"alpenglow.replay", *options.replay}}};
+  WriteVideo(*options.video, settings, frames, [&](int number) {
+    const double seconds = number == 0 ? 0.0 : 1.0 / options.fps;
+    return flight.Film(ReplayAt(path, path.begin_s() + number / options.fps), size, seconds);
+  });
+}
+
 // The scripted flight, drawn into a window or, without one, into a picture of its size.
 void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
   const Eye start = flight.eye();
@@ -197,6 +210,7 @@ std::vector<NamedFile> OutputsOf(const SkyviewOptions& options) {
     outputs.push_back({"--record", *options.record});
     outputs.push_back({"--record", GrowingFile::PartOf(*options.record)});
   }
+  if (options.video) outputs.push_back({"--video", *options.video});
   if (!options.screenshot) return outputs;
   const bool many = options.replay && options.headless;
   for (const std::filesystem::path& file :
@@ -220,6 +234,7 @@ int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
   const ImageSize size = ImageSizeFromText(options.size);
   if (options.screenshot) RequirePictureName(*options.screenshot);
+  if (options.video) RequireVideo(*options.video);
   const Scene scene = SceneOf(options);
   const UtcInstant start = StartOf(options, scene);
   std::optional<CameraPath> path;
@@ -247,6 +262,8 @@ int Run(const SkyviewOptions& options) {
     RunBenchmark(*options.benchmark, flight, drawn, window.get());
   } else if (window) {
     Fly(options, path, flight, *window, recorder);
+  } else if (options.video) {
+    WriteFilm(options, *path, size, flight);
   } else if (path) {
     flight.WriteReplay(*path, ReplayPictures(*options.screenshot, options.frames), size, recorder);
   } else {

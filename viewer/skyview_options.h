@@ -18,15 +18,19 @@ inline constexpr char kSkyviewFooter[] =
     "grows with the height over "
     "the ground.\n\n"
     "Example: sunrise over the built-in range, without a display\n"
-    "  skyview --time sunrise+15m --headless --screenshot dawn.png";
+    "  skyview --time sunrise+15m --headless --screenshot dawn.png\n"
+    "A flight as a film:\n"
+    "  skyview --record flight.csv\n"
+    "  skyview --replay flight.csv --headless --video flight.mp4";
 
 /// What is typed; texts are read later, against the scene.
 struct SkyviewOptions {
   CommonOptions common;
   std::string scene_file, size = "1280x720";
   std::optional<double> latitude, longitude, altitude, heading, pitch;
-  std::optional<std::string> dem, time, screenshot, record, replay;
+  std::optional<std::string> dem, time, screenshot, record, replay, video;
   std::optional<double> benchmark;  // seconds
+  double fps = 30.0;                // of the film
   int frames = 1;
   std::string vsync = "on";
   bool fullscreen = false, headless = false;
@@ -67,17 +71,28 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
           ->check(CLI::Range(0.1, 3600.0))
           ->excludes(picture);
   app.add_flag("--headless", options.headless,
-               "Needs no display; only with --screenshot or --benchmark");
+               "Needs no display; only with --screenshot, --video or --benchmark");
   app.add_option("--record", options.record,
                  "Write the flight to this file, for --replay and skyseries --path");
   app.add_option("--replay", options.replay,
                  "Fly along this path; without a display, --screenshot out.%04d.png --frames N "
                  "writes pictures along it");
-  benchmark->excludes("--replay")->excludes("--record");
+  CLI::Option* video =
+      app.add_option(
+             "--video", options.video,
+             "Write the replay as a film (.mp4, .mov, .mkv), through ffmpeg; with --headless")
+          ->needs("--replay")
+          ->needs("--headless")
+          ->excludes(picture);
+  app.add_option("--fps", options.fps, "Pictures a second of the film, 1 to 1000")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->needs(video)
+      ->capture_default_str();
+  benchmark->excludes(video)->excludes("--replay")->excludes("--record");
   AddCommonOptions(app, "skyview", options.common);
   app.callback([&options] {
-    if (options.headless && !options.screenshot && !options.benchmark) {
-      throw CLI::RequiresError("--headless", "--screenshot or --benchmark");
+    if (options.headless && !options.screenshot && !options.benchmark && !options.video) {
+      throw CLI::RequiresError("--headless", "--screenshot, --video or --benchmark");
     }
   });
   app.footer(kSkyviewFooter);

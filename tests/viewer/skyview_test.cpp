@@ -91,6 +91,22 @@ TEST_F(Skyview, ARecordedFlightIsRenderedBySkyseries) {
   EXPECT_THAT(metadata.at("alpenglow.camera_height"), HasSubstr("2000"));
 }
 
+TEST_F(Skyview, AReplayBecomesAFilm) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (RunCommand("ffmpeg -version").status != 0) GTEST_SKIP() << "there is no ffmpeg here";
+  WriteText(folder_ / "p.csv",
+            "t_s,latitude,longitude,height_m,heading\n0,46.5,8,3000,350\n1,46.5,8,3000,355\n");
+  const std::string film = InFolder("s.toml") + " --headless --size 32x18 --replay " +
+                           InFolder("p.csv") + " --fps 4 --video ";
+  const Outcome outcome = Run(film + InFolder("f.mp4"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  ASSERT_EQ(RunCommand("ffmpeg -i f.mp4 -f rawvideo -pix_fmt rgb24 f.raw").status, 0);
+  EXPECT_EQ(fs::file_size(InFolder("f.raw")), 5U * 32U * 18U * 3U)
+      << "a second at four pictures a second, its ends included";
+  EXPECT_EQ(Run(film + InFolder("f.gif")).status, 3) << "no film's name";
+  EXPECT_EQ(Run("--video " + InFolder("f.mp4")).status, 2) << "a film is of a replay";
+}
+
 TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
   if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 16x9 --benchmark 0.2");
@@ -193,9 +209,10 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   for (const char* option :
-       {"--latitude", "--longitude", "--altitude", "--heading", "--pitch", "--time", "--dem",
-        "--record", "--replay", "--benchmark", "--size", "--fullscreen", "--screenshot", "--frames",
-        "--headless", "--threads", "--version", "Example"}) {
+       {"--latitude", "--longitude", "--altitude",   "--heading",    "--pitch",  "--time",
+        "--dem",      "--record",    "--replay",     "--benchmark",  "--video",  "--fps",
+        "--vsync",    "--size",      "--fullscreen", "--screenshot", "--frames", "--headless",
+        "--threads",  "--version",   "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
