@@ -69,9 +69,16 @@ void Benchmark::EndFrame(Clock::time_point now) {
   const std::vector<PassTime> passes = timer_.Take();
   if (elapsed_s_ < warm_up_s_) return;
   const bool is_slowed = times_passes_ && clock_ == PassClock::kFinishes;
-  if (!is_slowed) frame_ms_.push_back(1e3 * Seconds(now - *begin_));
+  if (!is_slowed) NoteFrame(1e3 * Seconds(now - *begin_));
   if (times_passes_) ++timed_frames_;
   NotePasses(passes);
+}
+
+void Benchmark::NoteFrame(double ms) {
+  frame_ms_.push_back(ms);
+  if (ms <= worst_ms_) return;
+  worst_ms_ = ms;
+  worst_at_s_ = elapsed_s_;
 }
 
 void Benchmark::NotePasses(const std::vector<PassTime>& passes) {
@@ -88,6 +95,12 @@ std::string Benchmark::Text() const {
     text += LineOf(pass, ms_.at(pass)) + LineOf(pass + ".cpu", cpu_ms_.at(pass));
   }
   return text + LineOf("frame", frame_ms_);
+}
+
+std::string Benchmark::WorstText() const {
+  return fmt::format(
+      "{} frames, the worst of them {:.1f} ms, {:.1f} times the median, after {:.1f} s",
+      frame_ms_.size(), worst_ms_, worst_ms_ / PercentilesOf(frame_ms_).median, worst_at_s_);
 }
 
 ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin, double elapsed_s) {

@@ -48,11 +48,14 @@ class Benchmark {
 
   /// The lines, when NextFrame was false. "frame" is the last one.
   [[nodiscard]] std::string Text() const;
+  /// "812 frames, the worst of them 93.1 ms, 2.3 times the median, after 34.5 s".
+  [[nodiscard]] std::string WorstText() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   void EndFrame(Clock::time_point now);
   void WaitForTheFrameBefore();
+  void NoteFrame(double ms);
   void NotePasses(const std::vector<PassTime>& passes);
 
   double seconds_, warm_up_s_;
@@ -66,6 +69,7 @@ class Benchmark {
   std::vector<std::string> passes_;                         // in the order they were drawn first
   std::map<std::string, std::vector<double>> ms_, cpu_ms_;  // by pass
   std::vector<double> frame_ms_;
+  double worst_ms_ = 0.0, worst_at_s_ = 0.0;
 };
 
 /// The flight: at 250 m/s and the height it begins at, in circles of 5 km to the right.

@@ -195,6 +195,7 @@ void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Win
     if (window != nullptr) window->Swap();
   }
   Print(benchmark.Text());
+  Say(fmt::format("skyview: {}\n", benchmark.WorstText()));
 }
 
 std::vector<NamedFile> InputsOf(const SkyviewOptions& options, const Scene& scene) {

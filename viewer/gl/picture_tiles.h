@@ -21,7 +21,8 @@ struct PictureTile {
 
 /// Which part of the view a tile sees: (x, y, u, v), with positions in the whole view from (-1, -1),
 /// lower left, to (1, 1). A position p of the whole view is (p - (x, y)) * (u, v) in the tile's, and
-/// in clip space p.xy is (p.xy - (x, y) * p.w) * (u, v). The whole view is (0, 0, 1, 1).
+/// in clip space p.xy is (p.xy - (x, y) * p.w) * (u, v): a view u and v times as narrow, shifted by
+/// (x u, y v) of itself. The whole view is (0, 0, 1, 1).
 [[nodiscard]] glm::dvec4 ViewOfTile(const PictureTile& tile, int width, int height);
 
 /// A picture put together.

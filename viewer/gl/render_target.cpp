@@ -91,6 +91,16 @@ void RenderTarget::BindTexture(int unit, std::size_t output) const {
   glBindTexture(GL_TEXTURE_2D, colours_[output].id());
 }
 
+void RenderTarget::Write(const Image& image) const {
+  ALPENGLOW_ENSURE(image.width, ==, width_);
+  ALPENGLOW_ENSURE(image.height, ==, height_);
+  std::vector<std::array<float, 3>> rows = image.rgb;
+  TurnUpsideDown(rows, static_cast<std::size_t>(width_));
+  glBindTexture(GL_TEXTURE_2D, colours_.front().id());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_FLOAT, rows.data());
+}
+
 template <typename Pixel>
 void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLenum format,
                             GLenum type) const {

@@ -41,6 +41,10 @@ class RenderTarget {
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] GLuint framebuffer() const { return framebuffer_.id(); }
 
+  /// Puts red, green and blue into the first output, row 0 at the top; another size than the
+  /// target's is an error.
+  void Write(const Image& image) const;
+
   // What was drawn, row 0 at the top. Each waits until it is drawn.
   /// Red, green and blue.
   [[nodiscard]] Image Read(std::size_t output = 0) const;

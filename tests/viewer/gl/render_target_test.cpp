@@ -61,6 +61,17 @@ TEST_F(RenderTargets, SeveralOutputsOfOneDrawAreReadEachInItsOwnFormat) {
   EXPECT_EQ(target.Read().at(3, 2)[0], 3.5F) << "reading one output leaves the others";
 }
 
+TEST_F(RenderTargets, WhatIsPutThereIsReadBack) {
+  const RenderTarget target(3, 2, RenderTarget::Depth::kNone);
+  Image image(3, 2);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    image.rgb[i] = {static_cast<float>(i), -1.0F, 1e6F};
+  }
+  target.Write(image);
+  EXPECT_EQ(target.Read().rgb, image.rgb);
+  EXPECT_THROW(target.Write(Image(2, 3)), InternalError);
+}
+
 TEST_F(RenderTargets, BytesOfAPixelAreThoseThatItIsReadIn) {
   EXPECT_EQ(BytesOf(PixelFormat::kRgba32F), 16);
   EXPECT_EQ(BytesOf(PixelFormat::kRgba16F), 8);
