@@ -5,39 +5,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 #include "renderer/series/provenance.h"
-#include "viewer/capture/screenshot_name.h"
+#include "viewer/flight/places.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 namespace {
 
-constexpr double kClearance_m = 1.5;  // of the eye over the ground
-constexpr double kZoomStep = 1.1;
+constexpr int kPictureSamples = 4;
+// The renderer's picture is begun when the eye has stood for so long.
+constexpr double kStandsStill_s = 0.3;
 
-Eye EyeOfScene(const Scene& scene, double height_m) {
+Eye EyeOfScene(const Scene& scene) {
   Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
           scene.camera.fov_rad};
-  eye.place.height_m = height_m;
+  eye.place.height_m = scene.camera.height.value_m;
   return Zoomed(eye, 1.0);
 }
 
-SkyPainter PainterOf(const Scene& scene, const SceneGround& ground) {
-  const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
-  static_cast<void>(AirBlockOf(medium));  // refuses a medium of too many bands before it is solved
-  return SkyPainter(medium, DiffuseLight(medium),
-                    ground.terrain ? ground.terrain->mesh() : TriangleMesh{}, ground.frame,
-                    scene.terrain.kind != TerrainSource::Kind::kMesh);
+std::optional<UtcInstant> MoonEvent(SkyEvent event, const GeodeticPosition& place,
+                                    const UtcInstant& after) {
+  return event == SkyEvent::kMoonset ? NextMoonset(place, after) : NextMoonrise(place, after);
 }
 
-double Degrees(double radians) { return radians / kRadiansPerDegree; }
-
-double Azimuth(double radians) {
-  const double degrees = std::fmod(Degrees(radians) + 720.0, 360.0);
-  return degrees;
+// Refuses a medium of too many bands before it is solved.
+const Scene& Drawable(const Scene& scene) {
+  static_cast<void>(AirBlockOf(scene.medium));
+  return scene;
 }
 
 }  // namespace
@@ -54,107 +54,244 @@ void RequirePictureName(const std::filesystem::path& file) {
       fmt::format("\"{}\" is no picture's name; it must end in .png or .exr", file.string()));
 }
 
-Flythrough::Flythrough(const Scene& scene, const UtcInstant& start)
-    : scene_(scene),
-      ground_(LoadGround(scene_)),
-      painter_(PainterOf(scene_, ground_)),
-      eye_(EyeOfScene(scene_, ground_.eye_height_m)),
-      now_(start) {}
+Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
+                       const FlythroughSettings& settings)
+    : scene_(Drawable(scene)),
+      medium_(scene.medium),
+      rule_(settings.quality),
+      auto_(1.0 / settings.frame_rate),
+      used_(Painted()),
+      cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
+      painter_(scene, settings.land,
+               {EyeOfScene(scene), start, settings.size.width, settings.size.height},
+               SizesOf(used_.quality)) {
+  if (scene.camera.height.above_ground) waits_above_ground_m_ = scene.camera.height.value_m;
+}
 
-double Flythrough::GroundUnder(const GeodeticPosition& place) const {
-  if (!ground_.terrain) return 0.0;
-  constexpr double kFromHeight_m = 20000.0;  // over any mountain
-  GeodeticPosition high = place;
-  high.height_m = kFromHeight_m;
-  const LocalFrame here(ground_.frame.ellipsoid(), place);
-  const Vector<Ecef> down = here.EcefFromEnu(Vector<Enu>{{0.0, 0.0, -1.0}});
-  const auto hit = ground_.terrain->Intersect(ground_.frame.EnuFromGeodetic(high).xyz,
-                                              ground_.frame.EnuFromEcef(down).xyz);
-  return hit ? kFromHeight_m - hit->distance_m : 0.0;
+GroundHeight Flythrough::Ground() const {
+  return [this](const GeodeticPosition& place) {
+    return painter_.land().GroundUnder(place).value_or(0.0);
+  };
+}
+
+void Flythrough::StandOnGround() {
+  if (!waits_above_ground_m_) return;
+  const std::optional<double> ground = painter_.land().GroundUnder(eye().place);
+  const bool is_known = ground || painter_.land().Progress().share >= 1.0;
+  if (!is_known) return;
+  Eye stands = eye();
+  stands.place.height_m = ground.value_or(0.0) + *waits_above_ground_m_;
+  waits_above_ground_m_.reset();
+  cockpit_.pilot().PutAt(stands, Ground());
 }
 
 void Flythrough::Place(const EyePlacement& placement) {
-  const double above_m = eye_.place.height_m - GroundUnder(eye_.place);
-  eye_ = Placed(eye_, placement);
-  if (!placement.height_m) eye_.place.height_m = GroundUnder(eye_.place) + above_m;
-  eye_ = KeptAbove(eye_, GroundUnder(eye_.place), 0.0);
+  const double above_m =
+      waits_above_ground_m_.value_or(eye().place.height_m - Ground()(eye().place));
+  Eye placed = Placed(eye(), placement);
+  if (placement.height_m) {
+    waits_above_ground_m_.reset();
+  } else if (placement.latitude_deg || placement.longitude_deg) {
+    waits_above_ground_m_ = std::max(above_m, 0.0);
+  }
+  cockpit_.pilot().PutAt(placed, Ground());
+}
+
+void Flythrough::GoTo(const std::string& name) {
+  const Eye there = EyeAt(PlaceNamed(name), eye(), Ground());
+  waits_above_ground_m_.reset();
+  cockpit_.pilot().PutAt(there, Ground());
 }
 
 void Flythrough::Show(const ReplayFrame& frame) {
-  eye_ = Zoomed(frame.eye, 1.0);
-  eye_ = KeptAbove(eye_, GroundUnder(eye_.place), 0.0);
-  if (frame.now) now_ = *frame.now;
+  waits_above_ground_m_.reset();
+  cockpit_.pilot().PutAt(KeptAbove(Zoomed(frame.eye, 1.0), Ground()(frame.eye.place), 0.0),
+                         Ground());
+  if (frame.now) cockpit_.clock().Set(*frame.now);
 }
 
-void Flythrough::Advance(const Steering& steering, double seconds) {
-  const double above_m = std::max(eye_.place.height_m - GroundUnder(eye_.place), 0.0);
-  eye_ = Steer(eye_, steering, ground_.frame.ellipsoid(), above_m, seconds);
-  eye_ = KeptAbove(eye_, GroundUnder(eye_.place), kClearance_m);
-  now_ = AddSeconds(now_, time_rate_ * seconds);
+void Flythrough::Advance(const PilotControls& controls, double seconds) {
+  cockpit_.Advance(controls, seconds, Ground());
+  still_s_ = still_eye_ == eye() ? still_s_ + seconds : 0.0;
+  still_eye_ = eye();
 }
 
-void Flythrough::Do(Command command) {
-  switch (command) {
-    case Command::kFasterTime:
-      time_rate_ = SteppedTimeRate(time_rate_, 1);
-      break;
-    case Command::kSlowerTime:
-      time_rate_ = SteppedTimeRate(time_rate_, -1);
-      break;
-    case Command::kNarrowerView:
-      eye_ = Zoomed(eye_, 1.0 / kZoomStep);
-      break;
-    case Command::kWiderView:
-      eye_ = Zoomed(eye_, kZoomStep);
-      break;
-    case Command::kScreenshot:
-      if (width_ > 0) WritePicture(NextScreenshot(".").replace_extension(".png"), width_, height_);
-      break;
-    case Command::kHud:
-      hud_ = !hud_;
-      break;
-    case Command::kQuit:
-      quit_ = true;
-      break;
+std::optional<std::string> Flythrough::Do(Action action) {
+  if (auto said = cockpit_.Do(action, Ground(), MoonEvent)) return said;
+  constexpr double kStep_ev = 1.0 / 3.0;
+  constexpr double kHazeStep = 1.25;
+  switch (action) {
+    case Action::kExposureLock:
+      exposure_.locked = !exposure_.locked;
+      return exposure_.locked ? "exposure locked" : "exposure follows the meter";
+    case Action::kBrighter:
+    case Action::kDarker:
+      exposure_.compensation_ev += action == Action::kBrighter ? kStep_ev : -kStep_ev;
+      return fmt::format("exposure {:+.1f} EV", exposure_.compensation_ev);
+    case Action::kResetExposure:
+      exposure_ = {false, 0.0, exposure_.ev100};
+      return "exposure follows the meter";
+    case Action::kClearer:
+    case Action::kHazier: {
+      AirChoice choice = air_;
+      choice.aerosol = std::clamp(
+          air_.aerosol * (action == Action::kHazier ? kHazeStep : 1.0 / kHazeStep), 1e-3, 1000.0);
+      Use(choice);
+      return fmt::format("visibility {:.1f} km", 1e-3 * VisibilityOf(Changed(medium_, air_)));
+    }
+    case Action::kResetVisibility: {
+      AirChoice choice = air_;
+      choice.aerosol = 1.0;
+      Use(choice);
+      return fmt::format("visibility {:.1f} km", 1e-3 * VisibilityOf(medium_));
+    }
+    case Action::kNextQuality: {
+      const int next = rule_.fixed ? static_cast<int>(*rule_.fixed) + 1 : 0;
+      Use(next > static_cast<int>(Quality::kReference) ? QualityRule{}
+                                                       : QualityRule{static_cast<Quality>(next)});
+      return "quality " + QualityText();
+    }
+    default:
+      return std::nullopt;
   }
 }
 
-void Flythrough::Paint(int width, int height, GLuint framebuffer, double seconds) {
-  painter_.Paint(eye_, now_, width, height);
-  ev100_ = AdaptedEv100(ev100_, painter_.MeteredEv100(), seconds);
-  painter_.Develop(*ev100_, framebuffer);
-  width_ = width;
-  height_ = height;
+void Flythrough::Use(const QualityRule& rule) {
+  rule_ = rule;
+  reference_.reset();
 }
 
-void Flythrough::WritePicture(const std::filesystem::path& file, int width, int height) {
-  RequirePictureName(file);
-  constexpr int kSamples = 4;
-  painter_.Paint(eye_, now_, width, height, kSamples);
-  const Image image = painter_.Read();
-  const double ev100 = ev100_.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2));
+void Flythrough::Use(const AirChoice& choice) {
+  const Medium changed = Changed(medium_, choice);
+  air_ = choice;
+  scene_.medium = changed;
+  reference_scene_.reset();
+  painter_.Replace(OnOsculatingSphere(changed, eye().place.latitude_rad));
+}
+
+void Flythrough::UsePlanet(const std::string& preset) {
+  Medium planet = MediumPreset(preset);
+  if (planet.follows_wgs84 != medium_.follows_wgs84) {
+    throw InputError(fmt::format(
+        "{} is another planet than the one that this land lies on; start there with a scene file",
+        preset));
+  }
+  static_cast<void>(AirBlockOf(planet));
+  medium_ = std::move(planet);
+  Use(air_);
+}
+
+void Flythrough::SetExposure(double ev100) { exposure_ = {true, 0.0, ev100}; }
+
+PaintedQuality Flythrough::Painted() const {
+  return rule_.fixed ? PaintedQuality{*rule_.fixed, 1.0} : auto_.painted();
+}
+
+void Flythrough::NoteFrame(double seconds) {
+  if (!rule_.fixed) auto_.Note(seconds);
+}
+
+std::string Flythrough::QualityText() const {
+  if (!rule_.fixed) return "auto: " + TextOf(auto_.painted());
+  if (*rule_.fixed == Quality::kReference && reference_ && reference_->samples() > 0)
+    return fmt::format("reference, {} rays a pixel", reference_->samples());
+  return NameOf(*rule_.fixed);
+}
+
+std::string Flythrough::zone() const { return ZoneNear(eye().place, scene_.zone, scene_.place); }
+
+PaintedView Flythrough::ViewOf(const ImageSize& size) const {
+  return {eye(), now(), size.width, size.height};
+}
+
+Scene Flythrough::SceneSeen() const {
   Scene seen = scene_;
-  seen.place = eye_.place;
+  seen.place = eye().place;
   seen.place.height_m = 0.0;
-  seen.time = now_;
-  seen.camera.height = {eye_.place.height_m, false};
-  seen.camera.heading_rad = eye_.heading_rad;
-  seen.camera.pitch_rad = eye_.pitch_rad;
-  seen.camera.roll_rad = eye_.roll_rad;
-  seen.camera.fov_rad = eye_.fov_rad;
+  if (seen.terrain.kind == TerrainSource::Kind::kBuiltInRange && !seen.terrain.centre)
+    seen.terrain.centre = scene_.place;
+  seen.time = now();
+  seen.camera.height = {eye().place.height_m, false};
+  seen.camera.heading_rad = eye().heading_rad;
+  seen.camera.pitch_rad = eye().pitch_rad;
+  seen.camera.roll_rad = eye().roll_rad;
+  seen.camera.fov_rad = eye().fov_rad;
+  return seen;
+}
+
+void Flythrough::ShowReference(const ImageSize& size) {
+  const bool wanted =
+      rule_.fixed == std::optional(Quality::kReference) && still_s_ >= kStandsStill_s;
+  if (!wanted) return;
+  if (!reference_) reference_ = std::make_unique<ReferencePicture>();
+  if (!reference_scene_) {
+    reference_scene_ = std::make_shared<const ReferenceScene>(ReferenceScene{SceneSeen(), nullptr});
+  }
+  reference_->Show({reference_scene_, eye(), now(), size.width, size.height});
+  if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);
+}
+
+void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
+  const PaintedQuality wanted = Painted();
+  if (wanted.quality != used_.quality) painter_.Use(SizesOf(wanted.quality));
+  used_ = wanted;
+  const auto scaled = [&](int side) {
+    return std::max(static_cast<int>(std::lround(wanted.scale * side)), 1);
+  };
+  const ImageSize size{scaled(screen.width), scaled(screen.height)};
+  StandOnGround();
+  const PaintedView view = ViewOf(size);
+  painter_.Update(view, seconds);
+  const bool has_reference = reference_ && reference_->samples() > 0 && still_s_ > 0.0;
+  if (!has_reference) painter_.Paint(view);
+  ShowReference({screen.width, screen.height});
+  if (const std::optional<double> metered = meter_.Take()) metered_ev100_ = *metered;
+  meter_.Look(painter_.picture());
+  if (!exposure_.ev100) metered_ev100_ = meter_.Read(painter_.picture());
+  if (!exposure_.locked) {
+    exposure_.ev100 =
+        AdaptedEv100(exposure_.ev100, metered_ev100_ - exposure_.compensation_ev, seconds);
+  }
+  painter_.Time("develop");
+  developer_.Develop(painter_.picture(), *exposure_.ev100, screen);
+  painter_.EndTime();
+}
+
+void Flythrough::SettleAt(const ImageSize& size) {
+  painter_.Settle(ViewOf(size));
+  StandOnGround();
+  painter_.Settle(ViewOf(size));
+}
+
+Image Flythrough::Picture(const ImageSize& size, int samples) {
+  const Quality quality = rule_.fixed.value_or(Quality::kHigh);
+  painter_.Use(SizesOf(quality));
+  SettleAt(size);
+  painter_.Paint(ViewOf(size), samples);
+  Image image = painter_.picture().Read();
+  painter_.Use(SizesOf(used_.quality));
+  return image;
+}
+
+void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
+  RequirePictureName(file);
+  const Image image = Picture(size, kPictureSamples);
+  const double ev100 = exposure_.ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2) -
+                                                exposure_.compensation_ev);
   RenderSettings settings;
-  settings.width = width;
-  settings.height = height;
-  settings.samples_per_pixel = kSamples;
+  settings.width = size.width;
+  settings.height = size.height;
+  settings.samples_per_pixel = kPictureSamples;
   settings.filter = PixelFilter::Kind::kBox;
-  Metadata metadata = PictureMetadata(seen, settings);
-  metadata["alpenglow.time"] = FormatUtc(now_, 3);
+  Metadata metadata = PictureMetadata(SceneSeen(), settings);
+  metadata["alpenglow.time"] = FormatUtc(now(), 3);
   metadata["alpenglow.ev100"] = fmt::format("{}", ev100);
   metadata["alpenglow.painter"] = "skyview";
+  metadata["alpenglow.quality"] = NameOf(rule_.fixed.value_or(Quality::kHigh));
   if (file.extension() == ".exr") {
     WriteExr(file, image, metadata);
   } else {
-    WritePng(file, Develop(image, ev100, ToneCurve::kAgx), metadata);
+    WritePng(file, Develop(image, ev100, developer_.curve()), metadata);
   }
 }
 
@@ -166,29 +303,17 @@ void Flythrough::WriteReplay(const CameraPath& path,
     ThrowIfInterrupted();
     const double along_s = (path.end_s() - path.begin_s()) * static_cast<double>(i) / steps;
     Show(ReplayAt(path, path.begin_s() + along_s));
-    recorder.Note(along_s, eye_, now_);
-    WritePicture(files[i], size.width, size.height);
+    recorder.Note(along_s, eye(), now());
+    WritePicture(files[i], size);
   }
 }
 
 DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
-  constexpr int kSamples = 4;
   Show(frame);
-  painter_.Paint(eye_, now_, size.width, size.height, kSamples);
-  ev100_ = AdaptedEv100(ev100_, painter_.MeteredEv100(), seconds);
-  return Develop(painter_.Read(), *ev100_, ToneCurve::kAgx);
-}
-
-std::string Flythrough::HudText() const {
-  if (!hud_) return "skyview";
-  const SunPosition sun = ApparentSunAt(eye_.place, now_);
-  return fmt::format(
-      "skyview  {:.4f} {:.4f}  {:.0f} m ({:.0f} m over ground)  heading {:03.0f}  pitch {:+.0f}  "
-      "view {:.0f}  {} x{:.0f}  sun {:+.1f} at {:03.0f}  EV {:.1f}",
-      Degrees(eye_.place.latitude_rad), Degrees(eye_.place.longitude_rad), eye_.place.height_m,
-      eye_.place.height_m - GroundUnder(eye_.place), Azimuth(eye_.heading_rad),
-      Degrees(eye_.pitch_rad), Degrees(eye_.fov_rad), FormatUtc(now_), time_rate_,
-      Degrees(sun.elevation_rad), Azimuth(sun.azimuth_rad), ev100_.value_or(0.0));
+  const Image image = Picture(size, kPictureSamples);
+  exposure_.ev100 =
+      AdaptedEv100(exposure_.ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), seconds);
+  return Develop(image, *exposure_.ev100, developer_.curve());
 }
 
 }  // namespace alpenglow

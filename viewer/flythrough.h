@@ -1,32 +1,25 @@
 // SPDX-License-Identifier: MIT
-// A scene flown through: eye, time and exposure, what keys do to them, and the picture.
+// A scene flown through: pilot and clock, air and land as they follow, exposure, and the picture.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lut/picture/picture_text.h"
-#include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene.h"
-#include "viewer/flight/clock.h"
-#include "viewer/flight/flight.h"
+#include "viewer/air/air_choice.h"
 #include "viewer/flight/flight_recorder.h"
+#include "viewer/input/cockpit.h"
+#include "viewer/paint/auto_quality.h"
+#include "viewer/paint/developer.h"
+#include "viewer/paint/exposure_meter.h"
+#include "viewer/paint/reference_picture.h"
 #include "viewer/paint/sky_painter.h"
 
 namespace alpenglow {
-
-/// What a key press asks for.
-enum class Command {
-  kFasterTime,
-  kSlowerTime,
-  kNarrowerView,
-  kWiderView,
-  kScreenshot,
-  kHud,
-  kQuit
-};
 
 /// Exposure that follows the meter like an eye: half
 /// way in 0.3 s. A first exposure is the metered one.
@@ -35,58 +28,109 @@ enum class Command {
 /// Throws InputError unless the file's name ends in .png or .exr.
 void RequirePictureName(const std::filesystem::path& file);
 
+/// How pictures of a flight are painted.
+struct FlythroughSettings {
+  LandSource land;
+  QualityRule quality;
+  double frame_rate = 30.0;  // that automatic quality keeps
+  ImageSize size;            // of the first picture
+};
+
+/// Where the exposure comes from.
+struct FlightExposure {
+  bool locked = false;
+  double compensation_ev = 0.0;  // over 0 is brighter
+  std::optional<double> ev100;   // as shown; nothing before the first picture
+};
+
 class Flythrough {
  public:
-  /// Loads the terrain, solves the diffuse light, fills the graphics card: an OpenGL context must
-  /// be current, now and in all calls. The scene starts at `start`. Throws InputError for what the
-  /// scene names and cannot be read, and a medium of more than four wavelengths.
-  Flythrough(const Scene& scene, const UtcInstant& start);
+  /// Solves the air and begins to read the land: an OpenGL context must be current, now and in all
+  /// calls. Throws InputError for what the scene names and cannot be read, and a medium of more than
+  /// four wavelengths.
+  Flythrough(const Scene& scene, const UtcInstant& start, const FlythroughSettings& settings);
 
   /// Puts the eye there. Without a height it keeps the one it had over the ground; it never comes
   /// to stand in the ground.
   void Place(const EyePlacement& placement);
-  /// Lets `seconds` pass, with the controls held like this.
-  void Advance(const Steering& steering, double seconds);
-  void Turn(double right_rad, double up_rad) { eye_ = Turned(eye_, right_rad, up_rad); }
-  /// kScreenshot writes the next free of skyview-0001.png, ... in the current folder.
-  void Do(Command command);
-
-  /// Paints into a framebuffer (0: the window), exposed as the meter says.
-  void Paint(int width, int height, GLuint framebuffer, double seconds);
-  /// Paints anew with four rays a pixel and writes what is seen: .png developed, .exr linear, both
-  /// with what made them in their headers. Throws OutputError.
-  void WritePicture(const std::filesystem::path& file, int width, int height);
-
-  /// Puts the eye and the time where a replay has them; the eye never comes to stand in the ground.
+  /// Puts the eye at a place of the list, by name.
+  void GoTo(const std::string& name);
+  /// Puts the eye and the time where a replay has them.
   void Show(const ReplayFrame& frame);
 
+  /// Lets real seconds pass, with the controls held like this.
+  void Advance(const PilotControls& controls, double seconds);
+  /// What an action came to, in words; empty: nothing to say; nothing: it is for others.
+  std::optional<std::string> Do(Action action);
+
+  void Use(const QualityRule& rule);
+  void Use(ToneCurve curve) { developer_.Use(curve); }
+  void Use(const AirChoice& choice);
+  /// Another planet by the name of a preset, with the changes that were made to the last one.
+  void UsePlanet(const std::string& preset);
+  void LockExposure(bool locked) { exposure_.locked = locked; }
+  void SetExposure(double ev100);
+  void Compensate(double ev) { exposure_.compensation_ev = ev; }
+
+  /// Paints onto a screen, exposed as the meter says. `seconds` since the last picture.
+  void Paint(const Developer::Screen& screen, double seconds);
+  /// What took the last picture, without waiting for the screen, for automatic quality.
+  void NoteFrame(double seconds);
+
+  /// The linear picture of where the eye is, with all that belongs into it there.
+  [[nodiscard]] Image Picture(const ImageSize& size, int samples);
+  /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
+  /// both with what made them in their headers. Throws OutputError.
+  void WritePicture(const std::filesystem::path& file, const ImageSize& size);
   /// Writes pictures at even steps of the path, its ends included, and notes them down.
   void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
                    const ImageSize& size, FlightRecorder& recorder);
-
   /// A picture of a film, `seconds` after the one before: developed, the exposure adapted.
   [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
 
-  [[nodiscard]] const Eye& eye() const { return eye_; }
-  [[nodiscard]] const UtcInstant& now() const { return now_; }
-  [[nodiscard]] bool quit() const { return quit_; }
-  /// Place, height, heading, time, sun and exposure in one line; empty when hidden.
-  [[nodiscard]] std::string HudText() const;
-  /// What loading the terrain has to tell, empty if nothing.
-  [[nodiscard]] const std::string& terrain_message() const { return ground_.message; }
+  [[nodiscard]] Cockpit& cockpit() { return cockpit_; }
+  [[nodiscard]] const Cockpit& cockpit() const { return cockpit_; }
+  [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
+  [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Medium& medium() const { return medium_; }
+  [[nodiscard]] const AirChoice& air_choice() const { return air_; }
+  [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
+  [[nodiscard]] ToneCurve curve() const { return developer_.curve(); }
+  /// Height of the ground under a place; of the bare planet where there is no land.
+  [[nodiscard]] GroundHeight Ground() const;
+  [[nodiscard]] SkyPainter& painter() { return painter_; }
+  [[nodiscard]] const SkyPainter& painter() const { return painter_; }
+  /// "auto: medium at 0.7x", "high", "reference, 16 rays a pixel".
+  [[nodiscard]] std::string QualityText() const;
+  [[nodiscard]] const QualityRule& quality_rule() const { return rule_; }
+  [[nodiscard]] std::string zone() const;
 
  private:
-  [[nodiscard]] double GroundUnder(const GeodeticPosition& place) const;
+  [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const;
+  [[nodiscard]] PaintedQuality Painted() const;
+  void StandOnGround();
+  void SettleAt(const ImageSize& size);
+  void ShowReference(const ImageSize& size);
+  [[nodiscard]] Scene SceneSeen() const;
 
   Scene scene_;
-  SceneGround ground_;
+  Medium medium_;  // of the preset or file, unchanged
+  AirChoice air_;
+  QualityRule rule_;
+  AutoQuality auto_;
+  PaintedQuality used_;
+  Cockpit cockpit_;
   SkyPainter painter_;
-  Eye eye_;
-  UtcInstant now_;
-  double time_rate_ = 1.0;
-  std::optional<double> ev100_;
-  int width_ = 0, height_ = 0;  // of the last picture
-  bool hud_ = true, quit_ = false;
+  Developer developer_{ToneCurve::kAgx};
+  ExposureMeter meter_;
+  FlightExposure exposure_;
+  double metered_ev100_ = 15.0;
+  std::optional<double> waits_above_ground_m_;  // the ground under the eye is not known yet
+  std::unique_ptr<ReferencePicture> reference_;
+  std::shared_ptr<const ReferenceScene> reference_scene_;
+  std::optional<Eye> still_eye_;
+  double still_s_ = 0.0;
 };
 
 }  // namespace alpenglow

@@ -42,7 +42,14 @@ class GroundFollower::Maker {
 
   Made Make(const Request& request) {
     const auto begin = std::chrono::steady_clock::now();
-    Made made{LitFor(request), 0.0};
+    Made made{LitFor(request), {}, 0.0};
+    if (made.lit && made.lit->site().material().HasGloss()) {
+      const OpenSky sky(*made.lit->site().air().integrator, *made.lit->site().air().diffuse,
+                        made.lit->lighting().to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
+      made.sea_mirror =
+          SeaMirror::Of(sky, *made.lit->site().air().diffuse, made.lit->site().material().water(),
+                        made.lit->lighting().to_sun);
+    }
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return made;
   }
@@ -126,6 +133,7 @@ bool GroundFollower::Take() {
   std::optional<Made> made = maker_.Take();
   if (!made) return false;
   lit_ = std::move(made->lit);
+  sea_mirror_ = std::move(made->sea_mirror);
   making_s_ = made->making_s;
   return true;
 }

@@ -5,9 +5,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
+#include "viewer/ground/sea_mirror.h"
 #include "viewer/shade/shade_follower.h"
 #include "viewer/work/latest_job.h"
 
@@ -42,6 +44,8 @@ class GroundFollower {
   [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return lit_; }
   /// Of vertices in the frame of any anchor; empty without lit().
   [[nodiscard]] LightOfVertices Light() const;
+  /// What waves show of the sky over it (SeaMirror); empty where nothing mirrors.
+  [[nodiscard]] const std::vector<BandTexel>& sea_mirror() const { return sea_mirror_; }
   /// Time that the light took to make; 0 before the first.
   [[nodiscard]] double making_s() const { return making_s_; }
 
@@ -53,6 +57,7 @@ class GroundFollower {
   };
   struct Made {
     std::shared_ptr<const LitGround> lit;
+    std::vector<BandTexel> sea_mirror;
     double making_s;
   };
   class Maker;
@@ -63,6 +68,7 @@ class GroundFollower {
   std::shared_ptr<const GroundSampler> ground_;
   std::optional<Request> asked_;
   std::shared_ptr<const LitGround> lit_;
+  std::vector<BandTexel> sea_mirror_;
   double making_s_ = 0.0;
   LatestJob<Request, Made> maker_;
 };

@@ -42,7 +42,7 @@ class GroundSite {
   [[nodiscard]] const Medium& medium() const { return air_.integrator->medium(); }
 
   [[nodiscard]] const GroundMaterial& material() const { return material_; }
-  [[nodiscard]] const SolvedAir& air() const { return air_; }
+  [[nodiscard]] const SiteAir& air() const { return air_; }
   [[nodiscard]] const GroundLight& light() const { return light_; }
   /// What terrain makes of the light of sky and sun: see GroundLight::OnTerrain.
   [[nodiscard]] std::shared_ptr<const TerrainLight> Under(const Lighting& light) const;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon_disk.h"
 #include "atmosphere/text/error.h"
 #include "renderer/ground/surface.h"
 #include "viewer/gl/gl_context.h"
@@ -22,9 +23,18 @@ enum Binding : GLuint {
   kViewBinding,
   kGroundBinding,
   kGroundLightBinding,
+  kGroundSurfaceBinding,
   kTablesBinding
 };
-enum Unit { kSurfaceUnit, kSkyOnSurfaceUnit, kShaftUnit, kShadeUnit, kPictureUnit, kAirUnit };
+enum Unit {
+  kSurfaceUnit,
+  kSkyOnSurfaceUnit,
+  kShaftUnit,
+  kShadeUnit,
+  kPictureUnit,
+  kAirUnit,
+  kGroundUnit = kAirUnit + AirTextures::kUnits,
+};
 
 constexpr double kMetresPerKilometre = 1000.0;
 
@@ -50,7 +60,14 @@ std::vector<ShaderPiece> AirTexts() {
 LandView LandViewOf(const PaintedView& view) {
   const ViewAxes axes = AxesOf(view.eye);
   const double half_width = std::tan(0.5 * view.eye.fov_rad);
-  return {half_width * axes.right, half_width * view.height / view.width * axes.up, axes.forward};
+  const double part = half_width / view.part.z;
+  return {part * axes.right, part * view.height / view.width * axes.up, axes.forward};
+};
+}
+
+// Between neighbouring pixels in the middle of the view [rad].
+double PixelAngle(const PaintedView& view) {
+  return 2.0 * std::tan(0.5 * view.eye.fov_rad) / (view.width * view.part.z);
 }
 
 AirView AirViewOf(const PaintedView& view, const SunPosition& sun) {
@@ -87,13 +104,13 @@ LandSource LandSourceOf(const Scene& scene) {
   return source;
 }
 
-std::vector<ShaderPiece> PictureTexts() {
+std::vector<ShaderPiece> PictureTexts(const GroundMaterial& material) {
   std::vector<ShaderPiece> texts = AirTexts();
   for (const char* name : {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
-                           "viewer/shaders/sun_light.glsl", "viewer/shaders/ground.glsl",
-                           "viewer/shaders/ground_light.glsl"}) {
+                           "viewer/shaders/sun_light.glsl"}) {
     texts.push_back(ViewerPiece(name));
   }
+  for (ShaderPiece& piece : GroundTexts(material)) texts.push_back(std::move(piece));
   for (ShaderPiece& piece : ShaftTexts()) texts.push_back(std::move(piece));
   return texts;
 }
@@ -103,20 +120,24 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
     : scene_(scene),
       ellipsoid_(EllipsoidUnder(scene)),
       sizes_(sizes),
+      material_(scene.ground, nullptr, scene.medium.wavelengths_nm),
       air_(SolveAir(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)), sizes.air,
            AirViewOf(first, SunOf(first))),
       land_(land, LandSizeOf(sizes), ellipsoid_),
       ground_(scene.ground, nullptr, {}),
       shade_(ellipsoid_),
       shaft_pass_(AirTexts()),
-      program_(FullScreenProgram(PictureTexts(), "viewer/shaders/picture.frag.glsl")) {
+      program_(FullScreenProgram(PictureTexts(material_), "viewer/shaders/picture.frag.glsl")),
+      ground_textures_(air_.air()->diffuse) {
   program_.BindBlock("Air", kAirBinding);
   program_.BindBlock("Ground", kGroundBinding);
   program_.BindBlock("GroundLight", kGroundLightBinding);
+  program_.BindBlock("GroundSurface", kGroundSurfaceBinding);
   program_.BindSampler("surface_map", kSurfaceUnit);
   program_.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
   program_.BindSampler("shaft_map", kShaftUnit);
-  for (const ShaderProgram* program : std::initializer_list<const ShaderProgram*>{&program_, &shaft_pass_.program()}) {
+  for (const ShaderProgram* program :
+       std::initializer_list<const ShaderProgram*>{&program_, &shaft_pass_.program()}) {
     program->BindBlock("View", kViewBinding);
     program->Use();
     AirTextures::Prepare(*program, kAirUnit, kTablesBinding);
@@ -147,13 +168,31 @@ void SkyPainter::TakeHeights() {
   shade_.SetGround(sampler);
 }
 
+void SkyPainter::TakeLight() {
+  land_.Relight(ground_.Light());
+  if (ground_.sea_mirror().empty()) return;
+  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
+  ground_textures_.SetSeaMirror(ground_.sea_mirror());
+}
+
+void SkyPainter::UploadMoon(const PaintedView& view) const {
+  const MoonDisk moon = ApparentMoonDisk(view.eye.place, view.now, SunOf(view).distance_au);
+  program_.Use();
+  glUniform4f(program_.Uniform("moon"), static_cast<float>(moon.to_moon.x),
+              static_cast<float>(moon.to_moon.y), static_cast<float>(moon.to_moon.z),
+              static_cast<float>(moon.radius_rad));
+  glUniform4f(program_.Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
+              static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
+              static_cast<float>(moon.radiance_per_irradiance));
+}
+
 void SkyPainter::Update(const PaintedView& view, double seconds) {
   const SunPosition sun = SunOf(view);
   Begin("update");
   air_.Follow(AirViewOf(view, sun));
   land_.Update(view.eye.place, LandViewOf(view), seconds);
   TakeHeights();
-  if (ground_.Follow(air_.air(), {view.eye.place, sun, view.now})) land_.Relight(ground_.Light());
+  if (ground_.Follow(air_.air(), {view.eye.place, sun, view.now})) TakeLight();
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, sun, kShadeUnit);
 }
 
@@ -163,7 +202,7 @@ void SkyPainter::Settle(const PaintedView& view) {
   land_.Settle(view.eye.place, LandViewOf(view));
   TakeHeights();
   if (ground_.Settle(air_.air(), {view.eye.place, sun, view.now})) {
-    land_.Relight(ground_.Light());
+    TakeLight();
     land_.Settle(view.eye.place, LandViewOf(view));
   }
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, sun, kShadeUnit);
@@ -178,6 +217,7 @@ void SkyPainter::UploadAir(const PaintedView& view) const {
 void SkyPainter::UploadView(const PaintedView& view, const glm::dvec2& shift) const {
   const LandView axes = LandViewOf(view);
   const SunPosition sun = SunOf(view);
+  const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   glm::vec4 irradiance = GpuBandsOf(air_.air()->medium.solar_irradiance);
   irradiance /= static_cast<float>(sun.distance_au * sun.distance_au);
   const ViewBlock block{
@@ -187,7 +227,7 @@ void SkyPainter::UploadView(const PaintedView& view, const glm::dvec2& shift) co
       {glm::vec3(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz),
        sun.angular_radius_rad},
       irradiance,
-      {std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre, shift.x, shift.y, 0.0}};
+      {std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre, moved.x, moved.y, 0.0}};
   UploadBlock(blocks_.view, kViewBinding, &block, sizeof(block));
 }
 
@@ -211,11 +251,14 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
   block.mesh_north = axis({0.0, 1.0, 0.0});
   block.mesh_up = axis({0.0, 0.0, 1.0});
   UploadBlock(blocks_.ground, kGroundBinding, &block, sizeof(block));
-  const double pixel_rad = 2.0 * std::tan(0.5 * view.eye.fov_rad) / view.width;
+  const double pixel_rad = PixelAngle(view);
   const GroundLightBlock light =
-      ground_.lit() ? GroundLightBlockOf(*ground_.lit(), sizes_.relief_pixels * pixel_rad)
+      ground_.lit() ? GroundLightBlockOf(ground_.lit()->tilt(), sizes_.relief_pixels * pixel_rad)
                     : GroundLightBlock{};
   UploadBlock(blocks_.ground_light, kGroundLightBinding, &light, sizeof(light));
+  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(material_);
+  UploadBlock(blocks_.ground_surface, kGroundSurfaceBinding, &cover, sizeof(cover));
+  ground_textures_.Bind(program_, kGroundUnit);
 }
 
 void SkyPainter::PaintLand(const PaintedView& view) {
@@ -242,8 +285,7 @@ void SkyPainter::PaintAir(const PaintedView& view, const RenderTarget& target) {
   target.Bind();
   program_.Use();
   glUniform1i(program_.Uniform("has_shade"), sizes_.has_shafts && shade_.shade().Shades() ? 1 : 0);
-  glUniform1f(program_.Uniform("pixel_angle"),
-              static_cast<float>(2.0 * std::tan(0.5 * view.eye.fov_rad) / view.width));
+  glUniform1f(program_.Uniform("pixel_angle"), static_cast<float>(PixelAngle(view)));
   DrawFullScreen(program_, no_vertices_);
 }
 
@@ -257,6 +299,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples) {
   Fit(picture_, view.width, view.height);
   UploadAir(view);
   UploadGround(view);
+  UploadMoon(view);
   air_.textures().Bind(kAirUnit, kTablesBinding);
   if (samples > 1) {
     picture_->Bind();

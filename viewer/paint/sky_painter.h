@@ -9,6 +9,7 @@
 
 #include <array>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
+#include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/land/landscape.h"
 #include "viewer/land/surface_map.h"
@@ -36,7 +38,8 @@ namespace alpenglow {
 struct PaintedView {
   Eye eye;
   UtcInstant now;
-  int width, height;
+  int width, height;                    // of what is painted
+  glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // of the whole view that it is: ViewOfTile
 };
 
 class SkyPainter {
@@ -64,6 +67,11 @@ class SkyPainter {
   void Show(const Image& image);
 
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
+  /// A pass of others in the same frame.
+  void Time(const char* pass) const { Begin(pass); }
+  void EndTime() const {
+    if (timer_ != nullptr) timer_->End();
+  }
   /// Times of its passes are told to it; null: none.
   void SetTimer(PassTimer* timer) { timer_ = timer; }
 
@@ -75,13 +83,15 @@ class SkyPainter {
 
  private:
   struct Blocks {
-    GlBuffer air, view, ground, ground_light;
+    GlBuffer air, view, ground, ground_light, ground_surface;
   };
   [[nodiscard]] SunPosition SunOf(const PaintedView& view) const;
   void TakeHeights();
   void UploadAir(const PaintedView& view) const;
   void UploadView(const PaintedView& view, const glm::dvec2& shift) const;
   void UploadGround(const PaintedView& view) const;
+  void UploadMoon(const PaintedView& view) const;
+  void TakeLight();
   void PaintOnce(const PaintedView& view, const glm::dvec2& shift);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
@@ -93,12 +103,14 @@ class SkyPainter {
   Scene scene_;
   Ellipsoid ellipsoid_;
   PaintSizes sizes_;
+  GroundMaterial material_;
   AirFollower air_;
   Landscape land_;
   GroundFollower ground_;
   ShadeFollower shade_;
   ShaftPass shaft_pass_;
   ShaderProgram program_;
+  GroundTextures ground_textures_;
   Blocks blocks_;
   GlVertexArray no_vertices_;
   std::optional<SurfaceMap> surface_;
@@ -111,6 +123,6 @@ class SkyPainter {
 [[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
 /// The texts that the picture's fragment stage is made of, but for itself.
-[[nodiscard]] std::vector<ShaderPiece> PictureTexts();
+[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const GroundMaterial& material);
 
 }  // namespace alpenglow

@@ -28,12 +28,28 @@ vec4 LandThroughAir(vec3 direction, vec4 surface, ivec2 pixel) {
   return light + air.diffuse + air.transmittance * ground;
 }
 
+// Whether the table of the sky has the ground that the planet is made of.
+#define PLANET_IS_PLAIN (GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
+
+vec4 WholeRay(vec3 direction, bool planet) {
+#if !PLANET_IS_PLAIN
+  if (planet) {
+    float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
+    AirTo air = AirToPoint(direction, distance_km);
+    return air.single + air.diffuse +
+           air.transmittance * PlanetRadiance(1e3 * distance_km * direction, -direction);
+  }
+#endif
+  return SkyRadiance(direction);
+}
+
 vec4 SkyOrPlanet(vec3 direction) {
-  vec4 light = SkyRadiance(direction);
+  bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
+  vec4 light = WholeRay(direction, planet);
   if (has_shade) light = max(light - ShadedSingle(1e9), vec4(0.0));
-  float disk = SunDiskRadiance(direction, pixel_angle);
-  if (disk > 0.0 && GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) <= 0.0)
-    light += disk * TransmittanceToSpace(direction);
+  if (planet) return light;
+  vec4 disks = vec4(SunDiskRadiance(direction, pixel_angle)) + MoonRadiance(direction, pixel_angle);
+  if (disks.x > 0.0) light += disks * TransmittanceToSpace(direction);
   return light;
 }
 

@@ -179,7 +179,7 @@ std::vector<double> LandDifferences(const LitGround& lit) {
 /// Under the sky of a plain as wide as the view.
 std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   Lighting light = lit.lighting();
-  const SolvedAir& air = lit.site().air();
+  const SiteAir& air = lit.site().air();
   light.on_terrain =
       std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
   return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),

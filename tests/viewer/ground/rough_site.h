@@ -18,7 +18,7 @@ inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kR
 /// 7.7 km of RoughLand.
 inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
-  SolvedAir air;
+  SiteAir air;
   air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
   air.diffuse = std::make_shared<const DiffuseLight>(medium, kSmallLight);
   SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,
