@@ -9,7 +9,8 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMostChange = 5e-4;  // that is left alone while eye or sun move
+constexpr double kMostChange = 1e-3;   // that is left alone while eye or sun move
+constexpr double kGreatChange = 5e-3;  // that does not wait
 constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
 
 AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z}; }
@@ -26,10 +27,11 @@ double AirChange(const AirEye& made, const AirEye& now) {
   const double elevation = std::asin(std::clamp(now.mu_s, -1.0, 1.0)) / kRadiansPerDegree;
   const double turned =
       std::abs(std::asin(std::clamp(made.mu_s, -1.0, 1.0)) / kRadiansPerDegree - elevation);
-  // Light falls by e a degree in twilight.
-  const double per_degree = elevation < 0.0 ? 1.5 : 0.01 + 0.5 / (1.0 + elevation);
+  // As measured by the test of this function.
+  const double per_degree = elevation < 0.0 ? 0.6 : 0.8 / (1.0 + elevation);
   const double rise = std::abs(now.altitude_m - made.altitude_m);
-  const double layer = std::max(3000.0, 0.3 * now.altitude_m);
+  const double layer =
+      std::max(std::min(2400.0 + 1.2 * std::abs(now.altitude_m), 12000.0), 0.5 * now.altitude_m);
   return turned * per_degree + rise / layer;
 }
 
@@ -96,9 +98,10 @@ AirFollower::Request AirFollower::Wanted(const AirView& view) const {
 bool AirFollower::Asks(const Request& wanted) const {
   if (asked_ == wanted) return false;
   if (!asked_ || asked_->air != wanted.air || asked_->quality != wanted.quality) return true;
-  if (maker_.Busy() || Clock::now() < rests_until_) return false;
-  return wanted.view == last_view_ ||
-         AirChange(EyeOf(asked_->view), EyeOf(wanted.view)) > kMostChange;
+  if (maker_.Busy()) return false;
+  const double change = AirChange(EyeOf(asked_->view), EyeOf(wanted.view));
+  if (Clock::now() < rests_until_ && change < kGreatChange) return false;
+  return wanted.view == last_view_ || change > kMostChange;
 }
 
 void AirFollower::Follow(const AirView& view) {

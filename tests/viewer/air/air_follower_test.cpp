@@ -106,12 +106,13 @@ TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
       {{1500.0, sine(40.0)}, {1500.0, sine(39.0)}}, {{1500.0, sine(5.0)}, {1500.0, sine(4.9)}},
       {{1500.0, sine(0.1)}, {1500.0, sine(0.05)}},  {{2.0, sine(-4.0)}, {2.0, sine(-4.03)}},
       {{2.0, sine(-9.0)}, {2.0, sine(-9.03)}},      {{200.0, sine(20.0)}, {260.0, sine(20.0)}},
-      {{9000.0, sine(20.0)}, {9100.0, sine(20.0)}}, {{30e3, sine(20.0)}, {31e3, sine(20.0)}}};
+      {{9000.0, sine(20.0)}, {9100.0, sine(20.0)}}, {{30e3, sine(20.0)}, {31e3, sine(20.0)}},
+      {{400e3, sine(20.0)}, {402e3, sine(20.0)}}};
   for (const auto& [made, now] : changes) {
     const double error = ErrorOfOld(made, now);
     const double guess = AirChange(made, now);
     EXPECT_LT(error, 2.0 * guess + 1e-3) << now.altitude_m << " m, sun " << now.mu_s;
-    EXPECT_GT(error, 0.1 * guess) << now.altitude_m << " m, sun " << now.mu_s
+    EXPECT_GT(error, 0.2 * guess) << now.altitude_m << " m, sun " << now.mu_s
                                   << ": tables would be made anew for nothing";
   }
 }
