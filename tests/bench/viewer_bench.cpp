@@ -43,6 +43,17 @@ BENCHMARK(MakingOfAirTables)
     ->ArgNames({"quality", "altitude"})
     ->Unit(benchmark::kMillisecond);
 
+void UploadOfAirTables(benchmark::State& state) {
+  const HeadlessContext context;
+  const AirTables tables = Tables(AirQuality::kHigh, static_cast<double>(state.range(0)));
+  AirTextures textures;
+  for (auto unused : state) {
+    textures.Upload(tables);
+    glFinish();
+  }
+}
+BENCHMARK(UploadOfAirTables)->Arg(1500)->Arg(400000)->Unit(benchmark::kMillisecond);
+
 void SolvingOfAir(benchmark::State& state) {
   const Medium medium = MediumPreset(state.range(0) == 0 ? "earth" : "hazy");
   for (auto unused : state) benchmark::DoNotOptimize(SolveAir(medium));

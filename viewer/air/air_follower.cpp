@@ -13,7 +13,7 @@ constexpr double kMostChange = 1e-3;   // that is left alone while eye or sun mo
 constexpr double kGreatChange = 5e-3;  // that does not wait
 constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
 
-AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z}; }
+AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z, view.ceiling_m}; }
 
 AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
   const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));

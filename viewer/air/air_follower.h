@@ -20,6 +20,7 @@ struct AirView {
   double altitude_m;    // of the eye over the sphere that osculates the ellipsoid below it
   double latitude_rad;  // of the eye
   glm::dvec3 sun;       // unit vector to the apparent sun: east, north, up
+  double ceiling_m = AirEye{}.ceiling_m;  // no land is higher
   bool operator==(const AirView&) const = default;
 };
 

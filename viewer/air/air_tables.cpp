@@ -37,7 +37,7 @@ std::array<glm::vec4, 3> SkyMix(const AirIntegrator<float>& air, const SkyView& 
     const float all = mix[2][band];
     const float rest =
         all - AirPhases::OfMolecules(nu) * mix[0][band] - aerosol[band] * mix[1][band];
-    mix[2][band] = std::max(rest, 0.05F * all);
+    mix[2][band] = std::max(rest, 1e-3F * all);
     if (all > 0.0F) continue;
     for (glm::vec4& share : mix) share[band] = 1.0F;
   }

@@ -35,6 +35,7 @@ struct AirTablesSize {
   int columns, rows, ground_rows, distances;  // of ways to a point
   int extinction_rows, extinction_ground_rows, extinction_distances;
   int through_rows, through_ground_rows;  // of TransmittanceToSpace
+  bool operator==(const AirTablesSize&) const = default;
 };
 
 /// How fine tables are. Each step is about twice as exact and takes about twice as long to make.

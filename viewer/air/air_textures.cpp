@@ -2,6 +2,8 @@
 #include "viewer/air/air_textures.h"
 
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
@@ -24,16 +26,22 @@ constexpr std::array<Slot, AirTextures::kUnits> kSlots{{{"air_sky", GL_TEXTURE_2
                                                         {"air_phase", GL_TEXTURE_1D},
                                                         {"air_to_sun", GL_TEXTURE_2D}}};
 
-void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texels) {
+// In place where the texture has this size already.
+void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texels,
+                  bool same_size) {
   glBindTexture(target, texture.id());
   const void* data = texels.texel.data();
+  const auto [width, height, depth] = std::tuple(texels.width, texels.height, texels.depth);
   if (target == GL_TEXTURE_1D) {
-    glTexImage1D(target, 0, GL_RGBA32F, texels.width, 0, GL_RGBA, GL_FLOAT, data);
+    glTexImage1D(target, 0, GL_RGBA32F, width, 0, GL_RGBA, GL_FLOAT, data);
+  } else if (target == GL_TEXTURE_2D && same_size) {
+    glTexSubImage2D(target, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, data);
   } else if (target == GL_TEXTURE_2D) {
-    glTexImage2D(target, 0, GL_RGBA32F, texels.width, texels.height, 0, GL_RGBA, GL_FLOAT, data);
+    glTexImage2D(target, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, data);
+  } else if (same_size) {
+    glTexSubImage3D(target, 0, 0, 0, 0, width, height, depth, GL_RGBA, GL_FLOAT, data);
   } else {
-    glTexImage3D(target, 0, GL_RGBA32F, texels.width, texels.height, texels.depth, 0, GL_RGBA,
-                 GL_FLOAT, data);
+    glTexImage3D(target, 0, GL_RGBA32F, width, height, depth, 0, GL_RGBA, GL_FLOAT, data);
   }
   ClampAndFilter(target, true);
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
@@ -72,16 +80,17 @@ std::vector<ShaderPiece> AirTableTexts() {
 AirTextures::AirTextures() = default;
 
 void AirTextures::Upload(const MediumTables& tables) {
-  UploadTexels(texture_[kPhase], kSlots[kPhase].target, tables.phase);
-  UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun);
+  UploadTexels(texture_[kPhase], kSlots[kPhase].target, tables.phase, false);
+  UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun, false);
   const Axis phase(0, tables.phase.width, tables.phase.width);
   values_.phase_nodes = {phase.begin, phase.width, 0.0F, 0.0F};
   CheckGl("AirTextures::Upload");
 }
 
 void AirTextures::Upload(const AirTables& tables) {
+  const bool same_size = std::exchange(size_, tables.size) == tables.size;
   const auto upload = [&](Table table, const AirTexels& texels) {
-    UploadTexels(texture_[table], kSlots[table].target, texels);
+    UploadTexels(texture_[table], kSlots[table].target, texels, same_size);
   };
   upload(kSky, tables.sky);
   upload(kThrough, tables.to_space);

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "viewer/air/air_tables.h"
@@ -50,6 +51,7 @@ class AirTextures {
 
  private:
   std::array<GlTexture, kUnits> texture_;
+  std::optional<AirTablesSize> size_;  // of what is uploaded
   GlBuffer block_;
   AirTablesBlock values_{};
 };

@@ -88,6 +88,29 @@ TEST(AirTables, OfLowQualityAreGoodToAPercent) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 2.0), AirQuality::kLow, {4e-4, 4.5e-3, 1.2e-3});
 }
 
+// Of dust, whose phase function rises a hundredfold within ten degrees of the sun; up to its disk.
+TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
+  const tests::LitAir dusty(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
+  const AirEye eye = EyeUnder(300.0, 20.0);
+  const MediumTables medium = MakeMediumTables(dusty.air);
+  const AirTables tables = TablesOf(dusty, eye, AirQuality::kLow);
+  const tests::AirReading reading(tables, medium);
+  const tests::AirJudge judge(dusty, eye);
+  const double sun = std::asin(eye.mu_s) + tables.map.horizon_dip;
+  for (int i = 1; i <= 60; ++i) {
+    const double from_sun = kRadiansPerDegree * (0.27 + 10.0 * Halton(i, 2) * Halton(i, 2));
+    const double turn = kPi * Halton(i, 3);
+    const double angle = sun + from_sun * std::cos(turn);
+    const double azimuth = from_sun * std::sin(turn) / std::cos(angle - tables.map.horizon_dip);
+    const Bands<double> exact = judge.Sky(tables.map, angle, azimuth);
+    const glm::dvec4 read = reading.Sky(angle, azimuth);
+    for (std::size_t band = 0; band < exact.count; ++band) {
+      EXPECT_NEAR(read[static_cast<glm::length_t>(band)] / exact[band], 1.0, 4e-3)
+          << from_sun / kRadiansPerDegree << " degrees from the sun";
+    }
+  }
+}
+
 // --- hard cases ---
 
 void ExpectSound(const AirTexels& texels, const char* name) {
