@@ -448,7 +448,8 @@ LandProgress Landscape::Progress() const {
   if (!cache_.reading().empty())
     return {share, fmt::format("terrain: reading {} ({} of {})", cache_.reading(),
                                cache_.there() + 1, cache_.wanted())};
-  if (there == demand_.wanted.size()) return {};
+  // What no tile is kept fine enough for does not come.
+  if (there == demand_.wanted.size() || !is_working_) return {};
   return {share, fmt::format("terrain: {} of {} pieces", there, demand_.wanted.size())};
 }
 

@@ -97,6 +97,7 @@ bool TileCache::TakeOne() {
   if (!reading->failure.empty()) {
     notes_.push_back("left out: " + reading->failure);
     has_failed_[tile] = 1;
+    level_wanted_[tile] = kNotWanted;
   }
   return true;
 }

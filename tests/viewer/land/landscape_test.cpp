@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/landscape.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "renderer/terrain/terrain.h"
+#include "tests/viewer/land/land_files.h"
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/land/surface_map.h"
+#include "viewer/paint/uniform_blocks.h"
+
+namespace alpenglow {
+namespace {
+
+using namespace tests;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 256, kHeight = 144;
+
+/// An eye over the land, and where it looks.
+struct LookOut {
+  GeodeticPosition place;
+  double heading_rad = 0.0, pitch_rad = 0.0, fov_rad = 1.2;
+
+  [[nodiscard]] LandView View() const {
+    const glm::dvec3 forward{std::sin(heading_rad) * std::cos(pitch_rad),
+                             std::cos(heading_rad) * std::cos(pitch_rad), std::sin(pitch_rad)};
+    const glm::dvec3 right{std::cos(heading_rad), -std::sin(heading_rad), 0.0};
+    const double wide = std::tan(0.5 * fov_rad);
+    return {wide * right, wide * kHeight / kWidth * glm::cross(right, forward), forward};
+  }
+  /// Through the middle of a pixel, row 0 at the bottom; of any length.
+  [[nodiscard]] glm::dvec3 Ray(int x, int y) const {
+    const LandView view = View();
+    return view.forward + (2.0 * (x + 0.5) / kWidth - 1.0) * view.right +
+           (2.0 * (y + 0.5) / kHeight - 1.0) * view.up;
+  }
+};
+
+// Written apart from octahedral.glsl.
+glm::dvec3 UnitOf(const glm::vec4& surface) {
+  const double x = surface.x, y = surface.y, z = 1.0 - std::abs(x) - std::abs(y);
+  if (z >= 0.0) return glm::normalize(glm::dvec3(x, y, z));
+  return glm::normalize(
+      glm::dvec3(std::copysign(1.0 - std::abs(y), x), std::copysign(1.0 - std::abs(x), y), z));
+}
+
+class LandscapePictures : public LandFolder {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    try {
+      context_ = std::make_unique<HeadlessContext>();
+    } catch (const DisplayError& error) {
+      GTEST_SKIP() << error.what();
+    }
+    map_.emplace(kWidth, kHeight);
+  }
+  void TearDown() override {
+    map_.reset();
+    LandFolder::TearDown();
+  }
+
+  [[nodiscard]] LandSource Folder() const { return {{folder_}, VoidPolicy::kFill, std::nullopt}; }
+
+  // Draws what the last Update or Settle chose.
+  [[nodiscard]] std::vector<glm::vec4> Draw(Landscape& land, const LookOut& eye) const {
+    constexpr GLuint kView = 1;
+    const LandView view = eye.View();
+    const auto padded = [](const glm::dvec3& v) { return glm::vec4(glm::vec3(v), 0.0F); };
+    ViewBlock block{};
+    block.view_right = padded(view.right);
+    block.view_up = padded(view.up);
+    block.view_forward = padded(view.forward);
+    const GlBuffer buffer;
+    glBindBufferBase(GL_UNIFORM_BUFFER, kView, buffer.id());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
+    map_->Bind();
+    land.Draw(kView);
+    CheckGl("draw");
+    return map_->ReadSurface();
+  }
+  [[nodiscard]] std::vector<glm::vec4> Settled(Landscape& land, const LookOut& eye) const {
+    land.Settle(eye.place, eye.View());
+    return Draw(land, eye);
+  }
+
+  std::unique_ptr<HeadlessContext> context_;
+  std::optional<SurfaceMap> map_;
+};
+
+struct Misses {
+  std::vector<double> distance, normal;  // relative; [rad]
+  int only_one = 0, both = 0;            // pixels with terrain on one side alone, on both
+};
+
+// The renderer's rays through every fourth pixel.
+Misses MissesOf(const std::vector<glm::vec4>& picture, const LookOut& eye, const Terrain& terrain,
+                const LocalFrame& frame) {
+  Misses misses;
+  const LocalFrame there(kWgs84, eye.place);
+  const glm::dvec3 origin = frame.EnuFromGeodetic(eye.place).xyz;
+  const auto turned = [&](const glm::dvec3& v) {
+    return frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{v})).xyz;
+  };
+  for (int y = 0; y < kHeight; y += 4) {
+    for (int x = 0; x < kWidth; x += 4) {
+      const glm::vec4& pixel = picture[static_cast<std::size_t>(y * kWidth + x)];
+      const auto hit = terrain.Intersect(origin, glm::normalize(turned(eye.Ray(x, y))));
+      if (!hit && pixel.w == 0.0F) continue;
+      if (!hit || pixel.w == 0.0F) {
+        ++misses.only_one;
+        continue;
+      }
+      ++misses.both;
+      misses.distance.push_back(std::abs(static_cast<double>(pixel.w) / hit->distance_m - 1.0));
+      misses.normal.push_back(
+          std::acos(std::min(glm::dot(turned(UnitOf(pixel)), hit->normal), 1.0)));
+    }
+  }
+  std::sort(misses.distance.begin(), misses.distance.end());
+  std::sort(misses.normal.begin(), misses.normal.end());
+  return misses;
+}
+
+double Quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  const GeodeticPosition middle = PlaceOfSample(120.0, 120.0, 0.0);
+  const LocalFrame frame(kWgs84, middle);
+  const Terrain terrain(
+      MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
+  Landscape land(Folder(), {96.0}, kWgs84);
+  // Near the eye stand the renderer's own triangles, farther ones of a 96th of the distance at most.
+  struct View {
+    double above_m, column, row, pitch_rad, fov_rad;
+    double middling, most;  // of the relative error of distances: median, 95 %
+  };
+  for (const View& view :
+       {View{2.0, 120.0, 60.0, 0.0, 1.2, 1e-5, 2e-3}, View{2e3, 120.0, 20.0, -0.4, 1.2, 2e-3, 1e-2},
+        View{100e3, 120.0, 120.0, -1.57, 0.1, 1e-3, 3e-3},
+        View{400e3, 120.0, 120.0, -1.57, 0.03, 5e-4, 1e-3}}) {
+    SCOPED_TRACE(view.above_m);
+    LookOut eye{PlaceOfSample(view.column + 0.3, view.row + 0.4, 0.0), 2.8, view.pitch_rad,
+                view.fov_rad};
+    land.Settle(eye.place, eye.View());
+    eye.place.height_m = *land.GroundUnder(eye.place) + view.above_m;
+    const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
+    ASSERT_GT(misses.both, 500);
+    EXPECT_LE(misses.only_one, 4 + misses.both / 30) << "rims of mountains and of the land";
+    EXPECT_LT(Quantile(misses.distance, 0.5), view.middling);
+    EXPECT_LT(Quantile(misses.distance, 0.95), view.most);
+    EXPECT_TRUE(view.above_m > 10.0 || Quantile(misses.normal, 0.5) < 5e-5)
+        << "16 bits a coordinate";
+  }
+}
+
+TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
+  WriteTiles(3);
+  Landscape land(Folder(), {64.0}, kWgs84);
+  for (int i = 0; i < 24; ++i) {
+    SCOPED_TRACE(i);
+    LookOut eye{PlaceOfSample(40.0 + 640.0 * std::fmod(0.7549 * i, 1.0),
+                              40.0 + 640.0 * std::fmod(0.5698 * i, 1.0), 0.0),
+                0.7 * i, 0.0};  // level, so that a column of pixels has one azimuth
+    land.Settle(eye.place, eye.View());
+    eye.place.height_m = *land.GroundUnder(eye.place) + std::exp2(i % 12);
+    const auto picture = Settled(land, eye);
+    for (int x = 0; x < kWidth; ++x) {
+      int y = 0;
+      const auto is_land = [&] {
+        return picture[static_cast<std::size_t>(y * kWidth + x)].w > 0.0F;
+      };
+      // Beyond the rim there is no land under a low view from above.
+      while (y < kHeight && !is_land()) ++y;
+      ASSERT_TRUE(i % 12 >= 8 || y == 0) << "column " << x;
+      while (y < kHeight && is_land()) ++y;
+      while (y < kHeight && !is_land()) ++y;
+      ASSERT_EQ(y, kHeight) << "column " << x << ": a hole below land";
+    }
+  }
+}
+
+TEST_F(LandscapePictures, FlyingOverAFolderKeepsWithinItsBounds) {
+  WriteTiles(6);
+  LandSize size;
+  size.detail = 64.0;
+  size.most_bytes = 1500000;  // five of the 36 tiles
+  Landscape land(Folder(), size, kWgs84);
+  int drawn = 0;
+  std::size_t most_chunks = 0;
+  for (int step = 0; step < 60; ++step) {
+    const LookOut eye{PlaceOfSample(20.0 * step + 100.0, 24.0 * step, 3000.0), 0.7, -0.3};
+    for (int frame = 0; frame < 12; ++frame) {
+      land.Update(eye.place, eye.View(), 0.05);
+      const LandFigures figures = land.Figures();
+      ASSERT_LE(figures.tile_bytes, size.most_bytes + 310000) << "and one that has just come";
+      most_chunks = std::max(most_chunks, static_cast<std::size_t>(figures.kept_chunks));
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    drawn += land.Figures().chunks > 0 ? 1 : 0;
+  }
+  EXPECT_GT(drawn, 30);
+  EXPECT_LT(most_chunks, 1500U) << "about a thousand lie in reach at once";
+  const LookOut eye{PlaceOfSample(700.0, 700.0, 2500.0), 0.7, -0.3};
+  land.Settle(eye.place, eye.View());
+  EXPECT_TRUE(land.Progress().text.empty());
+  EXPECT_NEAR(*land.GroundUnder(PlaceOfSample(700.0, 700.0, 0.0)),
+              static_cast<double>(HeightOfSample(700, 700)), 0.01)
+      << "near the eye stand the samples themselves";
+}
+
+TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
+  WriteTiles(2);
+  std::filesystem::resize_file(folder_ / "tile01.tif", 60000);
+  Landscape land(Folder(), {64.0}, kWgs84);
+  const LookOut eye{PlaceOfSample(100.0, 300.0, 2500.0), 0.7, -0.3};
+  land.Settle(eye.place, eye.View());
+  EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("tile01.tif")));
+  EXPECT_GT(land.Figures().chunks, 3);
+  EXPECT_FALSE(land.GroundUnder(PlaceOfSample(300.0, 100.0, 0.0)));
+}
+
+TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  std::filesystem::resize_file(folder_ / "a.tif", 60000);
+  Landscape land({{folder_ / "a.tif"}, VoidPolicy::kFill, std::nullopt}, {64.0}, kWgs84);
+  const LookOut eye{PlaceOfSample(100.0, 100.0, 2500.0), 0.7, -0.3};
+  EXPECT_THROW(land.Settle(eye.place, eye.View()), InputError);
+}
+
+TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  Landscape land(Folder(), {64.0}, kWgs84);
+  const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
+  const auto light = [](float sun_x) {
+    return [sun_x](const LocalFrame&, std::span<const LandVertex> vertices) {
+      return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, sun_x});
+    };
+  };
+  const auto middle = [&] {
+    return Draw(land, eye)[static_cast<std::size_t>(10 * kWidth + kWidth / 2)];
+  };
+  land.Settle(eye.place, eye.View());
+  EXPECT_EQ(middle().z, 4.0F) << "without a function the whole sun shines";
+  land.Relight(light(-2.0F));
+  land.Update(eye.place, eye.View(), 0.0);
+  EXPECT_TRUE(land.IsRelighting());
+  EXPECT_EQ(middle().z, 4.0F) << "the old light stays until the new is there";
+  land.Settle(eye.place, eye.View());
+  EXPECT_FALSE(land.IsRelighting());
+  EXPECT_NEAR(middle().z, -2.0F, 1e-3F);
+  const glm::vec4 sky = map_->ReadSky()[static_cast<std::size_t>(10 * kWidth + kWidth / 2)];
+  EXPECT_NEAR(sky.x, 0.1F, 2e-4F);
+  EXPECT_NEAR(sky.w, 0.4F, 4e-4F);
+}
+
+// 190 km apart: farther than one anchor reaches.
+TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
+  constexpr int kFar = 6000;
+  WriteTile(folder_ / "a.tif", 0, 0);
+  WriteTile(folder_ / "b.tif", kFar, 0);
+  Landscape land(Folder(), {96.0}, kWgs84);
+  const LookOut first{PlaceOfSample(120.0, 120.0, 3000.0), 0.0, -0.3};
+  land.Settle(first.place, first.View());
+  LookOut eye{PlaceOfSample(kFar + 120.3, 60.4, 0.0), 3.0, -0.05};
+  land.Settle(eye.place, eye.View());
+  eye.place.height_m = *land.GroundUnder(eye.place) + 2.0;
+  const LocalFrame frame(kWgs84, PlaceOfSample(kFar + 120.0, 120.0, 0.0));
+  const Terrain terrain(
+      MeshFromElevation(ReadElevation(folder_ / "b.tif", VoidPolicy::kFill).grid, frame));
+  const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
+  EXPECT_GT(misses.both, 500);
+  EXPECT_LT(Quantile(misses.distance, 0.5), 1e-4) << "2 m over ground that floats place to 1 mm";
+}
+
+TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
+  Landscape land({}, {96.0}, kWgs84);
+  const LookOut eye{{0.8, 0.1, 1000.0}, 0.0, 0.0};
+  const auto picture = Settled(land, eye);
+  EXPECT_TRUE(std::all_of(picture.begin(), picture.end(),
+                          [](const glm::vec4& pixel) { return pixel.w == 0.0F; }));
+  EXPECT_FALSE(land.GroundUnder(eye.place));
+  EXPECT_FALSE(land.Middle());
+}
+
+TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
+  Landscape land({{}, VoidPolicy::kFill, GeodeticPosition{0.81, 0.14, 0.0}}, {64.0}, kWgs84);
+  EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("made up")));
+}
+
+}  // namespace
+}  // namespace alpenglow
