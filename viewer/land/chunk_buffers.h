@@ -40,11 +40,6 @@ class ChunkBuffers {
   /// On the graphics card.
   [[nodiscard]] std::size_t bytes() const;
 
-  /// Attributes of land.vert.glsl, in the order of their locations.
-  static constexpr std::array<const char*, 11> kAttributes{
-      "position",   "coarse_position", "sample_place", "normal",         "coarse_normal",    "sky",
-      "coarse_sky", "sun_over_edge",   "new_sky",      "new_coarse_sky", "new_sun_over_edge"};
-
  private:
   void Grow(int slots);
   void DescribeVertices(LightSide from);

@@ -71,6 +71,7 @@ std::string NoteOn(const ElevationModel& model, const std::string& file) {
 }  // namespace
 
 LandTiles::LandTiles(const LandSource& source) : source_(source) {
+  if (source.mesh) return;
   for (const std::filesystem::path& path : source.files) {
     if (std::filesystem::is_directory(path)) {
       AddFolder(path);

@@ -21,6 +21,13 @@ struct LandSource {
   VoidPolicy voids = VoidPolicy::kFill;
   /// Without files: the built-in range around this place; without either there is no land.
   std::optional<GeodeticPosition> range_centre;
+  /// Instead of all that: a mesh (ReadObj) in metres east, north and up of a place on the
+  /// ellipsoid.
+  struct Mesh {
+    std::filesystem::path file;
+    GeodeticPosition place;
+  };
+  std::optional<Mesh> mesh = std::nullopt;
 };
 
 /// One file, or the built-in range (no file).

@@ -10,66 +10,11 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "viewer/embedded_text.h"
-
 namespace alpenglow {
 namespace {
 
-constexpr GLuint kLandBinding = 8;
-constexpr std::size_t kMostLevels = 32;
 constexpr double kAnchorReach_m = 100e3;
 constexpr double kReachTime_s = 0.7;  // that a level takes to come in
-
-/// `block Land` of land_block.glsl.
-struct LandBlock {
-  glm::vec4 eye_high, eye_low;
-  glm::vec4 east, north, up;
-  glm::vec4 eye_sample, eye_above, eye_view;
-  std::array<glm::vec4, kMostLevels> turning;
-};
-static_assert(sizeof(LandBlock) == (8 + kMostLevels) * sizeof(glm::vec4));
-
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
-
-// Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.
-bool CanReverseDepth() {
-  return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
-}
-
-ShaderProgram LandProgram(bool reversed_depth) {
-  std::vector<VertexAttribute> attributes;
-  for (const char* const name : ChunkBuffers::kAttributes)
-    attributes.push_back({static_cast<GLuint>(attributes.size()), name});
-  return ShaderProgram(
-      {Piece("viewer/shaders/view_block.glsl"), Piece("viewer/shaders/land_block.glsl"),
-       Piece("viewer/shaders/land.vert.glsl")},
-      {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
-       Piece(reversed_depth ? "viewer/shaders/reversed_depth.glsl"
-                            : "viewer/shaders/logarithmic_depth.glsl"),
-       Piece("viewer/shaders/land.frag.glsl")},
-      attributes);
-}
-
-glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
-
-// Axes of the eye's frame in the anchor's, and where the eye stands there.
-struct EyeInAnchor {
-  glm::dvec3 at, east, north, up;
-
-  EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye) {
-    const LocalFrame there(anchor.ellipsoid(), eye);
-    const auto axis = [&](const glm::dvec3& v) {
-      return anchor.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{v})).xyz;
-    };
-    at = anchor.EnuFromGeodetic(eye).xyz;
-    east = axis({1.0, 0.0, 0.0});
-    north = axis({0.0, 1.0, 0.0});
-    up = axis({0.0, 0.0, 1.0});
-  }
-  [[nodiscard]] glm::dvec3 Turned(const glm::dvec3& v) const {
-    return v.x * east + v.y * north + v.z * up;
-  }
-};
 
 // The four sides of the view and what is before it, as planes through the eye; inside is positive.
 class ViewPyramid {
@@ -113,11 +58,12 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
       tree_(*tiles_),
       cache_(tiles_, tree_, size.detail, size.most_bytes),
       reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
-      reversed_depth_(CanReverseDepth()),
-      program_(LandProgram(reversed_depth_)),
       worker_(Work) {
-  if (source.files.empty() && source.range_centre)
+  if (source.mesh) {
+    mesh_.emplace(source.mesh->file, LocalFrame(ellipsoid, source.mesh->place));
+  } else if (source.files.empty() && source.range_centre) {
     notes_.emplace_back("the terrain is made up: no elevation model of the place was named");
+  }
 }
 
 Landscape::~Landscape() = default;
@@ -268,9 +214,14 @@ void Landscape::AskForLight() {
   is_working_ = true;
 }
 
-void Landscape::Relight(LightOfVertices light) { light_asked_ = std::move(light); }
+void Landscape::Relight(LightOfVertices light) {
+  if (mesh_) return mesh_->Relight(std::move(light));
+  light_asked_ = std::move(light);
+}
 
-bool Landscape::IsRelighting() const { return light_asked_ || relighting_ || fading_ < 1.0; }
+bool Landscape::IsRelighting() const {
+  return mesh_ ? mesh_->IsRelighting() : light_asked_ || relighting_ || fading_ < 1.0;
+}
 
 // New light begins when the one before is all there and shown.
 void Landscape::FinishLight(double seconds) {
@@ -340,9 +291,10 @@ void Landscape::Choose() {
 
 void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
   ++frame_;
-  if (tiles_->tiles().empty()) return;
   eye_place_ = eye;
   view_ = view;
+  if (mesh_) mesh_->Update(seconds);
+  if (tiles_->tiles().empty()) return;
   eye_ = EyeAt(eye);
   if (cache_.Update(eye_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
@@ -365,33 +317,24 @@ void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
     const std::size_t before = set_ ? set_->chunks.size() : 0;
     cache_.Wait();
     worker_.Wait();
+    if (mesh_) mesh_->Wait();
     Update(eye, view, kLong_s);
-    if (!set_) return;
+    if (!set_) {
+      still = mesh_ && (!mesh_->IsRead() || mesh_->IsRelighting()) ? 0 : still + 1;
+      continue;
+    }
     const bool same = set_->chunks.size() == before && ceiling == ceiling_m_ && !is_working_ &&
                       cache_.reading().empty() && !IsRelighting() && !next_set_;
     still = same ? still + 1 : 0;
   }
 }
 
-void Landscape::UploadBlock() {
-  const EyeInAnchor eye(set_->anchor.frame, eye_place_);
-  const glm::vec3 high(eye.at);
-  LandBlock block{};
-  block.eye_high = glm::vec4(high, 0.0F);
-  block.eye_low = Padded(eye.at - glm::dvec3(high));
-  block.east = Padded(eye.east);
-  block.north = Padded(eye.north);
-  block.up = Padded(eye.up);
+LandBlock Landscape::Block() const {
+  LandBlock block = LandBlockOf(EyeInAnchor(set_->anchor.frame, eye_place_), view_, fading_);
   block.eye_sample =
       glm::vec4(glm::dvec4(eye_.at.column - set_->anchor.column, eye_.at.row - set_->anchor.row,
                            eye_.size.column_m, eye_.size.row_m));
-  block.eye_above = glm::vec4(static_cast<float>(eye_.above_m), static_cast<float>(fading_),
-                              reversed_depth_ ? 1.0F : 0.0F, 0.0F);
-  std::array<GLint, 4> viewport{};
-  glGetIntegerv(GL_VIEWPORT, viewport.data());
-  const double columns = viewport[2], rows = viewport[3];
-  block.eye_view = glm::vec4(
-      glm::dvec4(columns, rows, glm::length(view_.right) / columns, glm::length(view_.up) / rows));
+  block.eye_above.x = static_cast<float>(eye_.above_m);
   for (std::size_t level = 0; level < ranges_.size(); ++level) {
     // Float's rounding must not leave a vertex on the line short of the end.
     const double end = 0.999 * ranges_[level].end_m;
@@ -399,44 +342,34 @@ void Landscape::UploadBlock() {
     block.turning[level] = end > 0.0 ? glm::vec4(glm::dvec4(start, 1.0 / (end - start), 0.0, 0.0))
                                      : glm::vec4(-1.0F, 1e9F, 0.0F, 0.0F);
   }
-  glBindBufferBase(GL_UNIFORM_BUFFER, kLandBinding, block_.id());
-  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+  return block;
 }
 
 void Landscape::Draw(GLuint view_binding) {
-  constexpr std::array<float, 4> kNothing{};
-  constexpr float kFarthest = 0.0F;
-  glDepthMask(GL_TRUE);
-  glClearBufferfv(GL_COLOR, 0, kNothing.data());
-  glClearBufferfv(GL_COLOR, 1, kNothing.data());
-  glClearBufferfv(GL_DEPTH, 0, &kFarthest);
+  LandPass::Clear();
+  if (mesh_) mesh_->Draw(pass_, eye_place_, view_, view_binding);
   if (!set_ || drawn_.empty()) return;
-  UploadBlock();
-  program_.Use();
-  program_.BindBlock("Land", kLandBinding);
-  program_.BindBlock("View", view_binding);
-  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
   // Over the ground no slope that faces away is seen before one that faces the eye.
   const std::optional<double> ground = GroundUnder(eye_place_);
-  if (ground && eye_place_.height_m > *ground) glEnable(GL_CULL_FACE);
-  set_->buffers.Draw(drawn_, Other(shown_));
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
-  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  pass_.Run(Block(), view_binding, ground && eye_place_.height_m > *ground,
+            [&] { set_->buffers.Draw(drawn_, Other(shown_)); });
 }
 
 std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) const {
+  if (mesh_) return mesh_->GroundUnder(place);
   return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
 }
 
 std::optional<ElevationGrid> Landscape::SampledGrid(const GeodeticPosition& place,
                                                     double half_width_m, int most_samples) const {
+  if (mesh_) return mesh_->SampledGrid(place, half_width_m, most_samples);
   return cache_.loaded()->SampledGrid(place, half_width_m, most_samples);
 }
 
 LandProgress Landscape::Progress() const {
+  if (mesh_ && !mesh_->IsRead())
+    return {0.0,
+            fmt::format("terrain: reading {}", tiles_->source().mesh->file.filename().string())};
   if (tiles_->tiles().empty() || !set_) return {};
   std::size_t there = 0;
   for (const WantedChunk& wanted : demand_.wanted)
@@ -458,6 +391,7 @@ std::vector<std::string> Landscape::TakeNotes() { return std::exchange(notes_, {
 LandFigures Landscape::Figures() const {
   LandFigures figures;
   figures.tile_bytes = cache_.bytes();
+  if (mesh_) figures.card_bytes = mesh_->bytes();
   if (!set_) return figures;
   figures.chunks = static_cast<int>(drawn_.size());
   for (const auto& drawn : drawn_)
@@ -472,6 +406,7 @@ LandFigures Landscape::Figures() const {
 }
 
 std::optional<GeodeticPosition> Landscape::Middle() const {
+  if (mesh_) return tiles_->source().mesh->place;
   if (tiles_->tiles().empty()) return std::nullopt;
   const LandLattice& lattice = tiles_->lattice();
   return lattice.PlaceOf(lattice.last_column / 2, lattice.last_row / 2, 0.0);

@@ -12,9 +12,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "viewer/gl/shader.h"
 #include "viewer/land/chunk_buffers.h"
+#include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
+#include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
 #include "viewer/work/latest_job.h"
 
@@ -27,13 +28,6 @@ struct LandSize {
   double detail = 96.0;
   /// Of heights that are kept [bytes], see TileCache.
   std::size_t most_bytes = std::size_t{512} << 20;
-};
-
-/// What the eye sees, as in view_block.glsl: axes in its frame (east, north, up).
-struct LandView {
-  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
-  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
-  glm::dvec3 forward{0.0, 1.0, 0.0};
 };
 
 /// Figures of the last frame.
@@ -149,7 +143,7 @@ class Landscape {
   void FinishLight(double seconds);
   void Choose();
   void RaiseAbove(double seconds);
-  void UploadBlock();
+  [[nodiscard]] LandBlock Block() const;
 
   std::shared_ptr<const LandTiles> tiles_;
   LandSize size_;
@@ -176,10 +170,9 @@ class Landscape {
   long frame_ = 0;
   int heights_version_ = 0;
   bool is_working_ = false;
-  bool reversed_depth_;
   std::vector<std::string> notes_;
-  GlBuffer block_;
-  ShaderProgram program_;
+  LandPass pass_;
+  std::optional<MeshLand> mesh_;   // instead of tiles
   LatestJob<Order, Made> worker_;  // last: it uses all above
 };
 

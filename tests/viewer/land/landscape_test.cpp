@@ -298,5 +298,30 @@ TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
   EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("made up")));
 }
 
+TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
+  WriteText(folder_ / "hill.obj",
+            "v -5000 -5000 100\nv 5000 -5000 100\nv 5000 5000 300\nv -5000 5000 300\n"
+            "f 1 2 3\nf 1 3 4\n");
+  LandSource source;
+  source.mesh = {folder_ / "hill.obj", {0.81, 0.14, 0.0}};
+  Landscape land(source, {64.0}, kWgs84);
+  LookOut eye{{0.81, 0.14, 500.0}, 0.0, -0.5};
+  EXPECT_THAT(land.Progress().text, HasSubstr("hill.obj"));
+  const auto picture = Settled(land, eye);
+  EXPECT_NEAR(*land.GroundUnder(eye.place), 200.0, 0.01);
+  const LocalFrame frame(kWgs84, {0.81, 0.14, 0.0});
+  const Misses misses = MissesOf(picture, eye, Terrain(ReadObj(folder_ / "hill.obj")), frame);
+  EXPECT_GT(misses.both, 500);
+  EXPECT_LT(Quantile(misses.distance, 1.0), 1e-5);
+  EXPECT_LT(Quantile(misses.normal, 1.0), 1e-4);
+  const auto grid = land.SampledGrid(eye.place, 1000.0, 9);
+  ASSERT_TRUE(grid);
+  EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);
+  land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
+    return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, -1.0F});
+  });
+  EXPECT_NEAR(Settled(land, eye)[kWidth / 2].z, -1.0F, 1e-5F);
+}
+
 }  // namespace
 }  // namespace alpenglow

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/land_pass.h"
+
+#include <glm/geometric.hpp>
+
+#include "viewer/embedded_text.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr GLuint kLandBinding = 8;
+
+ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
+
+// Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.
+bool CanReverseDepth() {
+  return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+}
+
+ShaderProgram LandProgram(bool reversed_depth) {
+  std::vector<VertexAttribute> attributes;
+  for (const char* const name : LandPass::kAttributes)
+    attributes.push_back({static_cast<GLuint>(attributes.size()), name});
+  return ShaderProgram(
+      {Piece("viewer/shaders/view_block.glsl"), Piece("viewer/shaders/land_block.glsl"),
+       Piece("viewer/shaders/land.vert.glsl")},
+      {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
+       Piece(reversed_depth ? "viewer/shaders/reversed_depth.glsl"
+                            : "viewer/shaders/logarithmic_depth.glsl"),
+       Piece("viewer/shaders/land.frag.glsl")},
+      attributes);
+}
+
+glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
+
+}  // namespace
+
+EyeInAnchor::EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye) {
+  const LocalFrame there(anchor.ellipsoid(), eye);
+  const auto axis = [&](const glm::dvec3& v) {
+    return anchor.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{v})).xyz;
+  };
+  at = anchor.EnuFromGeodetic(eye).xyz;
+  east = axis({1.0, 0.0, 0.0});
+  north = axis({0.0, 1.0, 0.0});
+  up = axis({0.0, 0.0, 1.0});
+}
+
+LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_light) {
+  const glm::vec3 high(eye.at);
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  const double columns = viewport[2], rows = viewport[3];
+  LandBlock block{};
+  block.eye_high = glm::vec4(high, 0.0F);
+  block.eye_low = Padded(eye.at - glm::dvec3(high));
+  block.east = Padded(eye.east);
+  block.north = Padded(eye.north);
+  block.up = Padded(eye.up);
+  block.eye_above.y = static_cast<float>(new_light);
+  block.eye_view = glm::vec4(
+      glm::dvec4(columns, rows, glm::length(view.right) / columns, glm::length(view.up) / rows));
+  return block;
+}
+
+LandPass::LandPass() : reversed_depth_(CanReverseDepth()), program_(LandProgram(reversed_depth_)) {}
+
+void LandPass::Clear() {
+  constexpr std::array<float, 4> kNothing{};
+  constexpr float kFarthest = 0.0F;
+  glDepthMask(GL_TRUE);
+  glClearBufferfv(GL_COLOR, 0, kNothing.data());
+  glClearBufferfv(GL_COLOR, 1, kNothing.data());
+  glClearBufferfv(GL_DEPTH, 0, &kFarthest);
+}
+
+void LandPass::Run(LandBlock block, GLuint view_binding, bool one_side,
+                   const std::function<void()>& draw) const {
+  block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
+  glBindBufferBase(GL_UNIFORM_BUFFER, kLandBinding, block_.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+  program_.Use();
+  program_.BindBlock("Land", kLandBinding);
+  program_.BindBlock("View", view_binding);
+  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  if (one_side) glEnable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  draw();
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+}
+
+}  // namespace alpenglow

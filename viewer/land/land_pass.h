@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The pass that draws land: its program, what the program reads, depth.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "atmosphere/sun/geodesy.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+
+namespace alpenglow {
+
+/// What the eye sees, as in view_block.glsl: axes in its frame (east, north, up).
+struct LandView {
+  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
+  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
+  glm::dvec3 forward{0.0, 1.0, 0.0};
+};
+
+/// `block Land` of land_block.glsl.
+struct LandBlock {
+  static constexpr std::size_t kMostLevels = 32;
+  glm::vec4 eye_high, eye_low;
+  glm::vec4 east, north, up;
+  glm::vec4 eye_sample, eye_above, eye_view;
+  std::array<glm::vec4, kMostLevels> turning;
+};
+static_assert(sizeof(LandBlock) == (8 + LandBlock::kMostLevels) * sizeof(glm::vec4));
+
+/// An eye and its axes in the frame of an anchor.
+struct EyeInAnchor {
+  glm::dvec3 at, east, north, up;
+
+  EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye);
+  /// From the eye's frame.
+  [[nodiscard]] glm::dvec3 Turned(const glm::dvec3& v) const {
+    return v.x * east + v.y * north + v.z * up;
+  }
+};
+
+/// A block without levels: vertices stay where they are. The picture's size is the viewport's.
+/// @param new_light  share of the new light.
+[[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_light);
+
+class LandPass {
+ public:
+  LandPass();
+
+  /// Attributes of land.vert.glsl, in the order of their locations.
+  static constexpr std::array<const char*, 11> kAttributes{
+      "position",   "coarse_position", "sample_place", "normal",         "coarse_normal",    "sky",
+      "coarse_sky", "sun_over_edge",   "new_sky",      "new_coarse_sky", "new_sun_over_edge"};
+
+  /// Empties the bound SurfaceMap.
+  static void Clear();
+  /// Sets program and state and calls `draw`. The uniform block View must be bound to
+  /// `view_binding`.
+  /// @param one_side  leave out triangles that face away.
+  void Run(LandBlock block, GLuint view_binding, bool one_side,
+           const std::function<void()>& draw) const;
+
+ private:
+  bool reversed_depth_;
+  GlBuffer block_;
+  ShaderProgram program_;
+};
+
+}  // namespace alpenglow
