@@ -97,8 +97,7 @@ GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& p
 
 GroundPatch GroundMaterial::OfPlanet(const BandLight& planet_albedo) const {
   const auto water_line_m = WaterLine_m();
-  if (water_line_m && *water_line_m >= 0.0)
-    return {*this, Kind::kWater, planet_albedo};
+  if (water_line_m && *water_line_m >= 0.0) return {*this, Kind::kWater, planet_albedo};
   if (cover_.kind == Kind::kMountain) return {*this, cover_.kind, planet_albedo};
   return {*this, cover_.kind, albedo_};
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "atmosphere/text/error.h"
 #include "viewer/embedded_text.h"
 #include "viewer/gl/render_target.h"
 
@@ -45,9 +46,14 @@ void Upload(const GlTexture& texture, std::size_t columns, std::size_t rows,
 
 }  // namespace
 
-GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, double pixel_angle_rad) {
-  return {
-      FourOf(tilt.level), FourOf(tilt.up), FourOf(tilt.sunward), {pixel_angle_rad, 0.0, 0.0, 0.0}};
+GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
+                                    double pixel_angle_rad) {
+  const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
+  return {FourOf(tilt.level),
+          FourOf(tilt.up),
+          FourOf(tilt.sunward),
+          {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0},
+          {pixel_angle_rad, 0.0, 0.0, 0.0}};
 }
 
 GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
@@ -80,7 +86,8 @@ GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture
   return block;
 }
 
-std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material) {
+std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, int dropped_octaves) {
+  ALPENGLOW_ENSURE(dropped_octaves, <=, 3);
   const auto water_line_m = material.WaterLine_m();
   const bool planet_is_water =
       (water_line_m && *water_line_m >= 0.0) || material.cover().kind == GroundCover::Kind::kWater;
@@ -88,11 +95,11 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material) {
            fmt::format("#define GROUND_COVER {}\n#define HAS_SEA {}\n#define HAS_DRAPE {}\n"
                        "#define PLANET_IS_WATER {}\n#define LEVEL_SKY_LOWEST {:.9f}\n"
                        "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
-                       "#define SEA_MIRROR_SIDE {}.0\n",
+                       "#define SEA_MIRROR_SIDE {}.0\n#define DROPPED_OCTAVES {}\n",
                        static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
                        material.drape() != nullptr ? 1 : 0, planet_is_water ? 1 : 0,
                        LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
-                       SeaMirror::kSide)},
+                       SeaMirror::kSide, dropped_octaves)},
           Piece("viewer/shaders/ground.glsl"),
           Piece("viewer/shaders/ground_surface.glsl"),
           Piece("viewer/shaders/ground_light.glsl")};

@@ -19,14 +19,16 @@ namespace alpenglow {
 
 /// `block GroundLight` of ground_light.glsl.
 struct GroundLightBlock {
-  glm::vec4 sky_level, sky_up, sky_sunward;
+  glm::vec4 sky_level, sky_up, sky_sunward, sky_towards;
   glm::vec4 ground_view;
 };
-static_assert(sizeof(GroundLightBlock) == 4 * sizeof(glm::vec4));
-static_assert(offsetof(GroundLightBlock, ground_view) == 3 * sizeof(glm::vec4));
+static_assert(sizeof(GroundLightBlock) == 5 * sizeof(glm::vec4));
+static_assert(offsetof(GroundLightBlock, ground_view) == 4 * sizeof(glm::vec4));
 
+/// @param to_sun  unit, in the frame of the eye.
 /// @param pixel_angle_rad  between neighbouring pixels; larger: coarser detail.
-[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, double pixel_angle_rad);
+[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
+                                                  double pixel_angle_rad);
 
 /// `block GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {
@@ -47,7 +49,9 @@ static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4)
 
 /// GroundRadiance and PlanetRadiance for this material; to be read after the shared texts,
 /// air_block, view_block, sun_light and TransmittanceToSun.
-[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material);
+/// @param dropped_octaves  in [0, 3]: of the finest detail, left out to save time.
+[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material,
+                                                   int dropped_octaves = 0);
 
 /// The samplers of these texts.
 class GroundTextures {

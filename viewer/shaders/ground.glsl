@@ -5,6 +5,11 @@
 // Places are metres from the eye along the east and north axes of the mesh. Of every family of
 // noise the eye's own place comes as lattice cell and fraction of the longest octave, so that float
 // holds places thousands of kilometres from the origin of the pattern.
+// Octaves of the finest detail that are left out, to save time.
+#ifndef DROPPED_OCTAVES
+#define DROPPED_OCTAVES 0
+#endif
+
 #define BROAD 0
 #define FINE 1
 #define RELIEF 2
@@ -55,7 +60,7 @@ float DetailNoise(vec2 offset, int family, float footprint) {
   float amplitude = 1.0;
   float wavelength = float(of.x);
   int cells = 1;
-  for (int octave = 0; octave < of.y; ++octave) {
+  for (int octave = 0; octave < of.y - DROPPED_OCTAVES; ++octave) {
     NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
     sum += OctaveShare(wavelength, footprint) * amplitude *
            NoiseOfHashes(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y);
@@ -73,7 +78,7 @@ vec2 DetailSlope(vec2 offset, int family, float footprint) {
   float amplitude = 1.0;
   float wavelength = float(of.x);
   int cells = 1;
-  for (int octave = 0; octave < of.y; ++octave) {
+  for (int octave = 0; octave < of.y - DROPPED_OCTAVES; ++octave) {
     NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
     sum += OctaveShare(wavelength, footprint) * (amplitude / wavelength) *
            vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),

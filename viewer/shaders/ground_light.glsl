@@ -8,6 +8,7 @@ layout(std140) uniform GroundLight {
   vec4 sky_level;  // irradiance of an open place: level + up n.up + sunward n.sunward, by band
   vec4 sky_up;
   vec4 sky_sunward;
+  vec4 sky_towards;  // horizontal direction towards the sun
   vec4 ground_view;  // angle of a pixel [rad]
 };
 
@@ -39,17 +40,14 @@ vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
   return seen * TransmittanceToSun(at.altitude, disk.y);
 }
 
-vec4 OpenSkyOn(vec3 normal, vec3 up) {
-  float normal_up = dot(normal, up);
-  vec3 flat_sun = sun.xyz - dot(sun.xyz, up) * up;
-  float sunward = dot(normal, flat_sun) / max(length(flat_sun), 1e-6);
-  return max(sky_level + sky_up * normal_up + sky_sunward * sunward, 0.02 * sky_level);
-}
-
 // The light of the sky on a surface that is tilted against that of the mesh: in an open place's
 // ratio.
 vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
-  return sky_irradiance * OpenSkyOn(normal, up) / max(OpenSkyOn(mesh_normal, up), 1e-12);
+  vec3 tilt = normal - mesh_normal;
+  vec4 open =
+      sky_level + sky_up * dot(mesh_normal, up) + sky_sunward * dot(mesh_normal, sky_towards.xyz);
+  vec4 gained = sky_up * dot(tilt, up) + sky_sunward * dot(tilt, sky_towards.xyz);
+  return sky_irradiance * max(1.0 + gained / max(open, 0.1 * sky_level), 0.1);
 }
 
 // The terrain.

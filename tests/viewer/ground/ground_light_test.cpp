@@ -64,7 +64,8 @@ class Blocks {
     ground.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
     Bind(program, "Ground", 2, ground_, ground);
-    Bind(program, "GroundLight", 3, light_, GroundLightBlockOf(lit_.tilt(), kPixel_rad));
+    Bind(program, "GroundLight", 3, light_,
+         GroundLightBlockOf(lit_.tilt(), light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_, GroundSurfaceBlockOf(site.material()));
     textures_.Bind(program, 0);
   }
@@ -205,7 +206,7 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
   pieces.push_back({"main", "void main() { gl_Position = sky_level + cover_albedo; }\n"});
   const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
   int member = 0;
-  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "ground_view"})
+  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "sky_towards", "ground_view"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :
