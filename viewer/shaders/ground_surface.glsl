@@ -166,6 +166,7 @@ vec4 LandAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
   vec2 at = (foot - drape_place.xy) * drape_place.zw;
   float level = log2(max(footprint * drape_place.z * float(textureSize(drape, 0).x), 1.0));
   vec4 rgb = textureLod(drape, clamp(at, 0.0, 1.0), level);
+  rgb.xyz /= max(rgb.w, 1e-3);  // means over a picture's rim
   vec4 draped = clamp(rgb.x * drape_red + rgb.y * drape_green + rgb.z * drape_blue, 0.0, 1.0);
   bool within = all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
   albedo = within && rgb.w > 0.5 ? draped : albedo;

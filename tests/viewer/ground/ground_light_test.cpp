@@ -2,12 +2,15 @@
 // What the ground sends to the eye on the graphics card, against the renderer's.
 #include "renderer/picture/ground_light.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/halton.h"
+#include "lut/picture/image.h"
 #include "tests/viewer/ground/rough_site.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
@@ -46,6 +49,8 @@ class Blocks {
  public:
   Blocks(const LitGround& lit, const Lighting& light, double eye_m)
       : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().diffuse) {
+    if (const ColourDrape* drape = lit.site().material().drape())
+      textures_.SetDrape(DrapeTexels(*drape, Picture(), 256));
     textures_.SetSeaMirror(SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().diffuse,
                                          lit.site().material().water(), lit.lighting().to_sun));
   }
@@ -66,11 +71,16 @@ class Blocks {
     Bind(program, "Ground", 2, ground_, ground);
     Bind(program, "GroundLight", 3, light_,
          GroundLightBlockOf(lit_.tilt(), light.to_sun, kPixel_rad));
-    Bind(program, "GroundSurface", 4, surface_, GroundSurfaceBlockOf(site.material()));
+    Bind(program, "GroundSurface", 4, surface_,
+         Draped(GroundSurfaceBlockOf(site.material()), Picture(), 0.0, 0.0));
     textures_.Bind(program, 0);
   }
 
  private:
+  [[nodiscard]] FlatRectangle Picture() const {
+    return RectangleOf(lit_.site().ground().terrain->mesh());
+  }
+
   const LitGround& lit_;
   double eye_m_;
   GroundTextures textures_;
@@ -245,6 +255,26 @@ TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
       EXPECT_LT(Quantile(differences, 0.9), most) << elevation_deg;
     }
   }
+}
+
+TEST_F(GroundOnGpu, DrapedColoursAreTheRenderers) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("alpenglow-drape-{}.png", getpid());
+  DisplayImage picture{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    for (const double phase : {0.0, 1.0, 2.0}) {
+      const double wave =
+          std::sin(0.2 * (i % 64) + phase) * std::sin(0.15 * (i / 64) + 2.0 * phase);
+      picture.rgb.push_back(static_cast<std::uint8_t>(130.0 + 70.0 * wave));
+    }
+  }
+  WritePng(file, picture, {});
+  const auto site = tests::RoughSite({}, file);
+  std::filesystem::remove(file);
+  const std::vector<double> differences =
+      LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
+  EXPECT_LT(Quantile(differences, 0.5), 5e-3);
+  EXPECT_LT(Quantile(differences, 0.98), 0.02) << "a picture resampled at its own width of a pixel";
 }
 
 TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {

@@ -102,6 +102,27 @@ TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
   }
 }
 
+TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
+  // Half a second with time running sixty times: an eighth of a degree.
+  const LitGround before(TheSite(), tests::RoughSun(*TheSite(), 9.875));
+  const LitGround between(TheSite(), tests::RoughSun(*TheSite(), 9.9375));
+  const LitGround after(TheSite(), tests::RoughSun(*TheSite(), 10.0));
+  const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
+  int cut = 0, uneven = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); i += 7) {
+    const GroundVertex vertex{mesh.positions[i], mesh.normals[i]};
+    const VertexLight a = before.At(vertex), b = between.At(vertex), c = after.At(vertex);
+    EXPECT_NEAR(0.5 * static_cast<double>(a.sky[1] + c.sky[1]), static_cast<double>(b.sky[1]),
+                2e-3 * static_cast<double>(b.sky[1]));
+    if (std::abs(b.sun_x) > 1.0F) continue;
+    ++cut;
+    const double mean = SunlightOverEdge(0.5 * static_cast<double>(a.sun_x + c.sun_x));
+    if (std::abs(mean - SunlightOverEdge(static_cast<double>(b.sun_x))) > 0.05) ++uneven;
+  }
+  EXPECT_GT(cut, 20) << "what is asked";
+  EXPECT_LE(uneven, cut / 10) << "where another crest takes over";
+}
+
 TEST(LitGround, SkyBetweenVerticesIsThatOfThePlace) {
   const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 20.0));
   double sum2 = 0.0;

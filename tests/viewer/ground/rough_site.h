@@ -2,6 +2,7 @@
 // A site of rough mountains under an earthly sky, for tests of the light on it.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
 #include "atmosphere/number/constants.h"
@@ -16,14 +17,20 @@ inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kR
                                               0.0};
 
 /// 7.7 km of RoughLand.
-inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}) {
+/// @param colours  a picture over it, or nothing.
+inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {},
+                                                   const std::filesystem::path& colours = {}) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
   SiteAir air;
   air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
   air.diffuse = std::make_shared<const DiffuseLight>(medium, kSmallLight);
   SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,
                      "", true};
-  return std::make_shared<const GroundSite>(std::move(ground), cover, nullptr, std::move(air));
+  Scene scene;
+  scene.terrain.colour = colours;
+  auto drape = ColourDrape::Of(scene, ground);
+  return std::make_shared<const GroundSite>(std::move(ground), cover, std::move(drape),
+                                            std::move(air));
 }
 
 /// The sun in the south-west, in midsummer.
