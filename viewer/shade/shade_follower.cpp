@@ -62,7 +62,9 @@ class ShadeFollower::Maker {
     if (!request.ground) return;
     const ShadeSize& size = request.size;
     const auto grid = (*request.ground)(request.frame.origin(), size.half_width_m, size.samples);
-    if (grid) heights_ = HeightsAround(*grid, request.frame, size.half_width_m, 2 * size.samples);
+    if (grid)
+      heights_ = HeightsAround(*grid, request.frame, size.half_width_m,
+                               size.nodes_a_sample * size.samples);
   }
 
   std::optional<Request> kept_;

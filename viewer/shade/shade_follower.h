@@ -30,7 +30,8 @@ using GroundSampler = std::function<std::optional<ElevationGrid>(
 
 struct ShadeSize {
   double half_width_m = 30e3;  // of the ground whose shade counts, around the eye
-  int samples = 1024;          // of it a side at most; they are read at twice as many nodes
+  int samples = 1024;          // of it a side at most
+  int nodes_a_sample = 2;      // that they are read at: more keep crests that run between nodes
   int cells = 1024;            // of the map a side at most
   bool operator==(const ShadeSize&) const = default;
 };

@@ -13,8 +13,8 @@ namespace alpenglow {
 
 /// How finely rays are stepped through: shade_march.glsl.
 struct ShadeSteps {
-  int pieces = 4;  // one look at the table of the air each
-  int steps = 6;   // of a piece, one look at the map each
+  int pieces;  // of a ray's stretch, one look at the table of the air each
+  int steps;   // of a piece, one look at the map each
 };
 
 class ShadeTexture {

@@ -53,7 +53,9 @@ void ShaftPass::Bind(const ShaderProgram& picture, int unit) const {
   map_->BindTexture(unit);
   picture.Use();
   glUniform1i(picture.Uniform("shaft_map"), unit);
-  glUniform1i(picture.Uniform("shaft_scale"), scale_);
+  const float step = 1.0F / static_cast<float>(scale_);
+  const float first = 0.5F + static_cast<float>(scale_ / 2);  // pixel that has the first ray
+  glUniform2f(picture.Uniform("shaft_place"), step, -first * step);
 }
 
 }  // namespace alpenglow

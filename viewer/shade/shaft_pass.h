@@ -21,8 +21,8 @@ namespace alpenglow {
 
 /// Sizes of the pass.
 struct ShaftDetail {
-  int scale = 4;  // a ray for so many pixels across, and up
-  ShadeSteps steps{};
+  int scale;  // a ray for so many pixels across, and up
+  ShadeSteps steps;
 };
 
 class ShaftPass {

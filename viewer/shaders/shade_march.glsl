@@ -67,30 +67,38 @@ float MeanDarkness(vec2 from, vec2 to) {
   return 1.0 - (SunlightUpTo(middle + 0.5 * apart) - SunlightUpTo(middle - 0.5 * apart)) / apart;
 }
 
-// Distance at a share of a stretch: steps grow threefold along it.
-float ShadeDistance(vec2 stretch, float share) {
-  return stretch.x + (stretch.y - stretch.x) * share * (0.5 + 0.5 * share);
+// Distance at which a share of the light of a stretch has come together, if a stretch that is as
+// long anew brings `left` times as much in its second half as in its first: light that thins out
+// exponentially.
+float ShadeDistance(vec2 stretch, float share, float left) {
+  float thinning = 1.0 - left * left;
+  return mix(stretch.x, stretch.y, log(1.0 - share * thinning) / log(1.0 - thinning));
 }
 
-// Light [1/sr per unit irradiance] that shade takes from the ray on its way to a distance.
+// Light [1/sr per unit irradiance] that shade takes from the ray on its way to a distance. Steps
+// bring about the same light each; how much a piece of them brings says SingleTo.
 vec4 MarchedShade(vec3 direction, float distance_km) {
   ShadeRay ray = ShadeRayOf(direction);
   vec2 stretch = ShadeStretch(ray, 1e3 * distance_km);
   int pieces = stretch.x < stretch.y ? shade_pieces : 0;
   float share_of_step = 1.0 / float(shade_pieces * shade_steps);
-  vec4 shaded = vec4(0.0);
   vec4 single = SingleTo(direction, 1e-3 * stretch.x);
+  vec4 middle = SingleTo(direction, 5e-4 * (stretch.x + stretch.y));
+  vec4 whole = SingleTo(direction, 1e-3 * stretch.y);
+  float left = dot(whole - middle, vec4(1.0)) / max(dot(middle - single, vec4(1.0)), 1e-20);
+  left = clamp(left, 0.1, 0.99);
+  vec4 shaded = vec4(0.0);
   vec2 over = OverShade(ray, stretch.x);
-  for (int piece = 0; piece < pieces; ++piece) {
+  for (int piece = 1; piece <= pieces; ++piece) {
     float dark = 0.0;
-    for (int step = 1; step <= shade_steps; ++step) {
-      float share = float(piece * shade_steps + step) * share_of_step;
-      vec2 next = OverShade(ray, ShadeDistance(stretch, share));
+    for (int step = shade_steps - 1; step >= 0; --step) {
+      float share = float(piece * shade_steps - step) * share_of_step;
+      vec2 next = OverShade(ray, ShadeDistance(stretch, share, left));
       dark += MeanDarkness(over, next);
       over = next;
     }
-    float end = ShadeDistance(stretch, float(piece + 1) / float(shade_pieces));
-    vec4 farther = SingleTo(direction, 1e-3 * end);
+    float end = ShadeDistance(stretch, float(piece) / float(shade_pieces), left);
+    vec4 farther = piece < shade_pieces ? SingleTo(direction, 1e-3 * end) : whole;
     shaded += dark / float(shade_steps) * (farther - single);
     single = farther;
   }

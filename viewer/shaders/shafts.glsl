@@ -3,14 +3,14 @@
 // four nearest of its rays those count that have come about as far.
 
 uniform sampler2D shaft_map;
-uniform int shaft_scale;
+uniform vec2 shaft_place;  // of a pixel on it: times x, plus y
 
 // Light of single scattering that terrain's shade takes from the ray of this pixel on its way to
 // a distance, per unit solar irradiance [1/sr]. Where none of the four has come as far it may be
 // more than there was.
 vec4 ShadedSingle(float distance_km) {
   const float kTolerance = 0.05;  // of distances, as binary logarithms
-  vec2 at = (gl_FragCoord.xy - 0.5 - float(shaft_scale / 2)) / float(shaft_scale);
+  vec2 at = gl_FragCoord.xy * shaft_place.x + shaft_place.y;
   ivec2 last = textureSize(shaft_map, 0) - 1;
   ivec2 low = clamp(ivec2(floor(at)), ivec2(0), last);
   ivec2 high = min(low + 1, last);

@@ -53,7 +53,7 @@ GroundSampler Mountain(std::atomic<int>& asked) {
 
 class ShadeFollowerTest : public tests::Headless {
  protected:
-  static constexpr ShadeSize kSmall{20e3, 201, 256};
+  static constexpr ShadeSize kSmall{20e3, 201, 2, 256};
   std::atomic<int> asked_{0};
 };
 
