@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "renderer/ground/scene_geometry.h"
+#include "renderer/media/fog_layer_text.h"
 
 namespace alpenglow {
 namespace {
@@ -33,10 +33,8 @@ double FogLayer::AltitudeOf(const glm::dvec3& point) const {
 }
 
 double FogLayer::DensityAtAltitude(double altitude_m) const {
-  // Far below its base fog is a wall; e^80 metres of it can still be multiplied by what follows.
-  constexpr double kWall = 80.0;
   if (altitude_m > thin_m_) return 0.0;
-  return std::exp(std::min((base_m_ - altitude_m) / scale_height_m_, kWall));
+  return shared::FogDensity(altitude_m - base_m_, scale_height_m_);
 }
 
 std::vector<DensePiece> FogLayer::PiecesAlong(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -76,8 +74,8 @@ double FogLayer::ColumnToSpace(const glm::dvec3& point, const glm::dvec3& direct
     return rest <= 0.0 ? 0.0 : rest / (r * mu + std::sqrt(r * r * mu * mu + rest));
   }
   const auto upwards = [&](double from_m, double cosine) {
-    return DensityAtAltitude(from_m) * scale_height_m_ *
-           shared::ChapmanUp((planet_radius_m_ + from_m) / scale_height_m_, cosine);
+    return shared::FogColumnUp(from_m, cosine, DensityAtAltitude(from_m), scale_height_m_,
+                               planet_radius_m_);
   };
   if (mu >= 0.0) return upwards(altitude, mu);
   const double perigee = altitude - r * (1.0 - std::sqrt(1.0 - mu * mu));

@@ -7,6 +7,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
+#include "viewer/lamps/phase_macro.h"
 
 namespace alpenglow {
 namespace {
@@ -20,10 +21,6 @@ glm::vec4 InFloats(const Values& values, std::size_t count, double scale = 1.0) 
         static_cast<float>(scale * static_cast<double>(values[band]));
   }
   return bands;
-}
-
-glm::vec4 Parameters(const PhaseFunction& phase) {
-  return {phase.g, phase.g_back, phase.back_weight, phase.alpha};
 }
 
 /// Altitudes over the plane of a lamp's air count from `reference_m`.
@@ -78,13 +75,13 @@ void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double refe
   block.molecules = InFloats(layers[0].scattering_per_m.value, bands, density(0));
   block.aerosol = InFloats(layers[1].scattering_per_m.value, bands, density(1));
   block.dimming = InFloats(layers[1].extinction_per_m.value, bands, density(1));
-  block.mie_phase = Parameters(layers[1].phase);
+  block.mie_phase = ParametersOf(layers[1].phase);
   if (layers.size() < 3) return;
   const LampLayer& fog = layers[2];
   block.falls.z = static_cast<float>(1.0 / fog.scale_height_m);
   block.fog = {fog.scattering_per_m[0] * density(2), fog.extinction_per_m[0] * density(2), 0.0,
                0.0};
-  block.fog_phase = Parameters(fog.phase);
+  block.fog_phase = ParametersOf(fog.phase);
 }
 
 void PutColours(const Medium& medium, LampsBlock& block) {

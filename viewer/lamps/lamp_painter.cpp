@@ -12,6 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/lamps/phase_macro.h"
 
 namespace alpenglow {
 namespace {
@@ -24,43 +25,20 @@ constexpr double kCoreBegin_steps = 3.0, kCoreEnd_steps = 12.0;
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
-/// A phase function as a macro over a cosine and its vector of parameters.
-std::string PhaseMacro(PhaseKind kind) {
-  switch (kind) {
-    case PhaseKind::kRayleigh:
-      return "PhaseRayleigh(c)";
-    case PhaseKind::kHenyeyGreenstein:
-      return "PhaseHenyeyGreenstein(c, p.x)";
-    case PhaseKind::kDoubleHenyeyGreenstein:
-      return "PhaseDoubleHenyeyGreenstein(c, p.x, p.y, p.z)";
-    case PhaseKind::kCornetteShanks:
-      return "PhaseCornetteShanks(c, p.x)";
-    case PhaseKind::kSchlick:
-      return "PhaseSchlick(c, p.x)";
-    case PhaseKind::kDraine:
-      return "PhaseDraine(c, p.x, p.w)";
-    case PhaseKind::kHenyeyGreensteinDraine:
-      return "PhaseHenyeyGreensteinDraine(c, p.x, p.y, p.z, p.w)";
-    case PhaseKind::kTable:
-      return "0.0";  // LampPhaseMie reads the texture; fog has no table
-  }
-  throw InternalError("unknown kind of phase function");
-}
-
 std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   const std::vector<LampLayer>& layers = shape.layers();
   std::string text = fmt::format(
       "#define LAMP_NODES {}\n#define LAMP_STEP {}\n#define LAMP_SPOTS\n"
       "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
       "#define LAMP_GLOW_FARTHEST {:.7f}\n",
-      quality.nodes, quality.step, PhaseMacro(layers[1].phase.kind), kNearestGlow_m,
+      quality.nodes, quality.step, PhaseExpression(layers[1].phase.kind), kNearestGlow_m,
       kFarthestGlow_m);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
   if (!shape.glows().empty()) text += "#define LAMP_GLOW_MAP\n";
   if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
   if (shape.HasFog()) {
     text += fmt::format("#define LAMP_FOG\n#define LAMP_PHASE_FOG(c, p) {}\n",
-                        PhaseMacro(layers[2].phase.kind));
+                        PhaseExpression(layers[2].phase.kind));
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "viewer/embedded_text.h"
+#include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/paint/sky_painter.h"
@@ -112,6 +113,14 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
                      "GroundRadiance(p, p, 1.0, vec4(1.0), p) + PlanetRadiance(p, p);\n}\n"});
     ExpectTextAccepted(texts, "ground.frag.glsl");
   }
+}
+
+TEST_F(Glslang, AcceptsTheLightOfFog) {
+  std::vector<ShaderPiece> texts = SharedTexts();
+  for (const ShaderPiece& piece : FogTexts(PhaseKind::kHenyeyGreensteinDraine)) {
+    texts.push_back(piece);
+  }
+  ExpectAccepted(texts, "empty.frag.glsl");
 }
 
 TEST_F(Glslang, RefusesABrokenShader) {

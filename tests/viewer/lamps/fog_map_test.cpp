@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Light of sun and sky in fog on the graphics card, against the renderer's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+
+#include "atmosphere/ray/shell.h"
+#include "renderer/media/media_light.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/viewer/shaders/gpu_values.h"
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/lamps/fog_painter.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kSunElevation = 0.5;
+const glm::dvec3 kToSun(0.6 * std::cos(kSunElevation), 0.8 * std::cos(kSunElevation),
+                        std::sin(kSunElevation));
+
+/// Air and ground around an eye over the bare ellipsoid, in three bands.
+struct Stage {
+  Scene scene = [] {
+    Scene bare = BareScene(10.0, 0.0, 0.0, 60.0);
+    bare.medium = MediumPreset("bruneton2017");
+    return bare;
+  }();
+  SceneGround ground = LoadGround(scene);
+  SceneGeometry geometry{ground, scene.medium, false};
+  AirIntegrator<float> air{scene.medium};
+  DiffuseLight diffuse{scene.medium};
+  Lighting light = [&] {
+    SunPosition sun;
+    sun.distance_au = 1.0;
+    Lighting at = LightingOf(sun, UtcInstant{}, 0.8, scene.medium);
+    at.to_sun = kToSun;
+    at.sun_radius_rad = 0.00465;
+    return at;
+  }();
+};
+
+const Stage& TheStage() {
+  static const Stage kStage;
+  return kStage;
+}
+
+LocalMedium FogOf(double per_m, double height_m, double base_m) {
+  const Medium& medium = TheStage().scene.medium;
+  MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), FogPhase(14.0)};
+  for (std::size_t band = 0; band < 3; ++band) {
+    optics.extinction_per_m[band] = optics.scattering_per_m[band] = per_m;
+  }
+  return {FogLayer(base_m, height_m, medium.planet_radius_m, medium.atmosphere_height_m), optics};
+}
+
+/// A fog before an eye, as the renderer has it and as the graphics card does.
+struct Both {
+  Both(const LocalMedium& fog, double eye_m)
+      : eye(0.0, 0.0, eye_m),
+        media({fog}, 3),
+        renderer(media, TheStage().geometry, TheStage().air, TheStage().diffuse, TheStage().light),
+        map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air, TheStage().diffuse,
+                       {eye_m, kToSun, TheStage().light.sun_radius_rad})),
+        painter({}) {
+    painter.Upload(map);
+  }
+
+  [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
+                                         const std::vector<tests::Arguments<float>>& points) const {
+    std::vector<ShaderPiece> pieces = SharedTexts();
+    for (const ShaderPiece& piece : FogTexts(map.phase.kind)) pieces.push_back(piece);
+    return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
+      painter.Connect(program);
+      painter.Bind(map, eye.z);
+    });
+  }
+
+  glm::dvec3 eye;
+  LocalMedia media;
+  MediaLight renderer;
+  FogMap map;
+  FogPainter painter;
+};
+
+/// Directions of a picture and lengths [km]: to the sky, to the planet, or to somewhere before.
+std::vector<tests::Arguments<float>> Rays(const Both& both, int count) {
+  std::mt19937 random(5);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(random);
+  };
+  const double radius = TheStage().scene.medium.planet_radius_m;
+  std::vector<tests::Arguments<float>> rays;
+  while (static_cast<int>(rays.size()) < count) {
+    const glm::dvec3 way =
+        glm::normalize(glm::dvec3(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-0.5, 0.5)));
+    double length = rays.size() % 2 == 0 ? std::pow(10.0, uniform(1.5, 4.0)) : 1e9;
+    if (shared::GroundClearance(both.eye.z, way.z, radius) > 0.0) {
+      length = std::min(length, shared::DistanceDownTo(both.eye.z, way.z, 0.0, radius));
+    }
+    rays.push_back({static_cast<float>(way.x), static_cast<float>(way.y), static_cast<float>(way.z),
+                    static_cast<float>(length / 1000.0)});
+  }
+  return rays;
+}
+
+struct Deviation {
+  double mean, p99, of_transmittance;
+};
+
+// Of radiance relative to the brightest a tenth of which is worth the name.
+Deviation Compare(const Both& both) {
+  const auto rays = Rays(both, 300);
+  const std::vector<float> gpu =
+      both.OnGpu("FogTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
+  const std::vector<float> left =
+      both.OnGpu("FogTransmittance(vec3(a[0], a[1], a[2]), a[3])", rays);
+  std::vector<double> deviations;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const glm::dvec3 way = glm::normalize(glm::dvec3(rays[i][0], rays[i][1], rays[i][2]));
+    const double length = rays[i][3] > 1e5F ? kEndless : 1000.0 * double{rays[i][3]};
+    const MarchedLight march = both.renderer.Along(both.eye, way, length, nullptr, 2e-4);
+    largest = std::max(largest, std::abs(double{left[i]} - double{march.transmittance[1]}));
+    const double truth = double{march.radiance[1]} / double{TheStage().light.irradiance[1]};
+    if (march.transmittance[1] < 0.9F) {
+      deviations.push_back(std::abs(double{gpu[i]} / truth - 1.0));
+    }
+  }
+  std::sort(deviations.begin(), deviations.end());
+  double sum = 0.0;
+  for (const double deviation : deviations) sum += deviation;
+  return {sum / static_cast<double>(deviations.size()), deviations[deviations.size() * 99 / 100],
+          largest};
+}
+
+using FogOnTheCard = tests::Headless;
+
+TEST_F(FogOnTheCard, AroundTheEyeIsThatOfTheRenderer) {
+  const Deviation deviation = Compare(Both(FogOf(0.02, 60.0, 0.0), 10.0));
+  EXPECT_LT(deviation.mean, 5e-3);
+  EXPECT_LT(deviation.p99, 0.02);
+  EXPECT_LT(deviation.of_transmittance, 2e-3) << "columns of thin layers in float";
+}
+
+TEST_F(FogOnTheCard, UnderTheEyeIsThatOfTheRenderer) {
+  const Deviation deviation = Compare(Both(FogOf(0.02, 60.0, 0.0), 500.0));
+  EXPECT_LT(deviation.mean, 5e-3);
+  EXPECT_LT(deviation.p99, 0.02);
+  EXPECT_LT(deviation.of_transmittance, 2e-3);
+}
+
+TEST_F(FogOnTheCard, OverTheEyeIsThatOfTheRenderer) {
+  const Deviation deviation = Compare(Both(FogOf(0.002, 80.0, 300.0), 250.0));
+  EXPECT_LT(deviation.mean, 5e-3);
+  EXPECT_LT(deviation.p99, 0.03);
+  EXPECT_LT(deviation.of_transmittance, 2e-3);
+}
+
+TEST_F(FogOnTheCard, WithoutAnEndAboveIsThatOfTheRenderer) {
+  const Deviation deviation = Compare(Both(FogOf(1e-4, kEndless, 0.0), 100.0));
+  EXPECT_LT(deviation.mean, 0.01);
+  EXPECT_LT(deviation.p99, 0.04);
+  EXPECT_LT(deviation.of_transmittance, 2e-3);
+}
+
+TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
+  const Both both(FogOf(0.02, 60.0, 0.0), 10.0);
+  std::vector<tests::Arguments<float>> points;
+  for (const double altitude : {1.0, 20.0, 60.0, 150.0, 400.0}) {
+    for (const double cos_up : {1.0, 0.9, 0.5}) {
+      points.push_back({static_cast<float>(altitude / 1000.0), static_cast<float>(cos_up)});
+    }
+  }
+  const std::vector<float> sun =
+      both.OnGpu("FogSunLeft(a[0], " + std::to_string(kToSun.z) + ")", points);
+  const std::vector<float> sky = both.OnGpu("FogSkyLeft(a[0])", points);
+  const std::vector<float> added = both.OnGpu("FogOnSurface(a[0], a[1])[1]", points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double altitude = 1000.0 * double{points[i][0]};
+    const SkyThroughFog truth = both.renderer.SkyOnSurface(altitude, double{points[i][1]});
+    EXPECT_NEAR(double{sun[i]}, double{both.renderer.SunLeft({0.0, 0.0, altitude}, kToSun)[1]},
+                1e-3);
+    EXPECT_NEAR(double{sky[i]}, double{truth.left[1]}, 1e-4);
+    EXPECT_NEAR(double{added[i]}, double{truth.added[1]}, 3e-3);
+  }
+}
+
+TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
+  const Both both(FogOf(0.002, 80.0, 0.0), 10.0);
+  const auto rays = Rays(both, 60);
+  const std::vector<float> gpu = both.OnGpu(
+      "dot(FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0)).weight, "
+      "FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0)).distance_km)",
+      rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const glm::dvec3 way = glm::normalize(glm::dvec3(rays[i][0], rays[i][1], rays[i][2]));
+    const double length = 1000.0 * std::min(double{rays[i][3]}, 20.0);
+    const MarchedLight march = both.renderer.Along(both.eye, way, length, nullptr, 1e-4);
+    const auto upto = [&](double m) {
+      BandLight light(3);
+      for (std::size_t band = 0; band < 3; ++band) {
+        light[band] = static_cast<float>(std::min(m, length) / 1000.0);
+      }
+      return light;
+    };
+    const BandLight truth = DimmedByMedia(march.pieces, upto, upto(length), Behind::kAll);
+    EXPECT_NEAR(double{gpu[i]}, double{truth[0]}, 0.08 * double{truth[0]})
+        << "four stretches; " << way.z << " " << length;
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow

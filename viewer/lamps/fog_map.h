@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Light of sun and sky in a scene's fog around one eye, ready for interpolation by a graphics card:
+// FogLight (renderer/media/fog_light.h) summed along rays. Per unit solar irradiance.
+//
+// Along a ray light is kept over the share of light that the fog takes away,
+//
+//   L(d) = (1 - T(d)) [p A + p' B + G + K],    T = exp(-tau(d)), of the fog alone
+//
+// A of the sun itself with the fog's phase function p, B of what its forward peak takes along with
+// the lobe p', G of the sun's glow in the fog, K of the sky. They are tabulated over the sine of the
+// ray's elevation, its azimuth from the sun and (1 - T(d)) / (1 - T(end)), where the ray's end is
+// the bare planet or space. A, B and G are those of open ground: terrain does not shade them.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "renderer/media/fog_light.h"
+
+namespace alpenglow {
+
+/// What there is of a map of fog's light.
+struct FogMapSize {
+  int elevations = 48;  // even: half of them over the horizon
+  int azimuths = 12;    // from 0 to pi
+  int depths = 12;
+};
+
+/// Sun and eye, east, north and up at the eye, on the sphere of the air's medium.
+struct FogView {
+  double altitude_m = 0.0;
+  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit
+  double sun_radius_rad = 0.0046;
+};
+
+/// Immutable once made; no graphics card needed.
+struct FogMap {
+  FogView view;
+  FogMapSize size;
+  /// A, B, G and K, one after another: [((quantity * depths + depth) * azimuths + azimuth) *
+  /// elevations + elevation].
+  std::vector<glm::vec4> light;
+  /// What the fog's own light brings to level ground and what a surface that stands upright gets
+  /// more, at altitudes whose optical depth above is (i / last)^4 of the layer's: [row * kHeights +
+  /// i]. W/m^2 per W/m^2.
+  static constexpr int kHeights = 64;
+  std::vector<glm::vec4> on_surface;
+  double extinction_per_m, scale_height_m, base_m, top_m, radius_m;
+  double depth;       // of the layer, vertical
+  double peak_scale;  // of optical depths, without what the forward peak takes along
+  PhaseFunction phase;
+  double broad_g;
+};
+
+/// @param fog  of LocalMedia; bottom_m: altitude of the ground under it.
+/// @param air, diffuse  of one medium; at most four bands.
+/// Errors of rays against MediaLight: tests/viewer/lamps/fog_map_test.cpp.
+[[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m,
+                                const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                                const FogView& view, const FogMapSize& size = {});
+
+/// Sine of the elevation at a place of the axis in [0, 1]; dense at the horizontal.
+[[nodiscard]] double FogElevationSine(double unit);
+
+}  // namespace alpenglow

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// A FogMap on the graphics card, for fog_light.glsl.
+#pragma once
+
+#include <vector>
+
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+#include "viewer/lamps/fog_map.h"
+
+namespace alpenglow {
+
+/// `block Fog` of fog_light.glsl.
+struct FogBlock {
+  glm::vec4 layer, eye, sun, phase, map_size;
+};
+static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
+/// @param altitude_m  of the eye now, which may have moved since the map was made.
+[[nodiscard]] FogBlock FogBlockOf(const FogMap& map, double altitude_m);
+
+/// Texts for a fragment stage, after SharedTexts(): FogTo(direction, distance_km) and the rest of
+/// fog_light.glsl. @param kind  of the fog's phase function.
+[[nodiscard]] std::vector<ShaderPiece> FogTexts(PhaseKind kind);
+
+/// Where what fog reads is bound.
+struct FogUnits {
+  GLuint block = 9;
+  int first = 12;  // of two texture units
+};
+
+class FogPainter {
+ public:
+  explicit FogPainter(const FogUnits& units) : units_(units) {}
+  void Connect(const ShaderProgram& program) const;
+  /// Takes a map in.
+  void Upload(const FogMap& map);
+  /// For the next draw of a program of FogTexts(), the eye at this altitude.
+  void Bind(const FogMap& map, double altitude_m) const;
+
+ private:
+  FogUnits units_;
+  GlBuffer block_;
+  GlTexture light_, surface_;
+};
+
+}  // namespace alpenglow

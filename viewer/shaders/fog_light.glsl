@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// Light of sun and sky in fog, from the map of fog_map.h, and what fog leaves of other light:
+// FogBlock of fog_painter.h. Frame: east, north, up at the eye; lengths are kilometres; light is per
+// unit solar irradiance. Fog is grey.
+layout(std140) uniform Fog {
+  vec4 fog_layer;  // extinction at the base [1/km]; scale height, 0 where it is homogeneous; base,
+                   // top of the air
+  vec4 fog_eye;  // altitude of the eye; radius of the planet; vertical optical depth of the layer;
+                 // scale of optical depths without what the forward peak takes along
+  vec4 fog_sun;  // unit; g of the lobe that the peak's light is scattered by
+  vec4 fog_phase;     // g, g of the second lobe, its weight, alpha
+  vec4 fog_map_size;  // elevations, azimuths, depths
+};
+
+uniform sampler3D fog_light_map;
+uniform sampler2D fog_surface_map;
+
+float FogDensityAt(float h) {
+  return fog_layer.y > 0.0 ? FogDensity(h - fog_layer.z, fog_layer.y) : h < fog_layer.w ? 1.0 : 0.0;
+}
+
+// Columns from altitude h, where mu >= 0 of the direction, to space.
+float FogColumnOut(float h, float mu) {
+  if (fog_layer.y > 0.0) return FogColumnUp(h, mu, FogDensityAt(h), fog_layer.y, fog_eye.y);
+  return h < fog_layer.w ? DistanceUpTo(h, mu, fog_layer.w, fog_eye.y) : 0.0;
+}
+
+// Of any direction that does not meet the planet.
+float FogColumnToSpace(float h, float mu) {
+  float out_of_it = FogColumnOut(h, abs(mu));
+  if (mu >= 0.0) return out_of_it;
+  return max(2.0 * FogColumnOut(PerigeeAltitude(h, mu, fog_eye.y), 0.0) - out_of_it, 0.0);
+}
+
+// Optical depth along a view ray.
+float FogDepthTo(vec3 direction, float distance_km) {
+  float h = fog_eye.x;
+  float mu = direction.z;
+  float h_end = AltitudeAlongRay(h, mu, distance_km, fog_eye.y);
+  float mu_end = ZenithCosineAlongRay(h, mu, distance_km, h_end, fog_eye.y);
+  float perigee = mu < 0.0 && mu_end > 0.0 ? PerigeeAltitude(h, mu, fog_eye.y) : min(h, h_end);
+  return fog_layer.x * ColumnBetween(mu, mu_end, FogColumnOut(h, abs(mu)),
+                                     FogColumnOut(h_end, abs(mu_end)), FogColumnOut(perigee, 0.0));
+}
+
+// Of the whole ray, to the bare planet or to space.
+float FogDepthOfRay(vec3 direction) {
+  if (GroundClearance(fog_eye.x, direction.z, fog_eye.y) <= 0.0)
+    return fog_layer.x * FogColumnToSpace(fog_eye.x, direction.z);
+  float far = DistanceDownTo(fog_eye.x, min(direction.z, -1e-9), 0.0, fog_eye.y);
+  return FogDepthTo(direction, far);
+}
+
+// What fog leaves of light from a distance.
+float FogTransmittance(vec3 direction, float distance_km) {
+  return exp(-FogDepthTo(direction, distance_km));
+}
+
+struct FogAlong {
+  vec4 transmittance;
+  vec4 radiance;  // of sun and sky, scattered by the fog [1/sr]
+};
+
+// Place in one quantity of the map.
+vec3 FogPlace(vec3 direction, float taken) {
+  float whole = 1.0 - exp(-FogDepthOfRay(direction));
+  float share = clamp(taken / max(whole, 1e-9), 0.0, 1.0);
+  vec2 sun = fog_sun.xy;
+  float along = dot(direction.xy, sun);
+  float across = abs(direction.x * sun.y - direction.y * sun.x);
+  float azimuth = along * along + across * across > 0.0 ? atan(across, along) * 0.318309886 : 0.0;
+  float root = sqrt(abs(direction.z));
+  float elevation = 0.5 + (direction.z < 0.0 ? -0.5 : 0.5) * root;
+  return vec3(TexelFromUnit(elevation, fog_map_size.x), TexelFromUnit(azimuth, fog_map_size.y),
+              0.25 * TexelFromUnit(share, fog_map_size.z));
+}
+
+vec4 FogQuantity(vec3 place, float number) {
+  return textureLod(fog_light_map, place + vec3(0.0, 0.0, 0.25 * number), 0.0);
+}
+
+// Of the sun alone, over a piece of ground that nothing shades; terrain that does takes away what
+// lies on the shaded stretches of the ray.
+vec4 FogSunTo(vec3 direction, float distance_km) {
+  float taken = 1.0 - FogTransmittance(direction, distance_km);
+  vec3 place = FogPlace(direction, taken);
+  float cosine = dot(direction, fog_sun.xyz);
+  return taken * (FOG_PHASE(cosine, fog_phase) * FogQuantity(place, 0.0) +
+                  PhaseHenyeyGreenstein(cosine, fog_sun.w) * FogQuantity(place, 1.0) +
+                  FogQuantity(place, 2.0));
+}
+
+FogAlong FogTo(vec3 direction, float distance_km) {
+  float left = FogTransmittance(direction, distance_km);
+  vec3 place = FogPlace(direction, 1.0 - left);
+  float cosine = dot(direction, fog_sun.xyz);
+  vec4 source = FOG_PHASE(cosine, fog_phase) * FogQuantity(place, 0.0) +
+                PhaseHenyeyGreenstein(cosine, fog_sun.w) * FogQuantity(place, 1.0) +
+                FogQuantity(place, 2.0) + FogQuantity(place, 3.0);
+  return FogAlong(vec4(left), (1.0 - left) * source);
+}
+
+// Where the fog has taken so much along a ray, as if the ground were flat.
+float FogDistanceOf(vec3 direction, float depth, float distance_km) {
+  float per_km = fog_layer.x * FogDensityAt(fog_eye.x);
+  float bend = fog_layer.y > 0.0 ? direction.z / fog_layer.y : 0.0;
+  float level = depth / max(per_km, 1e-30);
+  float argument = 1.0 - bend * level;
+  float far = abs(bend * level) < 1e-4 ? level
+              : argument > 0.0         ? -log(argument) / bend
+                                       : distance_km;
+  return clamp(far, 0.0, distance_km);
+}
+
+// Light of the air up to a distance, L(d), arrives dimmed by the fog in front of where it is
+// scattered: sum of weight[i] L(distance_km[i]), the last of them the distance itself. On stretches
+// between, light is taken to rise evenly while fog takes from it exponentially.
+struct FogStretches {
+  vec4 distance_km;
+  vec4 weight;
+};
+
+float FogMean(float a, float b) {
+  float fall = log(a / max(b, 1e-9));
+  return fall < 1e-2 ? 0.5 * (a + b) : (a - b) / fall;
+}
+
+FogStretches FogStretchesTo(vec3 direction, float distance_km) {
+  float left = FogTransmittance(direction, distance_km);
+  vec4 ends;
+  vec4 at;
+  // Downwards a ray is clear before it comes into fog, upwards after.
+  vec3 shares = direction.z < 0.0 ? vec3(0.97, 0.5, 0.02) : vec3(0.5, 0.12, 0.015);
+  for (int i = 0; i < 3; ++i) {
+    at[i] = FogDistanceOf(direction, -log(left + shares[i] * (1.0 - left)), distance_km);
+    ends[i] = FogTransmittance(direction, at[i]);
+  }
+  at.w = distance_km;
+  ends.w = left;
+  vec4 mean = vec4(FogMean(1.0, ends.x), FogMean(ends.x, ends.y), FogMean(ends.y, ends.z),
+                   FogMean(ends.z, ends.w));
+  return FogStretches(at, mean - vec4(mean.yzw, 0.0));
+}
+
+// What fog leaves of sunlight on the ground there; mu_s of a sun over the horizon.
+float FogSunLeft(float h, float mu_s) {
+  return exp(-fog_eye.w * fog_layer.x * FogColumnToSpace(h, mu_s));
+}
+
+float FogDepthAbove(float h) { return min(fog_layer.x * FogColumnOut(h, 1.0), fog_eye.z); }
+
+// What it leaves of the sky's irradiance.
+float FogSkyLeft(float h) { return exp(-fog_eye.w * FogDepthAbove(h) * 1.66666667); }
+
+// Irradiance by the fog's own light. @param cos_up  of the surface's normal.
+vec4 FogOnSurface(float h, float cos_up) {
+  float unit = sqrt(sqrt(FogDepthAbove(h) / max(fog_eye.z, 1e-9)));
+  float x = TexelFromUnit(unit, float(textureSize(fog_surface_map, 0).x));
+  vec4 level = textureLod(fog_surface_map, vec2(x, 0.25), 0.0);
+  vec4 upright = textureLod(fog_surface_map, vec2(x, 0.75), 0.0);
+  return max(level + (1.0 - cos_up) * upright, vec4(0.0));
+}
