@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 #include "renderer/series/frame_times.h"
@@ -44,6 +46,22 @@ std::optional<SunEvent> SunEventOf(SkyEvent event) {
   }
 }
 
+/// Whether the sun of the day comes so high and so low that the event can happen, give or take 2
+/// degrees: its declination moves by 0.4 a day. Of a polar night, most days need no search.
+bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcInstant& day) {
+  constexpr double kMargin_rad = 2.0 * kRadiansPerDegree, kTwilight_rad = -6.0 * kRadiansPerDegree;
+  if (event == SunEvent::kNoon) return true;
+  const bool at_horizon = event == SunEvent::kSunrise || event == SunEvent::kSunset;
+  const double wanted_rad =
+      at_horizon ? SeaHorizonFrom(place.height_m, OsculatingRadius(kWgs84, place.latitude_rad))
+                       .true_elevation_rad
+                 : kTwilight_rad;
+  const double declination_rad = std::asin(SunAt(place, day).direction.xyz.z);
+  const double highest_rad = 0.5 * kPi - std::abs(place.latitude_rad - declination_rad);
+  const double lowest_rad = std::abs(place.latitude_rad + declination_rad) - 0.5 * kPi;
+  return highest_rad > wanted_rad - kMargin_rad && lowest_rad < wanted_rad + kMargin_rad;
+}
+
 /// "04:30" and "04:30:15" begin like this; a date has four digits.
 bool IsTimeOfDay(const std::string& text) {
   return text.size() >= 5 && text[2] == ':' && (text.size() == 5 || text.size() == 8);
@@ -72,7 +90,9 @@ std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& plac
   constexpr int kDays = 366;
   constexpr double kSame_s = 1.0;
   for (int day = 0; day <= kDays; ++day) {
-    const auto found = FindSunEvent(*of_sun, place, AddSeconds(after, day * kDay_s));
+    const UtcInstant around = AddSeconds(after, day * kDay_s);
+    if (!CanHappen(*of_sun, place, around)) continue;
+    const auto found = FindSunEvent(*of_sun, place, around);
     if (found && SecondsBetween(after, *found) > kSame_s) return found;
   }
   return std::nullopt;

@@ -100,6 +100,29 @@ TEST(Clock, InThePolarNightTheNextSunriseIsWeeksAwayAndAtThePoleMonths) {
   EXPECT_EQ(Shows(clock).substr(0, 8), "2027-01-");
 }
 
+TEST(Clock, NoDayIsPassedOverOnTheWayToTheNextEvent) {
+  struct Case {
+    double latitude, height_m;
+    const char* start;
+  };
+  for (const auto& [latitude, height_m, start] :
+       {Case{89.9, 0.0, "2026-09-10T12:00:00Z"}, Case{78.0, 12000.0, "2026-08-15T12:00:00Z"},
+        Case{78.0, 0.0, "2026-02-05T12:00:00Z"}, Case{66.0, 0.0, "2026-06-10T12:00:00Z"},
+        Case{-67.0, 3000.0, "2026-12-25T12:00:00Z"}, Case{0.0, 0.0, "2026-12-25T12:00:00Z"}}) {
+    const GeodeticPosition place = PlaceFromDegrees(latitude, 15.0, height_m);
+    SceneClock clock = ClockAt(start);
+    // The judge searches every day.
+    std::optional<UtcInstant> expected;
+    for (int day = 0; !expected && day < 60; ++day) {
+      expected = FindSunEvent(SunEvent::kSunset, place, AddSeconds(clock.now(), day * 86400.0));
+      if (expected && SecondsBetween(clock.now(), *expected) < 1.0) expected.reset();
+    }
+    ASSERT_TRUE(expected) << latitude << " " << start;
+    ASSERT_TRUE(clock.JumpToNext(SkyEvent::kSunset, place)) << latitude << " " << start;
+    EXPECT_NEAR(SecondsBetween(*expected, clock.now()), 0.0, 0.2) << latitude << " " << start;
+  }
+}
+
 TEST(Clock, TheMoonIsAskedOfWhoKnowsIt) {
   SceneClock clock = ClockAt("2026-06-21T12:00:00Z");
   EXPECT_FALSE(clock.JumpToNext(SkyEvent::kMoonrise, kZurich)) << "nobody knows it";
