@@ -2,6 +2,7 @@
 // The clock of the scene: it runs at a rate, stands, and jumps to what the sun and the moon do.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,6 +18,10 @@ namespace alpenglow {
 
 /// What one waits for. Dawn and dusk are the civil ones (the sun 6 degrees below the horizon).
 enum class SkyEvent { kDawn, kSunrise, kNoon, kSunset, kDusk, kMoonrise, kMoonset };
+inline constexpr std::array<SkyEvent, 7> kSkyEvents{
+    SkyEvent::kDawn, SkyEvent::kSunrise,  SkyEvent::kNoon,   SkyEvent::kSunset,
+    SkyEvent::kDusk, SkyEvent::kMoonrise, SkyEvent::kMoonset};
+/// "dawn", "sunrise", ...
 [[nodiscard]] const char* NameOf(SkyEvent event);
 
 /// The next moonrise or moonset after an instant.

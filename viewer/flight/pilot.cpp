@@ -81,11 +81,19 @@ void Pilot::Advance(const PilotControls& controls, double seconds, const GroundH
     SkipTrack(track_factor_ * seconds);
   }
   Show(ground);
-  if (!(seconds > 0.0)) return;
-  const glm::dvec3 way =
-      (EcefFromGeodetic(ellipsoid_, eye_.place) - EcefFromGeodetic(ellipsoid_, before)).xyz;
+  if (seconds > 0.0) NoteSpeed(before, seconds);
+}
+
+void Pilot::NoteSpeed(const GeodeticPosition& before, double seconds) {
+  constexpr double kStands_m_per_s = 0.5;
+  const LocalFrame frame(ellipsoid_, before);
+  const glm::dvec3 way = frame.EnuFromGeodetic(eye_.place).xyz;
   speed_m_per_s_ = glm::length(way) / seconds;
   vertical_speed_m_per_s_ = (eye_.place.height_m - before.height_m) / seconds;
+  course_.reset();
+  if (speed_m_per_s_ < kStands_m_per_s) return;
+  const double climb = vertical_speed_m_per_s_ / speed_m_per_s_;
+  course_ = Course{std::atan2(way.x, way.y), std::asin(std::clamp(climb, -1.0, 1.0))};
 }
 
 void Pilot::LeaveTheGround(const GroundHeight& ground) {
@@ -196,6 +204,7 @@ FlightReadout Pilot::Readout(const GroundHeight& ground) const {
   readout.speed_m_per_s = speed_m_per_s_;
   readout.vertical_speed_m_per_s = vertical_speed_m_per_s_;
   readout.above_ground_m = eye_.place.height_m - ground(eye_.place);
+  readout.course = course_;
   readout.speed_factor = time_factor();
   if (mode_ == FlightMode::kFree) readout.speed_factor = free_factor_;
   if (mode_ == FlightMode::kAircraft) {

@@ -18,12 +18,18 @@
 
 namespace alpenglow {
 
+/// Where something flies to: heading clockwise from north, climb over the horizontal.
+struct Course {
+  double heading_rad, climb_rad;
+};
+
 /// For instruments, in every mode.
 struct FlightReadout {
   FlightMode mode = FlightMode::kFree;
   double speed_m_per_s = 0.0;           // over the ground, of the last frame
   double vertical_speed_m_per_s = 0.0;  // up is positive
   double above_ground_m = 0.0;
+  std::optional<Course> course;  // none while it stands
   double speed_factor = 1.0;  // of the free camera; of the track's time; of the flight's (1 to 32)
   std::optional<AircraftReadout> aircraft;  // in aircraft mode
   std::string_view aircraft_name;           // "" elsewhere
@@ -85,6 +91,7 @@ class Pilot {
   [[nodiscard]] AircraftState NextState(Autopilot& autopilot, const Stick& stick, double step_s,
                                         const GroundHeight& ground) const;
   void LeaveTheGround(const GroundHeight& ground);
+  void NoteSpeed(const GeodeticPosition& before, double seconds);
   void LookAround(const PilotControls& controls);
   void Show(const GroundHeight& ground);
 
@@ -95,6 +102,7 @@ class Pilot {
   double free_factor_ = 1.0, track_factor_ = 1.0, flight_factor_ = 1.0;
   double look_right_rad_ = 0.0, look_up_rad_ = 0.0;
   double speed_m_per_s_ = 0.0, vertical_speed_m_per_s_ = 0.0;
+  std::optional<Course> course_;
 
   AircraftKind kind_ = kLightAircraft;
   AircraftState aircraft_, shown_;

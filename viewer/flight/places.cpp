@@ -225,14 +225,26 @@ std::string ZoneNear(const GeodeticPosition& place, const std::optional<std::str
   const double turns = std::remainder(place.longitude_rad, 2.0 * kPi) / (2.0 * kPi);
   const int ahead_h = static_cast<int>(std::lround(24.0 * turns));
   if (ahead_h == 0) return "Etc/GMT";
-  // POSIX counts westwards.
   return fmt::format("Etc/GMT{}{}", ahead_h > 0 ? "-" : "+", std::abs(ahead_h));
 }
 
-std::string LocalTimeText(const UtcInstant& instant, const std::string& zone) {
+LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone) {
   const std::string text = FormatInZone(instant, zone);  // "2026-06-21T13:00:00+09:00"
-  const std::string name = zone.starts_with("Etc/GMT") ? "by longitude" : zone;
-  return fmt::format("{} {} {} {}", text.substr(0, 10), text.substr(11, 8), text.substr(19), name);
+  LocalTime local;
+  local.date = text.substr(0, 10);
+  local.time = text.substr(11, 8);
+  local.offset = text.substr(19);
+  local.zone = zone;
+  constexpr std::string_view kByLongitude = "Etc/GMT";
+  if (zone.starts_with(kByLongitude)) {
+    local.zone = zone.substr(kByLongitude.size());
+    // POSIX counts westwards.
+    for (char& c : local.zone) c = c == '-' ? '+' : c == '+' ? '-' : c;
+    local.zone.insert(0, "UTC");
+  }
+  const UtcInstant midnight = ParseInstant(local.date + "T00:00:00" + local.offset);
+  local.day_fraction = std::clamp(SecondsBetween(midnight, instant) / 86400.0, 0.0, 0.9999999);
+  return local;
 }
 
 }  // namespace alpenglow

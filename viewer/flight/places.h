@@ -49,8 +49,13 @@ struct NamedPlace {
                                    const std::optional<std::string>& scene_zone,
                                    const GeodeticPosition& scene_place);
 
-/// "2026-06-21 13:00:00 +09:00 Asia/Tokyo", or "... by longitude". Throws InputError when there is
-/// no such zone.
-[[nodiscard]] std::string LocalTimeText(const UtcInstant& instant, const std::string& zone);
+/// What clocks show somewhere.
+struct LocalTime {
+  std::string date, time, offset;  // "2026-06-21", "13:00:00", "+09:00"
+  std::string zone;                // "Asia/Tokyo"; "UTC+9" where the longitude says it
+  double day_fraction;             // of the day that has gone by, [0, 1)
+};
+/// Throws InputError when there is no such zone.
+[[nodiscard]] LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone);
 
 }  // namespace alpenglow

@@ -8,6 +8,7 @@
 
 #include "viewer/flight/clock.h"
 #include "viewer/flight/pilot.h"
+#include "viewer/flight/places.h"
 #include "viewer/input/action.h"
 
 namespace alpenglow {
@@ -26,6 +27,11 @@ class Cockpit {
   /// is none of flight and time.
   [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground,
                                               const MoonEventAfter& moon = {});
+
+  /// Flies to a place of the list: on the runway with the aircraft, over it otherwise.
+  void GoTo(const NamedPlace& there, const GroundHeight& ground) {
+    pilot_.PutAt(EyeAt(there, pilot_.eye(), ground), ground);
+  }
 
   /// Lets real seconds pass, however many. Paused, aircraft, track and clock stand; the free camera
   /// still flies, and one can look around. A flight at 4 times its speed takes the clock along.

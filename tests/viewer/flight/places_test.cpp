@@ -121,10 +121,17 @@ TEST(Places, TheZoneIsTheScenesThenThatOfTheNearestPlaceThenTheLongitudes) {
   }
 }
 
-TEST(Places, LocalTimeNamesItsZone) {
+TEST(Places, LocalTimeNamesItsZoneAndTheShareOfTheDay) {
   const UtcInstant now = ParseInstant("2026-06-21T04:00:00Z");
-  EXPECT_EQ(LocalTimeText(now, "Asia/Tokyo"), "2026-06-21 13:00:00 +09:00 Asia/Tokyo");
-  EXPECT_EQ(LocalTimeText(now, "Etc/GMT+10"), "2026-06-20 18:00:00 -10:00 by longitude");
+  const LocalTime tokyo = LocalTimeAt(now, "Asia/Tokyo");
+  EXPECT_EQ(tokyo.date + " " + tokyo.time + tokyo.offset, "2026-06-21 13:00:00+09:00");
+  EXPECT_EQ(tokyo.zone, "Asia/Tokyo");
+  EXPECT_NEAR(tokyo.day_fraction, 13.0 / 24.0, 1e-12);
+  const LocalTime pacific = LocalTimeAt(now, "Etc/GMT+10");
+  EXPECT_EQ(pacific.date, "2026-06-20");
+  EXPECT_EQ(pacific.zone, "UTC-10");
+  EXPECT_NEAR(pacific.day_fraction, 18.0 / 24.0, 1e-12);
+  EXPECT_EQ(LocalTimeAt(now, "Etc/GMT").zone, "UTC");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/number/constants.h"
+#include "viewer/input/controls.h"
 
 namespace alpenglow {
 namespace {
@@ -60,6 +61,54 @@ TEST(Cockpit, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
   EXPECT_EQ(cockpit.Do(Action::kFasterFlight, Sea), "speed x4");
   cockpit.Advance({}, 2.5, Sea);
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:10Z");
+}
+
+TEST(Cockpit, FliesToPlacesByName) {
+  Cockpit cockpit = NewCockpit();
+  cockpit.GoTo(PlaceNamed("Matterhorn"), Sea);
+  EXPECT_EQ(cockpit.pilot().eye().place.height_m, 4578.0);
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
+  const GroundHeight airport = [](const GeodeticPosition&) { return 423.0; };
+  cockpit.GoTo(PlaceNamed("LSZH"), airport);
+  const FlightReadout readout = cockpit.pilot().Readout(airport);
+  EXPECT_EQ(readout.aircraft->contact, GroundContact::kStanding);
+  EXPECT_NEAR(readout.aircraft->heading_rad / kRadiansPerDegree, 155.0, 1e-6);
+}
+
+TEST(Cockpit, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
+  Cockpit cockpit = NewCockpit();
+  Controls controls;
+  const GroundHeight airport = [](const GeodeticPosition&) { return 423.0; };
+  cockpit.GoTo(PlaceNamed("LSZH"), airport);
+  const auto fly = [&](double seconds) {
+    for (double t = 0.0; t < seconds; t += 1.0 / 30.0) {
+      const Intent intent = controls.Take(cockpit.pilot().mode(), 1.0 / 30.0);
+      for (const Action action : intent.actions) {
+        EXPECT_TRUE(cockpit.Do(action, airport));
+      }
+      cockpit.Advance(intent.pilot, 1.0 / 30.0, airport);
+    }
+  };
+  const auto hold = [&](const char* key, double seconds) {
+    controls.Key(KeyChordFromText(key).key, 1, 0);
+    fly(seconds);
+    controls.Key(KeyChordFromText(key).key, 0, 0);
+  };
+  hold("2", 0.1);
+  hold("Page Up", 25.0);
+  hold("Down", 0.8);
+  fly(25.0);
+  const FlightReadout climbing = cockpit.pilot().Readout(airport);
+  EXPECT_EQ(climbing.aircraft->contact, GroundContact::kNone);
+  EXPECT_GT(climbing.above_ground_m, 50.0);
+  EXPECT_FALSE(climbing.aircraft->stalled);
+  ASSERT_TRUE(climbing.course);
+  EXPECT_NEAR(climbing.course->heading_rad / kRadiansPerDegree, 155.0, 2.0);
+  hold("Left", 0.6);
+  fly(10.0);
+  const FlightReadout turning = cockpit.pilot().Readout(airport);
+  EXPECT_LT(turning.aircraft->bank_rad, -10.0 * kRadiansPerDegree) << "held after the key is up";
+  EXPECT_LT(turning.course->heading_rad, climbing.course->heading_rad - 0.2);
 }
 
 TEST(Cockpit, ALongFrameIsNotCutShort) {
