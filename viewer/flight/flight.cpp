@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
@@ -79,13 +80,15 @@ Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
 Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
                const GroundHeight& ground, double speed_factor, double seconds) {
   constexpr double kLongest_s = 1.0 / 60.0, kClearance_m = 1.5;
-  const double steps = std::max(std::ceil(seconds / kLongest_s), 1.0);
+  const auto steps =
+      std::max(static_cast<std::int64_t>(std::ceil(seconds / kLongest_s)), std::int64_t{1});
+  const double step_s = seconds / static_cast<double>(steps);
   Steering scaled = steering;
   for (double* pace : {&scaled.forward, &scaled.right, &scaled.up}) *pace *= speed_factor;
   Eye moved = eye;
-  for (double step = 0.0; step < steps; ++step) {
+  for (std::int64_t i = 0; i < steps; ++i) {
     const double above_m = std::max(moved.place.height_m - ground(moved.place), 0.0);
-    moved = Steer(moved, scaled, ellipsoid, above_m, seconds / steps);
+    moved = Steer(moved, scaled, ellipsoid, above_m, step_s);
     moved = KeptAbove(moved, ground(moved.place), kClearance_m);
   }
   return moved;

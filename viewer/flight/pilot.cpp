@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <utility>
 
@@ -124,9 +125,11 @@ AircraftState Pilot::NextState(Autopilot& autopilot, const Stick& stick, double 
 
 void Pilot::FlyAircraft(const Stick& stick, double seconds, const GroundHeight& ground) {
   rest_s_ += seconds;
-  for (; rest_s_ >= kStep_s; rest_s_ -= kStep_s) {
+  const auto steps = static_cast<std::int64_t>(rest_s_ / kStep_s);
+  for (std::int64_t i = 0; i < steps; ++i) {
     aircraft_ = NextState(autopilot_, stick, kStep_s, ground);
   }
+  rest_s_ = std::max(rest_s_ - static_cast<double>(steps) * kStep_s, 0.0);
   Autopilot looking_on = autopilot_;
   shown_ = rest_s_ > 0.0 ? NextState(looking_on, stick, rest_s_, ground) : aircraft_;
 }

@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "atmosphere/text/error.h"
+
 namespace alpenglow {
 namespace {
 
@@ -78,6 +80,12 @@ StickPlace Shaped(const StickPlace& raw, const ControlSettings& settings) {
 double MovedToward(double value, double target, double per_second, double seconds) {
   const double most = per_second * seconds;
   return value + std::clamp(target - value, -most, most);
+}
+
+void Controls::Set(const ControlSettings& settings) {
+  RequireInRange(settings.dead_zone, 0.0, 0.9, "dead zone of the gamepad");
+  RequireInRange(settings.expo, 0.0, 1.0, "expo of the gamepad");
+  settings_ = settings;
 }
 
 void Controls::Key(int key, int change, int modifiers, int printed) {

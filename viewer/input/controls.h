@@ -56,7 +56,8 @@ struct Intent {
 
 class Controls {
  public:
-  explicit Controls(const ControlSettings& settings = {}) : settings_(settings) {}
+  /// Throws InputError, here and in Set, for a dead zone not in [0, 0.9] and an expo not in [0, 1].
+  explicit Controls(const ControlSettings& settings = {}) { Set(settings); }
 
   /// @param change     GLFW_RELEASE, GLFW_PRESS or GLFW_REPEAT (0, 1, 2)
   /// @param modifiers  GLFW_MOD_SHIFT and so on
@@ -78,7 +79,7 @@ class Controls {
 
   [[nodiscard]] MouseMode mouse_mode() const { return mouse_mode_; }
   [[nodiscard]] const ControlSettings& settings() const { return settings_; }
-  void Set(const ControlSettings& settings) { settings_ = settings; }
+  void Set(const ControlSettings& settings);
 
   /// What is asked for since the last call, `seconds` ago. kMouseMode is done here and told too.
   [[nodiscard]] Intent Take(FlightMode mode, double seconds,

@@ -63,6 +63,26 @@ TEST(Aircraft, ItsPathBendsWithTheEarth) {
   EXPECT_GT(flown.Read().heading_rad, 0.5 * kPi) << "north has turned under it";
 }
 
+// Hard case 27.
+TEST(Aircraft, OverThePoleAndTheDateLineItFliesStraightOn) {
+  Flown flown(1000.0);
+  flown.state = LevelFlight(kLightAircraft, kWgs84, PlaceFromDegrees(89.99, 20.0, 1000.0), 0.0);
+  flown.Fly(60.0);
+  EXPECT_NEAR(Degrees(flown.Place().longitude_rad), -160.0, 0.5) << "beyond the pole";
+  EXPECT_NEAR(std::abs(Degrees(flown.Read().heading_rad)), 180.0, 0.5) << "southwards";
+  EXPECT_NEAR(flown.Place().height_m, 1000.0, 1.0);
+  flown.state =
+      LevelFlight(kLightAircraft, kWgs84, PlaceFromDegrees(0.0, 179.999, 1000.0), 0.5 * kPi);
+  flown.Fly(60.0);
+  EXPECT_LT(flown.Place().longitude_rad, 0.0);
+  EXPECT_NEAR(Degrees(flown.Read().heading_rad), 90.0, 0.01);
+  // At the pole itself there is no heading that could be wrong, but all numbers are there.
+  flown.state = LevelFlight(kLightAircraft, kWgs84, PlaceFromDegrees(90.0, 0.0, 1000.0), 1.0);
+  flown.Fly(1.0, {.roll_right = 1.0});
+  EXPECT_TRUE(std::isfinite(flown.Read().heading_rad));
+  EXPECT_NEAR(flown.Place().height_m, 1000.0, 1.0);
+}
+
 TEST(Aircraft, ATurnHasTheRadiusOfSpeedSquaredOverGTangentOfBank) {
   Flown flown;
   while (flown.Read().bank_rad < 30.0 * kRadiansPerDegree) flown.Fly(kStep_s, {.roll_right = 0.5});

@@ -60,6 +60,16 @@ TEST(Clock, BackwardsItRunsAsFastAsForwards) {
   EXPECT_THROW(clock.SetRate(std::nan("")), InputError);
 }
 
+// Hard case 25.
+TEST(Clock, OverALeapSecondItCountsAsClocksDo) {
+  SceneClock clock = ClockAt("2016-12-31T23:59:50Z");
+  for (int i = 0; i < 20; ++i) clock.Advance(1.0);
+  EXPECT_EQ(Shows(clock), "2017-01-01T00:00:10Z");
+  clock.SetRate(-60.0);
+  clock.Advance(1.0);
+  EXPECT_EQ(Shows(clock), "2016-12-31T23:59:10Z");
+}
+
 TEST(Clock, StopsAtTheEndsOfTheYearsThatItKnows) {
   SceneClock clock = ClockAt("2100-12-31T23:00:00Z");
   clock.Shift(1e7);

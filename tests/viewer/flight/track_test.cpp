@@ -135,6 +135,16 @@ TEST(TrackPath, AJitterOfTheReceiverTurnsTheHeadLittle) {
   }
 }
 
+// Hard case 27.
+TEST(TrackPath, OverTheDateLineItGoesTheShortWay) {
+  Track track;
+  track.points = {{PlaceFromDegrees(10.0, 179.9, 1000.0)},
+                  {PlaceFromDegrees(10.0, -179.9, 1000.0)}};
+  const CameraPath path = PathAlong(track, {.speed_m_per_s = 100.0}, Sea);
+  EXPECT_NEAR(path.end_s(), 219.0, 2.0) << "0.2 degrees at 10 degrees north are 21.9 km";
+  EXPECT_NEAR(Degrees(path.PoseAt(0.5 * path.end_s()).heading_rad), 90.0, 0.1);
+}
+
 TEST(TrackPath, ATrackIsRefusedThatGoesNowhere) {
   const auto fault = [](const Track& track) {
     return tests::FaultOf([&] { return PathAlong(track, {}, Sea).end_s(); });

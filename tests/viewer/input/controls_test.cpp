@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include "atmosphere/text/error.h"
+
 namespace alpenglow {
 namespace {
 
@@ -252,7 +254,13 @@ TEST(Gamepad, PulledBackTheNoseRisesAndInvertedItSinks) {
               1e-12);
 }
 
-TEST(Gamepad, AUntouchedPadAsksForNothing) {
+TEST(Gamepad, SettingsOutOfRangeAreRefused) {
+  EXPECT_THROW(Controls({.dead_zone = 0.95}), InputError);
+  EXPECT_THROW(Controls({.dead_zone = std::nan("")}), InputError);
+  EXPECT_THROW(Controls({.expo = 1.5}), InputError);
+}
+
+TEST(Gamepad, AnUntouchedPadAsksForNothing) {
   Controls controls;
   const Intent intent = controls.Take(FlightMode::kAircraft, kFrame_s, Pad());
   EXPECT_EQ(intent.pilot.stick.throttle_up, 0.0) << "triggers rest at -1";
