@@ -95,9 +95,11 @@ Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellips
 }
 
 Eye Turned(const Eye& eye, double right_rad, double up_rad) {
+  // To the right as it is seen is to the right and down where the head is rolled.
+  const double c = std::cos(eye.roll_rad), s = std::sin(eye.roll_rad);
   Eye turned = eye;
-  turned.heading_rad = std::remainder(eye.heading_rad + right_rad, 2.0 * kPi);
-  turned.pitch_rad = std::clamp(eye.pitch_rad + up_rad, -0.5 * kPi, 0.5 * kPi);
+  turned.heading_rad = std::remainder(eye.heading_rad + c * right_rad + s * up_rad, 2.0 * kPi);
+  turned.pitch_rad = std::clamp(eye.pitch_rad + c * up_rad - s * right_rad, -0.5 * kPi, 0.5 * kPi);
   return turned;
 }
 

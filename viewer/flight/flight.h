@@ -68,7 +68,7 @@ struct ViewAxes {
 [[nodiscard]] Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
                              const GroundHeight& ground, double speed_factor, double seconds);
 
-/// The eye turned by a drag of the mouse [rad].
+/// The eye turned [rad] to the right and up as it sees them, rolled or not.
 [[nodiscard]] Eye Turned(const Eye& eye, double right_rad, double up_rad);
 
 /// The eye with its field of view times `factor`, kept in [1, 120] degrees.

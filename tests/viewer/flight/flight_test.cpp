@@ -76,6 +76,26 @@ TEST(Flight, PitchStopsAtTheVertical) {
   EXPECT_TRUE(std::isfinite(AxesOf(up).right.x));
 }
 
+TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
+  for (const double roll : {0.0, 0.5, -1.2, kPi}) {
+    Eye eye = EyeAt(46.0, 8.0, 0.0, 30.0);
+    eye.roll_rad = roll;
+    const ViewAxes before = AxesOf(eye);
+    constexpr double kTurn = 1e-3;
+    EXPECT_NEAR(glm::dot(AxesOf(Turned(eye, kTurn, 0.0)).forward, before.right), kTurn, 1e-6)
+        << roll << ": of second order in the angle";
+    EXPECT_NEAR(glm::dot(AxesOf(Turned(eye, 0.0, kTurn)).forward, before.up), kTurn, 1e-6) << roll;
+  }
+}
+
+TEST(Flight, AHeldRollTurnsTheHorizonAndATelescopeTurnsSlowly) {
+  const Eye rolled = Steer(EyeAt(46.0, 8.0, 0.0), {.roll_right = 1.0}, kWgs84, 10.0, 1.0);
+  EXPECT_NEAR(rolled.roll_rad, 45.0 * kRadiansPerDegree, 1e-12);
+  const Eye narrow = Zoomed(EyeAt(46.0, 8.0, 0.0), 0.1);
+  const Eye turned = Steer(narrow, {.turn_right = 1.0}, kWgs84, 10.0, 1.0);
+  EXPECT_NEAR(turned.heading_rad, 4.5 * kRadiansPerDegree, 1e-12) << "in a view of 6 degrees";
+}
+
 TEST(Flight, TheFieldOfViewStaysBetweenOneAndAHundredAndTwentyDegrees) {
   EXPECT_NEAR(Zoomed(EyeAt(0.0, 0.0, 0.0), 1e-9).fov_rad, 1.0 * kRadiansPerDegree, 1e-15);
   EXPECT_NEAR(Zoomed(EyeAt(0.0, 0.0, 0.0), 1e9).fov_rad, 120.0 * kRadiansPerDegree, 1e-15);
