@@ -39,17 +39,23 @@ struct SkyviewOptions {
 inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   CLI::Option* file = app.add_option("SCENE", options.scene_file,
                                      "Scene file (TOML); without it a built-in range, or --dem");
-  app.add_option("--latitude", options.latitude, "Of the eye: degrees north, -90 to 90");
-  app.add_option("--longitude", options.longitude, "Of the eye: degrees east, -180 to 360");
-  app.add_option("--altitude", options.altitude, "Of the eye: metres above the ellipsoid, to 1e9");
-  app.add_option("--heading", options.heading, "Degrees clockwise from north, -360 to 360");
-  app.add_option("--pitch", options.pitch, "Degrees above the horizontal, -90 to 90");
+  app.add_option("--latitude", options.latitude, "Of the eye: degrees north, -90 to 90")
+      ->check(CLI::Range(-90.0, 90.0));
+  app.add_option("--longitude", options.longitude, "Of the eye: degrees east, -180 to 360")
+      ->check(CLI::Range(-180.0, 360.0));
+  app.add_option("--altitude", options.altitude, "Of the eye: metres above the ellipsoid, to 1e9")
+      ->check(CLI::Range(-12000.0, 1e9));
+  app.add_option("--heading", options.heading, "Degrees clockwise from north, -360 to 360")
+      ->check(CLI::Range(-360.0, 360.0));
+  app.add_option("--pitch", options.pitch, "Degrees above the horizontal, -90 to 90")
+      ->check(CLI::Range(-90.0, 90.0));
   app.add_option("--time", options.time,
                  "2026-06-21T04:00:00Z, or an event of the scene's day: sunrise-10m, noon, "
                  "civil-dusk (default: the scene's time, else noon of 2026-06-21)");
   app.add_option("--dem", options.dem, "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM")
       ->excludes(file);
   app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
+      ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();
   app.add_flag("--fullscreen", options.fullscreen, "Use the whole screen");
   app.add_option("--vsync", options.vsync, "Frames wait for the display: on or off")
