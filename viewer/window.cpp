@@ -66,6 +66,10 @@ void SetIcon(GLFWwindow* window) {
   glfwSetWindowIcon(window, static_cast<int>(images.size()), images.data());
 }
 
+struct Size {
+  int width = 0, height = 0;
+};
+
 /// A rectangle of the desktop, in its units.
 struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
@@ -132,9 +136,12 @@ struct Window::State {
   GLFWwindow* window = nullptr;
   WindowEvents events;             // since the last Poll, but for what follows
   std::array<bool, 3> held{};      // buttons
+  Size picture, desktop;           // of the window, in pixels and in the desktop's units
+  PointerPlace pointer;            // in the desktop's units
   bool pointer_is_inside = false;  // and not captured
   bool captured = false;
   bool vsync = true;
+  std::string title;
   std::optional<Rectangle> before_fullscreen;
   std::function<void()> at_lost_display;
 
@@ -173,12 +180,21 @@ struct Window::State {
   static void OnWheel(GLFWwindow* window, double, double steps) {
     Of(window).events.wheel += steps;
   }
-  static void OnPointer(GLFWwindow* window, double, double) { Of(window).pointer_is_inside = true; }
+  static void OnPointer(GLFWwindow* window, double right, double down) {
+    Of(window).pointer = {right, down};
+    Of(window).pointer_is_inside = true;
+  }
   static void OnEnter(GLFWwindow* window, int entered) {
     Of(window).pointer_is_inside = entered == GLFW_TRUE;
   }
   static void OnFocus(GLFWwindow* window, int focused) {
     Of(window).events.focused = focused == GLFW_TRUE;
+  }
+  static void OnPictureSize(GLFWwindow* window, int width, int height) {
+    Of(window).picture = {width, height};
+  }
+  static void OnWindowSize(GLFWwindow* window, int width, int height) {
+    Of(window).desktop = {width, height};
   }
   static void OnMinimise(GLFWwindow* window, int minimised) {
     Of(window).events.minimised = minimised == GLFW_TRUE;
@@ -194,43 +210,36 @@ struct Window::State {
     glfwSetCursorEnterCallback(window, OnEnter);
     glfwSetWindowFocusCallback(window, OnFocus);
     glfwSetWindowIconifyCallback(window, OnMinimise);
+    glfwSetFramebufferSizeCallback(window, OnPictureSize);
+    glfwSetWindowSizeCallback(window, OnWindowSize);
+    AskSizes();
   }
 
-  [[nodiscard]] std::pair<int, int> PictureSize() const {
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(window, &width, &height);
-    return {width, height};
-  }
-  [[nodiscard]] bool HasPicture() const {
-    const auto [width, height] = PictureSize();
-    return width > 0 && height > 0;
+  [[nodiscard]] bool HasPicture() const { return picture.width > 0 && picture.height > 0; }
+
+  // Asked once and told since: every question is an answer of the display waited for.
+  void AskSizes() {
+    glfwGetFramebufferSize(window, &picture.width, &picture.height);
+    glfwGetWindowSize(window, &desktop.width, &desktop.height);
   }
 
   // Where the pointer was told to be is in the desktop's units, which may be larger than pixels.
   [[nodiscard]] std::optional<PointerPlace> Pointer() const {
     const bool is_held = held[0] || held[1] || held[2];
     if (!pointer_is_inside && !captured && !is_held) return std::nullopt;
-    const auto [width, height] = PictureSize();
-    const Rectangle place = PlaceOf(window);
-    if (place.width == 0 || place.height == 0) return std::nullopt;
-    PointerPlace pointer;
-    glfwGetCursorPos(window, &pointer.right, &pointer.down);
-    pointer.right *= static_cast<double>(width) / place.width;
-    pointer.down *= static_cast<double>(height) / place.height;
-    return pointer;
+    if (desktop.width == 0 || desktop.height == 0) return std::nullopt;
+    return PointerPlace{pointer.right * picture.width / desktop.width,
+                        pointer.down * picture.height / desktop.height};
   }
 
   // A desktop that counts in larger units has made the picture larger than was asked for.
   void FitPicture(int width, int height) const {
-    const auto [picture_width, picture_height] = PictureSize();
-    if (picture_width == 0 || picture_height == 0) return;
-    if (picture_width == width && picture_height == height) return;
-    const Rectangle place = PlaceOf(window);
+    if (!HasPicture() || (picture.width == width && picture.height == height)) return;
     const auto fitted = [](int units, int pixels, int wanted) {
       return std::max(1, static_cast<int>(std::lround(1.0 * units * wanted / pixels)));
     };
-    glfwSetWindowSize(window, fitted(place.width, picture_width, width),
-                      fitted(place.height, picture_height, height));
+    glfwSetWindowSize(window, fitted(desktop.width, picture.width, width),
+                      fitted(desktop.height, picture.height, height));
   }
 
   // Xlib ends the program when its display has gone, and nothing can stop it but this.
@@ -283,8 +292,8 @@ WindowEvents Window::Poll() {
   return events;
 }
 
-int Window::width() const { return state_->PictureSize().first; }
-int Window::height() const { return state_->PictureSize().second; }
+int Window::width() const { return state_->picture.width; }
+int Window::height() const { return state_->picture.height; }
 
 double Window::content_scale() const {
   float right = 1.0F, down = 1.0F;
@@ -293,6 +302,8 @@ double Window::content_scale() const {
 }
 
 void Window::SetTitle(const std::string& title) {
+  if (title == state_->title) return;  // the desktop draws it anew
+  state_->title = title;
   glfwSetWindowTitle(state_->window, title.c_str());
 }
 
