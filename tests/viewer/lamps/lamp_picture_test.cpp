@@ -17,7 +17,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/embedded_text.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/paint/uniform_blocks.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 namespace {

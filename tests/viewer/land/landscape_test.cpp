@@ -12,7 +12,7 @@
 #include "tests/viewer/land/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/land/surface_map.h"
-#include "viewer/paint/uniform_blocks.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 namespace {
