@@ -366,6 +366,19 @@ std::optional<ElevationGrid> Landscape::SampledGrid(const GeodeticPosition& plac
   return cache_.loaded()->SampledGrid(place, half_width_m, most_samples);
 }
 
+std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
+Landscape::Sampler() const {
+  if (mesh_) {
+    return [mesh = &*mesh_](const GeodeticPosition& place, double half_width_m, int most_samples) {
+      return mesh->SampledGrid(place, half_width_m, most_samples);
+    };
+  }
+  return [loaded = cache_.loaded()](const GeodeticPosition& place, double half_width_m,
+                                    int most_samples) {
+    return loaded->SampledGrid(place, half_width_m, most_samples);
+  };
+}
+
 LandProgress Landscape::Progress() const {
   if (mesh_ && !mesh_->IsRead())
     return {0.0,

@@ -6,6 +6,7 @@
 // in MeshFromElevation; the farther, the coarser (level_ranges.h). Without land it draws nothing.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -75,15 +76,18 @@ class Landscape {
   [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
                                                          double half_width_m,
                                                          int most_samples) const;
-  /// What is loaded; never changed once made, so that any thread may ask it.
-  [[nodiscard]] std::shared_ptr<const LoadedHeights> heights() const { return cache_.loaded(); }
+  /// SampledGrid of what is loaded now, for any thread while this lives.
+  [[nodiscard]] std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
+  Sampler() const;
   /// Another range of the finest level, see LandSize.
   void SetDetail(double detail) {
     size_.detail = detail;
     cache_.SetDetail(detail);
   }
   /// Counts up when heights have come: SampledGrid may have changed.
-  [[nodiscard]] int heights_version() const { return heights_version_; }
+  [[nodiscard]] int heights_version() const {
+    return heights_version_ + (mesh_ && mesh_->IsRead() ? 1 : 0);
+  }
 
   [[nodiscard]] LandProgress Progress() const;
   /// What there is to say, each once: tiles left out, voids, vertical datums, that the range is made

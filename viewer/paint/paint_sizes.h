@@ -6,8 +6,7 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/landscape.h"
 #include "viewer/paint/auto_quality.h"
-#include "viewer/shade/shade_follower.h"
-#include "viewer/shade/shaft_pass.h"
+#include "viewer/shade/shade_quality.h"
 
 namespace alpenglow {
 
@@ -15,9 +14,8 @@ struct PaintSizes {
   AirQuality air = AirQuality::kMedium;
   double land_detail = 96.0;  // LandSize::detail
   bool has_shafts = true;
-  ShaftDetail shafts;
-  ShadeSize shade;
-  LampQuality lamps;
+  ShadeQuality shade = kMediumShade;
+  LampQuality lamps = kMediumLamps;
   double relief_pixels = 1.0;  // detail of the ground is left out below so many pixels
 };
 

@@ -24,7 +24,9 @@ enum Binding : GLuint {
   kGroundBinding,
   kGroundLightBinding,
   kGroundSurfaceBinding,
-  kTablesBinding
+  kTablesBinding,
+  kLampsBinding,
+  kFogBinding
 };
 enum Unit {
   kSurfaceUnit,
@@ -34,7 +36,19 @@ enum Unit {
   kPictureUnit,
   kAirUnit,
   kGroundUnit = kAirUnit + AirTextures::kUnits,
+  kLampUnit = kGroundUnit + 3,
+  kFogUnit = kLampUnit + 4,
 };
+constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
+constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
+
+// Lamps and fog stand on ground that is there before the first picture; a landing light needs none.
+SceneGround LampGroundOf(const Scene& scene) {
+  if (!scene.lights.empty() || scene.fog) return LoadGround(scene);
+  GeodeticPosition foot = scene.place;
+  foot.height_m = 0.0;
+  return {LocalFrame(EllipsoidOf(scene.medium), foot), std::nullopt, 0.0, "", true};
+}
 
 constexpr double kMetresPerKilometre = 1000.0;
 
@@ -99,19 +113,30 @@ LandSource LandSourceOf(const Scene& scene) {
   source.voids = scene.terrain.voids;
   if (scene.terrain.kind == TerrainSource::Kind::kElevationModel)
     source.files = {scene.terrain.file};
+  if (scene.terrain.kind == TerrainSource::Kind::kMesh)
+    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place};
   if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange)
     source.range_centre = scene.terrain.centre.value_or(scene.place);
   return source;
 }
 
-std::vector<ShaderPiece> PictureTexts(const GroundMaterial& material) {
+std::vector<ShaderPiece> PictureTexts(const PictureKind& kind) {
   std::vector<ShaderPiece> texts = AirTexts();
-  for (const char* name : {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
-                           "viewer/shaders/sun_light.glsl"}) {
-    texts.push_back(ViewerPiece(name));
+  const auto add = [&](std::vector<ShaderPiece> pieces) {
+    for (ShaderPiece& piece : pieces) texts.push_back(std::move(piece));
+  };
+  if (kind.fog) {
+    add(FogTexts(*kind.fog));
+    // What fog leaves of the sun on the ground is part of what the air leaves.
+    texts.push_back({"fog on the ground",
+                     "#define HAS_FOG 1\n#define TransmittanceToSun(h, mu) "
+                     "(TransmittanceToSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
-  for (ShaderPiece& piece : GroundTexts(material)) texts.push_back(std::move(piece));
-  for (ShaderPiece& piece : ShaftTexts()) texts.push_back(std::move(piece));
+  add({ViewerPiece("viewer/shaders/air_block.glsl"), ViewerPiece("viewer/shaders/octahedral.glsl"),
+       ViewerPiece("viewer/shaders/sun_light.glsl")});
+  add(GroundTexts(kind.material));
+  add(ShaftTexts());
+  add(LampTexts(kind.lamps, kind.quality));
   return texts;
 }
 
@@ -127,30 +152,74 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
       ground_(scene.ground, nullptr, {}),
       shade_(ellipsoid_),
       shaft_pass_(AirTexts()),
-      program_(FullScreenProgram(PictureTexts(material_), "viewer/shaders/picture.frag.glsl")),
+      lamp_ground_(LampGroundOf(scene)),
+      lamps_(scene, lamp_ground_, OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       ground_textures_(air_.air()->diffuse) {
-  program_.BindBlock("Air", kAirBinding);
-  program_.BindBlock("Ground", kGroundBinding);
-  program_.BindBlock("GroundLight", kGroundLightBinding);
-  program_.BindBlock("GroundSurface", kGroundSurfaceBinding);
-  program_.BindSampler("surface_map", kSurfaceUnit);
-  program_.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
-  program_.BindSampler("shaft_map", kShaftUnit);
-  for (const ShaderProgram* program :
-       std::initializer_list<const ShaderProgram*>{&program_, &shaft_pass_.program()}) {
-    program->BindBlock("View", kViewBinding);
-    program->Use();
-    AirTextures::Prepare(*program, kAirUnit, kTablesBinding);
+  if (scene.fog) {
+    const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
+    fog_.emplace(LocalMedia(scene, lamp_ground_, medium).Only(false, true), kFogUnits);
   }
-  shade_.SetSize(sizes.shade);
+  shaft_pass_.program().BindBlock("View", kViewBinding);
+  shaft_pass_.program().Use();
+  AirTextures::Prepare(shaft_pass_.program(), kAirUnit, kTablesBinding);
+  shade_.SetSize(sizes.shade.size);
+  MakeProgram();
   CheckGl("SkyPainter");
 }
 
+void SkyPainter::MakeProgram() {
+  lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
+  const std::optional<PhaseKind> fog =
+      scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
+  program_->emplace(FullScreenProgram(PictureTexts({material_, lamps_, sizes_.lamps, fog}),
+                                      "viewer/shaders/picture.frag.glsl"));
+  program_->BindBlock("Air", kAirBinding);
+  program_->BindBlock("View", kViewBinding);
+  program_->BindBlock("Ground", kGroundBinding);
+  program_->BindBlock("GroundLight", kGroundLightBinding);
+  program_->BindBlock("GroundSurface", kGroundSurfaceBinding);
+  program_->BindSampler("surface_map", kSurfaceUnit);
+  program_->BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
+  program_->BindSampler("shaft_map", kShaftUnit);
+  AirTextures::Prepare(*program_, kAirUnit, kTablesBinding);
+  lamp_painter_->Connect(*program_);
+  if (fog_) fog_->Connect(*program_);
+}
+
 void SkyPainter::Use(const PaintSizes& sizes) {
+  const bool same_program =
+      sizes.lamps.nodes == sizes_.lamps.nodes && sizes.lamps.step == sizes_.lamps.step;
   sizes_ = sizes;
   air_.SetQuality(sizes.air);
-  shade_.SetSize(sizes.shade);
+  shade_.SetSize(sizes.shade.size);
   land_.SetDetail(sizes.land_detail);
+  if (!same_program) MakeProgram();
+}
+
+LampView SkyPainter::LampViewOf(const PaintedView& view) const {
+  const LocalFrame here(ellipsoid_, view.eye.place);
+  LampView seen;
+  seen.eye_m = lamp_ground_.frame.EnuFromGeodetic(view.eye.place).xyz;
+  for (const glm::length_t axis : {0, 1, 2}) {
+    glm::dvec3 unit(0.0);
+    unit[axis] = 1.0;
+    seen.eye_from_ground[axis] =
+        here.EnuFromEcef(lamp_ground_.frame.EcefFromEnu(Vector<Enu>{unit})).xyz;
+  }
+  seen.altitude_m = view.eye.place.height_m;
+  seen.pixel_angle_rad = PixelAngle(view);
+  return seen;
+}
+
+FogView SkyPainter::FogViewOf(const PaintedView& view, const SunPosition& sun) const {
+  return {view.eye.place.height_m, DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+          sun.angular_radius_rad};
+}
+
+void SkyPainter::PrepareLamps(const PaintedView& view) {
+  // Lamps dimmer than this are not seen beside what else there is.
+  constexpr double kDimmest_cd_per_m2 = 1e-5;
+  lamp_painter_->Prepare(lamps_, LampViewOf(view), kDimmest_cd_per_m2);
 }
 
 SunPosition SkyPainter::SunOf(const PaintedView& view) const {
@@ -160,10 +229,7 @@ SunPosition SkyPainter::SunOf(const PaintedView& view) const {
 void SkyPainter::TakeHeights() {
   if (heights_version_ == land_.heights_version()) return;
   heights_version_ = land_.heights_version();
-  const GroundSampler sampler = [heights = land_.heights()](const GeodeticPosition& place,
-                                                            double half_width_m, int samples) {
-    return heights->SampledGrid(place, half_width_m, samples);
-  };
+  const GroundSampler sampler = land_.Sampler();
   ground_.SetGround(sampler);
   shade_.SetGround(sampler);
 }
@@ -177,11 +243,11 @@ void SkyPainter::TakeLight() {
 
 void SkyPainter::UploadMoon(const PaintedView& view) const {
   const MoonDisk moon = ApparentMoonDisk(view.eye.place, view.now, SunOf(view).distance_au);
-  program_.Use();
-  glUniform4f(program_.Uniform("moon"), static_cast<float>(moon.to_moon.x),
+  program_->Use();
+  glUniform4f(program_->Uniform("moon"), static_cast<float>(moon.to_moon.x),
               static_cast<float>(moon.to_moon.y), static_cast<float>(moon.to_moon.z),
               static_cast<float>(moon.radius_rad));
-  glUniform4f(program_.Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
+  glUniform4f(program_->Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
               static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
               static_cast<float>(moon.radiance_per_irradiance));
 }
@@ -194,6 +260,7 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   TakeHeights();
   if (ground_.Follow(air_.air(), {view.eye.place, sun, view.now})) TakeLight();
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, sun, kShadeUnit);
+  if (fog_) fog_->Follow(air_.air(), view.eye.place.latitude_rad, FogViewOf(view, sun));
 }
 
 void SkyPainter::Settle(const PaintedView& view) {
@@ -206,6 +273,7 @@ void SkyPainter::Settle(const PaintedView& view) {
     land_.Settle(view.eye.place, LandViewOf(view));
   }
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, sun, kShadeUnit);
+  if (fog_) fog_->Settle(air_.air(), view.eye.place.latitude_rad, FogViewOf(view, sun));
 }
 
 void SkyPainter::UploadAir(const PaintedView& view) const {
@@ -258,7 +326,7 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
   UploadBlock(blocks_.ground_light, kGroundLightBinding, &light, sizeof(light));
   const GroundSurfaceBlock cover = GroundSurfaceBlockOf(material_);
   UploadBlock(blocks_.ground_surface, kGroundSurfaceBinding, &cover, sizeof(cover));
-  ground_textures_.Bind(program_, kGroundUnit);
+  ground_textures_.Bind(*program_, kGroundUnit);
 }
 
 void SkyPainter::PaintLand(const PaintedView& view) {
@@ -276,23 +344,28 @@ void SkyPainter::PaintShafts(const PaintedView& view) {
   if (!sizes_.has_shafts || !shade_.shade().Shades()) return;
   Begin("shafts");
   shaft_pass_.Paint(shade_.shade(), shade_.MapFromEye(view.eye.place), view.width, view.height,
-                    kSurfaceUnit, kShadeUnit, sizes_.shafts);
-  shaft_pass_.Bind(program_, kShaftUnit);
+                    kSurfaceUnit, kShadeUnit, sizes_.shade.detail);
+  shaft_pass_.Bind(*program_, kShaftUnit);
 }
 
-void SkyPainter::PaintAir(const PaintedView& view, const RenderTarget& target) {
+void SkyPainter::PaintLamps(const PaintedView& view) {
+  if (lamp_painter_->IsDark()) return;
+  Begin("lamps");
+  lamp_painter_->PaintGlow(view.width, view.height);
+}
+
+void SkyPainter::PaintPicture(const PaintedView& view, bool adds) {
   Begin("picture");
-  target.Bind();
-  program_.Use();
-  glUniform1i(program_.Uniform("has_shade"), sizes_.has_shafts && shade_.shade().Shades() ? 1 : 0);
-  glUniform1f(program_.Uniform("pixel_angle"), static_cast<float>(PixelAngle(view)));
-  DrawFullScreen(program_, no_vertices_);
-}
-
-void SkyPainter::PaintOnce(const PaintedView& view, const glm::dvec2& shift) {
-  UploadView(view, shift);
-  PaintLand(view);
-  PaintShafts(view);
+  picture_->Bind();
+  lamp_painter_->Bind();
+  if (fog_) fog_->Bind(view.eye.place.height_m);
+  program_->Use();
+  glUniform1i(program_->Uniform("has_shade"), sizes_.has_shafts && shade_.shade().Shades() ? 1 : 0);
+  glUniform1i(program_->Uniform("has_lamps"), lamp_painter_->IsDark() ? 0 : 1);
+  glUniform1f(program_->Uniform("pixel_angle"), static_cast<float>(PixelAngle(view)));
+  if (adds) glEnable(GL_BLEND);
+  DrawFullScreen(*program_, no_vertices_);
+  glDisable(GL_BLEND);
 }
 
 void SkyPainter::Paint(const PaintedView& view, int samples) {
@@ -300,22 +373,26 @@ void SkyPainter::Paint(const PaintedView& view, int samples) {
   UploadAir(view);
   UploadGround(view);
   UploadMoon(view);
+  PrepareLamps(view);
   air_.textures().Bind(kAirUnit, kTablesBinding);
-  if (samples > 1) {
-    picture_->Bind();
-    glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
-    glClear(GL_COLOR_BUFFER_BIT);
-    const auto share = static_cast<float>(1.0 / samples);
-    glBlendColor(share, share, share, share);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
-  }
+  picture_->Bind();
+  glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+  if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
+  const auto share = static_cast<float>(1.0 / samples);
+  glBlendColor(share, share, share, share);
   for (int sample = 0; sample < samples; ++sample) {
-    PaintOnce(view, ShiftOf(sample, samples, view));
-    if (samples > 1) glEnable(GL_BLEND);
-    PaintAir(view, *picture_);
-    glDisable(GL_BLEND);
+    UploadView(view, ShiftOf(sample, samples, view));
+    PaintLand(view);
+    PaintShafts(view);
+    PaintLamps(view);
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
+    PaintPicture(view, samples > 1);
   }
-  if (timer_ != nullptr) timer_->End();
+  if (!lamp_painter_->IsDark()) {
+    Begin("lamps over");
+    lamp_painter_->PaintOver(PixelAngle(view));
+  }
+  EndTime();
   CheckGl("SkyPainter::Paint");
 }
 

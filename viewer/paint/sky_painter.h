@@ -24,6 +24,8 @@
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
+#include "viewer/lamps/fog_follower.h"
+#include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/landscape.h"
 #include "viewer/land/surface_map.h"
 #include "viewer/paint/developer.h"
@@ -53,6 +55,9 @@ class SkyPainter {
   void Use(const PaintSizes& sizes);
   /// Other air; shown when it is solved.
   void Replace(const Medium& medium) { air_.Replace(medium); }
+
+  /// A lamp that moves with the eye; nothing: none.
+  void SetLandingLight(const std::optional<LandingLight>& light) { lamps_.SetLandingLight(light); }
 
   /// Takes over what has become ready and asks for what is missing. Never waits.
   /// @param seconds  since the last call.
@@ -92,10 +97,14 @@ class SkyPainter {
   void UploadGround(const PaintedView& view) const;
   void UploadMoon(const PaintedView& view) const;
   void TakeLight();
-  void PaintOnce(const PaintedView& view, const glm::dvec2& shift);
+  void MakeProgram();
+  void PrepareLamps(const PaintedView& view);
+  [[nodiscard]] LampView LampViewOf(const PaintedView& view) const;
+  [[nodiscard]] FogView FogViewOf(const PaintedView& view, const SunPosition& sun) const;
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
-  void PaintAir(const PaintedView& view, const RenderTarget& target);
+  void PaintLamps(const PaintedView& view);
+  void PaintPicture(const PaintedView& view, bool adds);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
@@ -109,7 +118,11 @@ class SkyPainter {
   GroundFollower ground_;
   ShadeFollower shade_;
   ShaftPass shaft_pass_;
-  ShaderProgram program_;
+  SceneGround lamp_ground_;  // that lamps and fog stand on
+  SceneLamps lamps_;
+  std::optional<FogFollower> fog_;
+  std::optional<LampPainter> lamp_painter_;  // of sizes_
+  std::optional<ShaderProgram> program_;     // of sizes_
   GroundTextures ground_textures_;
   Blocks blocks_;
   GlVertexArray no_vertices_;
@@ -122,7 +135,14 @@ class SkyPainter {
 /// The land of a scene; a mesh is none.
 [[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
+/// What the texts of a picture depend on.
+struct PictureKind {
+  const GroundMaterial& material;
+  const SceneLamps& lamps;
+  LampQuality quality;
+  std::optional<PhaseKind> fog;  // its phase function
+};
 /// The texts that the picture's fragment stage is made of, but for itself.
-[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const GroundMaterial& material);
+[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind);
 
 }  // namespace alpenglow
