@@ -111,7 +111,7 @@ TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   }
 }
 
-// --- hard cases ---
+// --- every eye and every sun ---
 
 void ExpectSound(const AirTexels& texels, const char* name) {
   for (const glm::vec4& texel : texels.texel) {
