@@ -13,8 +13,9 @@
 namespace alpenglow {
 namespace {
 
-// Vertices of a level with their normals, which are the area-weighted means of all triangles
-// around them as in SmoothNormals.
+// Vertices of a level with their normals. At level 0 these are the area-weighted means of the
+// triangles around as in SmoothNormals; at others the slopes of the next finer level, since the
+// means of triangles as wide as theirs would lose half of what the vertices can show.
 class SurfacePatch {
  public:
   // Vertices [first_i, first_i + side) x [first_j, first_j + side).
@@ -25,9 +26,13 @@ class SurfacePatch {
         first_i_(first_i - 1),
         first_j_(first_j - 1),
         side_(side + 2),
-        block_(heights.Block(level, first_i - 2, first_j - 2, side + 4, side + 4)) {
+        block_(heights.Block(level, first_i - 2, first_j - 2, side + 4, side + 4)),
+        finer_(level > 0 ? heights.Block(level - 1, 2 * first_i_ - 1, 2 * first_j_ - 1,
+                                         2 * side_ + 1, 2 * side_ + 1)
+                         : HeightBlock{}) {
     PlaceVertices(frame);
     SumNormals();
+    if (level_ > 0) TakeFinerSlopes(frame);
   }
 
   [[nodiscard]] bool Has(int i, int j) const { return has_[At(i, j)] != 0; }
@@ -76,6 +81,37 @@ class SurfacePatch {
     }
   }
 
+  // Fall of the finer level around a vertex along one axis: height [m] over samples.
+  [[nodiscard]] double FinerRise(float before, float after, int samples) const {
+    return samples > 0 ? static_cast<double>(after - before) / samples
+                       : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  // Where a neighbour is missing the triangles' normal stays.
+  void TakeFinerSlopes(const LocalFrame& frame) {
+    for (int j = first_j_; j < first_j_ + side_; ++j) {
+      const double latitude = lattice_.PlaceOf(0, lattice_.RowOf(j, level_), 0.0).latitude_rad;
+      const SampleSize size = SampleSizeAt(lattice_, latitude);
+      for (int i = first_i_; i < first_i_ + side_; ++i) {
+        if (!Has(i, j)) continue;
+        const int x = 2 * i, y = 2 * j, finer = level_ - 1;
+        const double east =
+            FinerRise(finer_.at(x - 1, y), finer_.at(x + 1, y),
+                      lattice_.ColumnOf(x + 1, finer) - lattice_.ColumnOf(x - 1, finer)) /
+            size.column_m;
+        const double south =
+            FinerRise(finer_.at(x, y - 1), finer_.at(x, y + 1),
+                      lattice_.RowOf(y + 1, finer) - lattice_.RowOf(y - 1, finer)) /
+            size.row_m;
+        if (std::isnan(east + south)) continue;
+        const LocalFrame there(frame.ellipsoid(), lattice_.PlaceOf(lattice_.ColumnOf(i, level_),
+                                                                   lattice_.RowOf(j, level_), 0.0));
+        normal_sum_[At(i, j)] =
+            frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{{-east, south, 1.0}})).xyz;
+      }
+    }
+  }
+
   void SumNormals() {
     for (int j = first_j_; j + 1 < first_j_ + side_; ++j) {
       for (int i = first_i_; i + 1 < first_i_ + side_; ++i) {
@@ -101,7 +137,7 @@ class SurfacePatch {
 
   const LandLattice& lattice_;
   int level_, first_i_, first_j_, side_;
-  HeightBlock block_;
+  HeightBlock block_, finer_;
   std::vector<glm::dvec3> position_m_, normal_sum_;
   std::vector<char> has_;
 };

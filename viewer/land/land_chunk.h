@@ -8,6 +8,8 @@
 // (save that level 0 cuts its cells along the diagonal that fits better, all others along the
 // falling one).
 //
+// Normals come from the next finer level's slopes; those of level 0 are its own.
+//
 // Strugar, F. (2009), Continuous distance-dependent level of detail for rendering heightmaps,
 // Journal of Graphics, GPU, and Game Tools 14 (4), 57-74; here the coarser position is not a
 // vertex that slides aside but a mean, which moves by less.

@@ -170,7 +170,7 @@ void Landscape::LetLevelsReach(double seconds) {
 }
 
 std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
-  constexpr std::size_t kMost = 256;
+  constexpr std::size_t kMost = 48;  // so that taking them does not hold up a frame
   std::vector<WantedChunk> missing;
   for (const WantedChunk& wanted : demand_.wanted)
     if (!set.chunks.contains(wanted.key)) missing.push_back(wanted);

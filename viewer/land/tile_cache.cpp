@@ -46,11 +46,11 @@ int TileCache::LevelWanted(const LandTile& tile, const LandEye& eye) const {
   for (int level = 0; level < tree_.top(); ++level) {
     const double reach =
         1.3 * detail_ * sample_m * std::exp2(level) + 1.5 * ChunkTree::Diagonal(level + 1, eye);
-    if (distance <= reach) return std::max(level, tile.level);
+    if (distance <= reach) return std::max(level - 1, tile.level);  // for its normals
   }
   const double sight = std::max(eye.sight_m, eye.above_m);
   const bool in_sight = distance <= sight + 1.5 * ChunkTree::Diagonal(tree_.top(), eye);
-  return in_sight ? std::max(tree_.top(), tile.level) : kNotWanted;
+  return in_sight ? std::max(tree_.top() - 1, tile.level) : kNotWanted;
 }
 
 void TileCache::Want(const LandEye& eye) {
@@ -79,7 +79,7 @@ void TileCache::KeepWithinBounds(const std::vector<std::size_t>& by_distance) {
   for (int pass = 0; pass < kNotWanted && sum > most_bytes_; ++pass) {
     for (auto tile = by_distance.rbegin(); tile != by_distance.rend() && sum > most_bytes_;
          ++tile) {
-      if (level_wanted_[*tile] >= tree_.top()) continue;
+      if (level_wanted_[*tile] >= tree_.top() - 1) continue;
       sum -= bytes(*tile);
       ++level_wanted_[*tile];
       sum += bytes(*tile);
@@ -160,7 +160,7 @@ bool TileCache::CanMake(const ChunkKey& key) const {
   const std::vector<int> touching = tiles_->Touching(tree_.Reads(key));
   return std::all_of(touching.begin(), touching.end(), [&](int index) {
     const auto tile = static_cast<std::size_t>(index);
-    const int finest = std::max(key.level, tiles_->tiles()[tile].level);
+    const int finest = std::max(key.level - 1, tiles_->tiles()[tile].level);
     return has_failed_[tile] != 0 || (heights_[tile] && heights_[tile]->finest() <= finest);
   });
 }
