@@ -14,16 +14,17 @@ namespace {
 
 constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDegree, 0.0};
 
+std::shared_ptr<const GroundSite> NewSite() {
+  static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
+  static const SolvedAir kAir{std::make_shared<const AirIntegrator<float>>(kMedium),
+                              std::make_shared<const DiffuseLight>(kMedium)};
+  static const ElevationGrid kRange = BuiltInRange(kPlace);
+  return std::make_shared<const GroundSite>(GroundOf(kRange, LocalFrame(kWgs84, kPlace)),
+                                            GroundCover{}, nullptr, kAir);
+}
+
 const std::shared_ptr<const GroundSite>& TheSite() {
-  static const std::shared_ptr<const GroundSite> kSite = [] {
-    const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
-    SolvedAir air;
-    air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
-    air.diffuse = std::make_shared<const DiffuseLight>(medium);
-    return std::make_shared<const GroundSite>(
-        GroundOf(BuiltInRange(kPlace), LocalFrame(kWgs84, kPlace)), GroundCover{}, nullptr,
-        std::move(air));
-  }();
+  static const std::shared_ptr<const GroundSite> kSite = NewSite();
   return kSite;
 }
 
@@ -36,6 +37,13 @@ Lighting SunAt(double elevation_deg) {
   return LightingOf(sun, ParseInstant("2026-03-21T12:00:00Z"), kPlace.latitude_rad,
                     TheSite()->medium());
 }
+
+void ASitePrepared(benchmark::State& state) {
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  (void)TheSite();
+  for (auto unused : state) benchmark::DoNotOptimize(NewSite());
+}
+BENCHMARK(ASitePrepared)->Unit(benchmark::kMillisecond);
 
 void ASunPrepared(benchmark::State& state) {
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
@@ -72,7 +80,7 @@ void VerticesLit(benchmark::State& state) {
   std::vector<GroundVertex> vertices;
   for (std::size_t i = 0; i < 160000; ++i) {
     const std::size_t at = i * (mesh.positions.size() / 160000);
-    vertices.push_back({mesh.positions[at], mesh.normals[at]});
+    vertices.push_back(TheSite()->Vertex(mesh.positions[at], mesh.normals[at]));
   }
   for (auto unused : state) benchmark::DoNotOptimize(lit.LightOf(vertices));
 }

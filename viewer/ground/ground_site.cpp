@@ -5,6 +5,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
+#include "viewer/ground/on_this_thread.h"
 
 namespace alpenglow {
 namespace {
@@ -19,7 +20,9 @@ LampLight NoLamps(const SceneGround& ground, const Medium& medium) {
 }  // namespace
 
 SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame) {
-  return {frame, Terrain(MeshFromElevation(grid, frame)), 0.0, "", true};
+  return OnThisThread([&] {
+    return SceneGround{frame, Terrain(MeshFromElevation(grid, frame)), 0.0, "", true};
+  });
 }
 
 GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
@@ -34,7 +37,15 @@ GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
              *air_.diffuse) {
   ALPENGLOW_ENSURE(ground_.terrain.has_value(), ==, true);
   ALPENGLOW_ENSURE(ground_.is_one_surface, ==, true);
-  (void)horizons_.Get();
+  OnThisThread([&] { (void)horizons_.Get(); });
+}
+
+GroundVertex GroundSite::Vertex(const std::array<float, 3>& position_m,
+                                const std::array<float, 3>& normal) const {
+  constexpr double kAbove_m = 20000.0;
+  const glm::dvec3 point = InDoubles(position_m);
+  const auto hit = ground_.terrain->Intersect({point.x, point.y, kAbove_m}, {0.0, 0.0, -1.0});
+  return {position_m, normal, hit ? static_cast<float>(kAbove_m - hit->distance_m) : position_m[2]};
 }
 
 std::shared_ptr<const TerrainLight> GroundSite::Under(const Lighting& light) const {

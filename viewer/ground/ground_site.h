@@ -6,6 +6,8 @@
 // over the sphere that osculates the ellipsoid there.
 #pragma once
 
+#include <array>
+#include <glm/vec3.hpp>
 #include <memory>
 
 #include "renderer/ground/ground_material.h"
@@ -24,12 +26,25 @@ struct SiteAir {
   std::shared_ptr<const DiffuseLight> diffuse;
 };
 
-/// The ground that an elevation model makes around a place; nothing stands on it.
+/// The ground that an elevation model makes around a place; nothing stands on it. Works on the
+/// calling thread alone.
 [[nodiscard]] SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame);
+
+/// A vertex of the land in the frame of its site.
+struct GroundVertex {
+  std::array<float, 3> position_m;
+  std::array<float, 3> normal;  // unit, of the mesh: without finer relief
+  float site_z_m;               // of the site's ground there
+};
+
+[[nodiscard]] inline glm::dvec3 InDoubles(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
 
 /// Immutable; safe to ask from many threads.
 class GroundSite {
  public:
+  /// Works on the calling thread alone: a second for a thousand samples a side.
   /// @param ground  with terrain, in one surface.
   /// @param cover  what it is made of; drape: colours over it, or null.
   GroundSite(SceneGround ground, const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
@@ -44,6 +59,12 @@ class GroundSite {
   [[nodiscard]] const GroundMaterial& material() const { return material_; }
   [[nodiscard]] const SiteAir& air() const { return air_; }
   [[nodiscard]] const GroundLight& light() const { return light_; }
+
+  /// A vertex made ready for light of any sun. Meshes of another detail than the site's lie over
+  /// and under it; so that its shadow neither covers nor misses them, they have that of its ground.
+  [[nodiscard]] GroundVertex Vertex(const std::array<float, 3>& position_m,
+                                    const std::array<float, 3>& normal) const;
+
   /// What terrain makes of the light of sky and sun: see GroundLight::OnTerrain.
   [[nodiscard]] std::shared_ptr<const TerrainLight> Under(const Lighting& light) const;
 

@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/ground/lit_ground.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
 
 #include "atmosphere/text/error.h"
+#include "viewer/ground/on_this_thread.h"
 
 namespace alpenglow {
 namespace {
-
-// What libraries do in parallel stays on this thread: the others draw.
-template <typename Work>
-auto OnThisThread(const Work& work) {
-  tbb::task_arena alone(1);
-  return alone.execute(work);
-}
-
-glm::dvec3 ToDouble(const std::array<float, 3>& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
 
 // At half the height of the land.
 SkyTilt TiltUnder(const TerrainLight& light, const glm::dvec3& to_sun) {
@@ -50,15 +38,16 @@ LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
 
 VertexLight LitGround::At(const GroundVertex& vertex) const {
   const SceneGeometry& geometry = site_->geometry();
-  const glm::dvec3 point = ToDouble(vertex.position_m);
+  const glm::dvec3 point = InDoubles(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);
   const double mu_s = std::clamp(glm::dot(up, light_.to_sun), -1.0, 1.0);
   const double altitude_m = std::max(geometry.AltitudeOf(point), 0.0);
   const BandLight sky =
-      light_.on_terrain->Irradiance({point, ToDouble(vertex.normal), up, altitude_m, mu_s});
+      light_.on_terrain->Irradiance({point, InDoubles(vertex.normal), up, altitude_m, mu_s});
   VertexLight lit{};
   std::copy_n(sky.value.begin(), sky.count, lit.sky.begin());
-  lit.sun_x = static_cast<float>(shadow_.Over(point).Radii(kMostRadii));
+  lit.sun_x = static_cast<float>(
+      shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(kMostRadii));
   return lit;
 }
 

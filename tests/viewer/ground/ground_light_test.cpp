@@ -93,16 +93,6 @@ struct Case {
   glm::dvec3 to_eye;
 };
 
-GroundVertex VertexAt(const Hit& hit) {
-  GroundVertex vertex{};
-  for (const glm::length_t axis : {0, 1, 2}) {
-    const auto k = static_cast<std::size_t>(axis);
-    vertex.position_m[k] = static_cast<float>(hit.point[axis]);
-    vertex.normal[k] = static_cast<float>(hit.mesh_normal[axis]);
-  }
-  return vertex;
-}
-
 const glm::dvec3 kEye(0.0, 0.0, kEye_m);
 
 /// Places of the terrain that see all of the sun or nothing: the renderer takes a point of it.
@@ -121,7 +111,7 @@ std::vector<Case> LandCases(const LitGround& lit) {
     c.hit.normal = MountainSurface::DetailedNormal(
         lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m), c.hit.mesh_normal);
     c.to_eye = glm::normalize(kEye - c.hit.point);
-    c.light = lit.At(VertexAt(c.hit));
+    c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
     const double over_plane =
         glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;
     if (std::abs(over_plane) > 1.0 && std::abs(c.light.sun_x) > 1.0F) cases.push_back(c);
@@ -147,34 +137,31 @@ std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
   return cases;
 }
 
-/// Ascending relative differences of the mean over bands, for a function of land (a normal, light)
+/// Ascending relative differences of two bands together, for a function of land (a normal, light)
 /// or of the planet.
 std::vector<double> Differences(const LitGround& lit, const Lighting& light, double eye_m,
                                 const std::vector<Case>& cases, const std::string& function) {
   const Blocks blocks(lit, light, eye_m);
-  std::vector<double> gpu(cases.size(), 0.0), differences;
-  for (std::size_t band = 0; band < 4; ++band) {
-    std::vector<tests::Arguments<float>> points;
-    for (const Case& c : cases) {
-      points.push_back({static_cast<float>(c.hit.point.x), static_cast<float>(c.hit.point.y),
-                        static_cast<float>(c.hit.point.z - eye_m),
-                        static_cast<float>(c.hit.mesh_normal.x),
-                        static_cast<float>(c.hit.mesh_normal.y), c.light.sun_x, c.light.sky[band]});
-    }
-    const std::vector<float> values = tests::EvaluateOnGpu(
-        Texts(lit.site().material()), function + "[" + std::to_string(band) + "]", points,
-        [&](const ShaderProgram& program) { blocks.Upload(program); });
-    for (std::size_t i = 0; i < cases.size(); ++i) gpu[i] += static_cast<double>(values[i]);
+  std::vector<tests::Arguments<float>> points;
+  for (const Case& c : cases) {
+    const auto point = tests::InFloats(c.hit.point - glm::dvec3(0.0, 0.0, eye_m));
+    const auto normal = tests::InFloats(c.hit.mesh_normal);
+    points.push_back({point[0], point[1], point[2], normal[0], normal[1], c.light.sun_x,
+                      c.light.sky[0], c.light.sky[2]});
   }
+  const std::vector<float> gpu = tests::EvaluateOnGpu(
+      Texts(lit.site().material()), "dot(" + function + ", vec4(1.0, 0.0, 1.0, 0.0))", points,
+      [&](const ShaderProgram& program) { blocks.Upload(program); });
+  std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const GroundRadiance judge = lit.site().light().Towards(
         cases[i].hit, cases[i].to_eye, {light, nullptr}, LampNodes{}, {0.0, 0.0});
     double sum = 0.0;
-    for (std::size_t band = 0; band < 4; ++band) {
+    for (const std::size_t band : {0U, 2U}) {
       sum += static_cast<double>(judge.natural[band]) /
              static_cast<double>(lit.lighting().irradiance[band]);
     }
-    differences.push_back(std::abs(gpu[i] / sum - 1.0));
+    differences.push_back(std::abs(static_cast<double>(gpu[i]) / sum - 1.0));
   }
   std::sort(differences.begin(), differences.end());
   return differences;
@@ -184,7 +171,7 @@ std::vector<double> LandDifferences(const LitGround& lit) {
   return Differences(
       lit, lit.lighting(), kEye_m, LandCases(lit),
       "GroundRadiance(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * "
-      "a[4])), a[5], vec4(a[6]), normalize(-vec3(a[0], a[1], a[2])))");
+      "a[4])), a[5], vec4(a[6], 0.0, a[7], 0.0), normalize(-vec3(a[0], a[1], a[2])))");
 }
 
 /// Under the sky of a plain as wide as the view.

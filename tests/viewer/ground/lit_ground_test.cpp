@@ -41,7 +41,8 @@ Interpolated PlaceOfCase(const LitGround& lit, int number) {
   const std::array<double, 3> weight{1.0 - a - b, a, b};
   Interpolated place;
   for (std::size_t k = 0; k < 3; ++k) {
-    const GroundVertex vertex{mesh.positions[triangle[k]], mesh.normals[triangle[k]]};
+    const GroundVertex vertex =
+        TheSite()->Vertex(mesh.positions[triangle[k]], mesh.normals[triangle[k]]);
     const VertexLight light = lit.At(vertex);
     for (const glm::length_t axis : {0, 1, 2}) {
       place.normal[axis] +=
@@ -102,6 +103,30 @@ TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
   }
 }
 
+TEST(LitGround, MeshesOfAnotherDetailHaveTheSitesShadow) {
+  const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 10.0));
+  for (const double spacing_m : {20.0, 240.0}) {
+    const Terrain other(LandMesh(RoughLand, 1 + static_cast<int>(6000.0 / spacing_m), spacing_m));
+    int places = 0, wrong = 0, shaded = 0;
+    for (int i = 1; i <= 2000; ++i) {
+      const auto vertex = static_cast<std::size_t>(
+          Halton(i, 2) * static_cast<double>(other.mesh().positions.size()));
+      const GroundVertex at =
+          TheSite()->Vertex(other.mesh().positions[vertex], other.mesh().normals[vertex]);
+      const TerrainHit hit =
+          GroundAt(static_cast<double>(at.position_m[0]), static_cast<double>(at.position_m[1]));
+      if (glm::dot(hit.normal, lit.lighting().to_sun) <= 0.0) continue;
+      const double by_rays = SunlightByRays(lit, hit);
+      ++places;
+      if (by_rays < 0.5) ++shaded;
+      if (std::abs(SunlightOverEdge(static_cast<double>(lit.At(at).sun_x)) - by_rays) > 0.5)
+        ++wrong;
+    }
+    EXPECT_GT(shaded, places / 50) << "what is asked";
+    EXPECT_LT(wrong, places / 100) << spacing_m;
+  }
+}
+
 TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
   // Half a second with time running sixty times: an eighth of a degree.
   const LitGround before(TheSite(), tests::RoughSun(*TheSite(), 9.875));
@@ -110,7 +135,7 @@ TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
   const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
   int cut = 0, uneven = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); i += 7) {
-    const GroundVertex vertex{mesh.positions[i], mesh.normals[i]};
+    const GroundVertex vertex = TheSite()->Vertex(mesh.positions[i], mesh.normals[i]);
     const VertexLight a = before.At(vertex), b = between.At(vertex), c = after.At(vertex);
     EXPECT_NEAR(0.5 * static_cast<double>(a.sky[1] + c.sky[1]), static_cast<double>(b.sky[1]),
                 2e-3 * static_cast<double>(b.sky[1]));
@@ -130,12 +155,7 @@ TEST(LitGround, SkyBetweenVerticesIsThatOfThePlace) {
   for (int i = 1; i <= kPlaces; ++i) {
     const Interpolated place = PlaceOfCase(lit, i);
     const TerrainHit hit = GroundAt(place.x, place.y);
-    GroundVertex own{};
-    for (const glm::length_t axis : {0, 1, 2}) {
-      const auto k = static_cast<std::size_t>(axis);
-      own.position_m[k] = static_cast<float>(hit.smooth_point[axis]);
-      own.normal[k] = static_cast<float>(place.normal[axis]);
-    }
+    const GroundVertex own = tests::VertexAt(*TheSite(), hit.smooth_point, place.normal);
     const double error = place.sky / static_cast<double>(lit.At(own).sky[1]) - 1.0;
     sum2 += error * error / kPlaces;
   }
@@ -160,13 +180,7 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
       const glm::dvec3 relief = MountainSurface::DetailedNormal(
           TheSite()->geometry().GroundAt(hit.smooth_point, 1.0), place.normal);
       const auto sky = [&](const glm::dvec3& n) {
-        GroundVertex vertex{};
-        for (const glm::length_t axis : {0, 1, 2}) {
-          const auto k = static_cast<std::size_t>(axis);
-          vertex.position_m[k] = static_cast<float>(hit.smooth_point[axis]);
-          vertex.normal[k] = static_cast<float>(n[axis]);
-        }
-        return static_cast<double>(lit.At(vertex).sky[1]);
+        return static_cast<double>(lit.At(tests::VertexAt(*TheSite(), hit.smooth_point, n)).sky[1]);
       };
       const double smooth = sky(place.normal), rough = sky(relief);
       const double error = smooth * open(relief) / open(place.normal) / rough - 1.0;

@@ -33,6 +33,15 @@ inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}
                                             std::move(air));
 }
 
+inline std::array<float, 3> InFloats(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+inline GroundVertex VertexAt(const GroundSite& site, const glm::dvec3& point,
+                             const glm::dvec3& normal) {
+  return site.Vertex(InFloats(point), InFloats(normal));
+}
+
 /// The sun in the south-west, in midsummer.
 inline Lighting RoughSun(const GroundSite& site, double elevation_deg) {
   SunPosition sun{};
