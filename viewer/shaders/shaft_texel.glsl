@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light and how far it has come in one texel of four floats: the last four bits of each float,
-// 2e-6 of its value, hold a quarter of the logarithm of the distance in 65536 steps of 0.03 %.
+// Four shares and a distance in one texel of four floats: the last four bits of each float, 2e-6 of
+// its value, hold a quarter of the logarithm of the distance in 65536 steps of 0.03 %.
 
 const float kNearest_log2_km = -10.0, kFarthest_log2_km = 14.0;
 
@@ -10,10 +10,10 @@ uint DistanceCode(float distance_km) {
   return uint(clamp(share, 0.0, 1.0) * 65535.0 + 0.5);
 }
 
-// Without light the floats would be too small to keep bits.
-vec4 ShaftTexel(vec4 light, float distance_km) {
+// Floats of 0 would not keep bits.
+vec4 ShaftTexel(vec4 share, float distance_km) {
   uvec4 code = (uvec4(DistanceCode(distance_km)) >> uvec4(0u, 4u, 8u, 12u)) & 15u;
-  return uintBitsToFloat((floatBitsToUint(max(light, vec4(1e-20))) & ~15u) | code);
+  return uintBitsToFloat((floatBitsToUint(max(share, vec4(1e-20))) & ~15u) | code);
 }
 
 // Binary logarithm of the distance [km].

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shade takes from the rays of every shaft_scale-th pixel in both directions.
+// What share of their single scattering shade takes from the rays of every shaft_scale-th pixel in
+// both directions. Shares change less from ray to ray than light does, and in full shade not at all.
 
 uniform sampler2D surface_map;  // distance [m] in the fourth component, 0 where no terrain is seen
 uniform ivec2 picture_size;
@@ -13,5 +14,6 @@ void main() {
   vec3 direction = normalize(view_forward.xyz + at.x * view_right.xyz + at.y * view_up.xyz);
   float distance_m = texelFetch(surface_map, pixel, 0).w;
   float distance_km = distance_m > 0.0 ? 1e-3 * distance_m : 1e9;
-  shaft = ShaftTexel(MarchedShade(direction, distance_km), distance_km);
+  vec4 single = max(SingleTo(direction, distance_km), vec4(1e-20));
+  shaft = ShaftTexel(MarchedShade(direction, distance_km) / single, distance_km);
 }

@@ -221,7 +221,7 @@ class ShaftPicture {
     ClampAndFilter(GL_TEXTURE_2D, false);
   }
 
-  /// The light that is left of half the ray's, in the first band.
+  /// What shade takes.
   [[nodiscard]] Image Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
     const std::vector<ShaderPiece> air = {
         {"view",
@@ -233,10 +233,12 @@ class ShaftPicture {
     map_from_eye[3] = glm::dvec4(0.0, -6000.0, 1700.0, 1.0);
     pass.Paint(shade, map_from_eye, kWidth, kHeight, 0, 1, detail);
     std::vector<ShaderPiece> texts = ShaftTexts();
+    texts.push_back(air.back());
     texts.push_back({"picture",
                      "uniform sampler2D surface_map;\nout vec4 picture;\nvoid main() {\n"
                      "  float far = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w;\n"
-                     "  picture = ShadedSingle(far > 0.0 ? 1e-3 * far : 1e9);\n}\n"});
+                     "  float way = far > 0.0 ? 1e-3 * far : 1e9;\n"
+                     "  picture = ShadedSingle(way, SingleTo(vec3(0.0), way));\n}\n"});
     const ShaderProgram picture(
         {{"full_screen",
           std::string(viewer::EmbeddedText("viewer/shaders/full_screen.vert.glsl"))}},
