@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 // How fine shafts are drawn.
 //
-// Measured over the built-in range (1024 samples over 72 km), 1280x720, light of the air alone, away
-// from edges, against ShadowHeights and AerialPerspective, the sun at 8 and at 3 degrees before and
-// behind the eye; milliseconds of two cores' time with the tables of the air (tests/bench says how):
+// tests/bench/shade_error: the built-in range, 1280x720 on software OpenGL with two cores, which
+// others used too; errors against ShadowHeights as shares of the light of unshaded air, away from
+// edges, for the sun at 15 to 1 degrees before and behind the eye.
 //
-//             mean error      99th percentile   pass      taking it between rays
-//   low       0.2 - 0.4 %     2.5 - 5 %          6 ms      9 ms
-//   medium    0.2 - 0.3 %     1.6 - 4 %         11 ms      9 ms
-//   high      0.1 - 0.2 %     1.0 - 1.9 %      110 ms      9 ms
+//             mean             99th percentile   map        pass
+//   low       0.15 - 0.6 %     1.5 - 6.7 %        13 ms       3.5 ms
+//   medium    0.09 - 0.35 %    1.1 - 3.5 %        25 ms       7 ms
+//   high      0.03 - 0.14 %    0.4 - 1.2 %       150 ms     120 ms
 //
-// Of the rest most is the distance of the samples from which the map is made.
+// The map is made on its own thread; the heights it is made from take 50, 90 and 360 ms more once a
+// place.
 #pragma once
 
 #include "viewer/shade/shade_follower.h"

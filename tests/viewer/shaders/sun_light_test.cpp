@@ -52,6 +52,30 @@ TEST_F(SunLight, OfADiskThatRisesIsThatOfTheRenderer) {
   }
 }
 
+TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  pieces.push_back({"view", "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"});
+  pieces.push_back({"viewer/shaders/sun_light.glsl",
+                    std::string(viewer::EmbeddedText("viewer/shaders/sun_light.glsl"))});
+  std::vector<tests::Arguments<float>> points;
+  std::vector<double> expected;
+  for (double rho = 0.0; rho < 1.2; rho += 0.05) {
+    if (std::abs(rho - 1.0) < 0.02) continue;  // partly covered
+    const double angle = rho * double{kRadius_rad};
+    const glm::dvec3 direction =
+        std::cos(angle) * glm::dvec3(0.6, 0.0, 0.8) + std::sin(angle) * glm::dvec3(-0.8, 0.0, 0.6);
+    points.push_back({static_cast<float>(direction.x), static_cast<float>(direction.y),
+                      static_cast<float>(direction.z)});
+    expected.push_back(rho < 1.0 ? LimbDarkening(rho) / DiskSolidAngle(double{kRadius_rad}) : 0.0);
+  }
+  const std::vector<float> found =
+      tests::EvaluateOnGpu(pieces, "SunDiskRadiance(vec3(a[0], a[1], a[2]), 1e-5)", points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(found[i]), expected[i], 1e-3 * expected[0])
+        << "a direction in float lies within 2e-5 radii of its place";
+  }
+}
+
 TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
