@@ -158,6 +158,7 @@ ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, doubl
   for (int line = 0; line < map.lines; ++line) sweep.Line(line, map);
   if (!(map.low_u_m < map.high_u_m)) return {};
   map.tangent = std::tan(elevation);
+  map.floor_m = static_cast<double>(sweep.lowest_m);
   GoOnBeyond(sweep.lowest_m, map);
   return map;
 }

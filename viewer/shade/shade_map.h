@@ -36,7 +36,7 @@ struct ShadeMap {
 
   /// Outside this box nothing is shaded.
   double low_u_m = 0.0, high_u_m = 0.0, low_v_m = 0.0, high_v_m = 0.0;
-  double ceiling_m = 0.0;
+  double floor_m = 0.0, ceiling_m = 0.0;  // the floor is the lowest ground
 
   [[nodiscard]] bool ShadesNothing() const { return columns == 0; }
   [[nodiscard]] const glm::vec2& at(int column, int line) const {

@@ -72,7 +72,7 @@ void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4
   set("shade_u", Row(map_from_eye, map.sunwards, across_u, u(0.0)));
   set("shade_v", Row(map_from_eye, map.across, across_v, v(0.0)));
   set("shade_z", Row(map_from_eye, {0.0, 0.0, 1.0}, 1.0, 0.0));
-  const glm::vec3 low(u(map.low_u_m), v(map.low_v_m), 0.0);
+  const glm::vec3 low(u(map.low_u_m), v(map.low_v_m), map.floor_m);
   const glm::vec3 high(u(map.high_u_m), v(map.high_v_m), map.ceiling_m);
   glUniform3f(program.Uniform("shade_low"), low.x, low.y, low.z);
   glUniform3f(program.Uniform("shade_high"), high.x, high.y, high.z);

@@ -35,6 +35,7 @@ ShadeRay ShadeRayOf(vec3 direction) {
 vec2 ShadeStretch(ShadeRay ray, float length_m) {
   vec2 stretch = vec2(0.0, length_m);
   stretch = KeptWhere(stretch, shade_high.z - ray.eye.z, -ray.slope.z);
+  stretch = KeptWhere(stretch, ray.eye.z - shade_low.z, ray.slope.z);
   stretch = KeptWhere(stretch, ray.eye.x - shade_low.x, ray.slope.x);
   stretch = KeptWhere(stretch, shade_high.x - ray.eye.x, -ray.slope.x);
   stretch = KeptWhere(stretch, ray.eye.y - shade_low.y, ray.slope.y);

@@ -134,6 +134,28 @@ TEST_F(Shafts, TakeWhatTheRenderersShadowHeightsTake) {
   }
 }
 
+TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
+  const double e = 8.0 * kRadiansPerDegree;
+  const auto map = std::make_shared<ShadeMap>(
+      ShadeMapOf(RasterOf(LandMesh(RoughLand, kSide, kCell_m), std::size_t{1} << 18),
+                 {std::cos(e), 0.0, std::sin(e)}, kSunRadius_rad, 1024));
+  ShadeTexture texture;
+  texture.TakeOver(map);
+  texture.Upload(map->lines, 1);
+  glm::dmat4 map_from_eye(1.0);
+  map_from_eye[3] = glm::dvec4(400.0, 300.0, 4000.0, 1.0);
+  const auto down_km = static_cast<float>(1e-3 * (4000.0 - map->floor_m));
+  const std::vector<float> taken = tests::EvaluateOnGpu(
+      {{"air", kSingleTo},
+       {"march", std::string(viewer::EmbeddedText("viewer/shaders/shade_march.glsl"))}},
+      "MarchedShade(vec3(0.0, 0.0, -1.0), a[0]).x", {{1e9F}, {down_km}},
+      [&](const ShaderProgram& program) {
+        texture.Bind(program, 1, map_from_eye, {4, 8});
+      });
+  EXPECT_NEAR(taken[0], taken[1], 1e-6F);
+  EXPECT_LT(taken[0], 0.3F) << "of a ray of any length";
+}
+
 TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
   const std::vector<ShaderPiece> pieces = {
       {"air", kSingleTo},
