@@ -71,14 +71,18 @@ void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double refe
   const auto density = [&](std::size_t k) {
     return std::exp(-reference_m / layers[k].scale_height_m);
   };
-  block.falls = {1.0 / layers[0].scale_height_m, 1.0 / layers[1].scale_height_m, 0.0, 0.0};
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    const double height = layers[k].scale_height_m;
+    block.falls[static_cast<glm::length_t>(k)] = static_cast<float>(1.0 / height);
+    block.heights[static_cast<glm::length_t>(k)] =
+        std::isinf(height) ? 0.0F : static_cast<float>(height);
+  }
   block.molecules = InFloats(layers[0].scattering_per_m.value, bands, density(0));
   block.aerosol = InFloats(layers[1].scattering_per_m.value, bands, density(1));
   block.dimming = InFloats(layers[1].extinction_per_m.value, bands, density(1));
   block.mie_phase = ParametersOf(layers[1].phase);
   if (layers.size() < 3) return;
   const LampLayer& fog = layers[2];
-  block.falls.z = static_cast<float>(1.0 / fog.scale_height_m);
   block.fog = {fog.scattering_per_m[0] * density(2), fog.extinction_per_m[0] * density(2), 0.0,
                0.0};
   block.fog_phase = ParametersOf(fog.phase);
@@ -96,7 +100,19 @@ void PutColours(const Medium& medium, LampsBlock& block) {
 
 }  // namespace
 
-LampsBlock LampsBlockOf(const std::vector<ChosenLamp>& lamps, const std::vector<LampLayer>& layers,
+LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
+                      double pixel_angle_rad) {
+  const LocalFrame here(ground.ellipsoid(), eye);
+  const auto turned = [&](const glm::dvec3& axis) {
+    return here.EnuFromEcef(ground.EcefFromEnu(Vector<Enu>{axis})).xyz;
+  };
+  return {ground.EnuFromGeodetic(eye).xyz,
+          {turned({1.0, 0.0, 0.0}), turned({0.0, 1.0, 0.0}), turned({0.0, 0.0, 1.0})},
+          eye.height_m,
+          pixel_angle_rad};
+}
+
+LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLayer>& layers,
                         const Medium& medium, const LampView& view,
                         std::array<double, 2> core_rad) {
   ALPENGLOW_ENSURE(lamps.size(), <=, kMostGpuLamps);
@@ -105,7 +121,12 @@ LampsBlock LampsBlockOf(const std::vector<ChosenLamp>& lamps, const std::vector<
     reference_m = std::min(reference_m, lamp.placed->air.AltitudeOf(lamp.placed->lamp.position_m));
   }
   LampsBlock block{};
-  block.count = {static_cast<double>(lamps.size()), core_rad[0], std::max(core_rad[1], 1e-9), 0.0};
+  const auto shaped = std::stable_partition(lamps.begin(), lamps.end(), [](const ChosenLamp& lamp) {
+    return lamp.placed->lamp.profile.kind == LampProfile::Kind::kIsotropic &&
+           !lamp.placed->HoldsEye();
+  });
+  block.count = {static_cast<double>(lamps.size()), core_rad[0], std::max(core_rad[1], 1e-9),
+                 static_cast<double>(shaped - lamps.begin())};
   block.planet = {medium.planet_radius_m / 1000.0, std::max(view.altitude_m, 0.0) / 1000.0, 0.0,
                   0.0};
   PutAir(layers, medium.wavelengths_nm.size(), reference_m, block);

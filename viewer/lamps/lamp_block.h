@@ -12,6 +12,7 @@
 #include <span>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/sun/geodesy.h"
 #include "renderer/lamp/placed_lamp.h"
 
 namespace alpenglow {
@@ -27,11 +28,11 @@ struct GpuLamp {
 
 /// `block Lamps` of lamp_light.glsl.
 struct LampsBlock {
-  glm::vec4 count, planet, falls, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
+  glm::vec4 count, planet, falls, heights, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
   glm::vec4 red, green, blue;
   std::array<GpuLamp, kMostGpuLamps> lamps;
 };
-static_assert(sizeof(LampsBlock) == (12 + 9 * kMostGpuLamps) * sizeof(glm::vec4));
+static_assert(sizeof(LampsBlock) == (13 + 9 * kMostGpuLamps) * sizeof(glm::vec4));
 static_assert(sizeof(LampsBlock) <= 16384);  // GL_MAX_UNIFORM_BLOCK_SIZE is at least that
 
 /// From where lamps are seen, and how finely.
@@ -43,6 +44,10 @@ struct LampView {
   double pixel_angle_rad = 1e-3;
 };
 
+/// Of an eye anywhere; `ground` is the frame of SceneGround.
+[[nodiscard]] LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
+                                    double pixel_angle_rad);
+
 /// A lamp of the block, and what its picture needs beside it.
 struct ChosenLamp {
   const PlacedLamp* placed;  // before the eye of the view
@@ -52,8 +57,8 @@ struct ChosenLamp {
 
 /// @param layers  of LampStage: molecules, aerosol and perhaps fog, densities as of altitude 0.
 /// @param core_rad  angles from a lamp at which what is drawn of it by itself fades and ends; 0, 0:
-///     nothing is.
-[[nodiscard]] LampsBlock LampsBlockOf(const std::vector<ChosenLamp>& lamps,
+///     nothing is. Lamps that shine evenly come first in the block.
+[[nodiscard]] LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps,
                                       const std::vector<LampLayer>& layers, const Medium& medium,
                                       const LampView& view, std::array<double, 2> core_rad);
 

@@ -21,14 +21,14 @@ enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit };
 
 /// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
 /// 1 / angle is straight enough between its points.
-constexpr double kCoreBegin_steps = 3.0, kCoreEnd_steps = 12.0;
+constexpr double kCoreBegin_steps = 2.0, kCoreEnd_steps = 8.0;
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
 std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   const std::vector<LampLayer>& layers = shape.layers();
   std::string text = fmt::format(
-      "#define LAMP_NODES {}\n#define LAMP_STEP {}\n#define LAMP_SPOTS\n"
+      "#define LAMP_NODES {}\n#define LAMP_STEP {}\n"
       "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
       "#define LAMP_GLOW_FARTHEST {:.7f}\n",
       quality.nodes, quality.step, PhaseExpression(layers[1].phase.kind), kNearestGlow_m,

@@ -11,5 +11,5 @@ void main() {
   float part = LampCore(lamps[number], direction);
   if (part <= 0.0) discard;
   float end_m = LampRayEnd(direction, texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w);
-  picture = vec4(part * LampRgb(GlowOfLamp(lamps[number], direction, end_m)), 0.0);
+  picture = vec4(part * LampRgb(GlowOfLamp(lamps[number], direction, end_m, true)), 0.0);
 }

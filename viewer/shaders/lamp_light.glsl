@@ -28,9 +28,11 @@ struct Lamp {
 };
 
 layout(std140) uniform Lamps {
-  vec4 lamp_count;      // lamps; angles at which cores begin to fade and end [rad]
+  vec4 lamp_count;      // lamps; angles at which cores begin to fade and end [rad]; of the lamps,
+                        // those before the first that does not shine evenly
   vec4 lamp_planet;     // radius; altitude of the eye [km]
   vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, fog [1/m]
+  vec4 lamp_heights;    // and those heights, 0 where they are infinite [m]
   vec4 lamp_molecules;  // scattering where density is 1 [1/m]
   vec4 lamp_aerosol;    // scattering
   vec4 lamp_dimming;    // extinction of aerosol
@@ -68,15 +70,20 @@ float LampPhaseMie(float cosine, float angle) {
 #endif
 }
 
-// Of molecules and aerosol, whose scale heights are more than lamps are apart in height; and of fog.
-vec3 LampColumns(float span, vec3 from, vec3 to, vec3 rise) {
-  vec3 columns = vec3(GentleLampColumn(span, from.x, to.x, rise.x),
-                      GentleLampColumn(span, from.y, to.y, rise.y), 0.0);
+// Between densities at two altitudes. @param span_over_rise  their distance over their rise.
+vec3 LampColumns(float span, vec3 from, vec3 to, float rise, float span_over_rise) {
+  vec3 over = span_over_rise * lamp_heights.xyz;
+  vec3 rises = rise * lamp_falls.xyz;
+  vec3 columns = vec3(LampColumnOver(span, from.x, to.x, rises.x, over.x),
+                      LampColumnOver(span, from.y, to.y, rises.y, over.y), 0.0);
 #ifdef LAMP_FOG
-  columns.z = LampColumn(span, from.z, to.z, rise.z);
+  columns.z = LampColumnOver(span, from.z, to.z, rises.z, over.z);
 #endif
   return columns;
 }
+
+// Away from 0, for a division.
+float LampNotNought(float value) { return abs(value) > 1e-9 ? value : 1e-9; }
 
 vec4 LampDepth(vec3 columns) {
   vec4 depth = lamp_molecules * columns.x + lamp_dimming * columns.y;
@@ -84,6 +91,15 @@ vec4 LampDepth(vec3 columns) {
   depth += lamp_fog.y * columns.z;
 #endif
   return depth;
+}
+
+// exp(-depth), where bands differ by little: that of the second, times a power series. Off by
+// delta^3 / 96 where a band is deeper by delta.
+vec4 LampLeft(vec4 depth) {
+  vec4 quarter = 0.25 * (depth - depth.y);
+  vec4 rest = 1.0 - quarter * (1.0 - 0.5 * quarter);
+  rest *= rest;
+  return exp(-depth.y) * rest * rest;
 }
 
 // Densities at an altitude over the plane of a lamp.
@@ -99,9 +115,7 @@ vec3 LampDensities(float z) {
 float LampShare(Lamp lamp, vec3 cosines) {
   int kind = int(lamp.axis.w + 0.5);
   float share = 1.0;
-#ifdef LAMP_SPOTS
   if (kind == LAMP_CONE) share = SpotShare(cosines.x, lamp.profile.x, lamp.profile.y);
-#endif
 #ifdef LAMP_TABLES
   if (kind == LAMP_TABLE) {
     float gamma = atan(length(cosines.yz), cosines.x) * 0.318309886;
@@ -126,7 +140,6 @@ vec3 LampCosines(Lamp lamp, vec3 direction) {
 // The angles of scattering between which a spot lights the ray; x > y where nowhere. The cosine to
 // its axis is a cos(angle - middle) along the ray.
 vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
-#ifdef LAMP_SPOTS
   int kind = int(lamp.axis.w + 0.5);
   float edge = kind == LAMP_CONE ? lamp.profile.y : -1.0;
   if (edge < 0.0) return angles;
@@ -137,13 +150,11 @@ vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
   if (middle + half_angle < 0.0) middle += 6.28318531;
   return vec2(max(angles.x, middle - half_angle),
               a > edge ? min(angles.y, middle + half_angle) : -1.0);
-#else
-  return angles;
-#endif
 }
 
 // Light that the air in front of a distance scatters from one lamp into the eye.
-vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m) {
+// @param shaped  a constant: whether the lamp may shine otherwise than evenly, or hold the eye.
+vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
   float nearest = dot(lamp.position.xyz, direction);
   vec3 off = nearest * direction - lamp.position.xyz;
   float from_ray = length(off);
@@ -152,16 +163,17 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m) {
   vec2 angles = vec2(atan(approach, nearest), atan(approach, nearest - reach));
   vec3 along = LampCosines(lamp, direction);
   vec3 across = LampCosines(lamp, off / max(from_ray, 1e-9));
-  bool inside = lamp.profile.w > 0.5;
+  bool inside = shaped && lamp.profile.w > 0.5;
   float share = 1.0;
   if (inside) {
     share = LampShare(lamp, along);
-  } else {
+  } else if (shaped) {
     angles = LampBeam(lamp, along.x, across.x, angles);
   }
   float low = log(angles.x);
   float span = log(max(angles.y, 1e-9)) - low;
   float slope = dot(lamp.up.xyz, direction);
+  float per_slope = 1.0 / LampNotNought(slope);
   vec4 sum = vec4(0.0);
   for (int i = 0; i < LAMP_NODES; ++i) {
     float angle = exp(low + span * lamp_gauss[i].x);
@@ -177,19 +189,17 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m) {
     float t = clamp(nearest - away * cosine, 0.0, reach);
     float z = lamp.up.w + slope * t;
     vec3 density = LampDensities(z);
-    vec3 columns =
-        LampColumns(t, lamp.at_eye.xyz, density, slope * t * lamp_falls.xyz) +
-        LampColumns(away, lamp.at_lamp.xyz, density, (z - lamp.at_eye.w) * lamp_falls.xyz);
+    float rise = z - lamp.at_eye.w;
+    vec3 columns = LampColumns(t, lamp.at_eye.xyz, density, slope * t, per_slope) +
+                   LampColumns(away, lamp.at_lamp.xyz, density, rise, away / LampNotNought(rise));
     vec4 source = lamp_molecules * (density.x * PhaseRayleigh(cosine)) +
                   lamp_aerosol * (density.y * LampPhaseMie(cosine, angle));
 #ifdef LAMP_FOG
     source += lamp_fog.x * density.z * LAMP_PHASE_FOG(cosine, lamp_fog_phase);
 #endif
     float weight = lamp_gauss[i].y * angle;
-#if defined(LAMP_SPOTS) || defined(LAMP_TABLES)
-    if (!inside) weight *= LampShare(lamp, sine * across - cosine * along);
-#endif
-    sum += weight * source * exp(-LampDepth(columns));
+    if (shaped && !inside) weight *= LampShare(lamp, sine * across - cosine * along);
+    sum += (weight * source) * LampLeft(LampDepth(columns));
   }
   return lamp.intensity * (sum * (max(span, 0.0) * share / approach));
 }
@@ -213,10 +223,16 @@ vec4 LampFromWithin(Lamp lamp, vec3 direction) {
 // @param with_cores  1: all of it; 0: without what GlowOfCores draws.
 vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
   vec4 sum = vec4(0.0);
-  int count = int(lamp_count.x + 0.5);
-  for (int i = 0; i < count; ++i) {
+  int even = int(lamp_count.w + 0.5);
+  for (int i = 0; i < even; ++i) {
     float part = 1.0 - (1.0 - with_cores) * LampCore(lamps[i], direction);
-    sum += part * GlowOfLamp(lamps[i], direction, distance_m) + LampFromWithin(lamps[i], direction);
+    sum += part * GlowOfLamp(lamps[i], direction, distance_m, false);
+  }
+  int count = int(lamp_count.x + 0.5);
+  for (int i = even; i < count; ++i) {
+    float part = 1.0 - (1.0 - with_cores) * LampCore(lamps[i], direction);
+    sum += part * GlowOfLamp(lamps[i], direction, distance_m, true) +
+           LampFromWithin(lamps[i], direction);
   }
   return sum;
 }
@@ -244,29 +260,31 @@ vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
 }
 #endif
 
+// Irradiance of a surface by one lamp. @param shaped  as above.
+vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, bool shaped) {
+  vec3 way = lamp.position.xyz - point_m;
+  float far = max(length(way), lamp.at_lamp.w);
+  vec3 towards = way / far;
+  float z = lamp.up.w + dot(lamp.up.xyz, point_m);
+  float rise = z - lamp.at_eye.w;
+  vec3 columns =
+      LampColumns(far, lamp.at_lamp.xyz, LampDensities(z), rise, far / LampNotNought(rise));
+  float facing = max(dot(normal, towards), 0.0) / (far * far);
+  if (shaped) facing *= LampShare(lamp, LampCosines(lamp, -towards));
+  vec4 light = facing * LampLeft(LampDepth(columns));
+#ifdef LAMP_GLOW_MAP
+  light += lamp.glow.x * LampAirOnSurface(lamp, towards, far, normal);
+#endif
+  return lamp.intensity * light;
+}
+
 // Irradiance of a surface by all lamps [W m^-2 nm^-1].
 // @param point_m  from the eye; normal: unit.
 vec4 LampsOnGround(vec3 point_m, vec3 normal) {
   vec4 sum = vec4(0.0);
+  int even = int(lamp_count.w + 0.5);
+  for (int i = 0; i < even; ++i) sum += LampOnGround(lamps[i], point_m, normal, false);
   int count = int(lamp_count.x + 0.5);
-  for (int i = 0; i < count; ++i) {
-    Lamp lamp = lamps[i];
-    vec3 way = lamp.position.xyz - point_m;
-    float far = max(length(way), lamp.at_lamp.w);
-    vec3 towards = way / far;
-    float rise = dot(lamp.up.xyz, point_m);
-    vec3 density = LampDensities(lamp.up.w + rise);
-    vec3 columns = LampColumns(far, lamp.at_lamp.xyz, density,
-                               (lamp.up.w + rise - lamp.at_eye.w) * lamp_falls.xyz);
-    float facing = max(dot(normal, towards), 0.0) / (far * far);
-#if defined(LAMP_SPOTS) || defined(LAMP_TABLES)
-    facing *= LampShare(lamp, LampCosines(lamp, -towards));
-#endif
-    vec4 light = facing * exp(-LampDepth(columns));
-#ifdef LAMP_GLOW_MAP
-    light += lamp.glow.x * LampAirOnSurface(lamp, towards, far, normal);
-#endif
-    sum += lamp.intensity * light;
-  }
+  for (int i = even; i < count; ++i) sum += LampOnGround(lamps[i], point_m, normal, true);
   return sum;
 }

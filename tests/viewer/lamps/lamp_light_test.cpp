@@ -281,6 +281,17 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
          "missing";
 }
 
+TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
+  const LocalFrame ground(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
+  const GeodeticPosition place = PlaceFromDegrees(47.0, 9.0, 1000.0);
+  const LampView view = LampViewFrom(ground, place, kPixel_rad);
+  EXPECT_LT(glm::length(view.eye_m - ground.EnuFromGeodetic(place).xyz), 1e-6);
+  const glm::dvec3 up =
+      ground.EnuFromGeodetic(PlaceFromDegrees(47.0, 9.0, 2000.0)).xyz - view.eye_m;
+  EXPECT_NEAR((view.eye_from_ground * up).z, 1000.0, 1e-3)
+      << "a kilometre over the eye is up there";
+}
+
 TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
   Both both(Night(6.0, 0.0, 1.0));
   LandingLight landing;
@@ -288,9 +299,11 @@ TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
   for (const double north_m : {0.0, 5000.0}) {
     const LampView view{{0.0, north_m, 6.0}, glm::dmat3(1.0), 6.0, kPixel_rad};
     const SceneLamps::InView in_view = both.lamps.Before(view, {0.0, 0.0}, 1.0);
-    EXPECT_NEAR(in_view.block.lamps[0].position.z, -1.5F, 1e-4F);
-    EXPECT_NEAR(in_view.block.lamps[0].position.y, 0.0F, 1e-4F);
-    EXPECT_EQ(in_view.block.lamps[0].axis.y, 1.0F);
+    const auto number = static_cast<std::size_t>(in_view.block.count.w);
+    const GpuLamp& lamp = in_view.block.lamps[number];
+    EXPECT_NEAR(lamp.position.z, -1.5F, 1e-4F) << "the first that does not shine evenly";
+    EXPECT_NEAR(lamp.position.y, 0.0F, 1e-4F);
+    EXPECT_EQ(lamp.axis.y, 1.0F);
   }
 }
 
