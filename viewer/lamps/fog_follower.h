@@ -1,46 +1,35 @@
 // SPDX-License-Identifier: MIT
-// Keeps the map of a scene's fog up with eye and sun, made on a thread beside drawing.
+// A FogMap that follows eye and sun, made beside drawing.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <optional>
 
-#include "renderer/media/local_media.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/lamps/fog_map.h"
-#include "viewer/lamps/fog_painter.h"
 #include "viewer/work/latest_job.h"
 
 namespace alpenglow {
 
+/// Whether light around this eye and under this sun is that of the map, but for a few per cent: the
+/// eye within a tenth of the fog's scale height of where it was, the sun within a tenth of a degree.
+/// What falls off faster, transmittance and the phase function towards the sun, is not in the map.
+[[nodiscard]] bool Serves(const FogMap& map, const FogView& view);
+
 class FogFollower {
  public:
-  /// @param media  with fog.
-  FogFollower(LocalMedia media, const FogUnits& units);
+  using Make = std::function<FogMap(const FogView&)>;
+  /// @param make  called on a thread of this; what it refers to must outlive this.
+  explicit FogFollower(Make make) : job_(std::move(make)) {}
 
-  void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
-  /// Once a frame: takes a map that is ready, asks for one when the eye's height has changed by 2 %
-  /// or 2 m, or the sun has moved by a twentieth of a degree. Waits for the first.
-  void Follow(const std::shared_ptr<const SolvedAir>& air, double latitude_rad,
-              const FogView& view);
-  /// The same, but what Follow would show in the end is there when it returns.
-  void Settle(const std::shared_ptr<const SolvedAir>& air, double latitude_rad,
-              const FogView& view);
-  /// For the next draw of a connected program.
-  void Bind(double altitude_m) const { painter_.Bind(*map_, altitude_m); }
+  /// Takes in what is finished and asks for what is needed. True when map() is a new one.
+  [[nodiscard]] bool Follow(const FogView& view);
+  /// Waits for a map for the view.
+  void Wait(const FogView& view);
+  [[nodiscard]] const std::optional<FogMap>& map() const { return map_; }
 
  private:
-  struct Request {
-    std::shared_ptr<const SolvedAir> air;
-    double latitude_rad;
-    FogView view;
-  };
-  void Take();
-
-  FogPainter painter_;
-  std::optional<Request> asked_;
   std::optional<FogMap> map_;
-  LatestJob<Request, FogMap> maker_;
+  LatestJob<FogView, FogMap> job_;
 };
 
 }  // namespace alpenglow

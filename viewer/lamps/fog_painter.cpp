@@ -20,14 +20,14 @@ void Activate(int unit) { glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit
 
 }  // namespace
 
-FogBlock FogBlockOf(const FogMap& map, double altitude_m) {
+FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   FogBlock block{};
   const double height_km = std::isinf(map.scale_height_m) ? 0.0 : map.scale_height_m / kMetres;
   block.layer = {map.extinction_per_m * kMetres, height_km, map.base_m / kMetres,
                  map.top_m / kMetres};
-  block.eye = {std::max(altitude_m, 0.0) / kMetres, map.radius_m / kMetres, map.depth,
+  block.eye = {std::max(now.altitude_m, 0.0) / kMetres, map.radius_m / kMetres, map.depth,
                map.peak_scale};
-  block.sun = {glm::vec3(map.view.to_sun), map.broad_g};
+  block.sun = {glm::vec3(now.to_sun), map.broad_g};
   block.phase = ParametersOf(map.phase);
   block.map_size = {map.size.elevations, map.size.azimuths, map.size.depths, 0.0};
   return block;
@@ -60,8 +60,8 @@ void FogPainter::Upload(const FogMap& map) {
   CheckGl("FogPainter::Upload");
 }
 
-void FogPainter::Bind(const FogMap& map, double altitude_m) const {
-  const FogBlock block = FogBlockOf(map, altitude_m);
+void FogPainter::Bind(const FogMap& map, const FogView& now) const {
+  const FogBlock block = FogBlockOf(map, now);
   glBindBufferBase(GL_UNIFORM_BUFFER, units_.block, block_.id());
   glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
   Activate(units_.first);

@@ -15,8 +15,8 @@ struct FogBlock {
   glm::vec4 layer, eye, sun, phase, map_size;
 };
 static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
-/// @param altitude_m  of the eye now, which may have moved since the map was made.
-[[nodiscard]] FogBlock FogBlockOf(const FogMap& map, double altitude_m);
+/// @param now  eye and sun, which may have moved since the map was made.
+[[nodiscard]] FogBlock FogBlockOf(const FogMap& map, const FogView& now);
 
 /// Texts for a fragment stage, after SharedTexts(): FogTo(direction, distance_km) and the rest of
 /// fog_light.glsl. @param kind  of the fog's phase function.
@@ -34,8 +34,8 @@ class FogPainter {
   void Connect(const ShaderProgram& program) const;
   /// Takes a map in.
   void Upload(const FogMap& map);
-  /// For the next draw of a program of FogTexts(), the eye at this altitude.
-  void Bind(const FogMap& map, double altitude_m) const;
+  /// For the next draw of a program of FogTexts(). @param map  that was taken in last.
+  void Bind(const FogMap& map, const FogView& now) const;
 
  private:
   FogUnits units_;

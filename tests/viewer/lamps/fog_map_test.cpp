@@ -13,6 +13,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
+#include "viewer/lamps/fog_follower.h"
 #include "viewer/lamps/fog_painter.h"
 
 namespace alpenglow {
@@ -76,7 +77,7 @@ struct Both {
     for (const ShaderPiece& piece : FogTexts(map.phase.kind)) pieces.push_back(piece);
     return tests::EvaluateOnGpu(pieces, expression, points, [&](const ShaderProgram& program) {
       painter.Connect(program);
-      painter.Bind(map, eye.z);
+      painter.Bind(map, map.view);
     });
   }
 
@@ -188,6 +189,21 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
     EXPECT_NEAR(double{sky[i]}, double{truth.left[1]}, 1e-4);
     EXPECT_NEAR(double{added[i]}, double{truth.added[1]}, 3e-3);
   }
+}
+
+TEST(FogFollower, MakesANewMapWhenTheEyeHasRisenAndKeepsItWhileItStands) {
+  const LocalMedium fog = FogOf(0.02, 60.0, 0.0);
+  FogFollower follower([&](const FogView& view) {
+    return MakeFogMap(fog, 0.0, TheStage().air, TheStage().diffuse, view, {4, 3, 3});
+  });
+  const FogView low{10.0, kToSun, 0.00465}, high{100.0, kToSun, 0.00465};
+  follower.Wait(low);
+  ASSERT_TRUE(follower.map());
+  EXPECT_FALSE(follower.Follow(low)) << "it serves";
+  EXPECT_TRUE(Serves(*follower.map(), {12.0, kToSun, 0.00465}));
+  EXPECT_FALSE(Serves(*follower.map(), high));
+  follower.Wait(high);
+  EXPECT_EQ(follower.map()->view.altitude_m, 100.0);
 }
 
 TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
