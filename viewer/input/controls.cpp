@@ -106,17 +106,21 @@ void Controls::MouseAt(double right, double down, double width_to_height) {
   mouse_ = Place{right, down};
 }
 
-void Controls::LoseFocus() {
+void Controls::LetGo() {
   held_.clear();
   dragging_ = false;
   camera_ = {};
   stick_ = {};
-  button_held_s_ = {};
+}
+
+void Controls::Focus(bool focused) {
+  focused_ = focused;
+  if (!focused) LetGo();
 }
 
 void Controls::Minimise(bool minimised) {
   minimised_ = minimised;
-  if (minimised) LoseFocus();
+  if (minimised) LetGo();
 }
 
 void Controls::Ask(Action action, Intent& intent) {
@@ -252,7 +256,7 @@ Intent Controls::Take(FlightMode mode, double seconds, const std::optional<Gamep
   MoveControls(seconds);
   intent.pilot = {camera_, stick_, std::exchange(look_right_, 0.0), std::exchange(look_up_, 0.0)};
   TurnWheel(mode, intent);
-  if (minimised_) return intent;
+  if (minimised_ || !focused_) return intent;
   AddMouse(mode, intent.pilot);
   if (gamepad) {
     AddGamepad(*gamepad, mode, seconds, intent.pilot);

@@ -4,7 +4,7 @@
 //
 // Held keys move a control like a hand does, in a quarter of a second from rest to its end and back.
 // A window that is not looked at flies on and hears nothing: while it is minimised, or another has
-// the keyboard, nothing is held and controls go back to their middle; of what was pressed while it is
+// the keyboard, nothing is held, gamepads too, and controls go back to their middle; of what was pressed while it is
 // minimised, that which needs a picture is refused and said, movement is forgotten, and switches
 // (pause, autopilot, quit...) act at once. Nothing waits to act later.
 #pragma once
@@ -73,8 +73,8 @@ class Controls {
   void Wheel(double steps) { wheel_ += steps; }
   /// The instruments under the cursor took the mouse or the keyboard for themselves.
   void IgnoreMouse(bool ignored) { mouse_is_ignored_ = ignored; }
-  /// Another window has the keyboard: nothing is held any longer.
-  void LoseFocus();
+  /// Whether this window has the keyboard, and whether it is minimised; as often as one likes.
+  void Focus(bool focused);
   void Minimise(bool minimised);
 
   [[nodiscard]] MouseMode mouse_mode() const { return mouse_mode_; }
@@ -94,6 +94,7 @@ class Controls {
     double right, down;
   };
 
+  void LetGo();
   void Resolve(const KeyEvent& event, FlightMode mode, Intent& intent);
   void Ask(Action action, Intent& intent);
   [[nodiscard]] double Pushed(Action positive, Action negative) const;
@@ -109,7 +110,7 @@ class Controls {
   std::vector<KeyEvent> events_;
   std::map<int, Action> held_;  // key and what it does since it went down
   std::optional<Place> mouse_;
-  bool dragging_ = false, minimised_ = false, mouse_is_ignored_ = false;
+  bool dragging_ = false, focused_ = true, minimised_ = false, mouse_is_ignored_ = false;
   double wheel_ = 0.0, look_right_ = 0.0, look_up_ = 0.0;
   Steering camera_;
   Stick stick_;

@@ -137,9 +137,16 @@ TEST(Controls, AWindowThatLosesTheKeyboardLetsGo) {
   Controls controls;
   Hold(controls, GLFW_KEY_W);
   static_cast<void>(controls.Take(FlightMode::kFree, 1.0));
-  controls.LoseFocus();
-  EXPECT_EQ(controls.Take(FlightMode::kFree, kFrame_s).pilot.camera.forward, 0.0)
-      << "its release goes to another window";
+  controls.Focus(false);
+  GamepadState pad = Pad();
+  Push(pad, GLFW_GAMEPAD_AXIS_LEFT_X, 1.0);
+  Press(pad, GLFW_GAMEPAD_BUTTON_START);
+  const Intent intent = controls.Take(FlightMode::kFree, kFrame_s, pad);
+  EXPECT_EQ(intent.pilot.camera.forward, 0.0) << "its release goes to another window";
+  EXPECT_EQ(intent.pilot.camera.right, 0.0) << "and the gamepad flies another game";
+  EXPECT_THAT(intent.actions, IsEmpty());
+  controls.Focus(true);
+  EXPECT_GT(controls.Take(FlightMode::kFree, kFrame_s, pad).pilot.camera.right, 0.9);
 }
 
 TEST(Controls, ADragTakesHoldOfTheSceneAndLookingTurnsTheHead) {
