@@ -64,7 +64,7 @@ double BankOf(const AircraftState& state, const Surroundings& here) {
 double ThrustAt(const AircraftKind& kind, const Surroundings& here, double speed) {
   const double sigma = here.air.density_kg_per_m3 / kSeaDensity_kg_per_m3;
   if (kind.power_W == 0.0) return kind.thrust_N * sigma;
-  const double share = std::max(1.132 * sigma - 0.132, 0.0);
+  const double share = std::max(sigma - (1.0 - sigma) / 7.55, 0.0);
   return share * std::min(kind.thrust_N, kind.power_W / std::max(speed, 1.0));
 }
 

@@ -9,10 +9,10 @@
 // a is the nose's direction, u the lift's, r to the right of both. Wings that are banked by phi in
 // level flight turn with g tan(phi) / |v|: nothing else makes the turn. Air is StandardAirAt, so
 // wings carry less in thin air and engines pull less: a jet's thrust as the density, a piston's
-// power as 1.132 sigma - 0.132 (Gagg and Ferrar 1934, SAE Trans. 29, 217). Gravity falls with the
-// square of the distance. The earth does not turn under it: no wind, no Coriolis force.
-// Formulas: Anderson (1999), Aircraft Performance and Design, chapters 3, 5 and 6; Lock's law:
-// Mason (1990), AIAA 90-3253.
+// power as sigma - (1 - sigma) / 7.55 (Gagg and Ferrar's model, Gudmundsson (2014), General Aviation
+// Aircraft Design, eq. 7-16). Gravity falls with the square of the distance. The earth does not turn under it: no wind, no Coriolis force.
+// Formulas: Anderson (1999), Aircraft Performance and Design, chapters 3, 5 and 6; Lock's law: Gur,
+// Mason and Schetz (2010), J. Aircraft 47(4), doi 10.2514/1.47557.
 //
 // The stick asks for load (pitch) and a rate of roll. Let go, it holds the path as steep and the
 // bank as large as they are: wings within 5 degrees are levelled, more than 45 degrees comes back

@@ -160,7 +160,7 @@ TEST(Aircraft, ClimbsAsFastAsTheSpareThrustSays) {
   const double lift = climb.load * weight / q_area;
   const double drag_N =
       q_area * (kLightAircraft.zero_lift_drag + kLightAircraft.induced_drag * lift * lift);
-  const double power = kLightAircraft.power_W * (1.132 * air.density_kg_per_m3 / 1.225 - 0.132);
+  const double power = kLightAircraft.power_W * (1.1325 * air.density_kg_per_m3 / 1.225 - 0.1325);
   EXPECT_NEAR(climb.vertical_speed_m_per_s, (power - drag_N * v) / weight, 0.15)
       << "climb = (power - drag x speed) / weight, once the speed is steady";
   EXPECT_NEAR(Degrees(climb.path_rad), 3.0, 0.1);
