@@ -10,7 +10,8 @@
 // level flight turn with g tan(phi) / |v|: nothing else makes the turn. Air is StandardAirAt, so
 // wings carry less in thin air and engines pull less: a jet's thrust as the density, a piston's
 // power as sigma - (1 - sigma) / 7.55 (Gagg and Ferrar's model, Gudmundsson (2014), General Aviation
-// Aircraft Design, eq. 7-16). Gravity falls with the square of the distance. The earth does not turn under it: no wind, no Coriolis force.
+// Aircraft Design, eq. 7-16). Gravity falls with the square of the distance. The earth does not
+// turn under it: no wind, no Coriolis force.
 // Formulas: Anderson (1999), Aircraft Performance and Design, chapters 3, 5 and 6; Lock's law: Gur,
 // Mason and Schetz (2010), J. Aircraft 47(4), doi 10.2514/1.47557.
 //
