@@ -137,34 +137,35 @@ struct Demand {
   bool stalled;
 };
 
-/// The path that is held, and one that is steeper by so much as the speed lacks to 1.25 times the
-/// stall speed: what has no power glides.
-double PathToHold(const AircraftState& state, double speed_in_stall_speeds) {
-  constexpr double kSlowest = 1.25, kSteeper_rad = 1.5;
-  return std::max(
-      state.held_path_rad - kSteeper_rad * std::max(kSlowest - speed_in_stall_speeds, 0.0),
-      -0.45 * kPi);
+/// What the speed lacks to 1.25 times the stall speed, in stall speeds.
+double SpeedLacking(double wing_limit, double load) {
+  constexpr double kSlowest = 1.25;
+  return std::max(kSlowest - std::sqrt(wing_limit / std::max(load, 0.5)), 0.0);
 }
 
 void HoldPath(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
-              double wing_limit, Demand& demand) {
-  constexpr double kPerSecond = 0.8;
+              double wing_limit, double step_s, Demand& demand) {
+  constexpr double kPerSecond = 0.8, kSteeper_rad = 1.5, kForgetPerSecond = 4.0;
   const double speed = glm::length(state.velocity.xyz);
-  const double in_stall_speeds = std::sqrt(wing_limit / std::max(demand.load, 0.5));
-  const double back = kPerSecond * (PathToHold(state, in_stall_speeds) - PathOf(state, here)) *
-                      speed / kStandardGravity_m_per_s2;
+  // What has no power glides: a path that is steeper by so much as the speed lacks.
+  const double lacking = SpeedLacking(wing_limit, demand.load);
+  const double path = std::max(state.held_path_rad - kSteeper_rad * lacking, -0.45 * kPi);
+  const double back = kPerSecond * (path - PathOf(state, here)) * speed / kStandardGravity_m_per_s2;
   demand.load = std::clamp(demand.load + std::clamp(back, -1.0, 1.0), kind.least_load,
                            std::min(kind.most_load, wing_limit));
-  demand.held_path_rad = state.held_path_rad;
+  // A climb that cannot be held is forgotten, down to level flight.
+  demand.held_path_rad = state.held_path_rad > 0.0
+                             ? state.held_path_rad * std::exp(-kForgetPerSecond * lacking * step_s)
+                             : state.held_path_rad;
 }
 
 void DemandLoad(const AircraftState& state, const AircraftKind& kind, const Surroundings& here,
-                double pitch_up, Demand& demand) {
+                double pitch_up, double step_s, Demand& demand) {
   const double wing_limit = PressureOnWing(state, kind, here) * kind.most_lift /
                             (kind.mass_kg * kStandardGravity_m_per_s2);
   demand.load = LoadOfSteadyPath(state, here);
   if (std::abs(pitch_up) < kHandsOff) {
-    HoldPath(state, kind, here, wing_limit, demand);
+    HoldPath(state, kind, here, wing_limit, step_s, demand);
     demand.stalled = false;
     return;
   }
@@ -198,7 +199,7 @@ AircraftState Commanded(const AircraftState& state, const AircraftKind& kind,
                         const Surroundings& here, const Stick& stick, double step_s) {
   constexpr double kThrottlePerSecond = 0.5, kMostSlip_rad = 10.0 * kRadiansPerDegree;
   Demand demand{};
-  DemandLoad(state, kind, here, std::clamp(stick.pitch_up, -1.0, 1.0), demand);
+  DemandLoad(state, kind, here, std::clamp(stick.pitch_up, -1.0, 1.0), step_s, demand);
   DemandRoll(state, kind, here, stick, demand);
   AircraftState next = state;
   next.load = Followed(state.load, demand.load, 0.25, step_s);
