@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/ground/ground_follower.h"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -85,11 +83,8 @@ class GroundFollower::Maker {
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
     const SiteAir air{std::make_shared<const AirIntegrator<float>>(medium),
                       std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
-    tbb::task_arena alone(1);
-    site_ = alone.execute([&] {
-      return std::make_shared<const GroundSite>(
-          GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot)), cover_, drape_, air);
-    });
+    site_ = std::make_shared<const GroundSite>(
+        GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot)), cover_, drape_, air);
     air_ = request.air;
     ground_ = request.ground;
     middle_ = foot;
@@ -166,7 +161,7 @@ LightOfVertices GroundFollower::Light() const {
           site.EnuFromEcef(anchor.EcefFromEnu(Point<Enu>{glm::dvec3(vertex.position_m)})).xyz);
       const glm::vec3 normal(
           site.EnuFromEcef(anchor.EcefFromEnu(Vector<Enu>{glm::dvec3(vertex.normal)})).xyz);
-      placed.push_back({{at.x, at.y, at.z}, {normal.x, normal.y, normal.z}});
+      placed.push_back(lit->site().Vertex({at.x, at.y, at.z}, {normal.x, normal.y, normal.z}));
     }
     return lit->LightOf(placed);
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/sky_painter.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/mat4x4.hpp>
@@ -157,7 +159,11 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
       ground_textures_(air_.air()->diffuse) {
   if (scene.fog) {
     const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
-    fog_.emplace(LocalMedia(scene, lamp_ground_, medium).Only(false, true), kFogUnits);
+    fog_.emplace(Fog{std::make_shared<const LocalMedia>(
+                         LocalMedia(scene, lamp_ground_, medium).Only(false, true)),
+                     FogPainter(kFogUnits),
+                     nullptr,
+                     {}});
   }
   shaft_pass_.program().BindBlock("View", kViewBinding);
   shaft_pass_.program().Use();
@@ -183,7 +189,7 @@ void SkyPainter::MakeProgram() {
   program_->BindSampler("shaft_map", kShaftUnit);
   AirTextures::Prepare(*program_, kAirUnit, kTablesBinding);
   lamp_painter_->Connect(*program_);
-  if (fog_) fog_->Connect(*program_);
+  if (fog_) fog_->painter.Connect(*program_);
 }
 
 void SkyPainter::Use(const PaintSizes& sizes) {
@@ -211,9 +217,29 @@ LampView SkyPainter::LampViewOf(const PaintedView& view) const {
   return seen;
 }
 
-FogView SkyPainter::FogViewOf(const PaintedView& view, const SunPosition& sun) const {
-  return {view.eye.place.height_m, DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-          sun.angular_radius_rad};
+void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool waits) {
+  const FogView seen{view.eye.place.height_m,
+                     DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+                     sun.angular_radius_rad};
+  const bool is_new_air = fog_->air != air_.air();
+  if (is_new_air) {
+    fog_->air = air_.air();
+    fog_->follower.emplace([air = fog_->air, media = fog_->media,
+                            latitude_rad = view.eye.place.latitude_rad](const FogView& wanted) {
+      tbb::task_arena alone(1);
+      return alone.execute([&] {
+        const AirIntegrator<float> integrator(OnOsculatingSphere(air->medium, latitude_rad));
+        return MakeFogMap(*media->fog(), media->fog_bottom_m(), integrator, air->diffuse, wanted);
+      });
+    });
+  }
+  bool is_new = false;
+  if (waits || is_new_air) {
+    fog_->follower->Wait(seen);
+    is_new = true;
+  }
+  is_new = fog_->follower->Follow(seen) || is_new;
+  if (is_new && fog_->follower->map()) fog_->painter.Upload(*fog_->follower->map());
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -260,7 +286,7 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   TakeHeights();
   if (ground_.Follow(air_.air(), {view.eye.place, sun, view.now})) TakeLight();
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, sun, kShadeUnit);
-  if (fog_) fog_->Follow(air_.air(), view.eye.place.latitude_rad, FogViewOf(view, sun));
+  if (fog_) FollowFog(view, sun, false);
 }
 
 void SkyPainter::Settle(const PaintedView& view) {
@@ -273,7 +299,7 @@ void SkyPainter::Settle(const PaintedView& view) {
     land_.Settle(view.eye.place, LandViewOf(view));
   }
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, sun, kShadeUnit);
-  if (fog_) fog_->Settle(air_.air(), view.eye.place.latitude_rad, FogViewOf(view, sun));
+  if (fog_) FollowFog(view, sun, true);
 }
 
 void SkyPainter::UploadAir(const PaintedView& view) const {
@@ -358,7 +384,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, bool adds) {
   Begin("picture");
   picture_->Bind();
   lamp_painter_->Bind();
-  if (fog_) fog_->Bind(view.eye.place.height_m);
+  if (fog_) fog_->painter.Bind(*fog_->follower->map(), view.eye.place.height_m);
   program_->Use();
   glUniform1i(program_->Uniform("has_shade"), sizes_.has_shafts && shade_.shade().Shades() ? 1 : 0);
   glUniform1i(program_->Uniform("has_lamps"), lamp_painter_->IsDark() ? 0 : 1);

@@ -25,6 +25,7 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/lamps/fog_follower.h"
+#include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/landscape.h"
 #include "viewer/land/surface_map.h"
@@ -100,7 +101,7 @@ class SkyPainter {
   void MakeProgram();
   void PrepareLamps(const PaintedView& view);
   [[nodiscard]] LampView LampViewOf(const PaintedView& view) const;
-  [[nodiscard]] FogView FogViewOf(const PaintedView& view, const SunPosition& sun) const;
+  void FollowFog(const PaintedView& view, const SunPosition& sun, bool waits);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
@@ -120,7 +121,13 @@ class SkyPainter {
   ShaftPass shaft_pass_;
   SceneGround lamp_ground_;  // that lamps and fog stand on
   SceneLamps lamps_;
-  std::optional<FogFollower> fog_;
+  struct Fog {
+    std::shared_ptr<const LocalMedia> media;
+    FogPainter painter;
+    std::shared_ptr<const SolvedAir> air;  // that the map is made in
+    std::optional<FogFollower> follower;
+  };
+  std::optional<Fog> fog_;
   std::optional<LampPainter> lamp_painter_;  // of sizes_
   std::optional<ShaderProgram> program_;     // of sizes_
   GroundTextures ground_textures_;
