@@ -98,9 +98,8 @@ void Flythrough::Place(const EyePlacement& placement) {
 }
 
 void Flythrough::GoTo(const std::string& name) {
-  const Eye there = EyeAt(PlaceNamed(name), eye(), Ground());
   waits_above_ground_m_.reset();
-  cockpit_.pilot().PutAt(there, Ground());
+  cockpit_.GoTo(PlaceNamed(name), Ground());
 }
 
 void Flythrough::Show(const ReplayFrame& frame) {

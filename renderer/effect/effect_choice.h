@@ -81,7 +81,7 @@ struct Refinement {
   std::function<PilotPicture()> render;
 };
 
-struct Pilot {
+struct PilotPicture {
   PilotGroups groups;
   std::function<PilotPicture(EffectSet)> render;
   double pixels_of_picture = 0.0;
@@ -131,7 +131,7 @@ struct EffectChoice {
 };
 
 /// @param wanted  what "everything" is.
-[[nodiscard]] EffectChoice ChooseEffects(const Pilot& pilot, EffectSet wanted,
+[[nodiscard]] EffectChoice ChooseEffects(const PilotPicture& pilot, EffectSet wanted,
                                          const EffectBudget& budget);
 
 /// A table of a choice, with a line for every effect.

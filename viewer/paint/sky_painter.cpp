@@ -78,7 +78,6 @@ LandView LandViewOf(const PaintedView& view) {
   const double half_width = std::tan(0.5 * view.eye.fov_rad);
   const double part = half_width / view.part.z;
   return {part * axes.right, part * view.height / view.width * axes.up, axes.forward};
-};
 }
 
 // Between neighbouring pixels in the middle of the view [rad].

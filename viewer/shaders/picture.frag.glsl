@@ -47,7 +47,7 @@ vec4 LandThroughAir(vec3 direction, vec4 surface, ivec2 pixel) {
   float distance_km = 1e-3 * surface.w;
   AirTo air = AirToPoint(direction, distance_km);
   vec4 single = air.single;
-  if (has_shade) single = max(single - ShadedSingle(distance_km), vec4(0.0));
+  if (has_shade) single -= ShadedSingle(distance_km, single);
   vec4 light = single + air.diffuse;
   vec4 ground = air.transmittance * GroundSeen(direction, surface, pixel);
 #ifdef HAS_FOG
@@ -84,7 +84,7 @@ vec4 PlanetThroughAir(vec3 direction) {
 
 vec4 SkyAndDisks(vec3 direction) {
   vec4 light = SkyRadiance(direction);
-  if (has_shade) light = max(light - ShadedSingle(1e9), vec4(0.0));
+  if (has_shade) light = max(light - ShadedSingle(1e9, SingleTo(direction, 1e9)), vec4(0.0));
   vec4 disks = vec4(SunDiskRadiance(direction, pixel_angle)) + MoonRadiance(direction, pixel_angle);
   vec4 from_space = vec4(0.0);
   if (disks.x > 0.0) from_space = disks * TransmittanceToSpace(direction);

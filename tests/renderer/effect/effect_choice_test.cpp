@@ -29,7 +29,7 @@ struct GreyPilot {
     };
   }
 
-  Pilot pilot;
+  PilotPicture pilot;
   int rendered = 0;
 
  private:
