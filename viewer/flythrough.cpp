@@ -230,6 +230,21 @@ void Flythrough::ShowReference(const ImageSize& size) {
   if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);
 }
 
+void Flythrough::AimLandingLight() {
+  if (!landing_light_) return painter_.SetLandingLight(std::nullopt);
+  LandingLight light;
+  const ViewAxes axes = AxesOf(eye());
+  light.axis = axes.forward;
+  light.offset_m = -1.5 * axes.up;
+  painter_.SetLandingLight(light);
+}
+
+std::optional<double> Flythrough::LuminanceAt(double right, double down) {
+  if (!exposure_.ev100 || right < 0.0 || right >= 1.0 || down < 0.0 || down >= 1.0)
+    return std::nullopt;
+  return painter_.picture().LuminanceAt(right, down);
+}
+
 void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   const PaintedQuality wanted = Painted();
   if (wanted.quality != used_.quality) painter_.Use(SizesOf(wanted.quality));
@@ -239,6 +254,7 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   };
   const ImageSize size{scaled(screen.width), scaled(screen.height)};
   StandOnGround();
+  AimLandingLight();
   const PaintedView view = ViewOf(size);
   painter_.Update(view, seconds);
   const bool has_reference = reference_ && reference_->samples() > 0 && still_s_ > 0.0;

@@ -72,6 +72,11 @@ class Flythrough {
   void SetExposure(double ev100);
   void Compensate(double ev) { exposure_.compensation_ev = ev; }
 
+  /// A landing light ahead and below, or none.
+  void SetLandingLight(bool is_on) { landing_light_ = is_on; }
+  /// Luminance of the last picture [cd/m^2] at shares of its width and height from the upper left.
+  [[nodiscard]] std::optional<double> LuminanceAt(double right, double down);
+
   /// Paints onto a screen, exposed as the meter says. `seconds` since the last picture.
   void Paint(const Developer::Screen& screen, double seconds);
   /// What took the last picture, without waiting for the screen, for automatic quality.
@@ -110,6 +115,7 @@ class Flythrough {
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const;
   [[nodiscard]] PaintedQuality Painted() const;
   void StandOnGround();
+  void AimLandingLight();
   void SettleAt(const ImageSize& size);
   void ShowReference(const ImageSize& size);
   [[nodiscard]] Scene SceneSeen() const;
@@ -126,6 +132,7 @@ class Flythrough {
   ExposureMeter meter_;
   FlightExposure exposure_;
   double metered_ev100_ = 15.0;
+  bool landing_light_ = false;
   std::optional<double> waits_above_ground_m_;  // the ground under the eye is not known yet
   std::unique_ptr<ReferencePicture> reference_;
   std::shared_ptr<const ReferenceScene> reference_scene_;

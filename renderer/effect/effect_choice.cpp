@@ -44,7 +44,7 @@ Image FirstPixels(const Image& image, std::size_t count) {
 /// Pictures of the pilot, held against the one with everything.
 class Judge {
  public:
-  Judge(const PilotPicture& pilot, EffectSet wanted, int repeats)
+  Judge(const EffectPilot& pilot, EffectSet wanted, int repeats)
       : pilot_(pilot),
         repeats_(repeats),
         everything_(Render(wanted)),
@@ -89,7 +89,7 @@ class Judge {
            static_cast<double>(picture.image.rgb.size());
   }
 
-  const PilotPicture& pilot_;
+  const EffectPilot& pilot_;
   int repeats_;
   PilotPicture everything_;
   double floor_;
@@ -137,7 +137,7 @@ class Chooser {
   Judge::Verdict verdict_;
 };
 
-std::vector<RefinementEstimate> Refine(const PilotPicture& pilot, const Judge& judge) {
+std::vector<RefinementEstimate> Refine(const EffectPilot& pilot, const Judge& judge) {
   std::vector<RefinementEstimate> estimates;
   for (const Refinement& refinement : pilot.refinements) {
     const Judge::Verdict with = judge.On(refinement.render());
@@ -224,7 +224,7 @@ EffectSet EffectChoice::LeftOut() const {
   return left_out;
 }
 
-EffectChoice ChooseEffects(const PilotPicture& pilot, EffectSet wanted, const EffectBudget& budget) {
+EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted, const EffectBudget& budget) {
   const Stopwatch watch;
   const Judge judge(pilot, wanted, budget.explain ? 3 : 1);
   EffectChoice choice;

@@ -81,7 +81,7 @@ struct Refinement {
   std::function<PilotPicture()> render;
 };
 
-struct PilotPicture {
+struct EffectPilot {
   PilotGroups groups;
   std::function<PilotPicture(EffectSet)> render;
   double pixels_of_picture = 0.0;
@@ -131,7 +131,7 @@ struct EffectChoice {
 };
 
 /// @param wanted  what "everything" is.
-[[nodiscard]] EffectChoice ChooseEffects(const PilotPicture& pilot, EffectSet wanted,
+[[nodiscard]] EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted,
                                          const EffectBudget& budget);
 
 /// A table of a choice, with a line for every effect.

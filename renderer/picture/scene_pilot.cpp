@@ -54,7 +54,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
     if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings, frame.sunlight));
     return state.Reduced(*on_few_bands, effects);
   };
-  PilotPicture pilot;
+  EffectPilot pilot;
   pilot.groups = PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun,
                              frame.lamps->Directions());
   std::vector<PixelPlace> places;

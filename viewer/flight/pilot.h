@@ -82,6 +82,7 @@ class Pilot {
   void ToggleHold(Autopilot::Hold hold);
   void ReleaseAutopilot() { autopilot_.Release(); }
   [[nodiscard]] Autopilot& autopilot() { return autopilot_; }
+  [[nodiscard]] const Autopilot& autopilot() const { return autopilot_; }
 
   [[nodiscard]] FlightReadout Readout(const GroundHeight& ground) const;
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "atmosphere/text/error.h"
+#include "lut/picture/tone_curve.h"
 
 namespace alpenglow {
 namespace {
@@ -111,6 +112,15 @@ void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLen
   glReadPixels(0, 0, width_, height_, format, type, pixels.data());
   glReadBuffer(GL_COLOR_ATTACHMENT0);
   TurnUpsideDown(pixels, static_cast<std::size_t>(width_));
+}
+
+double RenderTarget::LuminanceAt(double right, double down) const {
+  std::array<float, 3> rgb{};
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  glReadPixels(static_cast<int>(right * width_), height_ - 1 - static_cast<int>(down * height_), 1,
+               1, GL_RGB, GL_FLOAT, rgb.data());
+  return shared::Luminance<double>(static_cast<double>(rgb[0]), static_cast<double>(rgb[1]),
+                                   static_cast<double>(rgb[2]));
 }
 
 Image RenderTarget::Read(std::size_t output) const {

@@ -90,6 +90,11 @@ AirView AirViewOf(const PaintedView& view, const SunPosition& sun) {
           DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz};
 }
 
+FogView FogViewOf(const PaintedView& view, const SunPosition& sun) {
+  return {view.eye.place.height_m, DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+          sun.angular_radius_rad};
+}
+
 // Places of a pixel's rays, spread evenly over it (Roberts 2018, "The unreasonable effectiveness of
 // quasirandom sequences"), in half widths and heights of the picture.
 glm::dvec2 ShiftOf(int sample, int samples, const PaintedView& view) {
@@ -158,11 +163,7 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
       ground_textures_(air_.air()->diffuse) {
   if (scene.fog) {
     const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
-    fog_.emplace(Fog{std::make_shared<const LocalMedia>(
-                         LocalMedia(scene, lamp_ground_, medium).Only(false, true)),
-                     FogPainter(kFogUnits),
-                     nullptr,
-                     {}});
+    fog_.emplace(LocalMedia(scene, lamp_ground_, medium).Only(false, true), kFogUnits);
   }
   shaft_pass_.program().BindBlock("View", kViewBinding);
   shaft_pass_.program().Use();
@@ -176,8 +177,8 @@ void SkyPainter::MakeProgram() {
   lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
   const std::optional<PhaseKind> fog =
       scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
-  program_->emplace(FullScreenProgram(PictureTexts({material_, lamps_, sizes_.lamps, fog}),
-                                      "viewer/shaders/picture.frag.glsl"));
+  program_.emplace(FullScreenProgram(PictureTexts({material_, lamps_, sizes_.lamps, fog}),
+                                     "viewer/shaders/picture.frag.glsl"));
   program_->BindBlock("Air", kAirBinding);
   program_->BindBlock("View", kViewBinding);
   program_->BindBlock("Ground", kGroundBinding);
@@ -217,9 +218,7 @@ LampView SkyPainter::LampViewOf(const PaintedView& view) const {
 }
 
 void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool waits) {
-  const FogView seen{view.eye.place.height_m,
-                     DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-                     sun.angular_radius_rad};
+  const FogView seen = FogViewOf(view, sun);
   const bool is_new_air = fog_->air != air_.air();
   if (is_new_air) {
     fog_->air = air_.air();
@@ -345,9 +344,12 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
   block.mesh_up = axis({0.0, 0.0, 1.0});
   UploadBlock(blocks_.ground, kGroundBinding, &block, sizeof(block));
   const double pixel_rad = PixelAngle(view);
+  const SunPosition sun = SunOf(view);
+  const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
   const GroundLightBlock light =
-      ground_.lit() ? GroundLightBlockOf(ground_.lit()->tilt(), sizes_.relief_pixels * pixel_rad)
-                    : GroundLightBlock{};
+      ground_.lit()
+          ? GroundLightBlockOf(ground_.lit()->tilt(), to_sun, sizes_.relief_pixels * pixel_rad)
+          : GroundLightBlock{};
   UploadBlock(blocks_.ground_light, kGroundLightBinding, &light, sizeof(light));
   const GroundSurfaceBlock cover = GroundSurfaceBlockOf(material_);
   UploadBlock(blocks_.ground_surface, kGroundSurfaceBinding, &cover, sizeof(cover));
@@ -383,7 +385,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, bool adds) {
   Begin("picture");
   picture_->Bind();
   lamp_painter_->Bind();
-  if (fog_) fog_->painter.Bind(*fog_->follower->map(), view.eye.place.height_m);
+  if (fog_) fog_->painter.Bind(*fog_->follower->map(), FogViewOf(view, SunOf(view)));
   program_->Use();
   glUniform1i(program_->Uniform("has_shade"), sizes_.has_shafts && shade_.shade().Shades() ? 1 : 0);
   glUniform1i(program_->Uniform("has_lamps"), lamp_painter_->IsDark() ? 0 : 1);

@@ -122,6 +122,9 @@ class SkyPainter {
   SceneGround lamp_ground_;  // that lamps and fog stand on
   SceneLamps lamps_;
   struct Fog {
+    Fog(LocalMedia of, const FogUnits& units)
+        : media(std::make_shared<const LocalMedia>(std::move(of))), painter(units) {}
+
     std::shared_ptr<const LocalMedia> media;
     FogPainter painter;
     std::shared_ptr<const SolvedAir> air;  // that the map is made in

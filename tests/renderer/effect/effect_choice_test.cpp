@@ -29,7 +29,7 @@ struct GreyPilot {
     };
   }
 
-  PilotPicture pilot;
+  EffectPilot pilot;
   int rendered = 0;
 
  private:

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/flight_deck.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/air/aerosol_mixture.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon.h"
+#include "atmosphere/text/error.h"
+#include "lut/picture/picture_text.h"
+#include "lut/sky/sky_view_map.h"
+#include "viewer/capture/screenshot_name.h"
+#include "viewer/flight/places.h"
+#include "viewer/window_controls.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMessage_s = 8.0;
+constexpr double kDay_s = 86400.0;
+const std::vector<std::string> kCurves{"agx", "aces", "reinhard", "pbr-neutral", "linear"};
+const std::vector<std::string> kQualities{"auto", "low", "medium", "high", "reference"};
+
+const char* NameOf(FlightMode mode) {
+  switch (mode) {
+    case FlightMode::kAircraft:
+      return "aircraft";
+    case FlightMode::kTrack:
+      return "track";
+    case FlightMode::kFree:
+      break;
+  }
+  return "free";
+}
+
+HudFlight FlightOf(const Flythrough& flight) {
+  const Eye& eye = flight.eye();
+  const FlightReadout readout = flight.cockpit().pilot().Readout(flight.Ground());
+  HudFlight shown;
+  shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);
+  shown.heading_rad = eye.heading_rad;
+  shown.pitch_rad = eye.pitch_rad;
+  shown.roll_rad = eye.roll_rad;
+  shown.fov_rad = eye.fov_rad;
+  const double height_m = std::max(eye.place.height_m, 0.0);
+  shown.horizon_dip_rad =
+      SkyViewMap(OnOsculatingSphere(flight.medium(), eye.place.latitude_rad), height_m, 1.0)
+          .horizon_zenith_angle_rad() -
+      0.5 * kPi;
+  shown.ground_speed_m_per_s = readout.speed_m_per_s;
+  shown.height_m = eye.place.height_m;
+  shown.above_ground_m = readout.above_ground_m;
+  shown.climb_m_per_s = readout.vertical_speed_m_per_s;
+  if (readout.course)
+    shown.path = HudDirection{readout.course->heading_rad, readout.course->climb_rad};
+  if (!readout.aircraft) return shown;
+  shown.air_speed_m_per_s = readout.aircraft->indicated_m_per_s;
+  shown.throttle = readout.aircraft->throttle;
+  shown.load_factor = readout.aircraft->load;
+  shown.stall = readout.aircraft->stalled;
+  return shown;
+}
+
+HudTime TimeOf(const Flythrough& flight) {
+  const SceneClock& clock = flight.cockpit().clock();
+  const LocalTime local = LocalTimeAt(clock.now(), flight.zone());
+  HudTime time;
+  time.utc = FormatUtc(clock.now());
+  time.local = local.time;
+  time.zone = local.zone;
+  time.day_fraction = local.day_fraction;
+  time.rate = clock.rate();
+  time.paused = clock.paused();
+  return time;
+}
+
+HudSky SkyOf(const Flythrough& flight) {
+  const SunPosition sun = ApparentSunAt(flight.eye().place, flight.now());
+  const MoonPosition moon = ApparentMoonAt(flight.eye().place, flight.now());
+  return {sun.azimuth_rad, sun.elevation_rad,
+          HudMoon{moon.azimuth_rad, moon.elevation_rad, moon.IlluminatedFraction()}};
+}
+
+HudAir AirOf(const Flythrough& flight) {
+  const Medium air = Changed(flight.medium(), flight.air_choice());
+  HudAir shown;
+  shown.planet = flight.medium().name;
+  shown.visibility_km = std::min(1e-3 * VisibilityOf(air), 1e4);
+  shown.aerosol_scale = flight.air_choice().aerosol;
+  shown.ozone_du = OzoneDobson(air);
+  double albedo = 0.0;
+  for (const double value : air.ground_albedo) albedo += value;
+  shown.ground_albedo = albedo / static_cast<double>(air.ground_albedo.size());
+  return shown;
+}
+
+HudAutopilot AutopilotOf(const Pilot& pilot) {
+  const AutopilotTargets& held = pilot.autopilot().targets();
+  return {held.heading_rad, held.height_m};
+}
+
+std::vector<HudRow> TablesOf(const Flythrough& flight) {
+  const SkyPainter& painter = flight.painter();
+  const LandFigures land = painter.land().Figures();
+  const auto ms = [](double seconds) { return fmt::format("{:.0f} ms", 1e3 * seconds); };
+  const auto mb = [](std::size_t bytes) {
+    return fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(bytes));
+  };
+  return {{"air", ms(painter.air().making_s()), ""},
+          {"light on land", ms(painter.ground().making_s()), ""},
+          {"shade", ms(painter.shade().making_s()), ""},
+          {fmt::format("land, {} triangles", land.triangles), "",
+           mb(land.tile_bytes + land.chunk_bytes + land.card_bytes)}};
+}
+
+}  // namespace
+
+FlightDeck::FlightDeck(Flythrough& flight, const Settings& settings)
+    : flight_(flight), hud_({.scale = settings.hud_scale}), controls_(settings.controls) {
+  if (!settings.shows_hud) hud_.ToggleVisible();
+}
+
+void FlightDeck::Say(const std::string& text, bool is_warning) {
+  constexpr std::size_t kMost = 6;
+  messages_.push_back({text, 0.0, is_warning});
+  if (messages_.size() > kMost) messages_.pop_front();
+}
+
+template <typename Work>
+void FlightDeck::Try(const Work& work) {
+  try {
+    work();
+  } catch (const InputError& fault) {
+    Say(fault.what(), true);
+  } catch (const OutputError& fault) {
+    Say(fault.what(), true);
+  }
+}
+
+void FlightDeck::Age(double seconds) {
+  for (Message& message : messages_) message.age_s += seconds;
+  while (!messages_.empty() && messages_.front().age_s > kMessage_s) messages_.pop_front();
+  for (const std::string& note : flight_.painter().land().TakeNotes()) Say(note);
+  constexpr double kMemory = 0.1;
+  frame_ms_ += kMemory * (1e3 * seconds - frame_ms_);
+}
+
+HudModel FlightDeck::Model() const {
+  HudModel model;
+  model.flight = FlightOf(flight_);
+  model.autopilot = AutopilotOf(flight_.cockpit().pilot());
+  model.latitude_rad = flight_.eye().place.latitude_rad;
+  model.longitude_rad = flight_.eye().place.longitude_rad;
+  model.time = TimeOf(flight_);
+  model.sky = SkyOf(flight_);
+  const FlightExposure& exposure = flight_.exposure();
+  model.exposure = {exposure.ev100.value_or(15.0), exposure.locked, exposure.compensation_ev,
+                    cursor_cd_per_m2_, NameOf(flight_.curve())};
+  model.air = AirOf(flight_);
+  model.speed = {frame_ms_, flight_.QualityText()};
+  for (const Message& message : messages_)
+    model.messages.push_back({message.text, message.age_s, message.is_warning});
+  const LandProgress progress = flight_.painter().land().Progress();
+  if (progress.share < 1.0) model.progress = HudProgress{progress.text, progress.share};
+  model.recording = recording_;
+  model.units = units_;
+  return model;
+}
+
+HudChoices FlightDeck::Choices() const {
+  HudChoices choices;
+  for (const NamedPlace& place : NamedPlaces()) choices.places.push_back(place.name);
+  for (const SkyEvent event : kSkyEvents) choices.moments.emplace_back(NameOf(event));
+  choices.planets = MediumPresetNames();
+  choices.tone_curves = kCurves;
+  choices.qualities = kQualities;
+  choices.lamps = {{"landing light", landing_light_}};
+  choices.table_heading = {"", "made in", "memory"};
+  choices.tables = TablesOf(flight_);
+  for (const ActionRow& row : ActionTable())
+    choices.help.push_back({KeysText(row), std::string(row.does)});
+  return choices;
+}
+
+void FlightDeck::WantStrip() {
+  if (!hud_.IsOpen(HudPanel::kPlaceAndTime)) return;
+  const std::shared_ptr<const SolvedAir>& air = flight_.painter().air().air();
+  const UtcInstant begin =
+      AddSeconds(flight_.now(), -kDay_s * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
+  strips_.Want({std::make_shared<const AirIntegrator<float>>(air->medium),
+                std::shared_ptr<const DiffuseLight>(air, &air->diffuse), flight_.eye().place,
+                begin});
+}
+
+void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, double seconds) {
+  Age(seconds);
+  WantStrip();
+  for (const KeyEvent& key : events.keys) keys_.Note(key.key, key.change != 0);
+  if (!events.focused) keys_.Release();
+  HudInput input;
+  input.width = size.width;
+  input.height = size.height;
+  input.seconds = seconds;
+  if (events.pointer) input.pointer = HudPointer{events.pointer->right, events.pointer->down};
+  input.buttons = events.buttons;
+  input.wheel = events.wheel;
+  input.text = events.text;
+  if (size.width > 0 && size.height > 0)
+    Serve(hud_.Update(Model(), Choices(), strips_.Newest(), keys_.Into(input)), size);
+  Tell(events, size.width, size.height, {hud_.WantsMouse(), hud_.WantsKeyboard()}, controls_);
+  const Intent intent =
+      controls_.Take(flight_.cockpit().pilot().mode(), seconds, GamepadOf(events));
+  for (const Action action : intent.actions) Do(action, size);
+  for (const Action action : intent.refused)
+    Say(fmt::format("{}: not while the window is minimised", RowOf(action).does));
+  flight_.Advance(intent.pilot, seconds);
+  const bool on_picture = events.pointer && !hud_.WantsMouse() && hud_.visible();
+  cursor_cd_per_m2_ = on_picture ? flight_.LuminanceAt(events.pointer->right / size.width,
+                                                       events.pointer->down / size.height)
+                                 : std::nullopt;
+}
+
+void FlightDeck::Do(Action action, const ImageSize& size) {
+  Try([&] {
+    if (const auto said = flight_.Do(action)) {
+      if (!said->empty()) Say(*said);
+      return;
+    }
+    switch (action) {
+      case Action::kHud:
+        hud_.ToggleVisible();
+        break;
+      case Action::kNightTheme:
+        hud_.SetTheme(hud_.theme() == HudTheme::kNight ? HudThemeChoice::kDay
+                                                       : HudThemeChoice::kNight);
+        break;
+      case Action::kPanels:
+        hud_.ToggleMenu();
+        break;
+      case Action::kFullScreen:
+        full_screen_ = !full_screen_;
+        break;
+      case Action::kScreenshot:
+        Screenshot(".png", size);
+        break;
+      case Action::kScreenshotExr:
+        Screenshot(".exr", size);
+        break;
+      case Action::kHelp:
+        hud_.Toggle(HudPanel::kHelp);
+        break;
+      case Action::kQuit:
+        if (!hud_.ClosePanels()) hud_.Toggle(HudPanel::kLeave);
+        break;
+      default:
+        break;
+    }
+  });
+}
+
+void FlightDeck::Screenshot(const char* extension, const ImageSize& size) {
+  std::filesystem::path file = NextScreenshot(".");
+  file += extension;
+  flight_.WritePicture(file, size);
+  Say(fmt::format("{} is written", file.filename().string()));
+}
+
+void FlightDeck::Capture(const HudCaptureRequest& asked) {
+  Screenshot(asked.kind == HudPictureKind::kExr ? ".exr" : ".png", {asked.width, asked.height});
+}
+
+void FlightDeck::ServeTime(const HudTimeRequest& asked) {
+  SceneClock& clock = flight_.cockpit().clock();
+  if (asked.instant) clock.Type(*asked.instant, flight_.eye().place, flight_.zone());
+  if (asked.day_fraction) {
+    clock.Shift(kDay_s *
+                (*asked.day_fraction - LocalTimeAt(clock.now(), flight_.zone()).day_fraction));
+  }
+  if (asked.rate) clock.SetRate(*asked.rate);
+  if (asked.paused) clock.Pause(*asked.paused);
+  if (!asked.moment) return;
+  constexpr std::array<Action, 7> kJumps{Action::kToDawn,   Action::kToSunrise, Action::kToNoon,
+                                         Action::kToSunset, Action::kToDusk,    Action::kToMoonrise,
+                                         Action::kToMoonset};
+  for (std::size_t i = 0; i < kSkyEvents.size(); ++i) {
+    if (NameOf(kSkyEvents[i]) != *asked.moment) continue;
+    if (const auto said = flight_.Do(kJumps[static_cast<std::size_t>(kSkyEvents[i])])) Say(*said);
+  }
+}
+
+void FlightDeck::ServeAir(const HudAirRequest& asked) {
+  if (asked.planet) flight_.UsePlanet(*asked.planet);
+  AirChoice choice = flight_.air_choice();
+  if (asked.visibility_km)
+    choice.aerosol = AerosolForVisibility(flight_.medium(), 1e3 * *asked.visibility_km);
+  if (asked.aerosol_scale) choice.aerosol = *asked.aerosol_scale;
+  if (asked.ozone_du) choice.ozone_du = asked.ozone_du;
+  if (asked.ground_albedo) choice.ground_albedo = asked.ground_albedo;
+  if (asked.visibility_km || asked.aerosol_scale || asked.ozone_du || asked.ground_albedo)
+    flight_.Use(choice);
+}
+
+void FlightDeck::SetLandingLight(bool is_on) {
+  landing_light_ = is_on;
+  flight_.SetLandingLight(is_on);
+}
+
+void FlightDeck::Serve(const HudRequest& asked, const ImageSize& size) {
+  Try([&] {
+    if (asked.place) {
+      flight_.Place(
+          {asked.place->latitude_deg, asked.place->longitude_deg, asked.place->height_m, {}, {}});
+    }
+    if (asked.named_place) flight_.GoTo(*asked.named_place);
+    ServeTime(asked.time);
+    ServeAir(asked.air);
+    if (asked.lamp) SetLandingLight(asked.lamp->is_on);
+    if (asked.tone_curve) flight_.Use(ToneCurveFromName(*asked.tone_curve));
+    if (asked.exposure_locked) flight_.LockExposure(*asked.exposure_locked);
+    if (asked.ev100) flight_.SetExposure(*asked.ev100);
+    if (asked.compensation_ev) flight_.Compensate(*asked.compensation_ev);
+    if (asked.quality) flight_.Use(QualityRuleFromText(*asked.quality));
+    Autopilot& autopilot = flight_.cockpit().pilot().autopilot();
+    AutopilotTargets targets = autopilot.targets();
+    if (asked.hold_heading_rad) targets.heading_rad = asked.hold_heading_rad->value;
+    if (asked.hold_height_m) targets.height_m = asked.hold_height_m->value;
+    if (asked.hold_heading_rad || asked.hold_height_m) autopilot.Set(targets);
+    if (asked.units) units_ = *asked.units;
+    if (asked.capture) Capture(*asked.capture);
+    static_cast<void>(size);
+    quit_ = quit_ || asked.quit;
+  });
+}
+
+void FlightDeck::Paint(const Developer::Screen& screen, double seconds) {
+  flight_.Paint(screen, seconds);
+  flight_.painter().Time("hud");
+  hud_.Paint(screen.framebuffer);
+  flight_.painter().EndTime();
+}
+
+}  // namespace alpenglow
