@@ -2,26 +2,33 @@
 // Where a direction and a distance lie in the tables of one eye's air. Lengths in km; h is the
 // altitude of the eye, R the radius of the planet.
 //
-// Rows count from the horizon, quadratic in the angle from it, and those above it end where rays
-// meet no land any more; columns from the sun's azimuth, quadratic in the angle between. Distances
-// are shares t of a ray's reach: from where it enters the air to the ground or, above the horizon,
-// to where it leaves the altitude that no land exceeds (the ceiling). With crowding k > -1
+// Rows count from the horizon: quadratic in the tangent of half the angle from it, over that of the
+// range; those above it end where rays meet no land any more. Columns count from the sun's azimuth,
+// quadratic in the tangent of a quarter of the angle between, nodes of the aerosol's phase function
+// from the forward direction, quadratic in the sine of half the angle. None needs the angle itself. Distances are shares t of a ray's
+// reach: from where it first meets air below the altitude that no land exceeds (the ceiling) to the
+// ground or, above the horizon, to where it leaves it. With crowding k > -1
 //
 //   w = t (1 + k) / (1 + k t)
 //
 // crowds nodes near the eye (k > 0) or at the far end (k < 0).
 
-// Angle from the horizon over its range, and back.
-SHARED Number AirRowFromAngle(Number angle, Number range) {
-  return sqrt(min(max(angle / range, Number(0.0)), Number(1.0)));
+// From tangents of half an angle; and the tangent back.
+SHARED Number AirRow(Number half_tangent, Number range) {
+  return sqrt(min(max(half_tangent / range, Number(0.0)), Number(1.0)));
 }
-SHARED Number AirAngleFromRow(Number v, Number range) { return range * v * v; }
+SHARED Number AirHalfTangent(Number row, Number range) { return range * row * row; }
 
-// Azimuth from the sun's, 0 to pi.
-SHARED Number AirColumnFromAzimuth(Number azimuth) {
-  return sqrt(azimuth * Number(0.31830988618379067));
+// From the square of the sine of half the azimuth, 0 to pi; and the tangent of its quarter back.
+SHARED Number AirColumn(Number half_sine_squared) {
+  Number x = min(max(half_sine_squared, Number(0.0)), Number(1.0));
+  return sqrt(sqrt(x) / (Number(1.0) + sqrt(Number(1.0) - x)));
 }
-SHARED Number AirAzimuthFromColumn(Number x) { return Number(3.1415926535897932) * x * x; }
+SHARED Number AirQuarterTangent(Number column) { return column * column; }
+
+// From the square of the sine of half the scattering angle; and that sine back.
+SHARED Number AirPhaseNode(Number half_sine_squared) { return sqrt(sqrt(half_sine_squared)); }
+SHARED Number AirHalfSine(Number node) { return node * node; }
 
 SHARED Number AirNodeFromShare(Number t, Number crowding) {
   return t * (Number(1.0) + crowding) / (Number(1.0) + crowding * t);

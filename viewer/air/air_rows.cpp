@@ -9,8 +9,8 @@ namespace {
 constexpr double kHair_rad = 1e-9;  // off the horizon, to the side of it that a row belongs to
 
 AirRow RowAt(const AirMap& map, bool ground, double v, double range) {
-  const double angle =
-      std::max(shared::AirAngleFromRow<double>(v, range), kHair_rad) * (ground ? 1.0 : -1.0);
+  const double half_tangent = shared::AirHalfTangent<double>(v, std::tan(0.5 * range));
+  const double angle = std::max(2.0 * std::atan(half_tangent), kHair_rad) * (ground ? 1.0 : -1.0);
   const double zenith = std::clamp(0.5 * kPi + map.horizon_dip + angle, 0.0, kPi);
   return {ground, zenith, std::cos(zenith), std::sin(zenith)};
 }
@@ -39,7 +39,7 @@ std::vector<AirRow> RowsOf(const AirMap& map, int sky, double sky_range, int gro
 std::vector<double> AzimuthsOf(int columns) {
   std::vector<double> azimuths;
   for (int i = 0; i < columns; ++i)
-    azimuths.push_back(shared::AirAzimuthFromColumn<double>(Unit(i, columns)));
+    azimuths.push_back(4.0 * std::atan(shared::AirQuarterTangent<double>(Unit(i, columns))));
   return azimuths;
 }
 
@@ -52,7 +52,7 @@ float AirPhases::OfMolecules(double nu) {
 }
 
 glm::vec4 AirPhases::OfAerosol(double nu) const {
-  const double place = std::sqrt(std::acos(nu) / kPi) * (nodes_.width - 1);
+  const double place = shared::AirPhaseNode<double>(0.5 - 0.5 * nu) * (nodes_.width - 1);
   const int cell = std::min(static_cast<int>(place), nodes_.width - 2);
   const auto t = static_cast<float>(place - cell);
   return nodes_.At(cell, 0) + t * (nodes_.At(cell + 1, 0) - nodes_.At(cell, 0));

@@ -15,7 +15,7 @@ namespace alpenglow {
 namespace {
 
 constexpr std::size_t kBands = 4;
-constexpr int kPhaseNodes = 1024;
+constexpr int kPhaseNodes = 4096;
 constexpr int kSunCosines = 256, kSunAltitudes = 64;
 
 // What molecules, aerosol and all else give in the direction of the sun, or in the one of its
@@ -174,8 +174,9 @@ MediumTables MakeMediumTables(const AirIntegrator<float>& air) {
   RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, kSunAltitudes)};
   for (int k = 0; k < kPhaseNodes; ++k) {
-    const double share = Unit(k, kPhaseNodes);
-    const std::vector<double> phase = MiePhaseValues(air.medium(), std::cos(kPi * share * share));
+    const double half_sine = AirHalfSine<double>(Unit(k, kPhaseNodes));
+    const std::vector<double> phase =
+        MiePhaseValues(air.medium(), 1.0 - 2.0 * half_sine * half_sine);
     for (std::size_t band = 0; band < phase.size(); ++band)
       tables.phase.At(k, 0)[static_cast<glm::length_t>(band)] = static_cast<float>(phase[band]);
   }

@@ -91,7 +91,7 @@ void RequireFourBands(const Medium& medium);
 
 /// What depends on the medium alone.
 struct MediumTables {
-  /// Of the aerosol, [node]: scattering angles pi (k / (n - 1))^2.
+  /// Of the aerosol, [node]: AirPhaseNode of air_map.glsl, from forward to backward.
   AirTexels phase;
   /// Transmittance to space, [zenith cosine, altitude] on the map of transmittance_map.glsl.
   AirTexels to_sun;

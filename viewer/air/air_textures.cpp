@@ -100,8 +100,9 @@ void AirTextures::Upload(const AirTables& tables) {
   const AirMap& map = tables.map;
   const AirTablesSize& size = tables.size;
   values_.shell = {map.altitude, map.ceiling, map.top, map.radius};
-  values_.ranges = {map.sky_range, map.air_sky_range, map.ground_range,
-                    map.altitude > map.top ? 1.0 : 0.0};
+  const auto half_tangent = [](double angle) { return std::tan(0.5 * angle); };
+  values_.ranges = {half_tangent(map.sky_range), half_tangent(map.air_sky_range),
+                    half_tangent(map.ground_range), map.altitude > map.top ? 1.0 : 0.0};
   values_.crowding = {map.sky_crowding, map.ground_crowding, map.twilight_fall,
                       map.twilight_reference};
   values_.columns = AxesOf(size.sky_columns, size.columns);

@@ -8,7 +8,8 @@ layout(std140) uniform AirTables {
   vec4 air_sun;       // unit vector to the sun
   vec4 air_frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
   vec4 air_shell;     // altitude that tables are for, ceiling of land, top of the air, radius [km]
-  vec4 air_ranges;    // of rows: sky, ways above the horizon, below it [rad]; 1: eye above the air
+  vec4 air_ranges;    // tangents of half the ranges of rows: sky, ways above the horizon, below
+                      // it; 1: eye above the air
   vec4 air_crowding;  // of distances, above and below the horizon
   vec4 air_columns;   // first texel and texels of columns: sky; ways
   vec4 air_sky_rows;  // the same of rows, above the horizon; below it
@@ -35,17 +36,6 @@ struct AirTo {
   vec4 transmittance;
 };
 
-// asin(sqrt(x)), x in [0, 1]: asin(s) = s times a polynomial in s^2, Chebyshev's interpolation on
-// [0, 1/2], error below 1e-6; beyond, the complement.
-float ArcSineOfRoot(float x) {
-  float y = min(x, 1.0 - x);
-  float series = 0.999999316 +
-                 y * (0.166760939 +
-                      y * (0.072926353 + y * (0.060887368 + y * (-0.024216352 + y * 0.096353908))));
-  float angle = sqrt(max(y, 0.0)) * series;
-  return x > 0.5 ? 1.57079633 - angle : angle;
-}
-
 // sin^2 of half the angle to the sun.
 float HalfSineSquared(vec3 direction) {
   vec3 between = direction - air_sun.xyz;
@@ -53,28 +43,26 @@ float HalfSineSquared(vec3 direction) {
 }
 
 vec4 AerosolPhase(float half_sine_squared) {
-  float angle = 2.0 * ArcSineOfRoot(half_sine_squared);
-  float node = sqrt(angle * 0.318309886);
-  return textureLod(air_phase, air_phase_nodes.x + air_phase_nodes.y * node, 0.0);
+  return textureLod(air_phase,
+                    air_phase_nodes.x + air_phase_nodes.y * AirPhaseNode(half_sine_squared), 0.0);
 }
 
-// Angle over the horizon.
-float AngleOverHorizon(vec3 direction) {
+// Tangent of half the angle over the horizon.
+float HalfTangent(vec3 direction) {
   float flat_length = length(direction.xy);
-  return atan(direction.z * air_frame.w + flat_length * air_frame.z,
-              flat_length * air_frame.w - direction.z * air_frame.z);
+  float up = direction.z * air_frame.w + flat_length * air_frame.z;
+  return up / (1.0 + flat_length * air_frame.w - direction.z * air_frame.z);
 }
 
 float ColumnOf(vec3 direction) {
   float along = dot(direction.xy, air_frame.xy);
-  float across = abs(air_frame.x * direction.y - air_frame.y * direction.x);
-  return AirColumnFromAzimuth(atan(across + 1e-12, along));
+  return AirColumn(0.5 - 0.5 * along / max(length(direction.xy), 1e-12));
 }
 
 // Texture coordinate of a row: `rows` as in the block.
-float RowOf(float angle, float sky_range, vec4 rows) {
-  bool ground = angle < 0.0;
-  float v = AirRowFromAngle(abs(angle), ground ? air_ranges.z : sky_range);
+float RowOf(float half_tangent, float sky_range, vec4 rows) {
+  bool ground = half_tangent < 0.0;
+  float v = AirRow(abs(half_tangent), ground ? air_ranges.z : sky_range);
   return ground ? rows.z + rows.w * v : rows.x + rows.y * v;
 }
 
@@ -85,25 +73,25 @@ float TwilightAt(float half_sine_squared, float d) {
 }
 
 // Whether a direction passes above all air.
-bool AboveAir(float angle) { return air_ranges.w > 0.5 && angle > air_ranges.x; }
+bool AboveAir(float half_tangent) { return air_ranges.w > 0.5 && half_tangent > air_ranges.x; }
 
 // The whole ray: to space, or to the bare planet with its lit ground.
 vec4 SkyRadiance(vec3 direction) {
-  float angle = AngleOverHorizon(direction);
+  float rise = HalfTangent(direction);
   vec2 at = vec2(air_columns.x + air_columns.y * ColumnOf(direction),
-                 RowOf(angle, air_ranges.x, air_sky_rows));
+                 RowOf(rise, air_ranges.x, air_sky_rows));
   float h2 = HalfSineSquared(direction);
   vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] + AerosolPhase(h2) * air_sky_mix[1] +
                 air_sky_mix[2];
-  phases *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, angle < 0.0 ? 1.0 : 0.0, air_shell.w));
-  return AboveAir(angle) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
+  phases *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_shell.w));
+  return AboveAir(rise) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
 }
 
 // Of the whole view ray, to space or to the bare ground.
 vec4 TransmittanceToSpace(vec3 direction) {
-  float angle = AngleOverHorizon(direction);
-  float at = RowOf(angle, air_ranges.x, air_through_rows);
-  return AboveAir(angle) ? vec4(1.0) : textureLod(air_through, at, 0.0);
+  float rise = HalfTangent(direction);
+  float at = RowOf(rise, air_ranges.x, air_through_rows);
+  return AboveAir(rise) ? vec4(1.0) : textureLod(air_through, at, 0.0);
 }
 
 // From a point at or above the ground [km] towards a sun that the planet does not hide.
@@ -124,15 +112,9 @@ struct AirWay {
   float half_sine_squared;  // of the angle to the sun
 };
 
-// 1 - exp(-tau), given that exponential, where it cancels too: error below 1e-6 of it.
-vec4 OneLess(vec4 exponential, vec4 tau) {
-  vec4 series = tau * (1.0 - tau * (0.5 - tau * (0.166666667 - tau * 0.0416666667)));
-  return mix(1.0 - exponential, series, lessThan(tau, vec4(0.06)));
-}
-
 AirWay WayTo(vec3 direction, float distance_km) {
-  float angle = AngleOverHorizon(direction);
-  bool ground = angle < 0.0;
+  float rise = HalfTangent(direction);
+  bool ground = rise < 0.0;
   float h = air_shell.x;
   float radius = air_shell.w;
   float entry = AirEntry(h, direction.z, air_shell.z, radius);
@@ -143,16 +125,16 @@ AirWay WayTo(vec3 direction, float distance_km) {
   float beyond = clamp(distance_km - near, 0.0, reach);
   float w = AirNodeFromShare(beyond / reach, ground ? air_crowding.y : air_crowding.x);
   vec2 distances = air_distances.xz + air_distances.yw * w;
-  float row = RowOf(angle, air_ranges.y, air_extinction_rows);
+  float row = RowOf(rise, air_ranges.y, air_extinction_rows);
   float length_km = clamp(distance_km, entry, near + reach) - entry;
   vec4 tau = length_km * textureLod(air_extinction, vec2(distances.y, row), 0.0);
   AirWay way;
   way.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
-                RowOf(angle, air_ranges.y, air_way_rows), distances.x);
+                RowOf(rise, air_ranges.y, air_way_rows), distances.x);
   way.half_sine_squared = HalfSineSquared(direction);
   way.transmittance = exp(-tau);
   way.scattered =
-      OneLess(way.transmittance, tau) * TwilightAt(way.half_sine_squared, near + 0.5 * beyond);
+      (1.0 - way.transmittance) * TwilightAt(way.half_sine_squared, near + 0.5 * beyond);
   return way;
 }
 

@@ -102,11 +102,12 @@ class AirReading {
 
  private:
   [[nodiscard]] static double Column(double azimuth, int columns) {
-    return shared::AirColumnFromAzimuth<double>(azimuth) * (columns - 1);
+    const double sine = std::sin(0.5 * azimuth);
+    return shared::AirColumn<double>(sine * sine) * (columns - 1);
   }
   [[nodiscard]] double Row(double angle, double sky_range, int sky, int ground) const {
     const double range = angle < 0.0 ? tables_.map.ground_range : sky_range;
-    const double v = shared::AirRowFromAngle<double>(std::abs(angle), range);
+    const double v = shared::AirRow<double>(std::tan(0.5 * std::abs(angle)), std::tan(0.5 * range));
     return angle < 0.0 ? sky + v * (ground - 1) : v * (sky - 1);
   }
   [[nodiscard]] double SunCosine(double angle, double azimuth) const {
@@ -123,7 +124,8 @@ class AirReading {
   [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const glm::vec4& molecules,
                                const glm::vec4& aerosol, const glm::vec4& rest) const {
     const double nu = SunCosine(angle, azimuth);
-    const double node = std::sqrt(std::acos(nu) / kPi) * (medium_.phase.width - 1);
+    const double node =
+        shared::AirPhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (medium_.phase.width - 1);
     return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(molecules) +
            Linear(medium_.phase, node) * glm::dvec4(aerosol) + glm::dvec4(rest);
   }
