@@ -123,7 +123,7 @@ inline AirErrors SkyErrors(const AirJudge& judge, const AirReading& reading, con
   for (int i = 1; i <= count; ++i) {
     const double u = 2.0 * Halton(i, 2) - 1.001, azimuth = kPi * Halton(i, 3);
     const double v = i % 2 == 0 ? u : u * u * u;
-    const double angle = 0.9999 * v * (v > 0.0 ? map.sky_range : map.ground_range);
+    const double angle = 0.998 * v * (v > 0.0 ? map.sky_range : map.ground_range);
     const Bands<double> exact = judge.Sky(map, angle, azimuth);
     const glm::dvec4 read = reading.Sky(angle, azimuth);
     for (std::size_t band = 0; band < exact.count; ++band) {

@@ -68,9 +68,9 @@ struct Look {
 std::vector<Look> Looks(const AirMap& map, double sky_range) {
   std::vector<Look> looks;
   for (int i = 1; i <= 400; ++i) {
-    const double u = 2.0 * Halton(i, 2) - 1.0;
+    const double u = 2.0 * Halton(i, 2) - 1.001;  // not the horizon itself, where two sides meet
     const double v = i % 2 == 0 ? u : u * u * u;
-    const double angle = v * (v > 0.0 ? sky_range : map.ground_range) * 0.9999;
+    const double angle = v * (v > 0.0 ? sky_range : map.ground_range) * 0.998;
     const double entry = shared::AirEntry<double>(map.altitude, std::sin(angle - map.horizon_dip),
                                                   map.ceiling, map.radius);
     looks.push_back({angle, kPi * Halton(i, 3), entry + 200.0 * Halton(i, 5) * Halton(i, 7)});
@@ -177,6 +177,32 @@ TEST_F(AirTexturesOnGpu, WaysAreThoseOfTheProcessor) {
   ExpectWaysOfCpu(1500.0, 0.02, 2e-3);
   ExpectWaysOfCpu(9000.0, -0.08, 2e-3);
   ExpectWaysOfCpu(400e3, 0.4, 2e-3);
+}
+
+TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSun) {
+  Both both(1500.0, 0.1);
+  const AirEye moved{1600.0, 0.08};
+  const double sine = std::sqrt((1.0 - moved.mu_s) * (1.0 + moved.mu_s));
+  both.textures.SetView(moved.altitude_m, {-0.6 * sine, -0.8 * sine, moved.mu_s});
+  const tests::AirReading reading(both.tables, both.medium, moved);
+  const AirMap map(tests::Earth().medium, moved.altitude_m, moved.ceiling_m,
+                   both.tables.map.twilight_fall);
+  std::vector<tests::Arguments<float>> points;
+  const std::vector<Look> looks = Looks(map, map.sky_range);
+  for (const Look& look : looks) {
+    const glm::vec3 d(
+        both.Direction(look.angle - map.horizon_dip + both.tables.map.horizon_dip, look.azimuth));
+    points.push_back({d.x, d.y, d.z, static_cast<float>(look.distance_km)});
+  }
+  const auto sky = both.OnGpu("SkyRadiance(vec3(a[0], a[1], a[2])).y", points);
+  const auto diffuse = both.OnGpu("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).diffuse.y", points);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double seen = reading.Sky(looks[i].angle, looks[i].azimuth)[1];
+    EXPECT_NEAR(sky[i], seen, 2e-3 * seen) << looks[i].angle << ", " << looks[i].azimuth;
+    const double light =
+        reading.To(looks[i].angle, looks[i].azimuth, looks[i].distance_km).diffuse[1];
+    EXPECT_NEAR(diffuse[i], light, 2e-3 * light + 1e-7) << looks[i].angle;
+  }
 }
 
 TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
