@@ -137,6 +137,16 @@ TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
   }
 }
 
+TEST(AirTables, OfMarsAreFiniteAndNotNegative) {
+  const tests::LitAir mars(MediumPreset("mars"));
+  for (const double altitude_m : {0.0, 30e3, 400e3}) {
+    const AirTables tables = TablesOf(mars, EyeUnder(altitude_m, 0.1), AirQuality::kFirst);
+    for (const AirTexels* texels :
+         {&tables.sky, &tables.extinction, &tables.single, &tables.diffuse})
+      ExpectSound(*texels, "of Mars");
+  }
+}
+
 TEST(AirTables, BelowSeaLevelAreThoseOfSeaLevel) {
   const AirTables below = TablesOf(tests::Earth(), EyeUnder(-100.0, 20.0), AirQuality::kFirst);
   const AirTables at = TablesOf(tests::Earth(), EyeUnder(0.0, 20.0), AirQuality::kFirst);
