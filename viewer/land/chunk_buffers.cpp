@@ -7,7 +7,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kFirstSlots = 256;
 constexpr GLsizeiptr kVertexBytes = kChunkVertices * sizeof(ChunkVertex);
 constexpr GLsizeiptr kLightBytes = kChunkVertices * sizeof(ChunkLight);
 constexpr GLsizeiptr kTriangleBytes = kChunkIndices * sizeof(std::uint16_t);
@@ -48,14 +47,14 @@ void DescribeLight(const GlBuffer& buffer, GLuint first_location) {
 
 }  // namespace
 
-ChunkBuffers::ChunkBuffers() {
+ChunkBuffers::ChunkBuffers(int slots) {
   Enlarge(triangles_, 0, kWholeBytes);
   for (unsigned sides = 0; sides < whole_count_.size(); ++sides) {
     const std::vector<std::uint16_t> triangles = WithCoarseSides(WholeTriangles(), {}, sides);
     whole_count_[sides] = static_cast<int>(triangles.size());
     Put(triangles_, sides * kTriangleBytes, std::span<const std::uint16_t>(triangles));
   }
-  Grow(kFirstSlots);
+  Grow(slots);
 }
 
 void ChunkBuffers::Grow(int slots) {
@@ -78,7 +77,7 @@ void ChunkBuffers::SetSides(int slot, const LandChunk& chunk, unsigned sides) {
 }
 
 int ChunkBuffers::Add(const LandChunk& chunk, std::span<const ChunkLight> light) {
-  if (free_.empty()) Grow(2 * slots_);
+  if (free_.empty()) Grow(slots_ + slots_ / 4 + 64);
   const int slot = free_.back();
   free_.pop_back();
   Put(vertices_, slot * kVertexBytes, std::span<const ChunkVertex>(chunk.vertices));
@@ -129,8 +128,9 @@ void ChunkBuffers::Draw(std::span<const Drawn> chunks, LightSide from) {
 }
 
 std::size_t ChunkBuffers::bytes() const {
+  const auto taken = static_cast<GLsizeiptr>(slots_) - static_cast<GLsizeiptr>(free_.size());
   return static_cast<std::size_t>(kWholeBytes +
-                                  slots_ * (kVertexBytes + 2 * kLightBytes + kTriangleBytes));
+                                  taken * (kVertexBytes + 2 * kLightBytes + kTriangleBytes));
 }
 
 }  // namespace alpenglow

@@ -17,10 +17,11 @@ enum class LightSide { kFirst, kSecond };
   return side == LightSide::kFirst ? LightSide::kSecond : LightSide::kFirst;
 }
 
-/// Chunks in slots. Room grows as it is needed and is kept.
+/// Chunks in slots.
 class ChunkBuffers {
  public:
-  ChunkBuffers();
+  /// @param slots  that are expected; more are made when they are needed, which copies all.
+  explicit ChunkBuffers(int slots);
 
   /// Puts a chunk into a free slot, its light on both sides.
   [[nodiscard]] int Add(const LandChunk& chunk, std::span<const ChunkLight> light);
@@ -37,7 +38,7 @@ class ChunkBuffers {
   /// other side.
   void Draw(std::span<const Drawn> chunks, LightSide from);
 
-  /// On the graphics card.
+  /// Of the slots that are taken, and of triangles of whole chunks.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

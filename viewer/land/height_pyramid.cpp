@@ -19,6 +19,52 @@ float Binomial(float before, float middle, float after) {
   return std::isnan(mean) ? middle : mean;
 }
 
+// One axis of a level, as indices of the finer one.
+struct Means {
+  struct Mean {
+    std::size_t middle;
+    bool has_neighbours;
+  };
+  std::vector<Mean> of;
+  std::size_t finer;  // how many it is made of
+
+  Means(int first_sample, int last_sample, int level)
+      : finer(static_cast<std::size_t>(LevelAxis(first_sample, last_sample, level - 1).count())) {
+    const LevelAxis axis(first_sample, last_sample, level);
+    const LevelAxis from(first_sample, last_sample, level - 1);
+    const int step = 1 << (level - 1);
+    for (int index = 0; index < axis.count(); ++index) {
+      const int sample = axis.SampleOf(index);
+      of.push_back({static_cast<std::size_t>(from.IndexOf(sample)),
+                    sample % (2 * step) == 0 && sample - step >= from.first &&
+                        sample + step <= last_sample});
+    }
+  }
+};
+
+// Along the rows, then along the columns: on a rim means go along it, never across.
+std::vector<float> Coarser(const LatticeBox& box, int level, const std::vector<float>& finer) {
+  const Means columns(box.first_column, box.last_column, level);
+  const Means rows(box.first_row, box.last_row, level);
+  const std::size_t width = columns.of.size();
+  std::vector<float> narrow(width * rows.finer);
+  for (std::size_t row = 0; row < rows.finer; ++row) {
+    const float* const from = &finer[row * columns.finer];
+    for (std::size_t i = 0; i < width; ++i) {
+      const auto [at, both] = columns.of[i];
+      narrow[row * width + i] = both ? Binomial(from[at - 1], from[at], from[at + 1]) : from[at];
+    }
+  }
+  std::vector<float> means(width * rows.of.size());
+  for (std::size_t j = 0; j < rows.of.size(); ++j) {
+    const auto [row, both] = rows.of[j];
+    const float* const at = &narrow[row * width];
+    for (std::size_t i = 0; i < width; ++i)
+      means[j * width + i] = both ? Binomial(*(at + i - width), at[i], at[i + width]) : at[i];
+  }
+  return means;
+}
+
 }  // namespace
 
 HeightSamples::HeightSamples(std::vector<float> height_m) {
@@ -37,10 +83,13 @@ HeightPyramid::HeightPyramid(const LatticeBox& box, int level, std::vector<float
       static_cast<std::size_t>(LevelAxis(box.first_column, box.last_column, level).count() *
                                LevelAxis(box.first_row, box.last_row, level).count());
   ALPENGLOW_ENSURE(height_m.size(), ==, samples);
-  levels_.push_back(std::make_shared<const HeightSamples>(std::move(height_m)));
   const int across = std::max(box.last_column - box.first_column, box.last_row - box.first_row);
-  for (int next = level + 1; (1 << next) < 2 * across; ++next)
-    levels_.push_back(std::make_shared<const HeightSamples>(Coarser(next)));
+  for (int next = level + 1; (1 << next) < 2 * across; ++next) {
+    std::vector<float> coarser = Coarser(box, next, height_m);
+    levels_.push_back(std::make_shared<const HeightSamples>(std::move(height_m)));
+    height_m = std::move(coarser);
+  }
+  levels_.push_back(std::make_shared<const HeightSamples>(std::move(height_m)));
 }
 
 std::size_t HeightPyramid::IndexOf(int level, int column, int row) const {
@@ -48,36 +97,6 @@ std::size_t HeightPyramid::IndexOf(int level, int column, int row) const {
   const LevelAxis rows(box_.first_row, box_.last_row, level);
   return static_cast<std::size_t>(rows.IndexOf(row)) * static_cast<std::size_t>(columns.count()) +
          static_cast<std::size_t>(columns.IndexOf(column));
-}
-
-// Of the level before, which is the coarsest so far.
-std::vector<float> HeightPyramid::Coarser(int level) const {
-  const LevelAxis columns(box_.first_column, box_.last_column, level);
-  const LevelAxis rows(box_.first_row, box_.last_row, level);
-  const int step = 1 << (level - 1);
-  const auto inside = [&](int sample, int first, int last) {
-    return sample % (2 * step) == 0 && sample - step >= first && sample + step <= last;
-  };
-  const auto along_row = [&](int column, int row) {
-    const float middle = At(level - 1, column, row);
-    if (!inside(column, box_.first_column, box_.last_column)) return middle;
-    return Binomial(At(level - 1, column - step, row), middle, At(level - 1, column + step, row));
-  };
-  std::vector<float> means;
-  means.reserve(static_cast<std::size_t>(columns.count()) * static_cast<std::size_t>(rows.count()));
-  for (int j = 0; j < rows.count(); ++j) {
-    const int row = rows.SampleOf(j);
-    const bool both = inside(row, box_.first_row, box_.last_row);
-    for (int i = 0; i < columns.count(); ++i) {
-      const int column = columns.SampleOf(i);
-      // On the rim's own columns no mean goes across it, along it the mean does.
-      const float middle = along_row(column, row);
-      means.push_back(
-          both ? Binomial(along_row(column, row - step), middle, along_row(column, row + step))
-               : middle);
-    }
-  }
-  return means;
 }
 
 HeightPyramid HeightPyramid::From(int level) const {

@@ -75,7 +75,6 @@ class HeightPyramid {
  private:
   [[nodiscard]] std::size_t IndexOf(int level, int column, int row) const;
   [[nodiscard]] float Between(int column, int row) const;
-  [[nodiscard]] std::vector<float> Coarser(int level) const;
 
   LatticeBox box_;
   int finest_;

@@ -28,7 +28,7 @@ float MeanOfRow(const ElevationGrid& grid, int row) {
 
 // A grid around the earth ends where it begins, and reaches the pole that it surrounds; heights,
 // if it has any, go along.
-ElevationGrid Closed(const ElevationGrid& grid) {
+ElevationGrid Closed(ElevationGrid grid) {
   if (!grid.ClosesAroundTheEarth()) return grid;
   const auto reaches = [&](int row, double pole) {
     const double gap = std::abs(pole - grid.LatitudeOfRow(row));
@@ -172,10 +172,25 @@ std::vector<int> LandTiles::Touching(const LatticeBox& box) const {
 
 namespace {
 
+// Whether a grid's samples are those of its tile one by one.
+bool IsTile(const LandLattice& lattice, const LandTile& tile, const ElevationGrid& grid) {
+  const auto like = [](double a, double b) { return std::abs(a - b) < 1e-2; };  // samples
+  return tile.level == 0 && tile.box.last_column - tile.box.first_column == grid.columns - 1 &&
+         tile.box.last_row - tile.box.first_row == grid.rows - 1 &&
+         like((grid.columns - 1) * grid.step_lon_rad / lattice.step_lon_rad, grid.columns - 1) &&
+         like((grid.rows - 1) * grid.step_lat_rad / lattice.step_lat_rad, grid.rows - 1) &&
+         like((lattice.north_rad - grid.north_rad) / lattice.step_lat_rad, tile.box.first_row) &&
+         like(std::remainder(
+                  grid.west_rad - lattice.west_rad - tile.box.first_column * lattice.step_lon_rad,
+                  2.0 * std::numbers::pi) /
+                  lattice.step_lon_rad,
+              0.0);
+}
+
 // Heights of a grid at the samples that the lattice has of a tile. Samples that lie on the lattice
 // are taken as they are.
-std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile,
-                             const ElevationGrid& grid) {
+std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, ElevationGrid grid) {
+  if (IsTile(lattice, tile, grid)) return std::move(grid.height_m);
   const LevelAxis columns(tile.box.first_column, tile.box.last_column, tile.level);
   const LevelAxis rows(tile.box.first_row, tile.box.last_row, tile.level);
   const double lon_ratio = lattice.step_lon_rad / grid.step_lon_rad;
@@ -230,7 +245,7 @@ ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
     model = ReadElevation(wanted.file, tiles.source().voids);
   }
   const HeightPyramid all(wanted.box, wanted.level,
-                          OnLattice(tiles.lattice(), wanted, Closed(model.grid)));
+                          OnLattice(tiles.lattice(), wanted, Closed(std::move(model.grid))));
   return {std::make_shared<const HeightPyramid>(all.From(level)),
           NoteOn(model, wanted.file.string())};
 }

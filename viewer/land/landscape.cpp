@@ -106,9 +106,22 @@ LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
   return {LocalFrame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0}), column, row};
 }
 
+// Of each level a disk about the eye, at most all; and what is kept a while longer.
+int Landscape::ExpectedChunks() const {
+  const double radius = 1.25 * size_.detail / kChunkCells + 2.0;
+  double chunks = 0.0;
+  for (int level = 0; level <= tree_.top(); ++level) {
+    const double all =
+        std::ceil(static_cast<double>(tiles_->lattice().LastI(level)) / kChunkCells) *
+        std::ceil(static_cast<double>(tiles_->lattice().LastJ(level)) / kChunkCells);
+    chunks += std::min(all, 3.2 * radius * radius);
+  }
+  return static_cast<int>(0.8 * chunks) + 64;
+}
+
 // A new set grows beside the old one and takes its place when it has all that is wanted.
 void Landscape::MoveAnchor() {
-  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_));
+  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
   if (next_set_) {
     const bool has_all =
         std::all_of(demand_.wanted.begin(), demand_.wanted.end(), [&](const WantedChunk& wanted) {
@@ -122,7 +135,8 @@ void Landscape::MoveAnchor() {
   GeodeticPosition foot = eye_place_;
   foot.height_m = 0.0;
   const double away = glm::length(set_->anchor.frame.EnuFromGeodetic(foot).xyz);
-  if (away > kAnchorReach_m) next_set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_));
+  if (away > kAnchorReach_m)
+    next_set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
 }
 
 void Landscape::Add(ChunkSet& set, const LitChunk& lit, int light_number) {
@@ -298,7 +312,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   eye_ = EyeAt(eye);
   if (cache_.Update(eye_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
-  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_));
+  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
   TakeChunks();
   FindDemand(seconds);
   MoveAnchor();

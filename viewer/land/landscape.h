@@ -107,7 +107,7 @@ class Landscape {
   };
   // All chunks of one anchor.
   struct ChunkSet {
-    explicit ChunkSet(const LandAnchor& at) : anchor(at) {}
+    ChunkSet(const LandAnchor& at, int slots) : anchor(at), buffers(slots) {}
     LandAnchor anchor;
     ChunkBuffers buffers;
     std::unordered_map<ChunkKey, Kept, ChunkKeyHash> chunks;
@@ -135,6 +135,7 @@ class Landscape {
 
   [[nodiscard]] LandEye EyeAt(const GeodeticPosition& eye) const;
   [[nodiscard]] LandAnchor AnchorAt(const GeodeticPosition& eye) const;
+  [[nodiscard]] int ExpectedChunks() const;
   void MoveAnchor();
   void TakeChunks();
   void Add(ChunkSet& set, const LitChunk& lit, int light_number);
