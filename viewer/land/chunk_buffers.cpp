@@ -76,11 +76,11 @@ void ChunkBuffers::SetSides(int slot, const LandChunk& chunk, unsigned sides) {
   cut = {sides, static_cast<int>(triangles.size())};
 }
 
-int ChunkBuffers::Add(const LandChunk& chunk, std::span<const ChunkLight> light) {
+int ChunkBuffers::Add(std::span<const ChunkVertex> vertices, std::span<const ChunkLight> light) {
   if (free_.empty()) Grow(slots_ + slots_ / 4 + 64);
   const int slot = free_.back();
   free_.pop_back();
-  Put(vertices_, slot * kVertexBytes, std::span<const ChunkVertex>(chunk.vertices));
+  Put(vertices_, slot * kVertexBytes, vertices);
   SetLight(slot, LightSide::kFirst, light);
   SetLight(slot, LightSide::kSecond, light);
   cut_[static_cast<std::size_t>(slot)] = {};

@@ -24,7 +24,7 @@ class ChunkBuffers {
   explicit ChunkBuffers(int slots);
 
   /// Puts a chunk into a free slot, its light on both sides.
-  [[nodiscard]] int Add(const LandChunk& chunk, std::span<const ChunkLight> light);
+  [[nodiscard]] int Add(std::span<const ChunkVertex> vertices, std::span<const ChunkLight> light);
   void SetLight(int slot, LightSide side, std::span<const ChunkLight> light);
   void Remove(int slot) { free_.push_back(slot); }
 

@@ -73,19 +73,21 @@ Landscape::Made Landscape::Work(const Order& order) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::milliseconds(30);
   Made made{{}, {}, order.light_number, order.for_next_anchor};
-  const auto lit = [&](std::shared_ptr<const LandChunk> chunk) {
-    std::vector<ChunkLight> light;
-    if (!chunk->triangles.empty()) light = LightOfChunk(*chunk, order.anchor.frame, order.light);
-    return LitChunk{std::move(chunk), std::move(light)};
+  const auto light_of = [&](const LandChunk& chunk) {
+    return chunk.triangles.empty() ? std::vector<ChunkLight>{}
+                                   : LightOfChunk(chunk, order.anchor.frame, order.light);
   };
   for (const ChunkKey& key : order.make) {
     if (Clock::now() > end) break;
-    made.made.push_back(lit(std::make_shared<const LandChunk>(
-        MakeChunk(*order.heights, key, order.top, order.anchor))));
+    LandChunk chunk = MakeChunk(*order.heights, key, order.top, order.anchor);
+    std::vector<ChunkLight> light = light_of(chunk);
+    std::vector<ChunkVertex> vertices = std::exchange(chunk.vertices, {});  // for the card alone
+    made.made.push_back({std::make_shared<const LandChunk>(std::move(chunk)), std::move(vertices),
+                         std::move(light)});
   }
   for (const auto& chunk : order.relight) {
     if (Clock::now() > end) break;
-    made.relit.push_back(lit(chunk));
+    made.relit.push_back({chunk, {}, light_of(*chunk)});
   }
   return made;
 }
@@ -116,7 +118,7 @@ int Landscape::ExpectedChunks() const {
         std::ceil(static_cast<double>(tiles_->lattice().LastJ(level)) / kChunkCells);
     chunks += std::min(all, 3.2 * radius * radius);
   }
-  return static_cast<int>(0.8 * chunks) + 64;
+  return static_cast<int>(1.25 * chunks) + 64;
 }
 
 // A new set grows beside the old one and takes its place when it has all that is wanted.
@@ -141,7 +143,7 @@ void Landscape::MoveAnchor() {
 
 void Landscape::Add(ChunkSet& set, const LitChunk& lit, int light_number) {
   Kept kept{lit.chunk, -1, frame_, light_number};
-  if (!lit.chunk->triangles.empty()) kept.slot = set.buffers.Add(*lit.chunk, lit.light);
+  if (!lit.chunk->triangles.empty()) kept.slot = set.buffers.Add(lit.vertices, lit.light);
   set.chunks[lit.chunk->key] = std::move(kept);
 }
 

@@ -124,6 +124,7 @@ class Landscape {
   };
   struct LitChunk {
     std::shared_ptr<const LandChunk> chunk;
+    std::vector<ChunkVertex> vertices;
     std::vector<ChunkLight> light;
   };
   struct Made {
