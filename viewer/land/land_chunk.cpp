@@ -256,6 +256,21 @@ class ChunkMaker {
     chunk_.low = glm::min(chunk_.low, glm::min(position, coarse));
     chunk_.high = glm::max(chunk_.high, glm::max(position, coarse));
     chunk_.highest_m = std::max(chunk_.highest_m, static_cast<double>(fine_.Height(i, j)));
+    WidenParts(i - i0_, j - j0_, glm::min(position, coarse), glm::max(position, coarse));
+  }
+
+  // A vertex on a border belongs to the parts on both sides.
+  void WidenParts(int i, int j, const glm::dvec3& low, const glm::dvec3& high) {
+    constexpr int kAcross = kChunkCells / kChunkPart;
+    for (int y = 0; y < kAcross; ++y) {
+      for (int x = 0; x < kAcross; ++x) {
+        const int east = i - kChunkPart * x, south = j - kChunkPart * y;
+        if (east < 0 || south < 0 || east > kChunkPart || south > kChunkPart) continue;
+        ChunkBox& box = chunk_.parts[static_cast<std::size_t>(kAcross * y + x)];
+        box.low = glm::min(box.low, glm::vec3(low));
+        box.high = glm::max(box.high, glm::vec3(high));
+      }
+    }
   }
 
   void AddTriangles() {

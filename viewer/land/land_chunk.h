@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -93,6 +94,14 @@ struct LandAnchor {
   int column = 0, row = 0;  // a sample near the frame's origin
 };
 
+/// A box in the anchor's frame.
+struct ChunkBox {
+  glm::vec3 low{std::numeric_limits<float>::infinity()};
+  glm::vec3 high{-std::numeric_limits<float>::infinity()};
+};
+inline constexpr int kChunkPart = 4;
+inline constexpr std::size_t kChunkParts = 16;
+
 struct LandChunk {
   ChunkKey key;
   std::vector<ChunkVertex> vertices;     // kChunkVertices, row by row from the north-west
@@ -102,6 +111,8 @@ struct LandChunk {
   bool is_whole = false;                 // no cell is missing: triangles are WholeTriangles()
   glm::dvec3 low{0.0}, high{0.0};        // box around both surfaces, in the anchor's frame
   double highest_m = 0.0;                // over the ellipsoid
+  /// Boxes around parts of kChunkPart x kChunkPart cells, row by row; an empty one has low > high.
+  std::array<ChunkBox, kChunkParts> parts;
 };
 
 /// @param top  the coarsest level: its vertices stay where they are.

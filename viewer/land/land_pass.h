@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -38,6 +39,11 @@ struct EyeInAnchor {
   /// From the eye's frame.
   [[nodiscard]] glm::dvec3 Turned(const glm::dvec3& v) const {
     return v.x * east + v.y * north + v.z * up;
+  }
+  /// A point of the anchor's frame in the eye's.
+  [[nodiscard]] glm::dvec3 From(const glm::dvec3& point) const {
+    const glm::dvec3 v = point - at;
+    return {glm::dot(v, east), glm::dot(v, north), glm::dot(v, up)};
   }
 };
 

@@ -7,8 +7,12 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
+#include <limits>
+
+#include "viewer/land/skyline.h"
 
 namespace alpenglow {
 namespace {
@@ -290,19 +294,95 @@ void Landscape::RaiseAbove(double seconds) {
   ceiling_m_ = ceiling_m_.value_or(highest) + share * (highest - ceiling_m_.value_or(highest));
 }
 
+namespace {
+
+// No vertex is missing.
+bool IsFull(const LandChunk& chunk) { return chunk.triangles.size() == kChunkIndices; }
+
+// Lines of the surface along every eighth row and column of a chunk.
+void AddCrests(Skyline& skyline, const LandChunk& chunk, const EyeInAnchor& eye) {
+  constexpr int kStride = kChunkCells / 2;
+  const auto between = [&](int i, int j) {
+    const auto v = static_cast<std::size_t>(j * kChunkSide + i);
+    const glm::dvec3 own(chunk.own[v].position_m);
+    if (chunk.coarse.empty()) return Skyline::Between{eye.From(own), eye.From(own)};
+    const auto [first, second] = chunk.ends[v];
+    const glm::dvec3 coarse = 0.5 * (glm::dvec3(chunk.coarse[first].position_m) +
+                                     glm::dvec3(chunk.coarse[second].position_m));
+    return Skyline::Between{eye.From(own), eye.From(coarse)};
+  };
+  for (int line = 0; line <= kChunkCells; line += kStride) {
+    std::array<Skyline::Between, kChunkSide> row, column;
+    for (int k = 0; k < kChunkSide; ++k) {
+      row[static_cast<std::size_t>(k)] = between(k, line);
+      column[static_cast<std::size_t>(k)] = between(line, k);
+    }
+    skyline.Add(row);
+    skyline.Add(column);
+  }
+}
+
+// A part of a chunk, as the skyline may hide it.
+struct SeenPart {
+  std::size_t chunk;  // which of those in view
+  glm::dvec3 middle;  // in the eye's frame
+  double radius_m, highest_m, nearest_m;
+};
+
+SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye) {
+  const glm::dvec3 low(box.low), high(box.high);
+  const glm::dvec3 middle = eye.From(0.5 * (low + high));
+  const glm::dvec3 half = 0.5 * (high - low);
+  // The box leans in the eye's frame: its highest corner counts.
+  const glm::dvec3 rise = glm::abs(eye.up) * half;
+  const double radius = std::hypot(half.x, half.y) + half.z * std::hypot(eye.up.x, eye.up.y);
+  return {chunk, middle, radius, middle.z + rise.x + rise.y + rise.z,
+          Skyline::NearestOf(middle, radius)};
+}
+
+// Whether each chunk has a part that no nearer land hides.
+std::vector<char> NotHidden(const std::vector<const LandChunk*>& chunks, const EyeInAnchor& eye) {
+  std::vector<SeenPart> parts;
+  for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk)
+    for (const ChunkBox& box : chunks[chunk]->parts)
+      if (box.low.x <= box.high.x) parts.push_back(PartOf(box, chunk, eye));
+  std::sort(parts.begin(), parts.end(),
+            [](const SeenPart& a, const SeenPart& b) { return a.nearest_m < b.nearest_m; });
+  Skyline skyline;
+  std::vector<char> is_seen(chunks.size(), 0);
+  for (const SeenPart& part : parts) {
+    if (is_seen[part.chunk] != 0) continue;
+    if (skyline.Hides(part.middle, part.radius_m, part.highest_m)) continue;
+    is_seen[part.chunk] = 1;
+    if (IsFull(*chunks[part.chunk])) AddCrests(skyline, *chunks[part.chunk], eye);
+  }
+  return is_seen;
+}
+
+}  // namespace
+
 void Landscape::Choose() {
   around_ = DrawnChunks(tree_, eye_, ranges_,
                         [&](const ChunkKey& key) { return set_->chunks.contains(key); });
   const EyeInAnchor eye(set_->anchor.frame, eye_place_);
   const ViewPyramid pyramid(eye, view_);
-  drawn_.clear();
+  const std::optional<double> ground = GroundUnder(eye_place_);
+  over_ground_ = ground && eye_place_.height_m > *ground;
+  std::vector<ChunkBuffers::Drawn> in_view;
+  std::vector<const LandChunk*> chunks;
   for (const DrawnChunk& near : around_) {
     const auto found = set_->chunks.find(near.key);
     if (found == set_->chunks.end() || found->second.slot < 0) continue;
     const LandChunk& chunk = *found->second.chunk;
     if (!pyramid.Touches(chunk.low, chunk.high)) continue;
-    drawn_.push_back({found->second.slot, &chunk, near.coarse_sides});
+    in_view.push_back({found->second.slot, &chunk, near.coarse_sides});
+    chunks.push_back(&chunk);
   }
+  drawn_.clear();
+  const std::vector<char> is_seen =
+      over_ground_ ? NotHidden(chunks, eye) : std::vector<char>(chunks.size(), 1);
+  for (std::size_t i = 0; i < in_view.size(); ++i)
+    if (is_seen[i] != 0) drawn_.push_back(in_view[i]);
 }
 
 void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
@@ -366,8 +446,7 @@ void Landscape::Draw(GLuint view_binding) {
   if (mesh_) mesh_->Draw(pass_, eye_place_, view_, view_binding);
   if (!set_ || drawn_.empty()) return;
   // Over the ground no slope that faces away is seen before one that faces the eye.
-  const std::optional<double> ground = GroundUnder(eye_place_);
-  pass_.Run(Block(), view_binding, ground && eye_place_.height_m > *ground,
+  pass_.Run(Block(), view_binding, over_ground_,
             [&] { set_->buffers.Draw(drawn_, Other(shown_)); });
 }
 

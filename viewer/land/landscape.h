@@ -159,6 +159,7 @@ class Landscape {
   GeodeticPosition eye_place_;
   LandEye eye_;
   LandView view_;
+  bool over_ground_ = false;
   std::optional<double> ceiling_m_;  // of the ground about the eye, over the ellipsoid
   std::unique_ptr<ChunkSet> set_, next_set_;
   LandDemand demand_;

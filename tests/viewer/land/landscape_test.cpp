@@ -166,6 +166,30 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
   }
 }
 
+// With every sample drawn, the picture is the renderer's wherever nothing is left out that is seen.
+TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  const LocalFrame frame(kWgs84, PlaceOfSample(120.0, 120.0, 0.0));
+  const Terrain terrain(
+      MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
+  Landscape land(Folder(), {600.0}, kWgs84);
+  int fewest = std::numeric_limits<int>::max(), most = 0;
+  for (int i = 0; i < 12; ++i) {
+    SCOPED_TRACE(i);
+    LookOut eye{PlaceOfSample(20.0 + 200.0 * std::fmod(0.7549 * i, 1.0),
+                              20.0 + 200.0 * std::fmod(0.5698 * i, 1.0), 0.0),
+                1.1 * i, -0.1};
+    land.Settle(eye.place, eye.View());
+    eye.place.height_m = *land.GroundUnder(eye.place) + 2.0 + std::exp2(i % 10);
+    const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
+    fewest = std::min(fewest, land.Figures().chunks);
+    most = std::max(most, land.Figures().chunks);
+    EXPECT_LE(misses.only_one, 4) << "pixels on a rim";
+    EXPECT_LT(Quantile(misses.distance, 0.99), 1e-3) << "the rest lies on crests";
+  }
+  EXPECT_LT(4 * fewest, most) << "in a valley little is seen";
+}
+
 TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
   WriteTiles(3);
   Landscape land(Folder(), {64.0}, kWgs84);
