@@ -16,8 +16,8 @@ constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDe
 
 std::shared_ptr<const GroundSite> NewSite() {
   static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
-  static const SolvedAir kAir{std::make_shared<const AirIntegrator<float>>(kMedium),
-                              std::make_shared<const DiffuseLight>(kMedium)};
+  static const SiteAir kAir{std::make_shared<const AirIntegrator<float>>(kMedium),
+                            std::make_shared<const DiffuseLight>(kMedium)};
   static const ElevationGrid kRange = BuiltInRange(kPlace);
   return std::make_shared<const GroundSite>(GroundOf(kRange, LocalFrame(kWgs84, kPlace)),
                                             GroundCover{}, nullptr, kAir);
@@ -74,6 +74,15 @@ void ShadowPrepared(benchmark::State& state) {
 }
 BENCHMARK(ShadowPrepared)->Arg(0)->Arg(60)->Arg(90)->Arg(120)->Unit(benchmark::kMillisecond);
 
+void VerticesPlaced(benchmark::State& state) {
+  const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
+  for (auto unused : state) {
+    for (std::size_t i = 0; i < 160000; ++i)
+      benchmark::DoNotOptimize(TheSite()->Vertex(mesh.positions[6 * i], mesh.normals[6 * i]));
+  }
+}
+BENCHMARK(VerticesPlaced)->Unit(benchmark::kMillisecond);
+
 void VerticesLit(benchmark::State& state) {
   const LitGround lit(TheSite(), SunAt(10.0));
   const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
@@ -82,9 +91,11 @@ void VerticesLit(benchmark::State& state) {
     const std::size_t at = i * (mesh.positions.size() / 160000);
     vertices.push_back(TheSite()->Vertex(mesh.positions[at], mesh.normals[at]));
   }
-  for (auto unused : state) benchmark::DoNotOptimize(lit.LightOf(vertices));
+  const auto detail =
+      state.range(0) == 1 ? LitGround::Detail::kWithTilt : LitGround::Detail::kPlain;
+  for (auto unused : state) benchmark::DoNotOptimize(lit.LightOf(vertices, detail));
 }
-BENCHMARK(VerticesLit)->Unit(benchmark::kMillisecond);
+BENCHMARK(VerticesLit)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);  // 1: with tilt
 
 }  // namespace
 }  // namespace alpenglow

@@ -153,17 +153,11 @@ bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const V
 LightOfVertices GroundFollower::Light() const {
   if (!lit_) return {};
   return [lit = lit_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
-    const LocalFrame& site = lit->site().ground().frame;
-    std::vector<GroundVertex> placed;
-    placed.reserve(vertices.size());
-    for (const LandVertex& vertex : vertices) {
-      const glm::vec3 at(
-          site.EnuFromEcef(anchor.EcefFromEnu(Point<Enu>{glm::dvec3(vertex.position_m)})).xyz);
-      const glm::vec3 normal(
-          site.EnuFromEcef(anchor.EcefFromEnu(Vector<Enu>{glm::dvec3(vertex.normal)})).xyz);
-      placed.push_back(lit->site().Vertex({at.x, at.y, at.z}, {normal.x, normal.y, normal.z}));
-    }
-    return lit->LightOf(placed);
+    std::vector<VertexLight> light;
+    light.reserve(vertices.size());
+    for (const LitVertex& vertex : lit->LightIn(anchor, vertices))
+      light.push_back({vertex.sky, vertex.sun_x});
+    return light;
   };
 }
 

@@ -10,6 +10,7 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sea_mirror.h"
+#include "viewer/land/land_chunk.h"
 #include "viewer/shade/shade_follower.h"
 #include "viewer/work/latest_job.h"
 

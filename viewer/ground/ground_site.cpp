@@ -17,6 +17,11 @@ LampLight NoLamps(const SceneGround& ground, const Medium& medium) {
   return LampLight(scene, ground, medium, BandColour(medium.wavelengths_nm));
 }
 
+const Terrain& TerrainOf(const SceneGround& ground) {
+  ALPENGLOW_ENSURE(ground.terrain.has_value(), ==, true);
+  return *ground.terrain;
+}
+
 }  // namespace
 
 SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame) {
@@ -33,19 +38,18 @@ GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
       material_(cover, std::move(drape), medium().wavelengths_nm),
       no_lamps_(NoLamps(ground_, medium())),
       horizons_(ground_, medium()),
+      heights_(TerrainOf(ground_).mesh()),
       light_({ground_, geometry_, no_lamps_, horizons_, material_}, *air_.integrator,
              *air_.diffuse) {
-  ALPENGLOW_ENSURE(ground_.terrain.has_value(), ==, true);
   ALPENGLOW_ENSURE(ground_.is_one_surface, ==, true);
   OnThisThread([&] { (void)horizons_.Get(); });
 }
 
 GroundVertex GroundSite::Vertex(const std::array<float, 3>& position_m,
                                 const std::array<float, 3>& normal) const {
-  constexpr double kAbove_m = 20000.0;
-  const glm::dvec3 point = InDoubles(position_m);
-  const auto hit = ground_.terrain->Intersect({point.x, point.y, kAbove_m}, {0.0, 0.0, -1.0});
-  return {position_m, normal, hit ? static_cast<float>(kAbove_m - hit->distance_m) : position_m[2]};
+  const auto z_m =
+      heights_.At(static_cast<double>(position_m[0]), static_cast<double>(position_m[1]));
+  return {position_m, normal, z_m ? static_cast<float>(*z_m) : position_m[2]};
 }
 
 std::shared_ptr<const TerrainLight> GroundSite::Under(const Lighting& light) const {

@@ -17,10 +17,11 @@
 #include "renderer/light/terrain_light.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/scene/scene.h"
+#include "viewer/ground/mesh_heights.h"
 
 namespace alpenglow {
 
-/// The air over the land, solved: both of one medium on the sphere of the site.
+/// The air over the land: both of one medium on the sphere of the site.
 struct SiteAir {
   std::shared_ptr<const AirIntegrator<float>> integrator;
   std::shared_ptr<const DiffuseLight> diffuse;
@@ -75,6 +76,7 @@ class GroundSite {
   GroundMaterial material_;
   LampLight no_lamps_;
   HorizonsOnDemand horizons_;
+  MeshHeights heights_;
   GroundLight light_;  // refers to all above
 };
 

@@ -19,7 +19,28 @@ SkyTilt TiltUnder(const TerrainLight& light, const glm::dvec3& to_sun) {
           to_sun.z};
 }
 
+std::array<float, 3> InFloats(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 }  // namespace
+
+SiteFromFrame::SiteFromFrame(const LocalFrame& site, const LocalFrame& frame)
+    : origin_(site.EnuFromGeodetic(frame.origin()).xyz) {
+  for (const glm::length_t axis : {0, 1, 2}) {
+    glm::dvec3 unit(0.0);
+    unit[axis] = 1.0;
+    turn_[axis] = site.EnuFromEcef(frame.EcefFromEnu(Vector<Enu>{unit})).xyz;
+  }
+}
+
+std::array<float, 3> SiteFromFrame::Point(const glm::vec3& point_m) const {
+  return InFloats(origin_ + turn_ * glm::dvec3(point_m));
+}
+
+std::array<float, 3> SiteFromFrame::Along(const glm::vec3& direction) const {
+  return InFloats(turn_ * glm::dvec3(direction));
+}
 
 LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
                      const ShadowHeights::Options& shadow)
@@ -33,28 +54,48 @@ LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
                              shadow);
       })),
       tilt_(TiltUnder(*light_.on_terrain, light_.to_sun)) {
-  ALPENGLOW_ENSURE(site_->medium().wavelengths_nm.size(), <=, VertexLight{}.sky.size());
+  ALPENGLOW_ENSURE(site_->medium().wavelengths_nm.size(), <=, LitVertex{}.sky.size());
 }
 
-VertexLight LitGround::At(const GroundVertex& vertex) const {
+LitVertex LitGround::At(const GroundVertex& vertex, Detail detail) const {
   const SceneGeometry& geometry = site_->geometry();
   const glm::dvec3 point = InDoubles(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);
-  const double mu_s = std::clamp(glm::dot(up, light_.to_sun), -1.0, 1.0);
-  const double altitude_m = std::max(geometry.AltitudeOf(point), 0.0);
-  const BandLight sky =
-      light_.on_terrain->Irradiance({point, InDoubles(vertex.normal), up, altitude_m, mu_s});
-  VertexLight lit{};
+  const SlopePoint at{point, InDoubles(vertex.normal), up,
+                      std::max(geometry.AltitudeOf(point), 0.0),
+                      std::clamp(glm::dot(up, light_.to_sun), -1.0, 1.0)};
+  const BandLight sky = light_.on_terrain->Irradiance(at);
+  LitVertex lit{};
   std::copy_n(sky.value.begin(), sky.count, lit.sky.begin());
   lit.sun_x = static_cast<float>(
-      shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(kMostRadii));
+      shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii));
+  if (detail == Detail::kWithTilt) lit.tilt = TiltAt(at, sky);
   return lit;
 }
 
-std::vector<VertexLight> LitGround::LightOf(std::span<const GroundVertex> vertices) const {
-  std::vector<VertexLight> lit;
+// Differences as wide as relief tilts: the light is no plane.
+std::array<float, 4> LitGround::TiltAt(const SlopePoint& at, const BandLight& sky) const {
+  constexpr double kStep = 0.12;
+  std::array<float, 4> tilt{};
+  for (const glm::length_t axis : {0, 1}) {
+    SlopePoint tilted = at;
+    tilted.normal[axis] += kStep;
+    tilted.normal = glm::normalize(tilted.normal);
+    const BandLight light = light_.on_terrain->Irradiance(tilted);
+    const auto share = [&](std::size_t band) {
+      return (light[band] / std::max(sky[band], 1e-30F) - 1.0F) / static_cast<float>(kStep);
+    };
+    tilt[static_cast<std::size_t>(axis)] = share(0);
+    tilt[static_cast<std::size_t>(axis) + 2] = share(sky.count - 1);
+  }
+  return tilt;
+}
+
+std::vector<LitVertex> LitGround::LightOf(std::span<const GroundVertex> vertices,
+                                          Detail detail) const {
+  std::vector<LitVertex> lit;
   lit.reserve(vertices.size());
-  for (const GroundVertex& vertex : vertices) lit.push_back(At(vertex));
+  for (const GroundVertex& vertex : vertices) lit.push_back(At(vertex, detail));
   return lit;
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <glm/mat3x3.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -15,18 +16,40 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "viewer/ground/ground_site.h"
 #include "viewer/ground/sky_tilt.h"
-#include "viewer/land/land_chunk.h"
 
 namespace alpenglow {
+
+/// What shines on it.
+struct LitVertex {
+  /// Beyond that many radii it is only the sign that matters; as far as that, heights place the
+  /// edges of shade between vertices.
+  static constexpr double kMostRadii = 64.0;
+
+  std::array<float, 4> sky;  // irradiance of sky and slopes per unit solar irradiance, by band
+  float sun_x;  // height of the disk's centre over the edge of terrain that cuts it [radii of the
+                // disk]: see SunlightOverEdge. The planet's own horizon is not among the edges.
+  /// How the sky's light changes, as a share of it, with a normal n + x east + y north, not
+  /// shortened: by x and by y, in the first band and in the last; even between: below 1 % rms of
+  /// the light, for MountainSurface's relief. 0 unless asked for.
+  std::array<float, 4> tilt;
+};
+
+/// From one local frame to another of the same ellipsoid.
+class SiteFromFrame {
+ public:
+  SiteFromFrame(const LocalFrame& site, const LocalFrame& frame);
+
+  [[nodiscard]] std::array<float, 3> Point(const glm::vec3& point_m) const;
+  [[nodiscard]] std::array<float, 3> Along(const glm::vec3& direction) const;
+
+ private:
+  glm::dmat3 turn_;
+  glm::dvec3 origin_;
+};
 
 /// Immutable; safe to ask from many threads.
 class LitGround {
  public:
-  /// VertexLight::sun_x is clamped to so many radii either way: beyond, it is only the sign that
-  /// matters; as far as that, heights place the edges of shade between vertices. The planet's own
-  /// horizon is not among the edges.
-  static constexpr double kMostRadii = 64.0;
-
   /// Works on the calling thread alone.
   /// @param light  the sun in the frame of the site.
   /// @param shadow  how fine the shadow is: see ShadowHeights. Over the built-in range at its own
@@ -39,10 +62,33 @@ class LitGround {
   [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
   [[nodiscard]] const GroundSite& site() const { return *site_; }
 
-  [[nodiscard]] VertexLight At(const GroundVertex& vertex) const;
-  [[nodiscard]] std::vector<VertexLight> LightOf(std::span<const GroundVertex> vertices) const;
+  /// What is asked for of the light.
+  enum class Detail {
+    kPlain,
+    kWithTilt,  // two and a half times the work
+  };
+  [[nodiscard]] LitVertex At(const GroundVertex& vertex, Detail detail = Detail::kPlain) const;
+  [[nodiscard]] std::vector<LitVertex> LightOf(std::span<const GroundVertex> vertices,
+                                               Detail detail = Detail::kPlain) const;
+
+  /// Of vertices in another frame of the same ellipsoid, which have position_m and normal.
+  template <typename Vertex>
+  [[nodiscard]] std::vector<LitVertex> LightIn(const LocalFrame& frame,
+                                               std::span<const Vertex> vertices,
+                                               Detail detail = Detail::kPlain) const {
+    const SiteFromFrame turned(site_->ground().frame, frame);
+    std::vector<LitVertex> lit;
+    lit.reserve(vertices.size());
+    for (const Vertex& vertex : vertices) {
+      lit.push_back(
+          At(site_->Vertex(turned.Point(vertex.position_m), turned.Along(vertex.normal)), detail));
+    }
+    return lit;
+  }
 
  private:
+  [[nodiscard]] std::array<float, 4> TiltAt(const SlopePoint& at, const BandLight& sky) const;
+
   std::shared_ptr<const GroundSite> site_;
   Lighting light_;
   ShadowHeights shadow_;

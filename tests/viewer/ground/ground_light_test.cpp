@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/halton.h"
@@ -89,7 +90,7 @@ class Blocks {
 
 struct Case {
   Hit hit;
-  VertexLight light;
+  LitVertex light;
   glm::dvec3 to_eye;
 };
 
@@ -111,7 +112,8 @@ std::vector<Case> LandCases(const LitGround& lit) {
     c.hit.normal = MountainSurface::DetailedNormal(
         lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m), c.hit.mesh_normal);
     c.to_eye = glm::normalize(kEye - c.hit.point);
-    c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
+    c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal),
+                     LitGround::Detail::kWithTilt);
     const double over_plane =
         glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;
     if (std::abs(over_plane) > 1.0 && std::abs(c.light.sun_x) > 1.0F) cases.push_back(c);
@@ -137,27 +139,39 @@ std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
   return cases;
 }
 
-/// Ascending relative differences of two bands together, for a function of land (a normal, light)
-/// or of the planet.
+/// How a shader is asked for the light of a place, and for which bands.
+struct Question {
+  std::string expression;  // of the sum of the bands
+  std::function<tests::Arguments<float>(const Case&)> arguments;
+  std::vector<std::size_t> bands;
+};
+
+/// The point from the eye, and what of the normal is needed to know it, before what a question adds.
+tests::Arguments<float> PlaceOf(const Case& c, double eye_m, const std::array<float, 3>& more) {
+  const auto point = tests::InFloats(c.hit.point - glm::dvec3(0.0, 0.0, eye_m));
+  const auto normal = tests::InFloats(c.hit.mesh_normal);
+  return {point[0], point[1], point[2], normal[0], normal[1], more[0], more[1], more[2]};
+}
+
+const std::string kPoint = "vec3(a[0], a[1], a[2])";
+const std::string kToEye = "normalize(-vec3(a[0], a[1], a[2]))";
+const std::string kNormal = "vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * a[4]))";
+
+/// Ascending relative differences.
 std::vector<double> Differences(const LitGround& lit, const Lighting& light, double eye_m,
-                                const std::vector<Case>& cases, const std::string& function) {
+                                const std::vector<Case>& cases, const Question& question) {
   const Blocks blocks(lit, light, eye_m);
   std::vector<tests::Arguments<float>> points;
-  for (const Case& c : cases) {
-    const auto point = tests::InFloats(c.hit.point - glm::dvec3(0.0, 0.0, eye_m));
-    const auto normal = tests::InFloats(c.hit.mesh_normal);
-    points.push_back({point[0], point[1], point[2], normal[0], normal[1], c.light.sun_x,
-                      c.light.sky[0], c.light.sky[2]});
-  }
-  const std::vector<float> gpu = tests::EvaluateOnGpu(
-      Texts(lit.site().material()), "dot(" + function + ", vec4(1.0, 0.0, 1.0, 0.0))", points,
-      [&](const ShaderProgram& program) { blocks.Upload(program); });
+  for (const Case& c : cases) points.push_back(question.arguments(c));
+  const std::vector<float> gpu =
+      tests::EvaluateOnGpu(Texts(lit.site().material()), question.expression, points,
+                           [&](const ShaderProgram& program) { blocks.Upload(program); });
   std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const GroundRadiance judge = lit.site().light().Towards(
         cases[i].hit, cases[i].to_eye, {light, nullptr}, LampNodes{}, {0.0, 0.0});
     double sum = 0.0;
-    for (const std::size_t band : {0U, 2U}) {
+    for (const std::size_t band : question.bands) {
       sum += static_cast<double>(judge.natural[band]) /
              static_cast<double>(lit.lighting().irradiance[band]);
     }
@@ -170,8 +184,26 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
 std::vector<double> LandDifferences(const LitGround& lit) {
   return Differences(
       lit, lit.lighting(), kEye_m, LandCases(lit),
-      "GroundRadiance(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * "
-      "a[4])), a[5], vec4(a[6], 0.0, a[7], 0.0), normalize(-vec3(a[0], a[1], a[2])))");
+      {"dot(GroundRadiance(" + kPoint + ", " + kNormal + ", a[5], vec4(a[6], 0.0, a[7], 0.0), " +
+           kToEye + "), vec4(1.0, 0.0, 1.0, 0.0))",
+       [](const Case& c) {
+         return PlaceOf(c, kEye_m, {c.light.sun_x, c.light.sky[0], c.light.sky[2]});
+       },
+       {0, 2}});
+}
+
+/// In the first band, the sky's sign saying whether the sun shines.
+std::vector<double> TiltedDifferences(const LitGround& lit) {
+  return Differences(
+      lit, lit.lighting(), kEye_m, LandCases(lit),
+      {"GroundRadianceTilted(" + kPoint + ", " + kNormal +
+           ", 4.0 * sign(a[5]), vec4(abs(a[5])), vec4(a[6], a[7], 0.0, 0.0), " + kToEye + ").x",
+       [](const Case& c) {
+         return PlaceOf(
+             c, kEye_m,
+             {std::copysign(c.light.sky[0], c.light.sun_x), c.light.tilt[0], c.light.tilt[1]});
+       },
+       {0}});
 }
 
 /// Under the sky of a plain as wide as the view.
@@ -180,8 +212,15 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   const SiteAir& air = lit.site().air();
   light.on_terrain =
       std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
+  // In two parts, as a sky that ends on an even planet takes it.
+  const std::string place = "GroundPlaceAt(" + kPoint + ")";
+  const std::string even = "EvenPlanetRadiance(" + place + ", SunAcross(" + place + ", " + place +
+                           ".up, 1e9), LevelSky(dot(" + place + ".up, sun.xyz)))";
   return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
-                     "PlanetRadiance(vec3(a[0], a[1], a[2]), normalize(-vec3(a[0], a[1], a[2])))");
+                     {"dot(" + even + " + PlanetOverEven(" + kPoint + ", " + kToEye +
+                          "), vec4(1.0, 0.0, 1.0, 0.0))",
+                      [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); },
+                      {0, 2}});
 }
 
 double Quantile(const std::vector<double>& ascending, double share) {
@@ -220,6 +259,16 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
     EXPECT_LT(Quantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
     EXPECT_LT(Quantile(differences, 0.9), 0.03)
         << "the sky's light on relief is corrected by that of an open place";
+  }
+}
+
+TEST_F(GroundOnGpu, WithTheTiltOfTheirVerticesMountainsAreTheRenderersMoreClosely) {
+  const auto site = tests::RoughSite();
+  for (const double elevation_deg : {50.0, 12.0, -3.0}) {
+    const std::vector<double> differences =
+        TiltedDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
+    EXPECT_LT(Quantile(differences, 0.5), 3e-3) << elevation_deg;
+    EXPECT_LT(Quantile(differences, 0.9), 0.01) << elevation_deg;
   }
 }
 

@@ -43,7 +43,7 @@ Interpolated PlaceOfCase(const LitGround& lit, int number) {
   for (std::size_t k = 0; k < 3; ++k) {
     const GroundVertex vertex =
         TheSite()->Vertex(mesh.positions[triangle[k]], mesh.normals[triangle[k]]);
-    const VertexLight light = lit.At(vertex);
+    const LitVertex light = lit.At(vertex);
     for (const glm::length_t axis : {0, 1, 2}) {
       place.normal[axis] +=
           weight[k] * static_cast<double>(vertex.normal[static_cast<std::size_t>(axis)]);
@@ -103,6 +103,19 @@ TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
   }
 }
 
+TEST(LitGround, HeightsOfTheMeshAreThoseThatRaysMeet) {
+  const MeshHeights heights(TheSite()->ground().terrain->mesh());
+  for (int i = 1; i <= 500; ++i) {
+    const double x = 7600.0 * (Halton(i, 2) - 0.5), y = 7600.0 * (Halton(i, 3) - 0.5);
+    const auto hit = TheSite()->ground().terrain->Intersect({x, y, 9000.0}, {0.0, 0.0, -1.0});
+    const auto z_m = heights.At(x, y);
+    ASSERT_TRUE(z_m.has_value()) << x << " " << y;
+    EXPECT_NEAR(*z_m, 9000.0 - hit->distance_m, 1e-3);
+  }
+  EXPECT_FALSE(heights.At(4000.0, 0.0).has_value()) << "beside the mesh";
+  EXPECT_FALSE(heights.At(0.0, -1e6).has_value());
+}
+
 TEST(LitGround, MeshesOfAnotherDetailHaveTheSitesShadow) {
   const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 10.0));
   for (const double spacing_m : {20.0, 240.0}) {
@@ -127,6 +140,33 @@ TEST(LitGround, MeshesOfAnotherDetailHaveTheSitesShadow) {
   }
 }
 
+TEST(LitGround, VerticesInAFrameFarAwayAreTheSameVertices) {
+  const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), 10.0));
+  GeodeticPosition away = tests::kRoughPlace;
+  away.latitude_rad += 0.004;  // 25 km
+  away.longitude_rad -= 0.002;
+  const LocalFrame& here = TheSite()->ground().frame;
+  const LocalFrame there(kWgs84, away);
+  struct Framed {
+    glm::vec3 position_m, normal;
+  };
+  const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
+  std::vector<Framed> framed;
+  std::vector<GroundVertex> own;
+  for (std::size_t i = 0; i < mesh.positions.size(); i += 101) {
+    own.push_back(TheSite()->Vertex(mesh.positions[i], mesh.normals[i]));
+    const Point<Ecef> point = here.EcefFromEnu(Point<Enu>{InDoubles(mesh.positions[i])});
+    const Vector<Ecef> normal = here.EcefFromEnu(Vector<Enu>{InDoubles(mesh.normals[i])});
+    framed.push_back({there.EnuFromEcef(point).xyz, there.EnuFromEcef(normal).xyz});
+  }
+  const auto judge = lit.LightOf(own), light = lit.LightIn<Framed>(there, framed);
+  for (std::size_t i = 0; i < judge.size(); ++i) {
+    EXPECT_NEAR(light[i].sky[1] / judge[i].sky[1], 1.0F, 2e-3F) << "4 mm, in steps of altitude";
+    if (std::abs(judge[i].sun_x) > 4.0F) continue;
+    EXPECT_NEAR(light[i].sun_x, judge[i].sun_x, 0.3F);
+  }
+}
+
 TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
   // Half a second with time running sixty times: an eighth of a degree.
   const LitGround before(TheSite(), tests::RoughSun(*TheSite(), 9.875));
@@ -136,7 +176,7 @@ TEST(LitGround, BetweenTwoSunsTheLightRunsEvenly) {
   int cut = 0, uneven = 0;
   for (std::size_t i = 0; i < mesh.positions.size(); i += 7) {
     const GroundVertex vertex = TheSite()->Vertex(mesh.positions[i], mesh.normals[i]);
-    const VertexLight a = before.At(vertex), b = between.At(vertex), c = after.At(vertex);
+    const LitVertex a = before.At(vertex), b = between.At(vertex), c = after.At(vertex);
     EXPECT_NEAR(0.5 * static_cast<double>(a.sky[1] + c.sky[1]), static_cast<double>(b.sky[1]),
                 2e-3 * static_cast<double>(b.sky[1]));
     if (std::abs(b.sun_x) > 1.0F) continue;
@@ -189,6 +229,37 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     }
     EXPECT_LT(std::sqrt(sum2), 0.025) << elevation_deg;
     EXPECT_LT(std::sqrt(sum2), 0.75 * std::sqrt(without2)) << "what the correction is for";
+  }
+}
+
+TEST(LitGround, TheTiltOfAVertexIsThatOfItsRelief) {
+  for (const double elevation_deg : {40.0, 5.0, -3.0}) {
+    const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
+    const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
+    std::array<double, 4> sum2{};
+    int places = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 17, ++places) {
+      const GroundVertex vertex = TheSite()->Vertex(mesh.positions[i], mesh.normals[i]);
+      const glm::dvec3 point = InDoubles(vertex.position_m), normal = InDoubles(vertex.normal);
+      const glm::dvec3 relief =
+          MountainSurface::DetailedNormal(TheSite()->geometry().GroundAt(point, 1.0), normal);
+      const glm::dvec3 moved = normal.z / relief.z * relief - normal;
+      const LitVertex smooth = lit.At(vertex, LitGround::Detail::kWithTilt);
+      const LitVertex rough = lit.At(tests::VertexAt(*TheSite(), point, relief));
+      for (std::size_t band = 0; band < 4; ++band) {
+        const double last = static_cast<double>(band) / 3.0;
+        const auto by = [&](std::size_t axis) {
+          return (1.0 - last) * static_cast<double>(smooth.tilt[axis]) +
+                 last * static_cast<double>(smooth.tilt[axis + 2]);
+        };
+        const double gained = 1.0 + by(0) * moved.x + by(1) * moved.y;
+        const double error =
+            static_cast<double>(smooth.sky[band]) * gained / static_cast<double>(rough.sky[band]) -
+            1.0;
+        sum2[band] += error * error;
+      }
+    }
+    for (const double sum : sum2) EXPECT_LT(std::sqrt(sum / places), 0.01) << elevation_deg;
   }
 }
 
