@@ -25,7 +25,7 @@ static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
 /// Where what fog reads is bound.
 struct FogUnits {
   GLuint block = 9;
-  int first = 12;  // of two texture units
+  int first = 13;  // of two texture units
 };
 
 class FogPainter {

@@ -42,7 +42,8 @@ class LampPacking {
     gpu.up = {Turned(placed.air.up), z_eye};
     gpu.at_eye = {Densities(placed.air, z_eye), z_lamp};
     gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
-    gpu.glow = {placed.mean_share, chosen.glow, with_core && !placed.HoldsEye() ? 1.0 : 0.0, 0.0};
+    gpu.glow = {placed.mean_share, chosen.glow, with_core && !placed.HoldsEye() ? 1.0 : 0.0,
+                chosen.shade};
     return gpu;
   }
 
@@ -131,6 +132,9 @@ LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLay
                   0.0};
   PutAir(layers, medium.wavelengths_nm.size(), reference_m, block);
   PutColours(medium, block);
+  for (glm::length_t axis = 0; axis < 3; ++axis) {
+    block.ground[static_cast<std::size_t>(axis)] = {glm::vec3(view.eye_from_ground[axis]), 0.0F};
+  }
   const LampPacking packing(view, reference_m);
   for (std::size_t i = 0; i < lamps.size(); ++i) {
     block.lamps[i] = packing.Packed(lamps[i], core_rad[1] > 0.0);

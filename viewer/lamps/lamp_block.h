@@ -30,9 +30,10 @@ struct GpuLamp {
 struct LampsBlock {
   glm::vec4 count, planet, falls, heights, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
   glm::vec4 red, green, blue;
+  std::array<glm::vec4, 3> ground;
   std::array<GpuLamp, kMostGpuLamps> lamps;
 };
-static_assert(sizeof(LampsBlock) == (13 + 9 * kMostGpuLamps) * sizeof(glm::vec4));
+static_assert(sizeof(LampsBlock) == (16 + 9 * kMostGpuLamps) * sizeof(glm::vec4));
 static_assert(sizeof(LampsBlock) <= 16384);  // GL_MAX_UNIFORM_BLOCK_SIZE is at least that
 
 /// From where lamps are seen, and how finely.
@@ -53,6 +54,7 @@ struct ChosenLamp {
   const PlacedLamp* placed;  // before the eye of the view
   int table = 0;             // layer of its measured profile
   int glow = 0;              // of what its air brings to surfaces
+  int shade = -1;            // of the terrain around it; -1: none
 };
 
 /// @param layers  of LampStage: molecules, aerosol and perhaps fog, densities as of altitude 0.

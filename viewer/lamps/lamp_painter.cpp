@@ -17,7 +17,7 @@
 namespace alpenglow {
 namespace {
 
-enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit };
+enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit };
 
 /// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
 /// 1 / angle is straight enough between its points.
@@ -34,6 +34,12 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
       quality.nodes, quality.step, PhaseExpression(layers[1].phase.kind), kNearestGlow_m,
       kFarthestGlow_m);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
+  if (!shape.shades().empty()) {
+    text += fmt::format(
+        "#define LAMP_SHADE\n#define LAMP_SHADE_NEAREST {:.7f}\n#define LAMP_SHADE_FARTHEST "
+        "{:.7f}\n",
+        kNearestShade_m, kFarthestShade_m);
+  }
   if (!shape.glows().empty()) text += "#define LAMP_GLOW_MAP\n";
   if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
   if (shape.HasFog()) {
@@ -83,6 +89,7 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   Connect(*disk_program_);
   UploadTables(shape);
   UploadGlows(shape);
+  UploadShades(shape);
   CheckGl("LampPainter");
 }
 
@@ -101,6 +108,7 @@ void LampPainter::Connect(const ShaderProgram& program) const {
   program.BindSampler("lamp_tables", units_.first + kTablesUnit);
   program.BindSampler("lamp_glow_map", units_.first + kGlowUnit);
   program.BindSampler("lamp_mie_table", units_.first + kMieUnit);
+  program.BindSampler("lamp_shades", units_.first + kShadeUnit);
   program.BindSampler("lamp_lattice", units_.first + kLatticeUnit);
 }
 
@@ -143,6 +151,20 @@ void LampPainter::UploadGlows(const SceneLamps& shape) {
   ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
 }
 
+void LampPainter::UploadShades(const SceneLamps& shape) {
+  if (shape.shades().empty()) return;
+  std::vector<float> texels;
+  for (const std::vector<float>& shade : shape.shades()) {
+    texels.insert(texels.end(), shade.begin(), shade.end());
+  }
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kShadeUnit));
+  glBindTexture(GL_TEXTURE_2D_ARRAY, shades_.id());
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kShadeTurns, kShadeRings,
+               static_cast<GLsizei>(shape.shades().size()), 0, GL_RED, GL_FLOAT, texels.data());
+  ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
+}
+
 void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2) {
   std::array<double, 2> core{0.0, 0.0};
   if (quality_.step > 1) {
@@ -176,6 +198,7 @@ void LampPainter::Bind() const {
   bind(kTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
   bind(kGlowUnit, GL_TEXTURE_2D_ARRAY, glows_);
   bind(kMieUnit, GL_TEXTURE_2D, mie_table_);
+  bind(kShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
   if (lattice_) lattice_->BindTexture(units_.first + kLatticeUnit);
 }
 

@@ -41,7 +41,7 @@ struct LampUnits {
   GLuint lamps_block = 8;
   GLuint view_block = 1;  // "View" of view_block.glsl
   int surface = 0;        // texture unit of the surface map
-  int first = 8;          // of four texture units
+  int first = 8;          // of five texture units
 };
 
 class LampPainter {
@@ -69,13 +69,14 @@ class LampPainter {
  private:
   void UploadTables(const SceneLamps& shape);
   void UploadGlows(const SceneLamps& shape);
+  void UploadShades(const SceneLamps& shape);
 
   LampQuality quality_;
   LampUnits units_;
   std::vector<ShaderPiece> texts_;
   GlBuffer block_, disk_buffer_;
   GlVertexArray no_vertices_, disk_vertices_;
-  GlTexture tables_, glows_, mie_table_;
+  GlTexture tables_, glows_, mie_table_, shades_;
   std::optional<ShaderProgram> glow_program_, core_program_, disk_program_;
   std::optional<RenderTarget> lattice_;
   int lamps_ = 0, disks_ = 0;

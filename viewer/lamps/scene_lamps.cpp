@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/lamps/scene_lamps.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -64,12 +66,39 @@ SceneLamps::SceneLamps(const Scene& scene, const SceneGround& ground, const Medi
     }
     table_of_lamp_.push_back(static_cast<int>(known - tables_.begin()));
   }
+  if (ground.terrain) {
+    shades_.resize(std::min(tree_.lamps(), kMostShades));
+    tbb::parallel_for(std::size_t{0}, shades_.size(), [&](std::size_t i) {
+      shades_[i] = ShadeAround(stage_, tree_.Light(static_cast<std::uint32_t>(i)).lamp.position_m);
+    });
+  }
   for (std::uint32_t i = 0; i < tree_.nodes().size(); ++i) {
     const LampGlow* glow = &tree_.GlowOf(i);
     if (number_of_glow_.try_emplace(glow, static_cast<int>(glows_.size())).second) {
       glows_.push_back(glow);
     }
   }
+}
+
+std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place) {
+  constexpr int kBetween = 3;
+  constexpr double kNothing = -1e6;
+  const double ratio = std::pow(kFarthestShade_m / kNearestShade_m, 1.0 / (kShadeRings - 1));
+  std::vector<float> shade;
+  std::vector<double> steepest(kShadeTurns, kNothing);
+  for (int ring = 0; ring < kShadeRings; ++ring) {
+    for (int turn = 0; turn < kShadeTurns; ++turn) {
+      double& slope = steepest[static_cast<std::size_t>(turn)];
+      const double angle = 2.0 * kPi * turn / kShadeTurns;
+      for (int i = 1; i <= kBetween; ++i) {
+        const double far = kNearestShade_m * std::pow(ratio, ring - 1 + i / double{kBetween});
+        const glm::dvec3 point = place + far * glm::dvec3(std::cos(angle), std::sin(angle), 0.0);
+        slope = std::max(slope, (stage.TerrainUnder(point, kNothing) - place.z) / far);
+      }
+      shade.push_back(static_cast<float>(std::max(slope, kNothing)));
+    }
+  }
+  return shade;
 }
 
 LampNodes SceneLamps::Cut(std::size_t most) const {
@@ -91,7 +120,8 @@ LampNodes SceneLamps::Cut(std::size_t most) const {
 
 ChosenLamp SceneLamps::Choose(std::uint32_t node) const {
   const int table = node < table_of_lamp_.size() ? table_of_lamp_[node] : 0;
-  return {&tree_.Light(node), table, number_of_glow_.at(&tree_.GlowOf(node))};
+  const int shade = node < shades_.size() ? static_cast<int>(node) : -1;
+  return {&tree_.Light(node), table, number_of_glow_.at(&tree_.GlowOf(node)), shade};
 }
 
 PlacedLamp SceneLamps::Landing(const LampView& view) const {
@@ -119,7 +149,7 @@ SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2
   std::optional<PlacedLamp> landing;
   if (landing_) {
     landing = Landing(view);
-    chosen.push_back({&*landing, 0, 0});
+    chosen.push_back({&*landing});
   }
   std::vector<std::pair<double, std::uint32_t>> bright;
   for (const std::uint32_t node : Cut(most - chosen.size())) {

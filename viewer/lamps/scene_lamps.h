@@ -47,6 +47,15 @@ inline constexpr int kGlowRises = 33;
 inline constexpr double kNearestGlow_m = 0.2;
 inline constexpr double kFarthestGlow_m = 2e4;
 
+/// Terrain around a lamp: the slope over which it is seen, over directions of the compass and
+/// distances from the first to the last in equal ratios.
+inline constexpr int kShadeTurns = 96;
+inline constexpr int kShadeRings = 48;
+inline constexpr double kNearestShade_m = 1.0;
+inline constexpr double kFarthestShade_m = 2e4;
+/// As many layers as every OpenGL has; lamps beyond are not shaded.
+inline constexpr std::size_t kMostShades = 256;
+
 class SceneLamps {
  public:
   /// Lights and fog of the scene. Reads the IES files of lamps. `ground` must outlive this. Throws
@@ -63,6 +72,9 @@ class SceneLamps {
   [[nodiscard]] const std::vector<LampProfile>& tables() const { return tables_; }
   /// In the order of ChosenLamp::glow.
   [[nodiscard]] const std::vector<const LampGlow*>& glows() const { return glows_; }
+
+  /// Of each lamp, [ring * kShadeTurns + turn]; empty without terrain.
+  [[nodiscard]] const std::vector<std::vector<float>>& shades() const { return shades_; }
 
   /// Everything that depends on the eye.
   struct InView {
@@ -89,8 +101,12 @@ class SceneLamps {
   std::vector<int> table_of_lamp_;
   std::vector<const LampGlow*> glows_;
   std::map<const LampGlow*, int> number_of_glow_;
+  std::vector<std::vector<float>> shades_;
 };
 
+/// What terrain up to a distance leaves of sight from a place: [ring * kShadeTurns + turn], the
+/// rise over the distance that a point there must have; turns count from east to north.
+[[nodiscard]] std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place);
 /// A measured profile at the angles of kLampGammas and kLampTurns, [turn * kLampGammas + gamma].
 [[nodiscard]] std::vector<float> SampledProfile(const LampProfile& profile);
 /// What a lamp's air brings to surfaces, three layers of [rise * kGlowDistances + distance]:

@@ -24,7 +24,8 @@ struct Lamp {
   vec4 up;      // of its air; altitude of the eye
   vec4 at_eye;  // densities of molecules, aerosol, fog; altitude of the lamp
   vec4 at_lamp;  // densities there; its own radius
-  vec4 glow;     // mean of its profile; layer of glow_map; 1 with a core of its own; unused
+  vec4 glow;     // mean of its profile; layer of glow_map; 1 with a core of its own; layer
+                 // of lamp_shades, -1 without
 };
 
 layout(std140) uniform Lamps {
@@ -42,6 +43,7 @@ layout(std140) uniform Lamps {
   vec4 lamp_red;  // rows of the matrix to linear sRGB [cd m^-2 per W m^-2 sr^-1 nm^-1]
   vec4 lamp_green;
   vec4 lamp_blue;
+  vec4 lamp_ground[3];  // east, north and up of the terrain's frame
   Lamp lamps[LAMP_MOST];
 };
 
@@ -51,6 +53,9 @@ uniform sampler2DArray lamp_tables;  // share over angles from the axis and arou
 #endif
 #ifdef LAMP_GLOW_MAP
 uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see LampGlowMap
+#endif
+#ifdef LAMP_SHADE
+uniform sampler2DArray lamp_shades;  // slopes over which a lamp is seen, by compass and distance
 #endif
 #ifdef LAMP_MIE_TABLE
 uniform sampler2D lamp_mie_table;  // over (a / pi)^(1/3)
@@ -137,6 +142,26 @@ vec3 LampCosines(Lamp lamp, vec3 direction) {
               dot(direction, cross(lamp.side.xyz, lamp.axis.xyz)));
 }
 
+// Share of a lamp's light that terrain lets through to a place, `way` from the lamp. A place is
+// compared with terrain up to a ring less far, and may be lower by two thousandths of its distance:
+// ground does not shade itself.
+float LampLit(Lamp lamp, vec3 way) {
+#ifdef LAMP_SHADE
+  if (lamp.glow.w < -0.5) return 1.0;
+  vec3 at = vec3(dot(way, lamp_ground[0].xyz), dot(way, lamp_ground[1].xyz),
+                 dot(way, lamp_ground[2].xyz));
+  float far = max(length(at.xy), LAMP_SHADE_NEAREST);
+  vec2 size = vec2(textureSize(lamp_shades, 0).xy);
+  float ring = LampGlowUnit(far, LAMP_SHADE_NEAREST, LAMP_SHADE_FARTHEST) - 1.0 / (size.y - 1.0);
+  float turn = atan(at.y, at.x) * 0.159154943 + 0.5 / size.x;
+  float slope =
+      textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.glow.w), 0.0).x;
+  return clamp(1.0 + (at.z / far - slope) / 2e-3, 0.0, 1.0);
+#else
+  return 1.0;
+#endif
+}
+
 // The angles of scattering between which a spot lights the ray; x > y where nowhere. The cosine to
 // its axis is a cos(angle - middle) along the ray.
 vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
@@ -199,6 +224,9 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
 #endif
     float weight = lamp_gauss[i].y * angle;
     if (shaped && !inside) weight *= LampShare(lamp, sine * across - cosine * along);
+#ifdef LAMP_SHADE
+    weight *= LampLit(lamp, t * direction - lamp.position.xyz);
+#endif
     sum += (weight * source) * LampLeft(LampDepth(columns));
   }
   return lamp.intensity * (sum * (max(span, 0.0) * share / approach));
@@ -271,6 +299,9 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, bool shaped) {
       LampColumns(far, lamp.at_lamp.xyz, LampDensities(z), rise, far / LampNotNought(rise));
   float facing = max(dot(normal, towards), 0.0) / (far * far);
   if (shaped) facing *= LampShare(lamp, LampCosines(lamp, -towards));
+#ifdef LAMP_SHADE
+  facing *= LampLit(lamp, -way);
+#endif
   vec4 light = facing * LampLeft(LampDepth(columns));
 #ifdef LAMP_GLOW_MAP
   light += lamp.glow.x * LampAirOnSurface(lamp, towards, far, normal);

@@ -61,14 +61,15 @@ Scene Night(double eye_height_m, double fog_per_m, double fog_height_m) {
 
 /// A scene before an eye, as the renderer has it and as the graphics card does.
 struct Both {
-  explicit Both(const Scene& of, const LampQuality& quality = {})
+  explicit Both(const Scene& of) : Both(of, LoadGround(of)) {}
+  Both(const Scene& of, SceneGround on)
       : scene(of),
-        ground(LoadGround(scene)),
+        ground(std::move(on)),
         medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
         colour(medium.wavelengths_nm),
         light(scene, ground, medium, colour),
         lamps(scene, ground, medium),
-        painter(lamps, quality, {}),
+        painter(lamps, {}, {}),
         eye_m(0.0, 0.0, ground.eye_height_m) {
     painter.Prepare(lamps, {eye_m, glm::dmat3(1.0), eye_m.z, kPixel_rad}, 0.0);
   }
@@ -244,6 +245,65 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
   EXPECT_LT(level.p99, 0.08);
   EXPECT_LT(slopes.mean, 0.06) << "light in the fog is linear in the tilt; LampGlow is off by 18 %";
   EXPECT_LT(slopes.p99, 0.3);
+}
+
+/// Level ground with a ridge 60 m high that runs east, 150 m north of the origin.
+SceneGround Ridge(const Scene& scene) {
+  constexpr int kSide = 121;
+  constexpr float kStep_m = 10.0F;
+  TriangleMesh mesh;
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      const float x = kStep_m * static_cast<float>(i - kSide / 2);
+      const float y = kStep_m * static_cast<float>(j - kSide / 2);
+      mesh.positions.push_back({x, y, std::max(60.0F - 2.0F * std::abs(y - 150.0F), 0.0F)});
+      mesh.normals.push_back({0.0F, 0.0F, 1.0F});
+      if (i == 0 || j == 0) continue;
+      const auto here = static_cast<std::uint32_t>(j * kSide + i);
+      mesh.triangles.push_back({here - kSide - 1, here - kSide, here});
+      mesh.triangles.push_back({here - kSide - 1, here, here - 1});
+    }
+  }
+  SceneGround ground = LoadGround(scene);
+  ground.terrain.emplace(std::move(mesh));
+  ground.is_one_surface = true;
+  return ground;
+}
+
+TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
+  Scene scene = Night(6.0, 0.0, 1.0);
+  scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
+  const Both both(scene, Ridge(scene));
+  std::vector<tests::Arguments<float>> points;
+  std::vector<bool> lit;
+  for (const float north_m : {0.0F, 30.0F, 60.0F, 240.0F, 300.0F, 390.0F, 450.0F, 550.0F}) {
+    for (const float east_m : {-300.0F, -100.0F, 7.0F, 155.0F}) {
+      points.push_back({east_m, north_m, static_cast<float>(-both.eye_m.z), 0.0F, 0.0F, 1.0F});
+      const glm::dvec3 up(0.0, 0.0, 1.0);
+      const LitPoint at{{east_m, north_m, 0.0}, up, up};
+      const double far = glm::length(both.light.At(0).lamp.position_m - at.point);
+      const double direct = double{both.light.At(0).intensity[2]} * 5.0 / (far * far * far);
+      lit.push_back(double{both.light.OnSurface(both.light.All(), at)[2]} > 0.5 * direct);
+    }
+  }
+  const std::vector<float> shares =
+      both.OnGpu("LampLit(lamps[0], vec3(a[0], a[1], a[2]) - lamps[0].position.xyz)", points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(double{shares[i]}, lit[i] ? 1.0 : 0.0, 1e-3)
+        << points[i][0] << " m east, " << points[i][1] << " m north";
+    EXPECT_EQ(lit[i], points[i][1] > 100.0F) << "the ridge stands between";
+  }
+  const std::vector<float> near =
+      both.OnGpu("LampGlowIn(vec3(0.0, 1.0, 0.0), 100.0, 1.0)[2]", points);
+  const std::vector<float> over =
+      both.OnGpu("LampGlowIn(vec3(0.0, 0.8, 0.6), 1e9, 1.0)[2]", points);
+  const auto truth = [&](const glm::dvec3& way, double length_m) {
+    return double{both.light.InAir(both.light.All(), {way, length_m}, kPixel_rad, 32)[2]};
+  };
+  const double above = truth({0.0, 0.8, 0.6}, std::numeric_limits<double>::infinity());
+  EXPECT_LT(double{near[0]}, 0.02 * above) << "air before the ridge is dark";
+  EXPECT_LT(truth({0.0, 1.0, 0.0}, 100.0), 1e-9 * above);
+  EXPECT_NEAR(double{over[0]} / above, 1.0, 0.1) << "12 nodes find the edge of the shade";
 }
 
 TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
