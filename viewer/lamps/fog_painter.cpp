@@ -39,6 +39,11 @@ std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
            std::string(viewer::EmbeddedText("viewer/shaders/fog_light.glsl"))}};
 }
 
+std::vector<ShaderPiece> NoFogTexts() {
+  return {{"viewer/shaders/no_fog.glsl",
+           std::string(viewer::EmbeddedText("viewer/shaders/no_fog.glsl"))}};
+}
+
 void FogPainter::Connect(const ShaderProgram& program) const {
   program.Use();
   program.BindBlock("Fog", units_.block);

@@ -22,6 +22,9 @@ static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
 /// fog_light.glsl. @param kind  of the fog's phase function.
 [[nodiscard]] std::vector<ShaderPiece> FogTexts(PhaseKind kind);
 
+/// The same functions where there is no fog.
+[[nodiscard]] std::vector<ShaderPiece> NoFogTexts();
+
 /// Where what fog reads is bound.
 struct FogUnits {
   GLuint block = 9;

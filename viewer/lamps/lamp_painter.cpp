@@ -62,6 +62,8 @@ std::vector<ShaderPiece> LampTexts(const SceneLamps& shape, const LampQuality& q
                   {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamp_picture.glsl"});
 }
 
+std::vector<ShaderPiece> NoLampTexts() { return {Piece("viewer/shaders/no_lamps.glsl")}; }
+
 LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
                          const LampUnits& units)
     : quality_(quality), units_(units), texts_(LampTexts(shape, quality)) {

@@ -7,8 +7,9 @@
 //   PaintOver        lamps themselves, and the cores of their light, added to the picture
 //
 // Errors against LampLight where terrain shades nothing: of the rule with 12 nodes and the float
-// of the card, tests/viewer/lamps/lamp_light_test.cpp. Terrain does not shade the light of lamps
-// here, neither on the ground nor in the air.
+// of the card, tests/viewer/lamps/lamp_light_test.cpp. Terrain
+// hides lamps by a horizon around each (ShadeAround), to 2e-3 of the distance and a hundredth of a
+// turn; the edges of its shade in the air lie where the rule has nodes.
 #pragma once
 
 #include <optional>
@@ -35,6 +36,9 @@ inline constexpr LampQuality kHighLamps{12, 2};
 /// @param shape  lamps that decide what shaders know of: tables, fog, phase functions.
 [[nodiscard]] std::vector<ShaderPiece> LampTexts(const SceneLamps& shape,
                                                  const LampQuality& quality);
+
+/// The functions that a picture calls, where there are no lamps.
+[[nodiscard]] std::vector<ShaderPiece> NoLampTexts();
 
 /// Where what lamps read is bound.
 struct LampUnits {

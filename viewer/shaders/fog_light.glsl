@@ -2,6 +2,8 @@
 // Light of sun and sky in fog, from the map of fog_map.h, and what fog leaves of other light:
 // FogBlock of fog_painter.h. Frame: east, north, up at the eye; lengths are kilometres; light is per
 // unit solar irradiance. Fog is grey.
+#define FOG_STRETCHES 4
+
 layout(std140) uniform Fog {
   vec4 fog_layer;  // extinction at the base [1/km]; scale height, 0 where it is homogeneous; base,
                    // top of the air

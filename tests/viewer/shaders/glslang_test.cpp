@@ -115,12 +115,31 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
   }
 }
 
-TEST_F(Glslang, AcceptsTheLightOfFog) {
-  std::vector<ShaderPiece> texts = SharedTexts();
-  for (const ShaderPiece& piece : FogTexts(PhaseKind::kHenyeyGreensteinDraine)) {
-    texts.push_back(piece);
+TEST_F(Glslang, AcceptsWhatStandsForFogAndLampsWhereThereAreNone) {
+  const Scene scene = BareScene(10.0, 0.0, 0.0, 40.0);
+  const SceneGround ground = LoadGround(scene);
+  const SceneLamps lamps(scene, ground, scene.medium);
+  const std::vector<ShaderPiece> fog = FogTexts(PhaseKind::kHenyeyGreensteinDraine);
+  // The calls of a picture.
+  const ShaderPiece use{"use", R"(
+vec4 Use(vec3 direction, float km) {
+  FogAlong fog = FogTo(direction, km);
+  FogStretches stretches = FogStretchesTo(direction, km);
+  vec4 sum = fog.radiance + FogSunTo(direction, km) + FogOnSurface(km, 1.0);
+  for (int i = 0; i < FOG_STRETCHES; ++i) sum += stretches.weight[i] * stretches.distance_km[i];
+  sum += LampsOnGround(direction, direction) * FogSunLeft(km, 0.5) * FogSkyLeft(km);
+  return sum + vec4(LampRgb(sum) + LampGlowRgb(direction, km), FogTransmittance(direction, km));
+}
+)"};
+  for (const auto& lights : {NoLampTexts(), LampTexts(lamps, kMediumLamps)}) {
+    for (const auto& fogs : {NoFogTexts(), fog}) {
+      std::vector<ShaderPiece> texts = SharedTexts();
+      texts.insert(texts.end(), lights.begin(), lights.end());
+      texts.insert(texts.end(), fogs.begin(), fogs.end());
+      texts.push_back(use);
+      ExpectAccepted(texts, "empty.frag.glsl");
+    }
   }
-  ExpectAccepted(texts, "empty.frag.glsl");
 }
 
 TEST_F(Glslang, RefusesABrokenShader) {
