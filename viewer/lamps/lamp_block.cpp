@@ -42,14 +42,19 @@ class LampPacking {
     gpu.up = {Turned(placed.air.up), z_eye};
     gpu.at_eye = {Densities(placed.air, z_eye), z_lamp};
     gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
-    gpu.glow = {placed.mean_share, chosen.glow, with_core && !placed.HoldsEye() ? 1.0 : 0.0,
-                chosen.shade};
+    gpu.glow = {placed.mean_share, chosen.glow, with_core ? CoreOf(placed) : 0.0, chosen.shade};
     return gpu;
   }
 
  private:
   [[nodiscard]] glm::vec3 Turned(const glm::dvec3& of_ground) const {
     return view_.eye_from_ground * of_ground;
+  }
+  /// Where beams begin light changes over less than around a lamp that shines evenly.
+  [[nodiscard]] static double CoreOf(const PlacedLamp& placed) {
+    constexpr double kOfBeams = 2.0;
+    if (placed.HoldsEye()) return 0.0;
+    return placed.lamp.profile.kind == LampProfile::Kind::kIsotropic ? 1.0 : kOfBeams;
   }
   /// Cosines at which a cone is full and dark.
   [[nodiscard]] static glm::vec2 Edges(const LampProfile& profile) {

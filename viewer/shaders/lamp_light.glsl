@@ -24,7 +24,7 @@ struct Lamp {
   vec4 up;      // of its air; altitude of the eye
   vec4 at_eye;  // densities of molecules, aerosol, fog; altitude of the lamp
   vec4 at_lamp;  // densities there; its own radius
-  vec4 glow;     // mean of its profile; layer of glow_map; 1 with a core of its own; layer
+  vec4 glow;     // mean of its profile; layer of glow_map; size of its core, 0: none; layer
                  // of lamp_shades, -1 without
 };
 
@@ -234,9 +234,9 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
 
 // 1 in the core of a lamp's light in the picture, 0 outside of it.
 float LampCore(Lamp lamp, vec3 direction) {
-  float apart = length(direction - lamp.position.xyz / lamp.profile.z);
+  float apart = length(direction - lamp.position.xyz / lamp.profile.z) / max(lamp.glow.z, 1e-9);
   float fade = clamp((lamp_count.z - apart) / (lamp_count.z - lamp_count.y), 0.0, 1.0);
-  return lamp.glow.z * fade * fade * fade * (10.0 - fade * (15.0 - 6.0 * fade));
+  return fade * fade * fade * (10.0 - fade * (15.0 - 6.0 * fade));
 }
 
 // Of a lamp that the eye is in: the inside of its luminous sphere.
