@@ -336,6 +336,17 @@ void FlightDeck::Serve(const HudRequest& asked, const ImageSize& size) {
   });
 }
 
+void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
+  if (file.extension() != ".png")
+    throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
+  const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
+  flight_.Settle(size);
+  constexpr double kInstant_s = 1e-3;
+  Advance({}, size, kInstant_s);
+  Paint({screen.framebuffer(), size.width, size.height}, kInstant_s);
+  WritePng(file, screen.ReadBytes(), flight_.PictureHeader(size));
+}
+
 void FlightDeck::Paint(const Developer::Screen& screen, double seconds) {
   flight_.Paint(screen, seconds);
   flight_.painter().Time("hud");

@@ -30,6 +30,9 @@ class FlightDeck {
   /// Paints the flight, and instruments over it.
   void Paint(const Developer::Screen& screen, double seconds);
 
+  /// A developed picture with instruments, as the screen would show it. Throws OutputError.
+  void WritePicture(const std::filesystem::path& file, const ImageSize& size);
+
   /// Something to be said on the screen.
   void Say(const std::string& text, bool is_warning = false);
 

@@ -102,6 +102,12 @@ void Flythrough::GoTo(const std::string& name) {
   cockpit_.GoTo(PlaceNamed(name), Ground());
 }
 
+void Flythrough::Follow(const CameraPath& path) {
+  waits_above_ground_m_.reset();
+  cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
+  static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEvent));
+}
+
 void Flythrough::Show(const ReplayFrame& frame) {
   waits_above_ground_m_.reset();
   cockpit_.pilot().PutAt(KeptAbove(Zoomed(frame.eye, 1.0), Ground()(frame.eye.place), 0.0),
@@ -272,7 +278,7 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   painter_.EndTime();
 }
 
-void Flythrough::SettleAt(const ImageSize& size) {
+void Flythrough::Settle(const ImageSize& size) {
   painter_.Settle(ViewOf(size));
   StandOnGround();
   painter_.Settle(ViewOf(size));
@@ -281,18 +287,14 @@ void Flythrough::SettleAt(const ImageSize& size) {
 Image Flythrough::Picture(const ImageSize& size, int samples) {
   const Quality quality = rule_.fixed.value_or(Quality::kHigh);
   painter_.Use(SizesOf(quality));
-  SettleAt(size);
+  Settle(size);
   painter_.Paint(ViewOf(size), samples);
   Image image = painter_.picture().Read();
   painter_.Use(SizesOf(used_.quality));
   return image;
 }
 
-void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
-  RequirePictureName(file);
-  const Image image = Picture(size, kPictureSamples);
-  const double ev100 = exposure_.ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2) -
-                                                exposure_.compensation_ev);
+Metadata Flythrough::PictureHeader(const ImageSize& size) const {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
@@ -300,9 +302,18 @@ void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize
   settings.filter = PixelFilter::Kind::kBox;
   Metadata metadata = PictureMetadata(SceneSeen(), settings);
   metadata["alpenglow.time"] = FormatUtc(now(), 3);
-  metadata["alpenglow.ev100"] = fmt::format("{}", ev100);
   metadata["alpenglow.painter"] = "skyview";
   metadata["alpenglow.quality"] = NameOf(rule_.fixed.value_or(Quality::kHigh));
+  return metadata;
+}
+
+void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
+  RequirePictureName(file);
+  const Image image = Picture(size, kPictureSamples);
+  const double ev100 = exposure_.ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2) -
+                                                exposure_.compensation_ev);
+  Metadata metadata = PictureHeader(size);
+  metadata["alpenglow.ev100"] = fmt::format("{}", ev100);
   if (file.extension() == ".exr") {
     WriteExr(file, image, metadata);
   } else {

@@ -55,6 +55,8 @@ class Flythrough {
   void Place(const EyePlacement& placement);
   /// Puts the eye at a place of the list, by name.
   void GoTo(const std::string& name);
+  /// Flies along a path from its beginning.
+  void Follow(const CameraPath& path);
   /// Puts the eye and the time where a replay has them.
   void Show(const ReplayFrame& frame);
 
@@ -82,11 +84,17 @@ class Flythrough {
   /// What took the last picture, without waiting for the screen, for automatic quality.
   void NoteFrame(double seconds);
 
+  /// Waits until all is there that a picture of this size needs.
+  void Settle(const ImageSize& size);
   /// The linear picture of where the eye is, with all that belongs into it there.
   [[nodiscard]] Image Picture(const ImageSize& size, int samples);
   /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
   /// both with what made them in their headers. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
+  /// The scene as the renderer would have it: from the eye, now.
+  [[nodiscard]] Scene SceneSeen() const;
+  /// What made a picture of this size.
+  [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
   /// Writes pictures at even steps of the path, its ends included, and notes them down.
   void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
                    const ImageSize& size, FlightRecorder& recorder);
@@ -116,10 +124,7 @@ class Flythrough {
   [[nodiscard]] PaintedQuality Painted() const;
   void StandOnGround();
   void AimLandingLight();
-  void SettleAt(const ImageSize& size);
   void ShowReference(const ImageSize& size);
-  [[nodiscard]] Scene SceneSeen() const;
-
   Scene scene_;
   Medium medium_;  // of the preset or file, unchanged
   AirChoice air_;

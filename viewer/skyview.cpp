@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 // skyview: a flight through a scene, on the graphics card.
-// The numbers of keys alone.
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
 #include <chrono>
-#include <set>
 
 #include "atmosphere/number/constants.h"
 #include "lut/program/growing_file.h"
@@ -15,7 +11,11 @@
 #include "renderer/series/frame_times.h"
 #include "viewer/benchmark.h"
 #include "viewer/capture/video.h"
+#include "viewer/explain.h"
 #include "viewer/flight/flight_recorder.h"
+#include "viewer/flight/places.h"
+#include "viewer/flight/track.h"
+#include "viewer/flight_deck.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/picture_tiles.h"
@@ -26,6 +26,26 @@
 namespace alpenglow {
 namespace {
 
+LandSource LandOf(const SkyviewOptions& options, const Scene& scene) {
+  LandSource land = LandSourceOf(scene);
+  if (options.dem.empty()) return land;
+  land.files.clear();
+  for (const std::string& file : options.dem) land.files.emplace_back(file);
+  return land;
+}
+
+/// Where one begins without a word about it: over the middle of the land that was named.
+void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
+  if (options.dem.empty() || (options.latitude && options.longitude)) return;
+  LandSource land;
+  for (const std::string& file : options.dem) land.files.emplace_back(file);
+  const LandTiles tiles(land);
+  const GeodeticPosition middle = tiles.Middle();
+  typed.latitude = options.latitude.value_or(middle.latitude_rad / kRadiansPerDegree);
+  typed.longitude = options.longitude.value_or(middle.longitude_rad / kRadiansPerDegree);
+  if (!options.altitude) typed.above_ground_m = 300.0;
+}
+
 Scene SceneOf(const SkyviewOptions& options) {
   if (!options.scene_file.empty()) return ReadScene(options.scene_file);
   SceneOptions typed;
@@ -34,7 +54,8 @@ Scene SceneOf(const SkyviewOptions& options) {
   typed.height_m = options.altitude;
   typed.heading = options.heading;
   typed.pitch = options.pitch;
-  typed.dem = options.dem;
+  if (!options.dem.empty()) typed.dem = options.dem.front();
+  StandOverTheLand(options, typed);
   return SceneFromOptions(typed);
 }
 
@@ -67,103 +88,79 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
     flight.Advance({}, kFrame_s);
     recorder.Note(frame * kFrame_s, flight.eye(), flight.now());
   }
-  flight.WritePicture(*options.screenshot, size.width, size.height);
+  if (options.hud == "on") {
+    FlightDeck deck(flight, {options.hud_scale, true, {}});
+    deck.WritePicture(*options.screenshot, size);
+  } else {
+    flight.WritePicture(*options.screenshot, size);
+  }
 }
 
-/// Keys and mouse, as the flight understands them.
-class PilotHands {
- public:
-  void Take(const WindowEvents& events) {
-    for (const KeyEvent& key : events.keys) {
-      if (key.change == GLFW_RELEASE) {
-        held_.erase(key.key);
-      } else {
-        held_.insert(key.key);
-      }
-    }
-    const bool drags = events.buttons[0] && pointer_ && events.pointer;
-    drag_right_px_ = drags ? events.pointer->right - pointer_->right : 0.0;
-    drag_down_px_ = drags ? events.pointer->down - pointer_->down : 0.0;
-    pointer_ = events.pointer;
-  }
-  [[nodiscard]] Steering steering() const {
-    return {Axis(GLFW_KEY_W, GLFW_KEY_S), Axis(GLFW_KEY_D, GLFW_KEY_A),
-            Axis(GLFW_KEY_R, GLFW_KEY_F), Axis(GLFW_KEY_RIGHT, GLFW_KEY_LEFT),
-            Axis(GLFW_KEY_UP, GLFW_KEY_DOWN)};
-  }
-  [[nodiscard]] double drag_right_px() const { return drag_right_px_; }
-  [[nodiscard]] double drag_down_px() const { return drag_down_px_; }
-
-  static std::optional<Command> CommandOf(const KeyEvent& key) {
-    if (key.change == GLFW_RELEASE) return std::nullopt;
-    const bool shift = (key.modifiers & GLFW_MOD_SHIFT) != 0;
-    switch (key.key) {
-      case GLFW_KEY_T:
-        return shift ? Command::kSlowerTime : Command::kFasterTime;
-      case GLFW_KEY_X:
-        return shift ? Command::kWiderView : Command::kNarrowerView;
-      case GLFW_KEY_F3:
-        return Command::kScreenshot;
-      case GLFW_KEY_H:
-        return Command::kHud;
-      case GLFW_KEY_ESCAPE:
-        return Command::kQuit;
-      default:
-        return std::nullopt;
-    }
-  }
-
- private:
-  [[nodiscard]] double Axis(int positive, int negative) const {
-    return (held_.contains(positive) ? 1.0 : 0.0) - (held_.contains(negative) ? 1.0 : 0.0);
-  }
-
-  std::set<int> held_;
-  std::optional<PointerPlace> pointer_;
-  double drag_right_px_ = 0.0, drag_down_px_ = 0.0;
-};
-
-bool IsFullscreenKey(const KeyEvent& key) {
-  return key.key == GLFW_KEY_F10 && key.change == GLFW_PRESS &&
-         (key.modifiers & GLFW_MOD_SHIFT) != 0;
-}
+/// The whole picture of a window.
+Developer::Screen ScreenOf(const Window& window) { return {0, window.width(), window.height()}; }
 
 void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, Flythrough& flight,
          Window& window, FlightRecorder& recorder) {
   using Clock = std::chrono::steady_clock;
   int frames = 0;
   double elapsed_s = 0.0;
-  PilotHands hands;
-  for (Clock::time_point before = Clock::now(); !flight.quit();) {
+  const double scale = options.hud_scale > 0.0 ? options.hud_scale : window.content_scale();
+  FlightDeck deck(flight, {scale,
+                           options.hud != "off",
+                           {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
+  deck.SetRecording(options.record.has_value());
+  bool looks = false;
+  for (Clock::time_point before = Clock::now(); !deck.quit();) {
     ThrowIfInterrupted();
     const WindowEvents events = window.Poll();
     if (events.close) return;
-    hands.Take(events);
     const Clock::time_point now = Clock::now();
-    const double seconds = std::min(std::chrono::duration<double>(now - before).count(), 0.25);
+    const double seconds = std::chrono::duration<double>(now - before).count();
     before = now;
-    if (events.minimised) continue;
-    const double angle_of_pixel = flight.eye().fov_rad / window.width();
-    flight.Turn(-hands.drag_right_px() * angle_of_pixel, hands.drag_down_px() * angle_of_pixel);
-    flight.Advance(hands.steering(), seconds);
+    deck.Advance(events, {window.width(), window.height()}, seconds);
     // The pilot has the controls again when the path ends.
-    if (path && path->begin_s() + elapsed_s <= path->end_s()) {
+    if (path && path->begin_s() + elapsed_s <= path->end_s())
       flight.Show(ReplayAt(*path, path->begin_s() + elapsed_s));
-    }
     recorder.Note(elapsed_s, flight.eye(), flight.now());
     elapsed_s += seconds;
-    flight.Paint(window.width(), window.height(), 0, seconds);
-    window.SetTitle(flight.HudText());
-    window.Swap();
-    for (const KeyEvent& key : events.keys) {
-      if (IsFullscreenKey(key)) window.SetFullscreen(!window.fullscreen());
-      if (const auto command = PilotHands::CommandOf(key)) flight.Do(*command);
+    if (deck.TakeFullScreen()) window.SetFullscreen(!window.fullscreen());
+    if (looks != (deck.mouse_mode() == MouseMode::kLook)) {
+      looks = !looks;
+      window.CapturePointer(looks);
     }
+    if (events.minimised || window.width() == 0 || window.height() == 0) continue;
+    deck.Paint(ScreenOf(window), seconds);
+    window.Swap();
+    flight.NoteFrame(std::chrono::duration<double>(Clock::now() - now).count());
     if (options.screenshot && ++frames == options.frames) {
-      flight.WritePicture(*options.screenshot, window.width(), window.height());
+      flight.WritePicture(*options.screenshot, {window.width(), window.height()});
       return;
     }
   }
+}
+
+// The scripted flight, drawn into a window or, without one, into a picture of its size.
+void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
+  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
+  const Developer::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
+                                 size.height};
+  flight.Settle(size);
+  const Eye start = flight.eye();
+  const UtcInstant begin = flight.now();
+  Benchmark benchmark(seconds);
+  flight.painter().SetTimer(&benchmark.timer());
+  for (double before_s = 0.0; benchmark.NextFrame(); before_s = benchmark.elapsed_s()) {
+    ThrowIfInterrupted();
+    if (window != nullptr && window->Poll().close) break;
+    flight.Show(BenchmarkFlight(start, begin, benchmark.elapsed_s()));
+    const double frame_s = benchmark.elapsed_s() - before_s;
+    flight.Paint(screen, frame_s);
+    if (window != nullptr) window->Swap();
+    flight.NoteFrame(frame_s);
+  }
+  flight.painter().SetTimer(nullptr);
+  Print(benchmark.Text());
+  Say(fmt::format("skyview: {}; quality {}\n", benchmark.WorstText(), flight.QualityText()));
 }
 
 void WriteFilm(const SkyviewOptions& options, const CameraPath& path, const ImageSize& size,
@@ -178,30 +175,12 @@ void WriteFilm(const SkyviewOptions& options, const CameraPath& path, const Imag
   });
 }
 
-// The scripted flight, drawn into a window or, without one, into a picture of its size.
-void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
-  const Eye start = flight.eye();
-  const UtcInstant begin = flight.now();
-  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
-  Benchmark benchmark(seconds);
-  for (double before_s = 0.0; benchmark.NextFrame(); before_s = benchmark.elapsed_s()) {
-    ThrowIfInterrupted();
-    if (window != nullptr && window->Poll().close) break;
-    flight.Show(BenchmarkFlight(start, begin, benchmark.elapsed_s()));
-    benchmark.timer().Begin("picture");
-    flight.Paint(size.width, size.height, window == nullptr ? picture.framebuffer() : 0,
-                 benchmark.elapsed_s() - before_s);
-    benchmark.timer().End();
-    if (window != nullptr) window->Swap();
-  }
-  Print(benchmark.Text());
-  Say(fmt::format("skyview: {}\n", benchmark.WorstText()));
-}
-
 std::vector<NamedFile> InputsOf(const SkyviewOptions& options, const Scene& scene) {
   std::vector<NamedFile> inputs = FilesOf(scene);
   if (!options.scene_file.empty()) inputs.push_back({"the scene", options.scene_file});
   if (options.replay) inputs.push_back({"--replay", *options.replay});
+  if (options.track) inputs.push_back({"--track", *options.track});
+  for (const std::string& file : options.dem) inputs.push_back({"--dem", file});
   return inputs;
 }
 
@@ -231,6 +210,12 @@ void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
   }
 }
 
+/// What the land has to tell.
+void SayNotes(Flythrough& flight) {
+  for (const std::string& note : flight.painter().land().TakeNotes())
+    Say(fmt::format("skyview: {}\n", note));
+}
+
 int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
   const ImageSize size = ImageSizeFromText(options.size);
@@ -251,13 +236,17 @@ int Run(const SkyviewOptions& options) {
   if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
   if (window) RequireDrawable(std::max(window->width(), 1), std::max(window->height(), 1));
   if (headless) RequireDrawable(size.width, size.height);
-  Flythrough flight(scene, start);
+  Flythrough flight(
+      scene, start,
+      {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size});
   flight.Place(PlacementOf(options));
-  if (!flight.terrain_message().empty())
-    Say(fmt::format("skyview: {}\n", flight.terrain_message()));
+  if (options.place) flight.GoTo(*options.place);
+  if (options.track) flight.Follow(PathAlong(ReadTrack(*options.track), {}, flight.Ground()));
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
   if (window) window->AtLostDisplay([&recorder] { recorder.Finish(); });
-  if (options.benchmark) {
+  if (options.explain) {
+    Print(ExplainView(flight, size));
+  } else if (options.benchmark) {
     const bool shown = window && window->width() > 0 && window->height() > 0;
     const ImageSize drawn = shown ? ImageSize{window->width(), window->height()} : size;
     RunBenchmark(*options.benchmark, flight, drawn, window.get());
@@ -270,6 +259,7 @@ int Run(const SkyviewOptions& options) {
   } else {
     PaintHeadless(options, flight, size, recorder);
   }
+  if (!options.common.quiet) SayNotes(flight);
   recorder.Finish();
   return 0;
 }

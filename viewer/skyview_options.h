@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lut/picture/picture_text.h"
 #include "lut/program/command_line.h"
@@ -12,11 +13,10 @@
 namespace alpenglow {
 
 inline constexpr char kSkyviewFooter[] =
-    "Keys: W A S D fly along and across the view, R F up and down, arrows turn, a drag with the "
-    "left button looks; t T change the rate of time, x X the field of view, F3 writes a "
-    "screenshot, Shift-F10 fills the screen, h hides the numbers in the title, Esc quits. Speed "
-    "grows with the height over "
-    "the ground.\n\n"
+    "Keys: ? shows them all. W A S D fly along and across the view, R F up and down, arrows turn, "
+    "2 takes the aircraft, 1 the free camera again; t T change the rate of time, F5 to F9 jump to "
+    "sunrise, noon, sunset and the like, x X change the field of view, F3 writes a screenshot, F10 "
+    "opens panels, h hides all, Esc leaves.\n\n"
     "Example: sunrise over the built-in range, without a display\n"
     "  skyview --time sunrise+15m --headless --screenshot dawn.png\n"
     "A flight as a film:\n"
@@ -28,11 +28,15 @@ struct SkyviewOptions {
   CommonOptions common;
   std::string scene_file, size = "1280x720";
   std::optional<double> latitude, longitude, altitude, heading, pitch;
-  std::optional<std::string> dem, time, screenshot, record, replay, video;
+  std::optional<std::string> time, screenshot, record, replay, video, place, track;
+  std::vector<std::string> dem;
   std::optional<double> benchmark;  // seconds
   double fps = 30.0;                // of the film
   int frames = 1;
-  std::string vsync = "on";
+  std::string vsync = "on", quality = "auto", hud = "auto";
+  double frame_rate = 30.0;  // that automatic quality keeps
+  double hud_scale = 0.0;    // 0: as the desktop says
+  bool invert_y = false, explain = false;
   bool fullscreen = false, headless = false;
 };
 
@@ -52,8 +56,31 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   app.add_option("--time", options.time,
                  "2026-06-21T04:00:00Z, or an event of the scene's day: sunrise-10m, noon, "
                  "civil-dusk (default: the scene's time, else noon of 2026-06-21)");
-  app.add_option("--dem", options.dem, "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM")
+  app.add_option("--dem", options.dem,
+                 "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, and folders of such; several may "
+                 "be named")
       ->excludes(file);
+  app.add_option("--place", options.place,
+                 "Begin at an airport, peak or city by name or code: LSZH, \"Mont Blanc\"");
+  app.add_option("--track", options.track, "Follow a GPX or KML file");
+  app.add_option("--quality", options.quality,
+                 "low, medium, high, reference (the renderer's own picture where the eye stands), "
+                 "or auto, which keeps --frame-rate")
+      ->capture_default_str();
+  app.add_option("--frame-rate", options.frame_rate,
+                 "Frames a second that --quality auto keeps, "
+                 "1 to 1000")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--hud", options.hud,
+                 "Instruments: on, off, or auto: on in windows, not in pictures of --screenshot")
+      ->check(CLI::IsMember({"on", "off", "auto"}))
+      ->capture_default_str();
+  app.add_option("--hud-scale", options.hud_scale,
+                 "Size of instruments, 0.5 to 8 (default: as the "
+                 "desktop says)")
+      ->check(CLI::Range(0.5, 8.0));
+  app.add_flag("--invert-y", options.invert_y, "Sticks and mouse look down when pushed up");
   app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
       ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();
@@ -76,8 +103,12 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
                      "draws), and the whole frame as \"frame\"; 0.1 to 3600")
           ->check(CLI::Range(0.1, 3600.0))
           ->excludes(picture);
+  CLI::Option* explain = app.add_flag(
+      "--explain", options.explain,
+      "Compare this view with the renderer's, say what each shortcut costs and saves, and end");
+  explain->excludes(picture)->excludes(benchmark);
   app.add_flag("--headless", options.headless,
-               "Needs no display; only with --screenshot, --video or --benchmark");
+               "Needs no display; only with --screenshot, --video, --benchmark or --explain");
   app.add_option("--record", options.record,
                  "Write the flight to this file, for --replay and skyseries --path");
   app.add_option("--replay", options.replay,
@@ -97,8 +128,9 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   benchmark->excludes(video)->excludes("--replay")->excludes("--record");
   AddCommonOptions(app, "skyview", options.common);
   app.callback([&options] {
-    if (options.headless && !options.screenshot && !options.benchmark && !options.video) {
-      throw CLI::RequiresError("--headless", "--screenshot, --video or --benchmark");
+    if (options.headless && !options.screenshot && !options.benchmark && !options.video &&
+        !options.explain) {
+      throw CLI::RequiresError("--headless", "--screenshot, --video, --benchmark or --explain");
     }
   });
   app.footer(kSkyviewFooter);

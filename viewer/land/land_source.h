@@ -49,6 +49,10 @@ class LandTiles {
   [[nodiscard]] const LandLattice& lattice() const { return lattice_; }
   [[nodiscard]] const std::vector<LandTile>& tiles() const { return tiles_; }
   [[nodiscard]] const LandSource& source() const { return source_; }
+  /// Of all tiles, at height 0. There is at least one.
+  [[nodiscard]] GeodeticPosition Middle() const {
+    return lattice_.PlaceOf(lattice_.last_column / 2, lattice_.last_row / 2, 0.0);
+  }
   /// Indices of tiles that touch a box, in their order.
   [[nodiscard]] std::vector<int> Touching(const LatticeBox& box) const;
   /// One line each about what was left out.

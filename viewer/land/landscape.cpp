@@ -516,8 +516,7 @@ LandFigures Landscape::Figures() const {
 std::optional<GeodeticPosition> Landscape::Middle() const {
   if (mesh_) return tiles_->source().mesh->place;
   if (tiles_->tiles().empty()) return std::nullopt;
-  const LandLattice& lattice = tiles_->lattice();
-  return lattice.PlaceOf(lattice.last_column / 2, lattice.last_row / 2, 0.0);
+  return tiles_->Middle();
 }
 
 }  // namespace alpenglow

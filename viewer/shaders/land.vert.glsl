@@ -39,6 +39,6 @@ void main() {
   float height = dot(view_up.xyz, view_up.xyz);
   // Only the near plane clips. Reversed depth is nearest / w; else the fragment stage writes it.
   float z = eye_above.z > 0.0 ? nearest : along_view - 2.0 * nearest;
-  vec2 at = vec2(dot(from_eye, view_right.xyz) / width, dot(from_eye, view_up.xyz) / height);
-  gl_Position = vec4(at - PICTURE_SHIFT * along_view, z, along_view);
+  vec2 seen = vec2(dot(from_eye, view_right.xyz) / width, dot(from_eye, view_up.xyz) / height);
+  gl_Position = vec4(seen - PICTURE_SHIFT * along_view, z, along_view);
 }
