@@ -379,8 +379,10 @@ void Landscape::Choose() {
     chunks.push_back(&chunk);
   }
   drawn_.clear();
+  constexpr double kHigh_m = 5000.0;  // over all ground about: little hides little
+  const bool may_hide = over_ground_ && eye_.above_m < kHigh_m;
   const std::vector<char> is_seen =
-      over_ground_ ? NotHidden(chunks, eye) : std::vector<char>(chunks.size(), 1);
+      may_hide ? NotHidden(chunks, eye) : std::vector<char>(chunks.size(), 1);
   for (std::size_t i = 0; i < in_view.size(); ++i)
     if (is_seen[i] != 0) drawn_.push_back(in_view[i]);
 }

@@ -84,14 +84,15 @@ class Skyline::CrestMaker {
 
 void Skyline::Add(std::span<const Between> line) {
   CrestMaker maker;
+  double from = BinOf(line.front().one, kBins);
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const double from = BinOf(line[i - 1].one, kBins);
-    const double step = std::remainder(BinOf(line[i].one, kBins) - from, kBins);
-    // A piece close by turns far; it is left out, and the line goes on behind it.
+    const double to = from + std::remainder(BinOf(line[i].one, kBins) - from, kBins);
+    // A piece close by that turns far hides nothing, and the line goes on behind it.
     constexpr double kWidest = kBins / 8.0;
-    const Piece piece = LeastOf(line[i - 1], line[i]);
-    maker.Add(from, from + step,
-              {std::abs(step) > kWidest ? -1e30 : piece.tangent, piece.farthest_m});
+    Piece piece = LeastOf(line[i - 1], line[i]);
+    if (std::abs(to - from) > kWidest) piece.tangent = -1e30;
+    maker.Add(from, to, piece);
+    from = to;
   }
   for (Crest& crest : maker.Finish()) waiting_.push(std::move(crest));
 }
