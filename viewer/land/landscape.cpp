@@ -12,6 +12,7 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
+#include "atmosphere/text/error.h"
 #include "viewer/land/skyline.h"
 
 namespace alpenglow {
@@ -63,6 +64,7 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
       cache_(tiles_, tree_, size.detail, size.most_bytes),
       reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
       worker_(Work) {
+  RequireInRange(size.detail, 64.0, 1024.0, "the detail of the land");
   if (source.mesh) {
     mesh_.emplace(source.mesh->file, LocalFrame(ellipsoid, source.mesh->place));
   } else if (source.files.empty() && source.range_centre) {

@@ -24,8 +24,8 @@ namespace alpenglow {
 
 /// How much land is drawn and kept.
 struct LandSize {
-  /// Samples from the eye to where the second level begins; at least 64. Triangles grow as its
-  /// square.
+  /// Samples from the eye to where the second level begins, in [64, 1024]. Triangles grow as its
+  /// square, and so does what chunks take beside heights: 45 kB each, 1,200 of them at 96.
   double detail = 96.0;
   /// Of heights that are kept [bytes], see TileCache.
   std::size_t most_bytes = std::size_t{512} << 20;
@@ -46,8 +46,8 @@ struct LandProgress {
 
 class Landscape {
  public:
-  /// Reads headers of files, nothing else; throws InputError as LandTiles does. An OpenGL context
-  /// must be current, here and in all calls.
+  /// Reads headers of files, nothing else; throws InputError as LandTiles does, and for a detail
+  /// out of range. An OpenGL context must be current, here and in all calls.
   Landscape(const LandSource& source, const LandSize& size, const Ellipsoid& ellipsoid);
   ~Landscape();
   Landscape(const Landscape&) = delete;
