@@ -90,8 +90,8 @@ class Landscape {
   }
 
   [[nodiscard]] LandProgress Progress() const;
-  /// What there is to say, each once: tiles left out, voids, vertical datums, that the range is made
-  /// up.
+  /// What there is to say, each once: tiles left out, voids, vertical datums, that the range is
+  /// made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
   /// The middle of the land; nothing without any.

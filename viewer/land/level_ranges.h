@@ -9,8 +9,8 @@
 //     side's vertices are the coarser level's;
 //   - start(k + 1) >= end(k) + the diagonal of a chunk of level k + 1, so the coarser side's are
 //     still their own.
-// end(k) is never beyond the nearest chunk that is wanted and not there yet, so both hold while land
-// is still being loaded.
+// end(k) is never beyond the nearest chunk that is wanted and not there yet, so both hold while
+// land is still being loaded.
 #pragma once
 
 #include <functional>

@@ -140,7 +140,7 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
   const Terrain terrain(
       MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
   Landscape land(Folder(), {96.0}, kWgs84);
-  // Near the eye stand the renderer's own triangles, farther ones of a 96th of the distance at most.
+  // Near the eye stand the renderer's own triangles, farther ones of a 96th of the distance.
   struct View {
     double above_m, column, row, pitch_rad, fov_rad;
     double middling, most;  // of the relative error of distances: median, 95 %
