@@ -12,6 +12,7 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "viewer/land/skyline.h"
 
@@ -59,9 +60,10 @@ constexpr double kHighestGround_m = 9000.0;
 Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellipsoid& ellipsoid)
     : tiles_(std::make_shared<const LandTiles>(source)),
       size_(size),
+      detail_(size.detail),
       ellipsoid_(ellipsoid),
       tree_(*tiles_),
-      cache_(tiles_, tree_, size.detail, size.most_bytes),
+      cache_(tiles_, tree_, size.most_bytes),
       reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
       worker_(Work) {
   RequireInRange(size.detail, 64.0, 1024.0, "the detail of the land");
@@ -170,8 +172,17 @@ void Landscape::TakeChunks() {
   }
 }
 
+// Gently, so that a zoom does not pop.
+void Landscape::FollowZoom(double seconds) {
+  constexpr double kTime_s = 0.5;
+  const double usual = std::tan(kPi / 6.0);
+  const double wanted =
+      size_.detail * std::clamp(std::sqrt(usual / glm::length(view_.right)), 1.0, 2.0);
+  detail_ = wanted + (detail_ - wanted) * std::exp(-seconds / kTime_s);
+}
+
 void Landscape::FindDemand(double seconds) {
-  demand_ = DemandOf(tree_, eye_, size_.detail,
+  demand_ = DemandOf(tree_, eye_, detail_,
                      [&](const ChunkKey& key) { return set_->chunks.contains(key); });
   for (const WantedChunk& wanted : demand_.wanted) {
     const auto found = set_->chunks.find(wanted.key);
@@ -183,7 +194,7 @@ void Landscape::FindDemand(double seconds) {
 // A level that has come reaches out from the eye within a moment, from coarse to fine.
 void Landscape::LetLevelsReach(double seconds) {
   for (std::size_t level = 0; level < reach_m_.size(); ++level) {
-    const double full = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m) *
+    const double full = detail_ * std::sqrt(eye_.size.column_m * eye_.size.row_m) *
                         std::exp2(static_cast<double>(level));
     const double grown = reach_m_[level] + full * seconds / kReachTime_s;
     reach_m_[level] = std::min(demand_.reach_m[level], grown);
@@ -396,7 +407,8 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   if (mesh_) mesh_->Update(seconds);
   if (tiles_->tiles().empty()) return;
   eye_ = EyeAt(eye);
-  if (cache_.Update(eye_)) ++heights_version_;
+  FollowZoom(seconds);
+  if (cache_.Update(eye_, detail_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
   if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
   TakeChunks();

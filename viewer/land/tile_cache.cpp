@@ -9,11 +9,10 @@
 
 namespace alpenglow {
 
-TileCache::TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree, double detail,
+TileCache::TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree,
                      std::size_t most_bytes)
     : tiles_(std::move(tiles)),
       tree_(tree),
-      detail_(detail),
       most_bytes_(most_bytes),
       heights_(tiles_->tiles().size()),
       has_failed_(tiles_->tiles().size(), 0),
@@ -145,7 +144,8 @@ void TileCache::AskForNearest(const LandEye& eye) {
   reader_.Ask({static_cast<int>(*nearest), level_wanted_[*nearest]});
 }
 
-bool TileCache::Update(const LandEye& eye) {
+bool TileCache::Update(const LandEye& eye, double detail) {
+  detail_ = detail;
   if (tiles_->tiles().empty()) return false;
   Want(eye);
   const bool has_come = TakeOne();

@@ -16,15 +16,15 @@ class TileCache {
  public:
   /// @param most_bytes  of heights that are kept. Beyond it far tiles are kept coarser than they
   ///   would be drawn. The tile that is being read comes on top: twelve bytes a sample of it.
-  TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree, double detail,
-            std::size_t most_bytes);
+  TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree, std::size_t most_bytes);
 
   void SetDetail(double detail) { detail_ = detail; }
 
   /// Takes what has been read, drops what is far, asks for what is near. Returns whether heights
   /// have come. Throws InputError when a file that was named by itself cannot be read; what cannot
   /// be read in a folder is noted and is no ground.
-  bool Update(const LandEye& eye);
+  /// @param detail  as in DemandOf.
+  bool Update(const LandEye& eye, double detail);
 
   [[nodiscard]] const std::shared_ptr<const LoadedHeights>& loaded() const { return loaded_; }
   /// Whether all tiles that a chunk reads are there as fine as it needs them, or never will be.
@@ -64,7 +64,7 @@ class TileCache {
 
   std::shared_ptr<const LandTiles> tiles_;
   const ChunkTree& tree_;
-  double detail_;
+  double detail_ = 0.0;  // of the last update
   std::size_t most_bytes_;
   std::vector<std::shared_ptr<const HeightPyramid>> heights_;
   std::vector<char> has_failed_;

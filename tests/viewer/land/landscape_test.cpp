@@ -245,6 +245,18 @@ TEST_F(LandscapePictures, FlyingOverAFolderKeepsWithinItsBounds) {
       << "near the eye stand the samples themselves";
 }
 
+TEST_F(LandscapePictures, ThroughATelephotoLensFarLandIsFiner) {
+  WriteTiles(3);
+  const LookOut wide{PlaceOfSample(360.0, 700.0, 4000.0), 0.0, -0.2, 1.2};
+  LookOut narrow = wide;
+  narrow.fov_rad = 0.2;
+  Landscape land(Folder(), {64.0}, kWgs84);
+  land.Settle(wide.place, wide.View());
+  const int usual = land.Figures().kept_chunks;
+  land.Settle(narrow.place, narrow.View());
+  EXPECT_GT(land.Figures().kept_chunks, 2 * usual) << "twice as fine, and the land ends somewhere";
+}
+
 TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
   WriteTiles(2);
   std::filesystem::resize_file(folder_ / "tile01.tif", 60000);
