@@ -23,12 +23,16 @@
 
 namespace alpenglow {
 
-/// What there is of a map of fog's light.
+/// How fine a map is. Off from MediaLight by 0.1 % in the mean by day and 0.5 % with the sun on the
+/// horizon, where light in fog falls by e every few metres (99 %: 2 % and 5 %; fine: half of all);
+/// made in 0.1 s of one core (fine: 0.25 s).
 struct FogMapSize {
-  int elevations = 48;  // even: half of them over the horizon
-  int azimuths = 12;    // from 0 to pi
-  int depths = 12;
+  int elevations = 128;  // even: half of them over the horizon
+  int azimuths = 16;     // from 0 to pi
+  int depths = 6;
 };
+inline constexpr FogMapSize kCoarseFog{48, 12, 5};
+inline constexpr FogMapSize kFineFog{192, 24, 5};
 
 /// Sun and eye, east, north and up at the eye, on the sphere of the air's medium.
 struct FogView {

@@ -265,10 +265,6 @@ vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
   return sum;
 }
 
-vec4 LampGlow(vec3 direction, float distance_km) {
-  return LampGlowIn(direction, 1e3 * distance_km, 1.0);
-}
-
 #ifdef LAMP_GLOW_MAP
 // What the air that a lamp lights brings to a surface: exact for level ground, linear in the tilt.
 // The map has the logarithm of what level ground gets times the distance, and what slopes towards
