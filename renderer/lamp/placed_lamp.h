@@ -57,7 +57,8 @@ using MeasuredLamps = std::map<std::string, IesLamp>;
                                          const std::vector<double>& wavelengths_nm,
                                          const BandColour& colour);
 
-/// All lights of a scene that shine, before no eye. Throws InputError as PlacedOn and MeasuredLampsOf.
+/// All lights of a scene that shine, before no eye. Throws InputError as PlacedOn and
+/// MeasuredLampsOf do.
 [[nodiscard]] std::vector<PlacedLamp> PlacedLampsOf(const Scene& scene, const LampStage& stage,
                                                     const Medium& medium, const BandColour& colour);
 

@@ -11,8 +11,8 @@
 namespace alpenglow {
 
 /// Whether light around this eye and under this sun is that of the map, but for a few per cent: the
-/// eye within a tenth of the fog's scale height of where it was, the sun within a tenth of a degree.
-/// What falls off faster, transmittance and the phase function towards the sun, is not in the map.
+/// eye within a tenth of the fog's scale height, the sun within a tenth of a degree. What falls off
+/// faster, transmittance and the phase function towards the sun, is not in the map.
 [[nodiscard]] bool Serves(const FogMap& map, const FogView& view);
 
 class FogFollower {

@@ -102,7 +102,7 @@ class FogMarch {
     return shared::DistanceDownTo(eye_.z, direction.z, 0.0, radius_m_);
   }
 
-  // So short that neither the fog's light nor its density changes much, up to where nothing is seen.
+  // So short that neither the fog's light nor its density changes much, as far as one can see.
   [[nodiscard]] std::vector<Step> StepsOf(const glm::dvec3& direction) const {
     constexpr double kDepth = 0.1, kFall = 0.25, kOpaque = 12.0;
     constexpr double kShortest_m = 0.01;

@@ -7,9 +7,9 @@
 //   L(d) = (1 - T(d)) [p A + p' B + G + K],    T = exp(-tau(d)), of the fog alone
 //
 // A of the sun itself with the fog's phase function p, B of what its forward peak takes along with
-// the lobe p', G of the sun's glow in the fog, K of the sky. They are tabulated over the sine of the
-// ray's elevation, its azimuth from the sun and (1 - T(d)) / (1 - T(end)), where the ray's end is
-// the bare planet or space. A, B and G are those of open ground: terrain does not shade them.
+// the lobe p', G of the sun's glow in the fog, K of the sky. Tables are over the sine of the ray's
+// elevation, its azimuth from the sun and (1 - T(d)) / (1 - T(end)), where the ray ends at the bare
+// planet or in space. A, B and G are those of open ground: terrain does not shade them.
 #pragma once
 
 #include <array>

@@ -28,11 +28,13 @@ ShaderPiece Piece(const char* name) { return {name, std::string(viewer::Embedded
 std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   const std::vector<LampLayer>& layers = shape.layers();
   std::string text = fmt::format(
+      "#define LAMP_MOST {}\n#define LAMP_CONE {}\n#define LAMP_TABLE {}\n"
       "#define LAMP_NODES {}\n#define LAMP_STEP {}\n"
       "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
       "#define LAMP_GLOW_FARTHEST {:.7f}\n",
-      quality.nodes, quality.step, PhaseExpression(layers[1].phase.kind), kNearestGlow_m,
-      kFarthestGlow_m);
+      kMostGpuLamps, static_cast<int>(LampProfile::Kind::kCone),
+      static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step,
+      PhaseExpression(layers[1].phase.kind), kNearestGlow_m, kFarthestGlow_m);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
   if (!shape.shades().empty()) {
     text += fmt::format(

@@ -9,8 +9,8 @@
 
 namespace alpenglow {
 
-/// An expression over a cosine `c` and a vector `p` of parameters, ParametersOf(). Tables have none:
-/// what reads them has a texture.
+/// An expression over a cosine `c` and a vector `p` of parameters, ParametersOf(). Tables have
+/// none: what reads them has a texture.
 [[nodiscard]] std::string PhaseExpression(PhaseKind kind);
 [[nodiscard]] glm::vec4 ParametersOf(const PhaseFunction& phase);
 

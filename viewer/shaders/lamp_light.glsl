@@ -9,23 +9,19 @@
 //
 // by Gauss-Legendre in the logarithm of a, in which forward peaks of any width are as smooth as the
 // rest. The air of a lamp lies over the plane that touches the sphere between it and the eye.
-#define LAMP_MOST 64
-#define LAMP_EVEN 0
-#define LAMP_CONE 2
-#define LAMP_TABLE 3
 
 struct Lamp {
   vec4 position;   // of its middle; radius within which the air scatters as there
   vec4 intensity;  // in its brightest direction [W sr^-1 nm^-1]
   vec4 axis;       // unit; kind of its profile
   vec4 side;       // unit; layer of its table
-  vec4
-      profile;  // cosines inside which a cone is full and outside which it is dark; distance; 1 where the eye is inside of it
-  vec4 up;      // of its air; altitude of the eye
-  vec4 at_eye;  // densities of molecules, aerosol, fog; altitude of the lamp
-  vec4 at_lamp;  // densities there; its own radius
-  vec4 glow;     // mean of its profile; layer of glow_map; size of its core, 0: none; layer
-                 // of lamp_shades, -1 without
+  vec4 profile;    // cosines inside which a cone is full and outside which it is dark; distance;
+                   // 1 where the eye is inside of the lamp
+  vec4 up;         // of its air; altitude of the eye
+  vec4 at_eye;     // densities of molecules, aerosol, fog; altitude of the lamp
+  vec4 at_lamp;    // densities there; its own radius
+  vec4 glow;       // mean of its profile; layer of glow_map; size of its core, 0: none; layer
+                   // of lamp_shades, -1 without
 };
 
 layout(std140) uniform Lamps {
@@ -52,7 +48,7 @@ uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
 uniform sampler2DArray lamp_tables;  // share over angles from the axis and around it
 #endif
 #ifdef LAMP_GLOW_MAP
-uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see LampGlowMap
+uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see SampledGlow
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slopes over which a lamp is seen, by compass and distance
