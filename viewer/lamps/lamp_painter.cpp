@@ -42,7 +42,10 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
         "{:.7f}\n",
         kNearestShade_m, kFarthestShade_m);
   }
-  if (!shape.glows().empty()) text += "#define LAMP_GLOW_MAP\n";
+  // Clear air brings less than a per cent of a lamp's light to the ground around it.
+  const bool is_fine = quality.step == 1;
+  if (!shape.glows().empty() && (is_fine || shape.HasFog())) text += "#define LAMP_GLOW_MAP\n";
+  if (is_fine) text += "#define LAMP_GLOW_OF_SLOPES\n";
   if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
   if (shape.HasFog()) {
     text += fmt::format("#define LAMP_FOG\n#define LAMP_PHASE_FOG(c, p) {}\n",

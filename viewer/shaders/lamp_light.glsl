@@ -272,11 +272,15 @@ vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
   vec2 at = vec2(TexelFromUnit(LampGlowUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), size.x),
                  TexelFromUnit(LampRiseUnit(sine), size.y));
   vec4 level = textureLod(lamp_glow_map, vec3(at, 3.0 * lamp.glow.y), 0.0);
+#ifdef LAMP_GLOW_OF_SLOPES
   vec3 flat_way = towards - sine * lamp.up.xyz;
   float tilt = dot(normal, flat_way) / max(length(flat_way), 1e-6);
   float layer = 3.0 * lamp.glow.y + (tilt < 0.0 ? 2.0 : 1.0);
   vec4 tilted = textureLod(lamp_glow_map, vec3(at, layer), 0.0);
   return exp(level) / far * max(dot(normal, lamp.up.xyz) + tilted * abs(tilt), vec4(0.0));
+#else
+  return exp(level) * (max(dot(normal, lamp.up.xyz), 0.0) / far);
+#endif
 }
 #endif
 
