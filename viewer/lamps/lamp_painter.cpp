@@ -210,7 +210,7 @@ void LampPainter::Bind() const {
 }
 
 void LampPainter::PaintGlow(int width, int height) {
-  if (quality_.step == 1 || lamps_ == 0) return;
+  if (quality_.step == 1) return;
   const int columns = (width + quality_.step - 1) / quality_.step + 1;
   const int rows = (height + quality_.step - 1) / quality_.step + 1;
   if (!lattice_ || lattice_->width() != columns || lattice_->height() != rows) {
