@@ -114,6 +114,11 @@ void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLen
   TurnUpsideDown(pixels, static_cast<std::size_t>(width_));
 }
 
+void RenderTarget::UseDepth(GLuint texture) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture, 0);
+}
+
 double RenderTarget::LuminanceAt(double right, double down) const {
   std::array<float, 3> rgb{};
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());

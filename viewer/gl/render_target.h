@@ -41,6 +41,9 @@ class RenderTarget {
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] GLuint framebuffer() const { return framebuffer_.id(); }
 
+  /// Draws are tested against this depth texture of the same size from now on.
+  void UseDepth(GLuint texture) const;
+
   /// Puts red, green and blue into the first output, row 0 at the top; another size than the
   /// target's is an error.
   void Write(const Image& image) const;

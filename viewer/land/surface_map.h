@@ -23,6 +23,9 @@ class SurfaceMap {
   /// Makes the two textures readable.
   void BindTextures(int surface_unit, int sky_unit) const;
 
+  /// The texture of depths: 0 where there is no land.
+  [[nodiscard]] GLuint depth() const { return depth_.id(); }
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 

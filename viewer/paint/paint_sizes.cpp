@@ -10,14 +10,17 @@ PaintSizes SizesOf(Quality quality) {
       sizes.air = AirQuality::kLow;
       sizes.land_detail = 64.0;
       sizes.shade = kLowShade;
+      sizes.lamps = kLowLamps;
+      sizes.dropped_octaves = 2;
       sizes.relief_pixels = 2.0;
       break;
     case Quality::kMedium:
+      sizes.dropped_octaves = 1;
       break;
     case Quality::kHigh:
     case Quality::kReference:
       sizes.air = AirQuality::kHigh;
-      sizes.land_detail = 256.0;
+      sizes.land_detail = 512.0;
       sizes.shade = kHighShade;
       sizes.lamps = kHighLamps;
       break;

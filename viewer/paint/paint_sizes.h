@@ -16,6 +16,7 @@ struct PaintSizes {
   bool has_shafts = true;
   ShadeQuality shade = kMediumShade;
   LampQuality lamps = kMediumLamps;
+  int dropped_octaves = 0;     // of the ground's detail
   double relief_pixels = 1.0;  // detail of the ground is left out below so many pixels
 };
 

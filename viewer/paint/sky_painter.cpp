@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/sky_painter.h"
 
+#include <fmt/format.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <utility>
 
@@ -39,7 +41,7 @@ enum Unit {
   kAirUnit,
   kGroundUnit = kAirUnit + AirTextures::kUnits,
   kLampUnit = kGroundUnit + 3,
-  kFogUnit = kLampUnit + 4,
+  kFogUnit = kLampUnit + 5,
 };
 constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
 constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
@@ -126,23 +128,30 @@ LandSource LandSourceOf(const Scene& scene) {
   return source;
 }
 
-std::vector<ShaderPiece> PictureTexts(const PictureKind& kind) {
+std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStage& stage) {
   std::vector<ShaderPiece> texts = AirTexts();
   const auto add = [&](std::vector<ShaderPiece> pieces) {
     for (ShaderPiece& piece : pieces) texts.push_back(std::move(piece));
   };
+  const bool has_lamps = stage.has_lamps && kind.lamps != nullptr;
+  texts.push_back(
+      {"stage", fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
+                            "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
+                            "#define HAS_FOG {}\n",
+                            static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
+                            has_lamps ? 1 : 0, kind.fog ? 1 : 0)});
+  add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());
+  // What fog leaves of the sun on the ground is part of what the air leaves.
   if (kind.fog) {
-    add(FogTexts(*kind.fog));
-    // What fog leaves of the sun on the ground is part of what the air leaves.
     texts.push_back({"fog on the ground",
-                     "#define HAS_FOG 1\n#define TransmittanceToSun(h, mu) "
+                     "#define TransmittanceToSun(h, mu) "
                      "(TransmittanceToSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
   add({ViewerPiece("viewer/shaders/air_block.glsl"), ViewerPiece("viewer/shaders/octahedral.glsl"),
        ViewerPiece("viewer/shaders/sun_light.glsl")});
-  add(GroundTexts(kind.material));
+  add(GroundTexts(kind.material, kind.dropped_octaves));
   add(ShaftTexts());
-  add(LampTexts(kind.lamps, kind.quality));
+  add(has_lamps ? kind.lamps->texts() : NoLampTexts());
   return texts;
 }
 
@@ -153,7 +162,7 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
       sizes_(sizes),
       material_(scene.ground, nullptr, scene.medium.wavelengths_nm),
       air_(SolveAir(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)), sizes.air,
-           AirViewOf(first, SunOf(first))),
+           AirViewOf(first, ApparentSunAt(first.eye.place, first.now))),
       land_(land, LandSizeOf(sizes), ellipsoid_),
       ground_(scene.ground, nullptr, {}),
       shade_(ellipsoid_),
@@ -169,52 +178,43 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
   shaft_pass_.program().Use();
   AirTextures::Prepare(shaft_pass_.program(), kAirUnit, kTablesBinding);
   shade_.SetSize(sizes.shade.size);
-  MakeProgram();
+  lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
   CheckGl("SkyPainter");
 }
 
-void SkyPainter::MakeProgram() {
-  lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
+const ShaderProgram& SkyPainter::ProgramOf(const PictureStage& stage) {
+  const auto found = programs_.find(stage);
+  if (found != programs_.end()) return found->second;
   const std::optional<PhaseKind> fog =
       scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
-  program_.emplace(FullScreenProgram(PictureTexts({material_, lamps_, sizes_.lamps, fog}),
-                                     "viewer/shaders/picture.frag.glsl"));
-  program_->BindBlock("Air", kAirBinding);
-  program_->BindBlock("View", kViewBinding);
-  program_->BindBlock("Ground", kGroundBinding);
-  program_->BindBlock("GroundLight", kGroundLightBinding);
-  program_->BindBlock("GroundSurface", kGroundSurfaceBinding);
-  program_->BindSampler("surface_map", kSurfaceUnit);
-  program_->BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
-  program_->BindSampler("shaft_map", kShaftUnit);
-  AirTextures::Prepare(*program_, kAirUnit, kTablesBinding);
-  lamp_painter_->Connect(*program_);
-  if (fog_) fog_->painter.Connect(*program_);
+  const PictureKind kind{material_, &*lamp_painter_, fog, sizes_.dropped_octaves};
+  ShaderProgram made =
+      FullScreenProgram(PictureTexts(kind, stage), "viewer/shaders/picture.frag.glsl");
+  made.BindBlock("Air", kAirBinding);
+  made.BindBlock("View", kViewBinding);
+  made.BindBlock("Ground", kGroundBinding);
+  made.BindBlock("GroundLight", kGroundLightBinding);
+  made.BindBlock("GroundSurface", kGroundSurfaceBinding);
+  made.BindSampler("surface_map", kSurfaceUnit);
+  made.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
+  made.BindSampler("shaft_map", kShaftUnit);
+  AirTextures::Prepare(made, kAirUnit, kTablesBinding);
+  if (stage.has_lamps) lamp_painter_->Connect(made);
+  if (fog_) fog_->painter.Connect(made);
+  return programs_.emplace(stage, std::move(made)).first->second;
 }
 
 void SkyPainter::Use(const PaintSizes& sizes) {
-  const bool same_program =
-      sizes.lamps.nodes == sizes_.lamps.nodes && sizes.lamps.step == sizes_.lamps.step;
+  const bool same_programs = sizes.lamps.nodes == sizes_.lamps.nodes &&
+                             sizes.lamps.step == sizes_.lamps.step &&
+                             sizes.dropped_octaves == sizes_.dropped_octaves;
   sizes_ = sizes;
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
   land_.SetDetail(sizes.land_detail);
-  if (!same_program) MakeProgram();
-}
-
-LampView SkyPainter::LampViewOf(const PaintedView& view) const {
-  const LocalFrame here(ellipsoid_, view.eye.place);
-  LampView seen;
-  seen.eye_m = lamp_ground_.frame.EnuFromGeodetic(view.eye.place).xyz;
-  for (const glm::length_t axis : {0, 1, 2}) {
-    glm::dvec3 unit(0.0);
-    unit[axis] = 1.0;
-    seen.eye_from_ground[axis] =
-        here.EnuFromEcef(lamp_ground_.frame.EcefFromEnu(Vector<Enu>{unit})).xyz;
-  }
-  seen.altitude_m = view.eye.place.height_m;
-  seen.pixel_angle_rad = PixelAngle(view);
-  return seen;
+  if (same_programs) return;
+  programs_.clear();
+  lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
 }
 
 void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool waits) {
@@ -243,11 +243,14 @@ void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool
 void SkyPainter::PrepareLamps(const PaintedView& view) {
   // Lamps dimmer than this are not seen beside what else there is.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
-  lamp_painter_->Prepare(lamps_, LampViewOf(view), kDimmest_cd_per_m2);
+  lamp_painter_->Prepare(lamps_, LampViewFrom(lamp_ground_.frame, view.eye.place, PixelAngle(view)),
+                         kDimmest_cd_per_m2);
 }
 
-SunPosition SkyPainter::SunOf(const PaintedView& view) const {
-  return ApparentSunAt(view.eye.place, view.now);
+const SunPosition& SkyPainter::SunOf(const PaintedView& view) const {
+  const bool is_known = sun_ && sun_->first.now == view.now && sun_->first.eye == view.eye;
+  if (!is_known) sun_.emplace(view, ApparentSunAt(view.eye.place, view.now));
+  return sun_->second;
 }
 
 void SkyPainter::TakeHeights() {
@@ -265,15 +268,14 @@ void SkyPainter::TakeLight() {
   ground_textures_.SetSeaMirror(ground_.sea_mirror());
 }
 
-void SkyPainter::UploadMoon(const PaintedView& view) const {
-  const MoonDisk moon = ApparentMoonDisk(view.eye.place, view.now, SunOf(view).distance_au);
-  program_->Use();
-  glUniform4f(program_->Uniform("moon"), static_cast<float>(moon.to_moon.x),
-              static_cast<float>(moon.to_moon.y), static_cast<float>(moon.to_moon.z),
-              static_cast<float>(moon.radius_rad));
-  glUniform4f(program_->Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
-              static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
-              static_cast<float>(moon.radiance_per_irradiance));
+void SkyPainter::UploadMoon(const ShaderProgram& program) const {
+  program.Use();
+  glUniform4f(program.Uniform("moon"), static_cast<float>(moon_.to_moon.x),
+              static_cast<float>(moon_.to_moon.y), static_cast<float>(moon_.to_moon.z),
+              static_cast<float>(moon_.radius_rad));
+  glUniform4f(program.Uniform("moon_lit"), static_cast<float>(moon_.to_sun.x),
+              static_cast<float>(moon_.to_sun.y), static_cast<float>(moon_.to_sun.z),
+              static_cast<float>(moon_.radiance_per_irradiance));
 }
 
 void SkyPainter::Update(const PaintedView& view, double seconds) {
@@ -353,7 +355,6 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
   UploadBlock(blocks_.ground_light, kGroundLightBinding, &light, sizeof(light));
   const GroundSurfaceBlock cover = GroundSurfaceBlockOf(material_);
   UploadBlock(blocks_.ground_surface, kGroundSurfaceBinding, &cover, sizeof(cover));
-  ground_textures_.Bind(*program_, kGroundUnit);
 }
 
 void SkyPainter::PaintLand(const PaintedView& view) {
@@ -372,7 +373,6 @@ void SkyPainter::PaintShafts(const PaintedView& view) {
   Begin("shafts");
   shaft_pass_.Paint(shade_.shade(), shade_.MapFromEye(view.eye.place), view.width, view.height,
                     kSurfaceUnit, kShadeUnit, sizes_.shade.detail);
-  shaft_pass_.Bind(*program_, kShaftUnit);
 }
 
 void SkyPainter::PaintLamps(const PaintedView& view) {
@@ -381,39 +381,82 @@ void SkyPainter::PaintLamps(const PaintedView& view) {
   lamp_painter_->PaintGlow(view.width, view.height);
 }
 
-void SkyPainter::PaintPicture(const PaintedView& view, bool adds) {
+void SkyPainter::PaintStage(const PictureStage& stage, const PaintedView& view, GLenum land) {
+  const ShaderProgram& program = ProgramOf(stage);
+  ground_textures_.Bind(program, kGroundUnit);
+  if (stage.has_shade) shaft_pass_.Bind(program, kShaftUnit);
+  program.Use();
+  glUniform1f(program.Uniform("pixel_angle"), static_cast<float>(PixelAngle(view)));
+  glDepthFunc(land);
+  DrawFullScreen(program, no_vertices_);
+}
+
+void SkyPainter::PaintDisk(const glm::dvec3& direction, double radius_rad,
+                           const PaintedView& view) {
+  const LandView axes = LandViewOf(view);
+  const double along = glm::dot(direction, axes.forward);
+  if (along <= 0.0) return;
+  const auto pixel = [&](const glm::dvec3& axis, double part, int side) {
+    const double at = glm::dot(direction, axis) / glm::dot(axis, axis) / along - part;
+    return 0.5 * side * (1.0 + at);
+  };
+  const double x = pixel(axes.right, view.part.x * view.part.z, view.width);
+  const double y = pixel(axes.up, view.part.y * view.part.w, view.height);
+  // Twice the radius: off the middle of the view disks are drawn out.
+  const double reach = 2.0 * radius_rad / PixelAngle(view) / along + 2.0;
+  if (x < -reach || y < -reach || x > view.width + reach || y > view.height + reach) return;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(static_cast<GLint>(std::floor(x - reach)), static_cast<GLint>(std::floor(y - reach)),
+            static_cast<GLsizei>(std::ceil(2.0 * reach)) + 1,
+            static_cast<GLsizei>(std::ceil(2.0 * reach)) + 1);
+  PaintStage({PictureStage::Pass::kDisks}, view, GL_EQUAL);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   Begin("picture");
   picture_->Bind();
+  picture_->UseDepth(surface_->depth());
   lamp_painter_->Bind();
   if (fog_) fog_->painter.Bind(*fog_->follower->map(), FogViewOf(view, SunOf(view)));
-  program_->Use();
-  glUniform1i(program_->Uniform("has_shade"), sizes_.has_shafts && shade_.shade().Shades() ? 1 : 0);
-  glUniform1i(program_->Uniform("has_lamps"), lamp_painter_->IsDark() ? 0 : 1);
-  glUniform1f(program_->Uniform("pixel_angle"), static_cast<float>(PixelAngle(view)));
-  if (adds) glEnable(GL_BLEND);
-  DrawFullScreen(*program_, no_vertices_);
+  const bool has_shade = sizes_.has_shafts && shade_.shade().Shades();
+  const bool has_lamps = !lamp_painter_->IsDark();
+  // Fragments of depth 0 against that of the land: it is nearer, or there is none.
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  const auto weight = static_cast<float>(share);
+  glBlendColor(weight, weight, weight, weight);
+  glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
+  if (share < 1.0) glEnable(GL_BLEND);
+  PaintStage({PictureStage::Pass::kLand, has_shade, has_lamps}, view, GL_LESS);
+  PaintStage({PictureStage::Pass::kSky, has_shade, has_lamps}, view, GL_EQUAL);
+  glEnable(GL_BLEND);
+  UploadMoon(ProgramOf({PictureStage::Pass::kDisks}));
+  const SunPosition& sun = SunOf(view);
+  PaintDisk(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz, sun.angular_radius_rad,
+            view);
+  PaintDisk(moon_.to_moon, moon_.radius_rad, view);
   glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
 }
 
 void SkyPainter::Paint(const PaintedView& view, int samples) {
   Fit(picture_, view.width, view.height);
   UploadAir(view);
   UploadGround(view);
-  UploadMoon(view);
+  moon_ = ApparentMoonDisk(view.eye.place, view.now, SunOf(view).distance_au);
   PrepareLamps(view);
   air_.textures().Bind(kAirUnit, kTablesBinding);
   picture_->Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
-  const auto share = static_cast<float>(1.0 / samples);
-  glBlendColor(share, share, share, share);
   for (int sample = 0; sample < samples; ++sample) {
     UploadView(view, ShiftOf(sample, samples, view));
     PaintLand(view);
     PaintShafts(view);
     PaintLamps(view);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
-    PaintPicture(view, samples > 1);
+    PaintPicture(view, 1.0 / samples);
   }
   if (!lamp_painter_->IsDark()) {
     Begin("lamps over");

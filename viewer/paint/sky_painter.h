@@ -10,11 +10,13 @@
 #include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "atmosphere/sun/moon_disk.h"
 #include "lut/picture/image.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/air_follower.h"
@@ -44,6 +46,25 @@ struct PaintedView {
   int width, height;                    // of what is painted
   glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // of the whole view that it is: ViewOfTile
 };
+
+/// One of the picture's programs.
+struct PictureStage {
+  enum class Pass { kLand, kSky, kDisks };
+  Pass pass;
+  bool has_shade = false, has_lamps = false;
+
+  auto operator<=>(const PictureStage&) const = default;
+};
+/// What the texts of a picture depend on.
+struct PictureKind {
+  const GroundMaterial& material;
+  const LampPainter* lamps;      // null: none
+  std::optional<PhaseKind> fog;  // its phase function
+  int dropped_octaves = 0;       // of the ground's detail
+};
+/// The texts that a stage of the picture is made of, but for picture.frag.glsl itself.
+[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
+                                                    const PictureStage& stage);
 
 class SkyPainter {
  public:
@@ -91,21 +112,22 @@ class SkyPainter {
   struct Blocks {
     GlBuffer air, view, ground, ground_light, ground_surface;
   };
-  [[nodiscard]] SunPosition SunOf(const PaintedView& view) const;
+  [[nodiscard]] const SunPosition& SunOf(const PaintedView& view) const;
   void TakeHeights();
   void UploadAir(const PaintedView& view) const;
   void UploadView(const PaintedView& view, const glm::dvec2& shift) const;
   void UploadGround(const PaintedView& view) const;
-  void UploadMoon(const PaintedView& view) const;
   void TakeLight();
-  void MakeProgram();
+  [[nodiscard]] const ShaderProgram& ProgramOf(const PictureStage& stage);
   void PrepareLamps(const PaintedView& view);
-  [[nodiscard]] LampView LampViewOf(const PaintedView& view) const;
   void FollowFog(const PaintedView& view, const SunPosition& sun, bool waits);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
-  void PaintPicture(const PaintedView& view, bool adds);
+  void PaintPicture(const PaintedView& view, double share);
+  void PaintStage(const PictureStage& stage, const PaintedView& view, GLenum land);
+  void PaintDisk(const glm::dvec3& direction, double radius_rad, const PaintedView& view);
+  void UploadMoon(const ShaderProgram& program) const;
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
@@ -131,28 +153,20 @@ class SkyPainter {
     std::optional<FogFollower> follower;
   };
   std::optional<Fog> fog_;
-  std::optional<LampPainter> lamp_painter_;  // of sizes_
-  std::optional<ShaderProgram> program_;     // of sizes_
+  std::optional<LampPainter> lamp_painter_;         // of sizes_
+  std::map<PictureStage, ShaderProgram> programs_;  // of sizes_, made when first drawn with
   GroundTextures ground_textures_;
   Blocks blocks_;
   GlVertexArray no_vertices_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
+  mutable std::optional<std::pair<PaintedView, SunPosition>> sun_;  // of the view asked for last
+  MoonDisk moon_{};
   int heights_version_ = -1;
   PassTimer* timer_ = nullptr;
 };
 
 /// The land of a scene; a mesh is none.
 [[nodiscard]] LandSource LandSourceOf(const Scene& scene);
-
-/// What the texts of a picture depend on.
-struct PictureKind {
-  const GroundMaterial& material;
-  const SceneLamps& lamps;
-  LampQuality quality;
-  std::optional<PhaseKind> fog;  // its phase function
-};
-/// The texts that the picture's fragment stage is made of, but for itself.
-[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind);
 
 }  // namespace alpenglow
