@@ -172,12 +172,16 @@ void Landscape::TakeChunks() {
   }
 }
 
-// Gently, so that a zoom does not pop.
-void Landscape::FollowZoom(double seconds) {
+// Gently, so that a zoom does not pop. From high above less land is near, and more of it can be
+// drawn finer.
+void Landscape::FollowView(double seconds) {
   constexpr double kTime_s = 0.5;
   const double usual = std::tan(kPi / 6.0);
-  const double wanted =
-      size_.detail * std::clamp(std::sqrt(usual / glm::length(view_.right)), 1.0, 2.0);
+  const double by_lens = std::clamp(std::sqrt(usual / glm::length(view_.right)), 1.0, 2.0);
+  const double first_m = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m);
+  const double by_height =
+      std::clamp(1.0 + 0.35 * std::log2(std::max(eye_.above_m, 1.0) / first_m), 1.0, 3.0);
+  const double wanted = size_.detail * std::min(by_lens * by_height, 4.0);
   detail_ = wanted + (detail_ - wanted) * std::exp(-seconds / kTime_s);
 }
 
@@ -407,7 +411,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   if (mesh_) mesh_->Update(seconds);
   if (tiles_->tiles().empty()) return;
   eye_ = EyeAt(eye);
-  FollowZoom(seconds);
+  FollowView(seconds);
   if (cache_.Update(eye_, detail_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
   if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());

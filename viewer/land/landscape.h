@@ -26,7 +26,8 @@ namespace alpenglow {
 struct LandSize {
   /// Samples from the eye to where the second level begins, in [64, 1024]. Triangles grow as its
   /// square, and so does what chunks take beside heights: 45 kB each, 1,200 of them at 96. A view
-  /// narrower than 60 degrees has more, at most twice as much, so that as many triangles are seen.
+  /// narrower than 60 degrees has up to twice as much detail and one from high above up to three
+  /// times, together four times: as many triangles are seen.
   double detail = 96.0;
   /// Of heights that are kept [bytes], see TileCache.
   std::size_t most_bytes = std::size_t{512} << 20;
@@ -141,7 +142,7 @@ class Landscape {
   void MoveAnchor();
   void TakeChunks();
   void Add(ChunkSet& set, const LitChunk& lit, int light_number);
-  void FollowZoom(double seconds);
+  void FollowView(double seconds);
   void FindDemand(double seconds);
   void LetLevelsReach(double seconds);
   void AskForChunks();
