@@ -69,8 +69,11 @@ class Flight:
         return None
 
     def run(self, *command):
-        done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
-        return done.stdout
+        """What a command prints; nothing where it does not end, as when the window has gone."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return subprocess.run(command, env=self.environment, capture_output=True, text=True,
+                                  timeout=30).stdout
+        return ""
 
     def key(self, name, times=1, wait=0.3):
         for _ in range(times):
@@ -99,6 +102,8 @@ class Flight:
     def shot(self, name, wait=1.0):
         """What the window shows, as PNG."""
         time.sleep(wait)
+        if self.process.poll() is not None:
+            return check(False, f"{name}: skyview has ended with {self.process.returncode}")
         self.run("import", "-silent", "-window", self.window or "root",
                  str(self.folder / f"{name}.png"))
         print(f"  wrote  {name}.png", flush=True)
@@ -130,7 +135,9 @@ def flown(options, display, arguments, size=None, settle=6.0):
 
 
 def differ(options, one, other):
-    """Share of the pixels of two pictures that differ visibly."""
+    """Share of the pixels of two pictures that differ visibly; 0 where one is missing."""
+    if not all((options.out / f"{name}.png").exists() for name in [one, other]):
+        return 0.0
     done = subprocess.run(
         ["compare", "-metric", "AE", "-fuzz", "3%", options.out / f"{one}.png",
          options.out / f"{other}.png", "null:"], capture_output=True, text=True)
@@ -143,7 +150,7 @@ def differ(options, one, other):
 def brightness(options, name):
     done = subprocess.run(["convert", options.out / f"{name}.png", "-format", "%[fx:mean]",
                            "info:"], capture_output=True, text=True)
-    return float(done.stdout)
+    return float(done.stdout or 0.0)
 
 
 def place(options):
