@@ -210,7 +210,7 @@ void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, doub
   input.wheel = events.wheel;
   input.text = events.text;
   if (size.width > 0 && size.height > 0)
-    Serve(hud_.Update(Model(), Choices(), strips_.Newest(), keys_.Into(input)), size);
+    Serve(hud_.Update(Model(), Choices(), strips_.Newest(), keys_.Into(input)));
   Tell(events, size.width, size.height, {hud_.WantsMouse(), hud_.WantsKeyboard()}, controls_);
   const Intent intent =
       controls_.Take(flight_.cockpit().pilot().mode(), seconds, GamepadOf(events));
@@ -309,7 +309,7 @@ void FlightDeck::SetLandingLight(bool is_on) {
   flight_.SetLandingLight(is_on);
 }
 
-void FlightDeck::Serve(const HudRequest& asked, const ImageSize& size) {
+void FlightDeck::Serve(const HudRequest& asked) {
   Try([&] {
     if (asked.place) {
       flight_.Place(
@@ -331,7 +331,6 @@ void FlightDeck::Serve(const HudRequest& asked, const ImageSize& size) {
     if (asked.hold_heading_rad || asked.hold_height_m) autopilot.Set(targets);
     if (asked.units) units_ = *asked.units;
     if (asked.capture) Capture(*asked.capture);
-    static_cast<void>(size);
     quit_ = quit_ || asked.quit;
   });
 }

@@ -27,6 +27,8 @@ class FlightDeck {
 
   /// What hands and panels ask for, and the seconds that have passed. Once a frame.
   void Advance(const WindowEvents& events, const ImageSize& size, double seconds);
+  /// Does what panels asked for; what cannot be done is said on the screen.
+  void Serve(const HudRequest& asked);
   /// Paints the flight, and instruments over it.
   void Paint(const Developer::Screen& screen, double seconds);
 
@@ -52,7 +54,6 @@ class FlightDeck {
     bool is_warning;
   };
   void Do(Action action, const ImageSize& size);
-  void Serve(const HudRequest& asked, const ImageSize& size);
   void ServeTime(const HudTimeRequest& asked);
   void ServeAir(const HudAirRequest& asked);
   void Capture(const HudCaptureRequest& asked);

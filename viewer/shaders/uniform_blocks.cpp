@@ -47,11 +47,6 @@ AirBlock AirBlockOf(const Medium& medium) {
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(channel * bands);
     return GpuBandsOf({first, first + static_cast<std::ptrdiff_t>(bands)});
   };
-  double extinction = 0.0;
-  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-    extinction = std::max(
-        extinction, medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
-  }
   AirBlock block{};
   block.rayleigh_scattering = PerKilometre(medium.rayleigh_scattering_per_m);
   block.mie_scattering = PerKilometre(medium.mie_scattering_per_m);
@@ -66,48 +61,8 @@ AirBlock AirBlockOf(const Medium& medium) {
   block.ozone_layer = {Kilometres(medium.ozone.bottom_m), Kilometres(medium.ozone.peak_m),
                        Kilometres(medium.ozone.top_m),
                        medium.ozone.shape == OzoneShape::kSmooth ? 1.0F : 0.0F};
-  block.mie_options = {static_cast<float>(medium.mie_phase.front().kind),
-                       extinction * kMetresPerKilometre,
-                       static_cast<float>(medium.mie_phase.size()), 0.0F};
   block.deficit = {static_cast<float>(medium.rayleigh_deficit.share),
                    Kilometres(medium.rayleigh_deficit.scale_height_m), 0.0F, 0.0F};
-  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-    const PhaseFunction& phase = MiePhase(medium, band);
-    block.mie_phase[band] = {phase.g, phase.g_back, phase.back_weight, phase.alpha};
-  }
-  return block;
-}
-
-PhaseBlock PhaseBlockOf(const Medium& medium) {
-  PhaseBlock block{};
-  if (medium.mie_phase.front().kind != PhaseKind::kTable) return block;
-  for (std::size_t node = 0; node < block.size(); ++node) {
-    std::vector<double> values;
-    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-      values.push_back(MiePhase(medium, band).table->nodes()[node]);
-    }
-    block[node] = GpuBandsOf(values);
-  }
-  return block;
-}
-
-MomentBlock MomentBlockOf(const Medium& medium, int degree) {
-  constexpr std::array<double, kMaxDegree + 1> kRayleigh{1.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0};
-  MomentBlock block;
-  for (int l = 0; l <= degree; ++l) {
-    const auto at = static_cast<std::size_t>(l);
-    for (int m = 0; m <= l; ++m) {
-      block.emplace_back(HarmonicNorm(l, m), kRayleigh[at], kClampedCosine[at], 0.0);
-    }
-  }
-  const std::vector<double> mie = MieLegendreCoefficients(medium, degree);
-  const auto bands = static_cast<std::ptrdiff_t>(medium.wavelengths_nm.size());
-  for (int l = 0; l <= degree; ++l) {
-    const auto row = mie.begin() + l * bands;
-    block.insert(block.end(), static_cast<std::size_t>(l) + 1, GpuBandsOf({row, row + bands}));
-  }
-  const SunAxis& sun = DiffuseLight::SunNodes();
-  block.emplace_back(sun.centre(), sun.width(), sun.low(), sun.high());
   return block;
 }
 

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
-#include "atmosphere/air/phase_table.h"
-#include "lut/diffuse/multiple_scattering.h"
 #include "renderer/ground/surface.h"
 
 namespace alpenglow {
@@ -23,16 +21,11 @@ inline constexpr std::size_t kGpuBands = 4;
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
-  glm::vec4 shell, ozone_layer, mie_options, deficit;
-  std::array<glm::vec4, kGpuBands> mie_phase;
+  glm::vec4 shell, ozone_layer, deficit;
 };
-static_assert(sizeof(AirBlock) == 16 * sizeof(glm::vec4));
+static_assert(sizeof(AirBlock) == 11 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
-static_assert(offsetof(AirBlock, mie_phase) == 12 * sizeof(glm::vec4));
-
-/// `block PhaseTable` of air_block.glsl: the aerosol's tabulated phase function in the bands.
-using PhaseBlock = std::array<glm::vec4, PhaseTable::kNodes>;
-static_assert(sizeof(PhaseBlock) == 1024 * sizeof(glm::vec4));
+static_assert(offsetof(AirBlock, deficit) == 10 * sizeof(glm::vec4));
 
 /// `block View` of view_block.glsl.
 struct ViewBlock {
@@ -41,14 +34,6 @@ struct ViewBlock {
 };
 static_assert(sizeof(ViewBlock) == 6 * sizeof(glm::vec4));
 static_assert(offsetof(ViewBlock, eye) == 5 * sizeof(glm::vec4));
-
-/// `block Mesh` of terrain.vert.glsl.
-struct MeshBlock {
-  glm::vec4 eye_high, eye_low;
-  glm::vec4 east, north, up;
-};
-static_assert(sizeof(MeshBlock) == 5 * sizeof(glm::vec4));
-static_assert(offsetof(MeshBlock, up) == 4 * sizeof(glm::vec4));
 
 /// `block Ground` of ground.glsl.
 struct GroundBlock {
@@ -61,16 +46,8 @@ static_assert(sizeof(GroundBlock) == 14 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, noise_place) == 8 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, mesh_up) == 13 * sizeof(glm::vec4));
 
-/// `block Moments` of diffuse_light.glsl for one degree: the factors of every moment, the
-/// aerosol's coefficients of every moment, the axis of the sun. Its length is the shader's (a
-/// block's array has the length that its text says).
-using MomentBlock = std::vector<glm::vec4>;
-
 /// Throws InputError when the medium has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
-/// Zeros when the aerosol's phase function is not tabulated.
-[[nodiscard]] PhaseBlock PhaseBlockOf(const Medium& medium);
-[[nodiscard]] MomentBlock MomentBlockOf(const Medium& medium, int degree);
 
 /// Materials and noise around the eye, which stands at (east_m, north_m) on the pattern's plane;
 /// see GroundPoint. The axes of the mesh are left to the caller.

@@ -8,12 +8,15 @@
 
 #include <cstdlib>
 
+#include "atmosphere/text/error.h"
+#include "renderer/ground/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "viewer/embedded_text.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/ground/ground_block.h"
 #include "viewer/paint/sky_painter.h"
 
 namespace alpenglow {
@@ -25,6 +28,14 @@ class Glslang : public TemporaryFolder {
     TemporaryFolder::SetUp();
     if (std::system("glslangValidator --version >/dev/null 2>&1") != 0) {
       GTEST_SKIP() << "glslangValidator (glslang-tools) is not installed";
+    }
+  }
+  static bool HasOpenGl() {
+    try {
+      const HeadlessContext context;
+      return true;
+    } catch (const DisplayError&) {
+      return false;
     }
   }
   /// Checks `stage`, a file of the viewer named "....vert.glsl" or "....frag.glsl", after `texts`.
@@ -43,56 +54,91 @@ class Glslang : public TemporaryFolder {
   }
 };
 
-TEST_F(Glslang, AcceptsEveryShaderOfTheViewer) {
-  const ShaderPiece view{"viewer/shaders/view_block.glsl",
-                         std::string(viewer::EmbeddedText("viewer/shaders/view_block.glsl"))};
-  ExpectAccepted(LightTexts(4), "picture.frag.glsl");
-  ExpectAccepted(LightTexts(2), "diffuse_sky.frag.glsl");
-  ExpectAccepted(SharedTexts(), "develop.frag.glsl");
-  ExpectAccepted({view}, "terrain.vert.glsl");
-  const ShaderPiece air{"air",
-                        "vec4 SingleTo(vec3 direction, float distance_km) {\n"
-                        "  return vec4(distance_km * direction.z);\n}\n"};
-  std::vector<ShaderPiece> shafts = {view, air};
-  for (const char* name : {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl"})
-    shafts.push_back({name, std::string(viewer::EmbeddedText(name))});
+ShaderPiece Piece(const std::string& name) {
+  return {name, std::string(viewer::EmbeddedText(name))};
+}
+
+TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
+  ShaderPiece view = Piece("viewer/shaders/view_block.glsl");
+  ExpectAccepted({}, "full_screen.vert.glsl");
+  ExpectAccepted({}, "hud.vert.glsl");
+  ExpectAccepted({}, "hud.frag.glsl");
+  for (int curve = 0; curve < 5; ++curve) {
+    std::vector<ShaderPiece> texts = SharedTexts();
+    texts.push_back({"curve", fmt::format("#define CURVE {}\n", curve)});
+    ExpectAccepted(texts, "develop.frag.glsl");
+  }
+  std::vector<ShaderPiece> shafts = {
+      view,
+      Piece("viewer/shaders/shade_march.glsl"),
+      {"air", "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"},
+      Piece("viewer/shaders/shaft_texel.glsl")};
   ExpectAccepted(shafts, "shafts.frag.glsl");
-  const auto piece = [](const std::string& name) {
-    return ShaderPiece{name, std::string(viewer::EmbeddedText(name))};
-  };
-  ExpectAccepted({view, piece("viewer/shaders/land_block.glsl")}, "land.vert.glsl");
+  ExpectAccepted({view, Piece("viewer/shaders/land_block.glsl")}, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
     ExpectAccepted(
-        {piece("viewer/shaders/land_block.glsl"), piece("viewer/shaders/octahedral.glsl"),
-         piece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
+        {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
+         Piece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
         "land.frag.glsl");
   }
-  for (const char* stage : {"average.frag.glsl", "empty.frag.glsl", "full_screen.vert.glsl",
-                            "shadow.vert.glsl", "terrain.frag.glsl"}) {
-    ExpectAccepted({}, stage);
-  }
+}
+
+/// A bare scene with a lamp, and perhaps fog.
+Scene LampScene(bool with_fog) {
+  Scene scene = BareScene(10.0, 0.0, 0.0, 40.0);
+  scene.lights.emplace_back();
+  scene.lights.back().latitude_rad = scene.place.latitude_rad;
+  scene.lights.back().longitude_rad = scene.place.longitude_rad;
+  scene.lights.back().height = {5.0, false};
+  scene.lights.back().intensity_cd = 1000.0;
+  if (!with_fog) return scene;
+  scene.fog.emplace();
+  scene.fog->extinction_per_m = 0.01;
+  scene.fog->scale_height_m = 30.0;
+  scene.fog->base_height_m = 0.0;
+  return scene;
 }
 
 TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
   for (const bool with_fog : {false, true}) {
-    Scene scene = BareScene(10.0, 0.0, 0.0, 40.0);
-    if (with_fog) {
-      scene.fog.emplace();
-      scene.fog->extinction_per_m = 0.01;
-      scene.fog->scale_height_m = 30.0;
-      scene.fog->base_height_m = 0.0;
-    }
-    const SceneGround ground = LoadGround(scene);
-    const SceneLamps lamps(scene, ground, scene.medium);
+    const Scene scene = LampScene(with_fog);
+    const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
     std::vector<ShaderPiece> texts = SharedTexts();
-    texts.push_back({"viewer/shaders/view_block.glsl",
-                     std::string(viewer::EmbeddedText("viewer/shaders/view_block.glsl"))});
-    for (const ShaderPiece& piece : LampTexts(lamps, {.nodes = 6, .step = 4}))
-      texts.push_back(piece);
+    texts.push_back(Piece("viewer/shaders/view_block.glsl"));
+    std::vector<ShaderPiece> corners = texts;
+    const std::vector<ShaderPiece> of_lamps = LampTexts(lamps, {.nodes = 6, .step = 4});
+    texts.insert(texts.end(), of_lamps.begin(), of_lamps.end());
+    corners.insert(corners.end(), of_lamps.begin(),
+                   of_lamps.end() - 1);  // the last is of pixels
+    corners.push_back(Piece("viewer/shaders/lamp_corners.glsl"));
+    ExpectAccepted(corners, "lamp_core.vert.glsl");
+    ExpectAccepted(corners, "lamp_disk.vert.glsl");
     for (const char* stage :
          {"lamp_glow.frag.glsl", "lamp_core.frag.glsl", "lamp_disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
+  }
+}
+
+TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const HeadlessContext context;
+  for (const bool with_fog : {false, true}) {
+    const Scene scene = LampScene(with_fog);
+    const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
+    const LampPainter painter(lamps, kMediumLamps, {});
+    const GroundMaterial material(scene.ground, nullptr, scene.medium.wavelengths_nm);
+    const auto fog = with_fog ? std::optional(PhaseKind::kHenyeyGreensteinDraine) : std::nullopt;
+    for (const auto pass :
+         {PictureStage::Pass::kLand, PictureStage::Pass::kSky, PictureStage::Pass::kDisks}) {
+      for (int choice = 0; choice < 4; ++choice) {
+        const PictureStage stage{pass, choice % 2 == 1, choice / 2 == 1};
+        ExpectAccepted(PictureTexts({material, &painter, fog, 1}, stage), "picture.frag.glsl");
+      }
+    }
+  }
+}
+
 TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
   for (const auto kind :
        {GroundCover::Kind::kMountain, GroundCover::Kind::kLambert, GroundCover::Kind::kOrenNayar,
@@ -112,33 +158,6 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
                      "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
                      "GroundRadiance(p, p, 1.0, vec4(1.0), p) + PlanetRadiance(p, p);\n}\n"});
     ExpectTextAccepted(texts, "ground.frag.glsl");
-  }
-}
-
-TEST_F(Glslang, AcceptsWhatStandsForFogAndLampsWhereThereAreNone) {
-  const Scene scene = BareScene(10.0, 0.0, 0.0, 40.0);
-  const SceneGround ground = LoadGround(scene);
-  const SceneLamps lamps(scene, ground, scene.medium);
-  const std::vector<ShaderPiece> fog = FogTexts(PhaseKind::kHenyeyGreensteinDraine);
-  // The calls of a picture.
-  const ShaderPiece use{"use", R"(
-vec4 Use(vec3 direction, float km) {
-  FogAlong fog = FogTo(direction, km);
-  FogStretches stretches = FogStretchesTo(direction, km);
-  vec4 sum = fog.radiance + FogSunTo(direction, km) + FogOnSurface(km, 1.0);
-  for (int i = 0; i < FOG_STRETCHES; ++i) sum += stretches.weight[i] * stretches.distance_km[i];
-  sum += LampsOnGround(direction, direction) * FogSunLeft(km, 0.5) * FogSkyLeft(km);
-  return sum + vec4(LampRgb(sum) + LampGlowRgb(direction, km), FogTransmittance(direction, km));
-}
-)"};
-  for (const auto& lights : {NoLampTexts(), LampTexts(lamps, kMediumLamps)}) {
-    for (const auto& fogs : {NoFogTexts(), fog}) {
-      std::vector<ShaderPiece> texts = SharedTexts();
-      texts.insert(texts.end(), lights.begin(), lights.end());
-      texts.insert(texts.end(), fogs.begin(), fogs.end());
-      texts.push_back(use);
-      ExpectAccepted(texts, "empty.frag.glsl");
-    }
   }
 }
 

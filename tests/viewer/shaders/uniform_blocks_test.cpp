@@ -10,18 +10,14 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
-#include "lut/embedded_text.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/embedded_text.h"
-#include "viewer/paint/sky_painter.h"
 
 namespace alpenglow {
 namespace {
 
 using UniformBlocks = tests::Headless;
-
-constexpr int kDegree = 4;
 
 struct Member {
   const char* name;
@@ -50,10 +46,11 @@ GLint SizeOf(const ShaderProgram& program, const char* block) {
 
 // A program that reads all blocks of the picture.
 ShaderProgram PictureBlocks() {
-  std::vector<ShaderPiece> pieces = LightTexts(kDegree);
-  pieces.push_back({"main",
-                    "void main() { gl_Position = shell + eye + forest + moment_factor[0] + "
-                    "moment_mie[0] + sun_axis; }\n"});
+  std::vector<ShaderPiece> pieces = SharedTexts();
+  for (const char* name : {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
+                           "viewer/shaders/ground.glsl"})
+    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  pieces.push_back({"main", "void main() { gl_Position = shell + eye + forest; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
 }
 
@@ -70,8 +67,7 @@ TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
                           {"blue_from_bands", offsetof(AirBlock, blue_from_bands)},
                           {"shell", offsetof(AirBlock, shell)},
                           {"ozone_layer", offsetof(AirBlock, ozone_layer)},
-                          {"mie_options", offsetof(AirBlock, mie_options)},
-                          {"mie_phase[0]", offsetof(AirBlock, mie_phase)}});
+                          {"deficit", offsetof(AirBlock, deficit)}});
 }
 
 TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
@@ -98,85 +94,6 @@ TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
                           {"mesh_east", offsetof(GroundBlock, mesh_east)},
                           {"mesh_north", offsetof(GroundBlock, mesh_north)},
                           {"mesh_up", offsetof(GroundBlock, mesh_up)}});
-}
-
-TEST_F(UniformBlocks, MomentsLieWhereTheDriverLooks) {
-  const ShaderProgram program = PictureBlocks();
-  const MomentBlock block = MomentBlockOf(MediumPreset("earth"), kDegree);
-  EXPECT_EQ(SizeOf(program, "Moments"), static_cast<GLint>(block.size() * sizeof(block[0])));
-  ExpectOffsets(program, {{"moment_factor[0]", 0},
-                          {"moment_mie[0]", MomentCount(kDegree) * sizeof(block[0])},
-                          {"sun_axis", (block.size() - 1) * sizeof(block[0])}});
-}
-
-TEST_F(UniformBlocks, MeshLiesWhereTheDriverLooks) {
-  const ShaderProgram program = ShaderProgram::ForTransformFeedback(
-      {{"view", std::string(viewer::EmbeddedText("viewer/shaders/view_block.glsl"))},
-       {"terrain", std::string(viewer::EmbeddedText("viewer/shaders/terrain.vert.glsl"))}},
-      {"gl_Position"});
-  EXPECT_EQ(SizeOf(program, "Mesh"), static_cast<GLint>(sizeof(MeshBlock)));
-  ExpectOffsets(program, {{"eye_high", offsetof(MeshBlock, eye_high)},
-                          {"eye_low", offsetof(MeshBlock, eye_low)},
-                          {"east", offsetof(MeshBlock, east)},
-                          {"north", offsetof(MeshBlock, north)},
-                          {"up", offsetof(MeshBlock, up)}});
-}
-
-// --- the aerosol's phase function ---
-
-using MiePhaseOnGpu = tests::Headless;
-
-void ExpectPhaseOfCpu(const Medium& medium, double tolerance, const char* why) {
-  std::vector<tests::Arguments<float>> cosines;
-  for (int i = 0; i <= 2000; ++i) {
-    cosines.push_back({static_cast<float>(std::cos(kPi * std::pow(i / 2000.0, 3.0)))});
-  }
-  std::vector<ShaderPiece> pieces = SharedTexts();
-  pieces.push_back({"air", std::string(viewer::EmbeddedText("viewer/shaders/air_block.glsl"))});
-  const AirBlock air = AirBlockOf(medium);
-  const PhaseBlock phase = PhaseBlockOf(medium);
-  const GlBuffer air_buffer, phase_buffer;
-  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-    const std::vector<float> on_gpu = tests::EvaluateOnGpu(
-        pieces, fmt::format("PhaseMie(a[0])[{}]", band), cosines,
-        [&](const ShaderProgram& program) {
-          glBindBufferBase(GL_UNIFORM_BUFFER, 0, air_buffer.id());
-          glBufferData(GL_UNIFORM_BUFFER, sizeof(air), &air, GL_STATIC_DRAW);
-          glBindBufferBase(GL_UNIFORM_BUFFER, 4, phase_buffer.id());
-          glBufferData(GL_UNIFORM_BUFFER, sizeof(phase), phase.data(), GL_STATIC_DRAW);
-          program.BindBlock("Air", 0);
-          program.BindBlock("PhaseTable", 4);
-        });
-    for (std::size_t i = 0; i < cosines.size(); ++i) {
-      const double cosine = static_cast<double>(cosines[i][0]);
-      EXPECT_NEAR(static_cast<double>(on_gpu[i]) / Phase(MiePhase(medium, band), cosine), 1.0,
-                  tolerance)
-          << NameOf(medium.mie_phase.front().kind) << ", band " << band << ", cosine " << cosine
-          << ": " << why;
-    }
-  }
-}
-
-TEST_F(MiePhaseOnGpu, OfEveryKindIsThatOfTheRenderer) {
-  Medium medium = MediumPreset("earth");
-  for (int kind = 0; kind < static_cast<int>(PhaseKind::kTable); ++kind) {
-    medium.mie_phase.clear();
-    for (const double g : {0.5, 0.6, 0.7, 0.8}) {
-      medium.mie_phase.push_back({.kind = static_cast<PhaseKind>(kind),
-                                  .g = g,
-                                  .g_back = 0.3 * g,
-                                  .back_weight = 0.2 + 0.1 * g,
-                                  .alpha = 2.0 * g});
-    }
-    ExpectPhaseOfCpu(medium, 1e-5, "a few roundings of float");
-    medium.mie_phase.resize(1);
-    ExpectPhaseOfCpu(medium, 1e-5, "a few roundings of float");
-  }
-}
-
-TEST_F(MiePhaseOnGpu, OfATableIsThatOfTheRenderer) {
-  ExpectPhaseOfCpu(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"), 1e-3,
-                   "drivers raise to the third part of a power to 1e-5, and peaks are steep");
 }
 
 TEST(AirBlock, AMediumOfFiveWavelengthsIsRefused) {

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/ground/ground_follower.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "atmosphere/number/constants.h"
+#include "renderer/terrain/built_in_range.h"
+
+namespace alpenglow {
+namespace {
+
+const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+constexpr GroundExtent kSmall{8e3, 128};
+
+GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_deg) {
+  GroundFollower::View view{place, {}, ParseInstant("2026-06-21T12:00:00Z")};
+  view.eye.height_m = 1500.0;
+  view.sun.elevation_rad = elevation_deg * kRadiansPerDegree;
+  view.sun.azimuth_rad = 4.0;
+  view.sun.angular_radius_rad = 0.00465;
+  view.sun.distance_au = 1.0;
+  return view;
+}
+
+/// What lies around a place of the built-in range, every `stride`-th sample.
+std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double half_width_m,
+                                         int most_samples) {
+  static const ElevationGrid range = BuiltInRange(kPlace);
+  if (!range.Covers(place.latitude_rad, place.longitude_rad)) return std::nullopt;
+  ElevationGrid around;
+  around.columns = around.rows = most_samples;
+  around.step_lat_rad = 2.0 * half_width_m / 6.37e6 / (most_samples - 1);
+  around.step_lon_rad = around.step_lat_rad / std::cos(place.latitude_rad);
+  around.north_rad = place.latitude_rad + half_width_m / 6.37e6;
+  around.west_rad = place.longitude_rad - 0.5 * (most_samples - 1) * around.step_lon_rad;
+  for (int row = 0; row < around.rows; ++row) {
+    for (int column = 0; column < around.columns; ++column) {
+      const auto height =
+          range.HeightAt(around.LatitudeOfRow(row), around.LongitudeOfColumn(column));
+      around.height_m.push_back(static_cast<float>(height.value_or(0.0)));
+    }
+  }
+  return around;
+}
+
+/// Solved once for all of these tests.
+const std::shared_ptr<const SolvedAir>& Air() {
+  static const auto air = SolveAir(
+      OnOsculatingSphere(MediumPreset("bruneton2017"), kPlace.latitude_rad), AirSolution::kDraft);
+  return air;
+}
+
+TEST(GroundFollower, WithoutLandThereIsNoLight) {
+  GroundFollower follower({}, nullptr, kSmall);
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  EXPECT_EQ(follower.lit(), nullptr);
+  EXPECT_FALSE(follower.Light());
+  follower.SetGround(
+      [](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> { return {}; });
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
+}
+
+TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
+  GroundFollower follower({}, nullptr, kSmall);
+  follower.SetGround(RangeAround);
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  ASSERT_NE(follower.lit(), nullptr);
+  EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
+  EXPECT_GT(follower.making_s(), 0.0);
+  const LightOfVertices light = follower.Light();
+  ASSERT_TRUE(light);
+  GeodeticPosition foot = kPlace;
+  LandVertex vertex{};
+  vertex.normal = {0.0F, 0.0F, 1.0F};
+  vertex.position_m = {0.0F, 0.0F, static_cast<float>(RangeAround(kPlace, 100.0, 3)->height_m[4])};
+  const std::vector<VertexLight> lit = light(LocalFrame(kWgs84, foot), {&vertex, 1});
+  ASSERT_EQ(lit.size(), 1U);
+  EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
+}
+
+TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
+  GroundFollower follower({}, nullptr, kSmall);
+  follower.SetGround(RangeAround);
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  const auto first = follower.lit();
+  EXPECT_FALSE(follower.Settle(Air(), ViewFrom(kPlace, 30.02))) << "a thirteenth of the disk";
+  EXPECT_EQ(follower.lit(), first);
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kPlace, 20.0)));
+  EXPECT_NE(follower.lit(), first);
+  EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
+}
+
+}  // namespace
+}  // namespace alpenglow

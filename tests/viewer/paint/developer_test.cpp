@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Pictures developed on the graphics card against Develop() of image.h.
+#include "viewer/paint/developer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/paint/exposure_meter.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 54;
+
+/// All hues over twelve stops around 2000 cd/m^2, and some colours out of the display's gamut.
+Image Colours() {
+  Image image(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto stop = static_cast<float>(12.0 * y / kHeight - 8.0);
+      const auto hue = static_cast<float>(6.3 * x / kWidth);
+      const float light = 2000.0F * std::exp2(stop);
+      image.at(x, y) = {light * (1.0F + 0.9F * std::cos(hue)),
+                        light * (1.0F + 0.6F * std::cos(hue + 2.0F)),
+                        light * (1.0F + 1.1F * std::cos(hue + 4.0F))};
+    }
+  }
+  return image;
+}
+
+using DeveloperTest = tests::Headless;
+
+TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
+  const Image image = Colours();
+  const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
+  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
+  Developer developer(ToneCurve::kAgx);
+  for (const ToneCurve curve : {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
+                                ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
+    developer.Use(curve);
+    developer.Develop(picture, ev100, {screen.framebuffer(), kWidth, kHeight});
+    const DisplayImage judge = Develop(image, ev100, curve);
+    const Image codes = screen.Read();
+    int off_by_one = 0;
+    for (std::size_t i = 0; i < codes.rgb.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const int code = static_cast<int>(std::lround(codes.rgb[i][c] * 255.0F));
+        ASSERT_LE(std::abs(code - judge.rgb[3 * i + c]), 1)
+            << "curve " << static_cast<int>(curve) << ", pixel " << i << ", channel " << c;
+        if (code != judge.rgb[3 * i + c]) ++off_by_one;
+      }
+    }
+    EXPECT_LT(off_by_one, kWidth * kHeight * 3 / 10)
+        << "a code falls to the other side as often as the tone table is off, by 0.06 of a code";
+  }
+}
+
+TEST_F(DeveloperTest, APictureOfAnotherSizeFillsTheScreen) {
+  Image image(8, 8);
+  for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
+  const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
+  Developer(ToneCurve::kAgx).Develop(picture, 12.0, {screen.framebuffer(), kWidth, kHeight});
+  Image even(kWidth, kHeight);
+  for (auto& pixel : even.rgb) pixel = image.rgb[0];
+  const DisplayImage judge = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
+  for (std::size_t i = 0; i < judge.rgb.size(); ++i)
+    ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << "byte " << i;
+}
+
+using ExposureMeterTest = tests::Headless;
+
+TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
+  const Image image = Colours();
+  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  ExposureMeter meter;
+  EXPECT_NEAR(meter.Read(picture), MeterEv100(image, kSunDiskLuminance_cd_per_m2), 0.05)
+      << "the copy shows the same picture, enlarged";
+  const RenderTarget large(4 * ExposureMeter::kLongSide, 2 * ExposureMeter::kLongSide,
+                           RenderTarget::Depth::kNone);
+  Image many(large.width(), large.height());
+  for (int y = 0; y < many.height; ++y) {
+    for (int x = 0; x < many.width; ++x)
+      many.at(x, y) = image.at(x * kWidth / many.width, y * kHeight / many.height);
+  }
+  large.Write(many);
+  EXPECT_NEAR(meter.Read(large), MeterEv100(many, kSunDiskLuminance_cd_per_m2), 0.05)
+      << "every fourth pixel of a smooth picture";
+}
+
+TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
+  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  picture.Write(Colours());
+  ExposureMeter meter;
+  EXPECT_EQ(meter.Take(), std::nullopt) << "nothing was looked at";
+  meter.Look(picture);
+  glFinish();
+  const std::optional<double> arrived = meter.Take();
+  ASSERT_TRUE(arrived.has_value());
+  EXPECT_EQ(*arrived, meter.Read(picture));
+  EXPECT_EQ(meter.Take(), std::nullopt);
+}
+
+}  // namespace
+}  // namespace alpenglow
