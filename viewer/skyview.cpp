@@ -89,7 +89,7 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
     recorder.Note(frame * kFrame_s, flight.eye(), flight.now());
   }
   if (options.hud == "on") {
-    FlightDeck deck(flight, {options.hud_scale, true, {}});
+    FlightDeck deck(flight, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
     deck.WritePicture(*options.screenshot, size);
   } else {
     flight.WritePicture(*options.screenshot, size);

@@ -83,8 +83,9 @@ class GroundFollower::Maker {
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
     const SiteAir air{std::make_shared<const AirIntegrator<float>>(medium),
                       std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
-    site_ = std::make_shared<const GroundSite>(
-        GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot)), cover_, drape_, air);
+    SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
+    if (ground.terrain->mesh().triangles.empty()) return nullptr;  // nothing is loaded there yet
+    site_ = std::make_shared<const GroundSite>(std::move(ground), cover_, drape_, air);
     air_ = request.air;
     ground_ = request.ground;
     middle_ = foot;
