@@ -13,6 +13,7 @@
 #include "atmosphere/number/halton.h"
 #include "lut/picture/image.h"
 #include "tests/viewer/ground/rough_site.h"
+#include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/embedded_text.h"
@@ -29,10 +30,10 @@ constexpr double kPixel_rad = 8e-4;
 
 std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
   std::vector<ShaderPiece> pieces = SharedTexts();
-  for (const char* name :
-       {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-        "viewer/shaders/sun_light.glsl", "viewer/shaders/sun_transmittance.glsl"})
+  for (const char* name : {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+                           "viewer/shaders/sun_light.glsl"})
     pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  pieces.push_back(tests::SunInClosedForm());
   for (ShaderPiece& piece : GroundTexts(material)) pieces.push_back(std::move(piece));
   return pieces;
 }

@@ -12,6 +12,7 @@
 #include "renderer/ground/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/ground/sun_in_closed_form.h"
 #include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
@@ -149,8 +150,9 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
     std::vector<ShaderPiece> texts = SharedTexts();
     for (const char* name :
          {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-          "viewer/shaders/sun_light.glsl", "viewer/shaders/sun_transmittance.glsl"})
+          "viewer/shaders/sun_light.glsl"})
       texts.push_back({name, std::string(viewer::EmbeddedText(name))});
+    texts.push_back(tests::SunInClosedForm());
     const std::vector<double> bands{450.0, 550.0, 650.0};
     for (ShaderPiece& piece : GroundTexts(GroundMaterial(cover, nullptr, bands)))
       texts.push_back(std::move(piece));
