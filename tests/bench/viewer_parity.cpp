@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Pictures of the graphics card against the renderer's in seven views, edges aside. Run by hand;
 // results are in README.md.
-//   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES]]
-// Pictures of both go into the folder; those of the renderer that are there already are read.
+//   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]
+// VIEWS are digits, of the views to be drawn: 1234567. Pictures of both go into the folder, those of
+// the renderer that are there already are read; and of the difference, white for a tenth.
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include "renderer/picture/render.h"
 #include "tests/fixtures/seven_views.h"
@@ -38,11 +42,23 @@ Image PaintedOf(const SevenView& view, const RenderSettings& settings) {
   return painter.picture().Read();
 }
 
-void Run(const std::filesystem::path& folder, const RenderSettings& settings) {
+DisplayImage TenfoldGrey(const Image& difference) {
+  DisplayImage grey{difference.width, difference.height, {}};
+  for (const auto& rgb : difference.rgb) {
+    for (const float value : rgb)
+      grey.rgb.push_back(static_cast<std::uint8_t>(255.0F * std::min(10.0F * value, 1.0F)));
+  }
+  return grey;
+}
+
+void Run(const std::filesystem::path& folder, const RenderSettings& settings,
+         const std::string& views) {
   std::filesystem::create_directories(folder);
   int number = 0;
   for (const SevenView& view : SevenViews()) {
-    const std::filesystem::path file = folder / fmt::format("judge-{}.exr", ++number);
+    ++number;
+    if (views.find(std::to_string(number)) == std::string::npos) continue;
+    const std::filesystem::path file = folder / fmt::format("judge-{}.exr", number);
     const Image judge = JudgeOf(view, settings, file);
     WritePng(folder / fmt::format("judge-{}.png", number),
              Develop(judge, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
@@ -50,6 +66,8 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings) {
     WriteExr(folder / fmt::format("painted-{}.exr", number), painted, {});
     WritePng(folder / fmt::format("painted-{}.png", number),
              Develop(painted, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+    WritePng(folder / fmt::format("difference-{}.png", number),
+             TenfoldGrey(DifferencePicture(judge, painted)), {});
     const ViewDifference is = DifferenceOf(judge, painted);
     fmt::print(
         "{:<24} mean {:6.3f} %  p99 {:6.3f} %  p99.9 {:6.3f} %  worst {:7.2f} %  edges {:4.1f} %\n",
@@ -63,7 +81,7 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings) {
 
 int main(int count, char** arguments) {
   if (count < 2) {
-    fmt::print(stderr, "usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES]]\n");
+    fmt::print(stderr, "usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]\n");
     return 2;
   }
   alpenglow::RenderSettings settings;
@@ -73,6 +91,6 @@ int main(int count, char** arguments) {
   settings.filter = alpenglow::PixelFilter::Kind::kBox;
   settings.layers = alpenglow::LayersOfEdges();
   const alpenglow::HeadlessContext context;
-  alpenglow::Run(arguments[1], settings);
+  alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "1234567");
   return 0;
 }

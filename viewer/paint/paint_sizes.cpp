@@ -20,7 +20,7 @@ PaintSizes SizesOf(Quality quality) {
     case Quality::kHigh:
     case Quality::kReference:
       sizes.air = AirQuality::kHigh;
-      sizes.land_detail = 512.0;
+      sizes.land_detail = 1024.0;
       sizes.shade = kHighShade;
       sizes.lamps = kHighLamps;
       break;

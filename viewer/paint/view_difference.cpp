@@ -10,10 +10,15 @@
 namespace alpenglow {
 namespace {
 
-const std::vector<float>& LayerOf(const Image& image, const std::string& name) {
+const std::vector<float>* FindLayer(const Image& image, const std::string& name) {
   for (const Channel& channel : image.layers) {
-    if (channel.name == name) return channel.values;
+    if (channel.name == name) return &channel.values;
   }
+  return nullptr;
+}
+
+const std::vector<float>& LayerOf(const Image& image, const std::string& name) {
+  if (const std::vector<float>* layer = FindLayer(image, name)) return *layer;
   throw InternalError("the renderer's picture has no layer " + name);
 }
 
@@ -32,10 +37,18 @@ Range RangeAround(const Image& image, const std::vector<float>& layer, int x, in
   return range;
 }
 
+// Light of lamps changes beside a pixel by so much that a tenth of a pixel is a hundredth of it.
+bool IsEdgeOfLamps(const Image& image, const std::vector<float>& lamps, int x, int y,
+                   float floor_cd_per_m2) {
+  constexpr float kStep = 0.2F;
+  const Range light = RangeAround(image, lamps, x, y);
+  return light.most - light.least > kStep * std::max(light.most, floor_cd_per_m2);
+}
+
 }  // namespace
 
 std::vector<PictureLayer> LayersOfEdges() {
-  return {PictureLayer::kDepth, PictureLayer::kSunVisibility};
+  return {PictureLayer::kDepth, PictureLayer::kSunVisibility, PictureLayer::kLamps};
 }
 
 std::vector<bool> EdgesOf(const Image& judge) {
@@ -43,6 +56,8 @@ std::vector<bool> EdgesOf(const Image& judge) {
   constexpr float kShade = 0.1F;
   const std::vector<float>& depth = LayerOf(judge, kDepthChannel);
   const std::vector<float>& sun = LayerOf(judge, "sun_visibility.Y");
+  const std::vector<float>* lamps = FindLayer(judge, "lamps.G");
+  const auto floor = static_cast<float>(ChangeFloor(judge));
   std::vector<bool> edges;
   edges.reserve(judge.rgb.size());
   for (int y = 0; y < judge.height; ++y) {
@@ -51,7 +66,8 @@ std::vector<bool> EdgesOf(const Image& judge) {
       const Range light = RangeAround(judge, sun, x, y);
       const bool is_sky = std::isinf(distance.least);
       const bool is_even = is_sky || distance.most <= kNearer * distance.least;
-      edges.push_back(!is_even || light.most - light.least > kShade);
+      const bool is_lamp = lamps != nullptr && IsEdgeOfLamps(judge, *lamps, x, y, floor);
+      edges.push_back(!is_even || light.most - light.least > kShade || is_lamp);
     }
   }
   return edges;
@@ -75,6 +91,18 @@ ViewDifference DifferenceOf(const Image& judge, const Image& painted) {
   };
   return {sum / count, quantile(0.99), quantile(0.999), changes.back(),
           1.0 - count / static_cast<double>(judge.rgb.size())};
+}
+
+Image DifferencePicture(const Image& judge, const Image& painted) {
+  ALPENGLOW_ENSURE(judge.rgb.size(), ==, painted.rgb.size());
+  const std::vector<bool> edges = EdgesOf(judge);
+  const double floor = ChangeFloor(judge);
+  Image picture(judge.width, judge.height);
+  for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
+    const auto change = static_cast<float>(PixelChange(judge.rgb[i], painted.rgb[i], floor));
+    picture.rgb[i] = edges[i] ? std::array{0.0F, 0.0F, 1.0F} : std::array{change, change, change};
+  }
+  return picture;
 }
 
 }  // namespace alpenglow

@@ -4,7 +4,7 @@
 // Of a pixel: PixelChange (picture_change.h), the relative difference of linear radiance above the
 // floor of ChangeFloor. Left out are pixels beside an edge, where a hundredth of a pixel decides
 // what is seen: whose neighbours are of another kind, a tenth farther or nearer, or lit by more or
-// less of the sun's disk.
+// less of the sun's disk, or by a fifth more or less by lamps.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ struct ViewDifference {
   double edge_share = 0.0;  // of all pixels that were left out
 };
 
-/// Layers that the renderer's picture must have.
+/// Layers that the renderer's picture has; without that of lamps these have no edges.
 [[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
 
 /// Pixels of the renderer's picture that stand beside an edge, row by row.
@@ -31,5 +31,8 @@ struct ViewDifference {
 /// @param judge  the renderer's, with LayersOfEdges(). Throws InternalError for other sizes and for
 ///     pictures that are nothing but edges.
 [[nodiscard]] ViewDifference DifferenceOf(const Image& judge, const Image& painted);
+
+/// PixelChange of each pixel, in grey; those that are left out are blue.
+[[nodiscard]] Image DifferencePicture(const Image& judge, const Image& painted);
 
 }  // namespace alpenglow
