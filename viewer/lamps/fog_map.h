@@ -30,6 +30,8 @@ struct FogMapSize {
   int elevations = 128;  // even: half of them over the horizon
   int azimuths = 16;     // from 0 to pi
   int depths = 6;
+
+  bool operator==(const FogMapSize&) const = default;
 };
 inline constexpr FogMapSize kCoarseFog{48, 12, 5};
 inline constexpr FogMapSize kFineFog{192, 24, 5};

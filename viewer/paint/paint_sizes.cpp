@@ -11,6 +11,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.land_detail = 64.0;
       sizes.shade = kLowShade;
       sizes.lamps = kLowLamps;
+      sizes.fog = kCoarseFog;
       sizes.dropped_octaves = 2;
       sizes.relief_pixels = 2.0;
       break;
@@ -23,6 +24,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.land_detail = 1024.0;
       sizes.shade = kHighShade;
       sizes.lamps = kHighLamps;
+      sizes.fog = kFineFog;
       break;
   }
   return sizes;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "viewer/air/air_follower.h"
+#include "viewer/lamps/fog_map.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/landscape.h"
 #include "viewer/paint/auto_quality.h"
@@ -16,6 +17,7 @@ struct PaintSizes {
   bool has_shafts = true;
   ShadeQuality shade = kMediumShade;
   LampQuality lamps = kMediumLamps;
+  FogMapSize fog;
   int dropped_octaves = 0;     // of the ground's detail
   double relief_pixels = 1.0;  // detail of the ground is left out below so many pixels
 };

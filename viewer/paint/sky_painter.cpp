@@ -208,6 +208,7 @@ void SkyPainter::Use(const PaintSizes& sizes) {
   const bool same_programs = sizes.lamps.nodes == sizes_.lamps.nodes &&
                              sizes.lamps.step == sizes_.lamps.step &&
                              sizes.dropped_octaves == sizes_.dropped_octaves;
+  if (fog_ && !(sizes.fog == sizes_.fog)) fog_->air = nullptr;
   sizes_ = sizes;
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
@@ -222,12 +223,13 @@ void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool
   const bool is_new_air = fog_->air != air_.air();
   if (is_new_air) {
     fog_->air = air_.air();
-    fog_->follower.emplace([air = fog_->air, media = fog_->media,
+    fog_->follower.emplace([air = fog_->air, media = fog_->media, size = sizes_.fog,
                             latitude_rad = view.eye.place.latitude_rad](const FogView& wanted) {
       tbb::task_arena alone(1);
       return alone.execute([&] {
         const AirIntegrator<float> integrator(OnOsculatingSphere(air->medium, latitude_rad));
-        return MakeFogMap(*media->fog(), media->fog_bottom_m(), integrator, air->diffuse, wanted);
+        return MakeFogMap(*media->fog(), media->fog_bottom_m(), integrator, air->diffuse, wanted,
+                          size);
       });
     });
   }
