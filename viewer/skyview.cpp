@@ -49,6 +49,11 @@ void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
 Scene SceneOf(const SkyviewOptions& options) {
   if (!options.scene_file.empty()) return ReadScene(options.scene_file);
   SceneOptions typed;
+  if (options.place) {
+    const GeodeticPosition& place = PlaceNamed(*options.place).place;
+    typed.latitude = place.latitude_rad / kRadiansPerDegree;
+    typed.longitude = place.longitude_rad / kRadiansPerDegree;
+  }
   typed.latitude = options.latitude.value_or(typed.latitude);
   typed.longitude = options.longitude.value_or(typed.longitude);
   typed.height_m = options.altitude;
