@@ -32,7 +32,7 @@ void RequirePictureName(const std::filesystem::path& file);
 struct FlythroughSettings {
   LandSource land;
   QualityRule quality;
-  double frame_rate = 30.0;  // that automatic quality keeps
+  double frame_rate = 20.0;  // that automatic quality keeps
   ImageSize size;            // of the first picture
 };
 

@@ -34,7 +34,7 @@ struct SkyviewOptions {
   double fps = 30.0;                // of the film
   int frames = 1;
   std::string vsync = "on", quality = "auto", hud = "auto";
-  double frame_rate = 30.0;  // that automatic quality keeps
+  double frame_rate = 20.0;  // that automatic quality keeps
   double hud_scale = 0.0;    // 0: as the desktop says
   bool invert_y = false, explain = false;
   bool fullscreen = false, headless = false;
