@@ -117,6 +117,37 @@ TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
   EXPECT_EQ(Run("--headless --benchmark 1 --screenshot a.png").status, 2);
 }
 
+TEST_F(Skyview, InstrumentsAreInAPictureOnlyWhereTheyAreAskedFor) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const std::string shot = InFolder("s.toml") + " --headless --size 320x240 --screenshot ";
+  ASSERT_EQ(Run(shot + InFolder("bare.png")).status, 0);
+  ASSERT_EQ(Run(shot + InFolder("off.png") + " --hud off").status, 0);
+  ASSERT_EQ(Run(shot + InFolder("on.png") + " --hud on").status, 0);
+  EXPECT_EQ(ReadPng(InFolder("bare.png")).rgb, ReadPng(InFolder("off.png")).rgb);
+  EXPECT_NE(ReadPng(InFolder("bare.png")).rgb, ReadPng(InFolder("on.png")).rgb);
+  const Outcome linear = Run(shot + InFolder("on.exr") + " --hud on");
+  EXPECT_EQ(linear.status, 3) << "instruments are no light";
+  EXPECT_THAT(linear.error, HasSubstr("on.exr"));
+}
+
+TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const std::string shot = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
+  const Outcome wrong = Run(shot + InFolder("a.png") + " --quality best");
+  EXPECT_EQ(wrong.status, 3);
+  EXPECT_THAT(wrong.error, HasSubstr("best"));
+  ASSERT_EQ(Run(shot + InFolder("low.exr") + " --quality low").status, 0);
+  EXPECT_EQ(ReadExrMetadata(InFolder("low.exr")).at("alpenglow.quality"), "low");
+}
+
+TEST_F(Skyview, AViewIsExplainedInATable) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 32x18 --explain");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  for (const char* said : {"picture, from renderer's", "air tables", "levels of land", "saves"})
+    EXPECT_THAT(outcome.out, HasSubstr(said));
+}
+
 TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
   if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "p.csv",
@@ -143,9 +174,11 @@ TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
   EXPECT_EQ(Run("--headless").status, 2) << "nothing would be seen";
   EXPECT_EQ(Run("--nonsense").status, 2);
   EXPECT_EQ(Run("--headless --screenshot a.png --frames 0").status, 2);
+  EXPECT_EQ(Run("--headless --explain --screenshot a.png").status, 2);
   EXPECT_EQ(Run(InFolder("s.toml") + " --dem x.hgt").status, 2);
-  for (const char* wrong : {"--size 0x10", "--size 20000x10", "--latitude 91", "--pitch -100",
-                            "--altitude 1e10", "--vsync maybe"}) {
+  for (const char* wrong :
+       {"--size 0x10", "--size 20000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
+        "--vsync maybe", "--hud-scale 9", "--frame-rate 0"}) {
     const Outcome outcome = Run(std::string("--headless --screenshot a.png ") + wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
     EXPECT_THAT(outcome.error, HasSubstr(std::string(wrong).substr(0, 6)));
@@ -157,6 +190,7 @@ TEST_F(Skyview, AWrongInputEndsWithStatusThreeAndNamesIt) {
       {"--headless --screenshot a.jpg", "a.jpg"},
       {"--headless --screenshot a.png --time 2026-02-30T00:00:00Z", "2026-02-30"},
       {"missing.toml --headless --screenshot a.png", "missing.toml"},
+      {"--dem missing.hgt --headless --screenshot a.png", "missing.hgt"},
   };
   for (const auto& [arguments, named] : cases) {
     const Outcome outcome = Run(arguments);
@@ -213,10 +247,11 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   for (const char* option :
-       {"--latitude", "--longitude", "--altitude",   "--heading",    "--pitch",  "--time",
-        "--dem",      "--record",    "--replay",     "--benchmark",  "--video",  "--fps",
-        "--vsync",    "--size",      "--fullscreen", "--screenshot", "--frames", "--headless",
-        "--threads",  "--version",   "Example"}) {
+       {"--latitude", "--longitude",  "--altitude",   "--heading",    "--pitch",   "--time",
+        "--dem",      "--record",     "--replay",     "--benchmark",  "--video",   "--fps",
+        "--vsync",    "--size",       "--fullscreen", "--screenshot", "--frames",  "--headless",
+        "--threads",  "--version",    "--quality",    "--hud",        "--explain", "--place",
+        "--track",    "--frame-rate", "--hud-scale",  "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }

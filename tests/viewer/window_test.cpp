@@ -49,7 +49,7 @@ std::vector<std::string> Shown(const std::string& printed) {
 TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
   if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   // As it opens, minimised, on a display of twice the density, a pixel, and a column.
-  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 0x0 0x0 128x72 1x1 1x40'", "");
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 0x0 0x0 128x72 1x1 1x40'", "--hud off");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(Shown(outcome.out), ElementsAre("64x36", "128x72", "1x1", "1x40"))
       << "and nothing while it is minimised";

@@ -69,10 +69,10 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
     texts.push_back({"curve", fmt::format("#define CURVE {}\n", curve)});
     ExpectAccepted(texts, "develop.frag.glsl");
   }
-  std::vector<ShaderPiece> shafts = {
+  const std::vector<ShaderPiece> shafts = {
       view,
-      Piece("viewer/shaders/shade_march.glsl"),
       {"air", "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"},
+      Piece("viewer/shaders/shade_march.glsl"),
       Piece("viewer/shaders/shaft_texel.glsl")};
   ExpectAccepted(shafts, "shafts.frag.glsl");
   ExpectAccepted({view, Piece("viewer/shaders/land_block.glsl")}, "land.vert.glsl");
