@@ -299,7 +299,7 @@ TEST(DimmedByMedia, LightInFrontAndBehindIsDimmedAsItMustBe) {
 
 // ---- Pictures
 
-constexpr RenderSettings kSmall{.width = 24, .height = 14, .samples_per_pixel = 1, .layers = {}};
+const RenderSettings kSmall{.width = 24, .height = 14, .samples_per_pixel = 1, .layers = {}};
 const char* const kNoon = "2026-06-21T10:00:00Z";
 
 Scene WithVolume(double extinction, double albedo) {

@@ -17,7 +17,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr RenderSettings kSmall{
+const RenderSettings kSmall{
     .width = 24, .height = 16, .samples_per_pixel = 4, .air_nodes = 8, .layers = {}};
 
 using tests::Luminance;

@@ -21,7 +21,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr RenderSettings kSmall{
+const RenderSettings kSmall{
     .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 16, .layers = {}};
 
 using tests::Luminance;
