@@ -131,22 +131,31 @@ bool GroundFollower::Take() {
   lit_ = std::move(made->lit);
   sea_mirror_ = std::move(made->sea_mirror);
   making_s_ = made->making_s;
+  constexpr double kRest = 4.0;
+  rests_until_ = std::chrono::steady_clock::now() +
+                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                     std::chrono::duration<double>(kRest * making_s_));
+  return true;
+}
+
+bool GroundFollower::Ask(const Request& wanted) {
+  if (asked_ && Suits(*asked_, wanted)) return false;
+  asked_ = wanted;
+  maker_.Ask(wanted);
   return true;
 }
 
 bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view) {
-  const Request wanted{air, ground_, view};
-  if (!maker_.Busy() && (!asked_ || !Suits(*asked_, wanted))) {
-    asked_ = wanted;
-    maker_.Ask(wanted);
-  }
-  return Take();
+  const bool is_new = Take();
+  const bool rests = lit_ && std::chrono::steady_clock::now() < rests_until_;
+  if (!maker_.Busy() && !rests) Ask({air, ground_, view});
+  return is_new;
 }
 
 bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const View& view) {
   maker_.Wait();
-  bool is_new = Follow(air, view);
-  maker_.Wait();
+  bool is_new = Take();
+  if (Ask({air, ground_, view})) maker_.Wait();
   is_new = Take() || is_new;
   return is_new;
 }

@@ -3,6 +3,7 @@
 // is made on a thread beside drawing.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -36,7 +37,9 @@ class GroundFollower {
     SunPosition sun;  // apparent, seen from the eye
     UtcInstant now;
   };
-  /// Once a frame: asks for what is missing. True when new light is there.
+  /// Once a frame: asks for what is missing, but leaves the processor to the drawing four times as
+  /// long as light takes to make: under a sun that runs, light is behind by that and fades from one
+  /// to the next. True when new light is there.
   bool Follow(const std::shared_ptr<const SolvedAir>& air, const View& view);
   /// The same, but what Follow would have in the end is there when it returns.
   bool Settle(const std::shared_ptr<const SolvedAir>& air, const View& view);
@@ -63,6 +66,7 @@ class GroundFollower {
   };
   class Maker;
   [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
+  bool Ask(const Request& wanted);
   bool Take();
 
   GroundExtent extent_;
@@ -71,6 +75,7 @@ class GroundFollower {
   std::shared_ptr<const LitGround> lit_;
   std::vector<BandTexel> sea_mirror_;
   double making_s_ = 0.0;
+  std::chrono::steady_clock::time_point rests_until_{};
   LatestJob<Request, Made> maker_;
 };
 
