@@ -10,6 +10,7 @@
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
+#include "tests/viewer/land/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow {
@@ -272,6 +273,47 @@ TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.error, HasSubstr("older than 3.3"));
   EXPECT_FALSE(fs::exists(InFolder("old.png")));
+}
+
+class SkyviewLand : public tests::LandFolder {
+ protected:
+  /// Of 8 to 8.1 degrees east, 46.6 to 46.7 north and beyond.
+  [[nodiscard]] Outcome Shot(const std::string& arguments) const {
+    return RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW
+                      "' --headless --size 32x18 --quality low --screenshot a.png " +
+                      arguments);
+  }
+};
+
+TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
+  try {
+    const HeadlessContext context;
+  } catch (const DisplayError&) {
+    GTEST_SKIP() << "EGL gives no OpenGL here";
+  }
+  tests::WriteTile(folder_ / "west.tif", 0, 0);
+  tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
+  const std::string both = "--dem west.tif --dem east.tif --pitch -20";
+  const Outcome outcome = Shot(both);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  const std::string height = ReadPngMetadata(folder_ / "a.png").at("alpenglow.camera_height");
+  EXPECT_GT(std::stod(height), 300.0) << "over the ground in the middle of both: " << height;
+  const Outcome beside = Shot(both + " --latitude 47.5 --longitude 8 --altitude 3000");
+  EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
+}
+
+TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
+  try {
+    const HeadlessContext context;
+  } catch (const DisplayError&) {
+    GTEST_SKIP() << "EGL gives no OpenGL here";
+  }
+  std::filesystem::create_directory(folder_ / "land");
+  tests::WriteTile(folder_ / "land/west.tif", 0, 0);
+  WriteText(folder_ / "land/broken.tif", "not a picture at all");
+  const Outcome outcome = Shot("--dem land");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("broken.tif"));
 }
 
 }  // namespace
