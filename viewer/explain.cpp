@@ -9,6 +9,7 @@
 #include <iterator>
 #include <vector>
 
+#include "atmosphere/text/error.h"
 #include "renderer/picture/render.h"
 #include "viewer/paint/view_difference.h"
 
@@ -78,6 +79,8 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
 }  // namespace
 
 std::string ExplainView(Flythrough& flight, const ImageSize& size) {
+  if (!flight.HasOneModel())
+    throw InputError("--explain needs land that a scene can name: one elevation model");
   flight.Settle(size);
   const Quality quality = flight.quality_rule().fixed.value_or(Quality::kMedium);
   const PaintSizes sizes = SizesOf(quality);

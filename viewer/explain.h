@@ -10,7 +10,7 @@ namespace alpenglow {
 
 /// A table of text: of the picture, and of each shortcut against its best setting, the mean, 99 % and
 /// 99.9 % of pixels (ViewDifference), and the time of a frame that it saves. The land is what the
-/// scene names; of several elevation models the first.
+/// scene names; throws InputError for several elevation models.
 [[nodiscard]] std::string ExplainView(Flythrough& flight, const ImageSize& size);
 
 }  // namespace alpenglow

@@ -57,6 +57,9 @@ void RequirePictureName(const std::filesystem::path& file) {
 Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
                        const FlythroughSettings& settings)
     : scene_(Drawable(scene)),
+      has_one_model_(settings.land.files.empty() ||
+                     (settings.land.files.size() == 1 &&
+                      !std::filesystem::is_directory(settings.land.files.front()))),
       medium_(scene.medium),
       rule_(settings.quality),
       auto_(1.0 / settings.frame_rate),
@@ -215,6 +218,7 @@ Scene Flythrough::SceneSeen() const {
   seen.place.height_m = 0.0;
   if (seen.terrain.kind == TerrainSource::Kind::kBuiltInRange && !seen.terrain.centre)
     seen.terrain.centre = scene_.place;
+  if (!has_one_model_) seen.terrain.kind = TerrainSource::Kind::kNone;
   seen.time = now();
   seen.camera.height = {eye().place.height_m, false};
   seen.camera.heading_rad = eye().heading_rad;
@@ -224,13 +228,33 @@ Scene Flythrough::SceneSeen() const {
   return seen;
 }
 
+std::function<std::shared_ptr<const SceneGround>()> Flythrough::GroundAround() const {
+  constexpr double kHalfWidth_m = 60e3;
+  constexpr int kMostSamples = 3000;
+  return [sample = painter_.land().Sampler(), place = eye().place,
+          ellipsoid = EllipsoidOf(scene_.medium)]() -> std::shared_ptr<const SceneGround> {
+    GeodeticPosition foot = place;
+    foot.height_m = 0.0;
+    const LocalFrame frame(ellipsoid, foot);
+    const std::optional<ElevationGrid> grid = sample(place, kHalfWidth_m, kMostSamples);
+    if (!grid)
+      return std::make_shared<const SceneGround>(
+          SceneGround{frame, std::nullopt, place.height_m, "", true});
+    SceneGround ground = GroundOf(*grid, frame);
+    ground.eye_height_m = place.height_m;
+    return std::make_shared<const SceneGround>(std::move(ground));
+  };
+}
+
 void Flythrough::ShowReference(const ImageSize& size) {
   const bool wanted =
       rule_.fixed == std::optional(Quality::kReference) && still_s_ >= kStandsStill_s;
   if (!wanted) return;
   if (!reference_) reference_ = std::make_unique<ReferencePicture>();
   if (!reference_scene_) {
-    reference_scene_ = std::make_shared<const ReferenceScene>(ReferenceScene{SceneSeen(), nullptr});
+    ReferenceScene scene{SceneSeen(), nullptr};
+    if (!has_one_model_) scene.ground = GroundAround();
+    reference_scene_ = std::make_shared<const ReferenceScene>(std::move(scene));
   }
   reference_->Show({reference_scene_, eye(), now(), size.width, size.height});
   if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);

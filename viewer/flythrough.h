@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,7 +92,10 @@ class Flythrough {
   /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
   /// both with what made them in their headers. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
-  /// The scene as the renderer would have it: from the eye, now.
+  /// Whether a scene can say what the land is: not for several elevation models.
+  [[nodiscard]] bool HasOneModel() const { return has_one_model_; }
+  /// The scene as the renderer would have it: from the eye, now; without its land unless
+  /// HasOneModel().
   [[nodiscard]] Scene SceneSeen() const;
   /// What made a picture of this size.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
@@ -125,8 +129,11 @@ class Flythrough {
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
+  /// The land that is loaded around the eye, for the renderer.
+  [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround() const;
   Scene scene_;
-  Medium medium_;  // of the preset or file, unchanged
+  bool has_one_model_;  // not several elevation models, nor a folder of them
+  Medium medium_;       // of the preset or file, unchanged
   AirChoice air_;
   QualityRule rule_;
   AutoQuality auto_;

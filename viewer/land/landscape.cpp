@@ -430,6 +430,9 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
 
 void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
   constexpr double kLong_s = 1e3;
+  // Far beside all land the ceiling and the chunks that it is taken from may take turns for ever.
+  constexpr int kMostTurns = 20;
+  int turns = 0;
   for (int still = 0; still < 3;) {
     ThrowIfInterrupted();
     const std::optional<double> ceiling = ceiling_m_;
@@ -442,9 +445,10 @@ void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
       still = mesh_ && (!mesh_->IsRead() || mesh_->IsRelighting()) ? 0 : still + 1;
       continue;
     }
-    const bool same = set_->chunks.size() == before && ceiling == ceiling_m_ && !is_working_ &&
-                      cache_.reading().empty() && !IsRelighting() && !next_set_;
-    still = same ? still + 1 : 0;
+    const bool all_there = set_->chunks.size() == before && !is_working_ &&
+                           cache_.reading().empty() && !IsRelighting() && !next_set_;
+    turns = all_there ? turns + 1 : 0;
+    still = all_there && (ceiling == ceiling_m_ || turns > kMostTurns) ? still + 1 : 0;
   }
 }
 
