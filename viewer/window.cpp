@@ -338,6 +338,10 @@ void Window::CapturePointer(bool captured) {
 }
 
 void Window::Swap() {
+  // Handlers run in the reverse of their order: once more, before what the first picture has made
+  // for the whole program goes while threads beside drawing still use it.
+  static const int registered = std::atexit(State::AtExit);
+  static_cast<void>(registered);
   glfwSwapBuffers(state_->window);
   RequireContext();
 }
