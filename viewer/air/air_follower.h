@@ -11,7 +11,7 @@
 
 #include "viewer/air/air_textures.h"
 #include "viewer/air/solved_air.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

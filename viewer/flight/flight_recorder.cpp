@@ -7,7 +7,7 @@
 #include "lut/program/growing_file.h"
 #include "lut/program/messages.h"
 #include "renderer/series/frame_name.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -13,7 +13,7 @@
 #include "viewer/ground/sea_mirror.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shade_follower.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -16,7 +16,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

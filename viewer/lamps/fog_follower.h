@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "viewer/lamps/fog_map.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

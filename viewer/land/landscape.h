@@ -18,7 +18,7 @@
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -10,7 +10,7 @@
 #include "renderer/terrain/terrain.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -8,7 +8,7 @@
 
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/loaded_heights.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

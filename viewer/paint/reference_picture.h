@@ -11,7 +11,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
 #include "viewer/flight/flight.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -19,7 +19,7 @@
 #include "renderer/terrain/elevation.h"
 #include "viewer/shade/shade_map.h"
 #include "viewer/shade/shade_texture.h"
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/work/latest_job.h"
+#include "viewer/job/latest_job.h"
 
 #include <gtest/gtest.h>
 
