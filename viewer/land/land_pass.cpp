@@ -12,6 +12,14 @@ constexpr GLuint kLandBinding = 8;
 
 ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
+std::vector<ShaderPiece> Vertices() {
+  std::vector<ShaderPiece> texts = SharedTexts();
+  for (const char* const name : {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
+                                 "viewer/shaders/land.vert.glsl"})
+    texts.push_back(Piece(name));
+  return texts;
+}
+
 // Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.
 bool CanReverseDepth() {
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
@@ -22,8 +30,7 @@ ShaderProgram LandProgram(bool reversed_depth) {
   for (const char* const name : LandPass::kAttributes)
     attributes.push_back({static_cast<GLuint>(attributes.size()), name});
   return ShaderProgram(
-      {Piece("viewer/shaders/view_block.glsl"), Piece("viewer/shaders/land_block.glsl"),
-       Piece("viewer/shaders/land.vert.glsl")},
+      Vertices(),
       {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
        Piece(reversed_depth ? "viewer/shaders/reversed_depth.glsl"
                             : "viewer/shaders/logarithmic_depth.glsl"),

@@ -316,6 +316,9 @@ void SkyPainter::UploadView(const PaintedView& view, const glm::dvec2& shift) co
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   glm::vec4 irradiance = GpuBandsOf(air_.air()->medium.solar_irradiance);
   irradiance /= static_cast<float>(sun.distance_au * sun.distance_au);
+  const double radius_km =
+      OnOsculatingSphere(air_.air()->medium, view.eye.place.latitude_rad).planet_radius_m /
+      kMetresPerKilometre;
   const ViewBlock block{
       {glm::vec3(axes.right), 0.0F},
       {glm::vec3(axes.up), 0.0F},
@@ -323,7 +326,7 @@ void SkyPainter::UploadView(const PaintedView& view, const glm::dvec2& shift) co
       {glm::vec3(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz),
        sun.angular_radius_rad},
       irradiance,
-      {std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre, moved.x, moved.y, 0.0}};
+      {std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre, moved.x, moved.y, radius_km}};
   UploadBlock(blocks_.view, kViewBinding, &block, sizeof(block));
 }
 

@@ -7,7 +7,7 @@ out vec4 picture;
 uniform sampler2D surface_map;
 
 void main() {
-  vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
+  vec3 direction = ViewDirection(screen);
   float part = LampCore(lamps[number], direction);
   if (part <= 0.0) discard;
   float end_m = LampRayEnd(direction, texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w);

@@ -10,5 +10,5 @@ vec4 LampCorner(vec3 towards, float angle) {
   vec2 corner = vec2(gl_VertexID % 2, gl_VertexID / 2) * 2.0 - 1.0;
   if (ahead < 2.0 * angle + 0.02) return vec4(2.0, 2.0, 2.0, 1.0);
   float edge = ahead - angle;
-  return vec4(place / ahead + corner * 1.1 * angle / (size * edge * edge), 0.0, 1.0);
+  return vec4(place / ahead - PICTURE_SHIFT + corner * 1.1 * angle / (size * edge * edge), 0.0, 1.0);
 }

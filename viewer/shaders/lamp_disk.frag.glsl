@@ -6,7 +6,7 @@ flat in vec3 light;
 out vec4 picture;
 
 void main() {
-  vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
+  vec3 direction = ViewDirection(screen);
   float off = length(direction - towards.xyz) / towards.w;
   picture = vec4(SoftDiskPerSr(min(off, 1.0), towards.w) * light, 0.0);
 }

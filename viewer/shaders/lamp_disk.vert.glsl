@@ -31,7 +31,8 @@ void main() {
   float ahead = max(dot(towards.xyz, view_forward.xyz), 1e-6);
   vec2 size = vec2(dot(view_right.xyz, view_right.xyz), dot(view_up.xyz, view_up.xyz));
   vec2 middle =
-      vec2(dot(towards.xyz, view_right.xyz), dot(towards.xyz, view_up.xyz)) / (size * ahead);
+      vec2(dot(towards.xyz, view_right.xyz), dot(towards.xyz, view_up.xyz)) / (size * ahead) -
+      PICTURE_SHIFT;
   bool hidden = IsHidden(middle, disk_place.x);
   gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : corner;
   screen = gl_Position.xy;

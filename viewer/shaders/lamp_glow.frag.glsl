@@ -9,7 +9,7 @@ uniform vec2 picture_size;  // [pixels]
 void main() {
   vec2 at = floor(gl_FragCoord.xy) * float(LAMP_STEP);
   vec2 screen = (2.0 * at + 1.0) / picture_size - 1.0;
-  vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
+  vec3 direction = ViewDirection(screen);
   ivec2 texel = min(ivec2(at), textureSize(surface_map, 0) - 1);
   float end_m = LampRayEnd(direction, texelFetch(surface_map, texel, 0).w);
   lattice = vec4(LampRgb(LampGlowIn(direction, end_m, 0.0)), 1.0 / end_m);

@@ -13,6 +13,7 @@ in vec2 new_sun_over_edge;
 out vec3 facing;  // normal, in the eye's frame: east, north, up
 out vec4 sky_light;
 out float sun_height;
+out float sunk;  // [km]; over 0: the planet hides it
 
 vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
 
@@ -22,6 +23,16 @@ float Turned() {
   vec2 range = turning[int(normal.w)].xy;
   float d = sqrt(dot(away, away) + eye_above.x * eye_above.x);
   return clamp((d - range.x) * range.y, 0.0, 1.0);
+}
+
+// How far below all land, half a kilometre under the sphere, the ray to a place beyond the horizon
+// dips before it gets there.
+float SunkBehindPlanet(vec3 from_eye) {
+  const float deepest_km = -0.5;
+  float d = 1e-3 * length(from_eye);
+  float mu = from_eye.z / max(length(from_eye), 1e-6);
+  bool beyond = PLANET_RADIUS > 0.0 && mu < 0.0 && d > -(PLANET_RADIUS + EYE_ALTITUDE) * mu;
+  return beyond ? deepest_km - PerigeeAltitude(EYE_ALTITUDE, mu, PLANET_RADIUS) : -1.0;
 }
 
 void main() {
@@ -34,6 +45,7 @@ void main() {
   sky_light = mix(mix(sky, coarse_sky, turned), mix(new_sky, new_coarse_sky, turned), eye_above.y);
   sun_height = mix(mix(sun_over_edge.x, sun_over_edge.y, turned),
                    mix(new_sun_over_edge.x, new_sun_over_edge.y, turned), eye_above.y);
+  sunk = SunkBehindPlanet(from_eye);
   float along_view = dot(from_eye, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);
   float height = dot(view_up.xyz, view_up.xyz);

@@ -11,11 +11,6 @@ uniform sampler2D surface_map;     // of land.frag.glsl
 uniform sampler2D sky_on_surface;  // of the same
 uniform float pixel_angle;         // between rays [rad]
 
-vec3 DirectionOfPixel() {
-  vec2 at = screen + PICTURE_SHIFT;
-  return normalize(view_forward.xyz + at.x * view_right.xyz + at.y * view_up.xyz);
-}
-
 // Light of the air before a distance as fog lets it through; `all` of the whole way, clear.
 vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
 #if HAS_FOG
@@ -63,7 +58,7 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
 }
 
 void main() {
-  vec3 direction = DirectionOfPixel();
+  vec3 direction = ViewDirection(screen);
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 surface = texelFetch(surface_map, pixel, 0);
   float distance_km = 1e-3 * surface.w;
@@ -95,7 +90,7 @@ vec4 PlanetThroughAir(vec3 direction) {
 }
 
 void main() {
-  vec3 direction = DirectionOfPixel();
+  vec3 direction = ViewDirection(screen);
   vec4 radiance = SkyRadiance(direction);
 #if HAS_SHADE
   radiance -= ShadedSingle(1e9, min(SingleTo(direction, 1e9), radiance));
@@ -117,7 +112,7 @@ void main() {
 
 #if PASS == DISK_PASS
 void main() {
-  vec3 direction = DirectionOfPixel();
+  vec3 direction = ViewDirection(screen);
   vec4 disks = vec4(SunDiskRadiance(direction, pixel_angle)) + MoonRadiance(direction, pixel_angle);
   bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
   vec4 radiance = planet ? vec4(0.0) : disks * TransmittanceToSpace(direction);

@@ -11,7 +11,7 @@ out vec4 shaft;
 void main() {
   ivec2 pixel = min(ivec2(gl_FragCoord.xy) * shaft_scale + shaft_scale / 2, picture_size - 1);
   vec2 at = (2.0 * vec2(pixel) + 1.0) / vec2(picture_size) - 1.0;
-  vec3 direction = normalize(view_forward.xyz + at.x * view_right.xyz + at.y * view_up.xyz);
+  vec3 direction = ViewDirection(at);
   float distance_m = texelFetch(surface_map, pixel, 0).w;
   float distance_km = distance_m > 0.0 ? 1e-3 * distance_m : 1e9;
   vec4 single = max(SingleTo(direction, distance_km), vec4(1e-20));

@@ -8,8 +8,15 @@ layout(std140) uniform View {
   vec4 sun;             // unit vector to the apparent sun; angular radius [rad]
   vec4 sun_irradiance;  // above the air, one value a band [W m^-2 nm^-1]
   vec4 eye;  // altitude of the eye [km]; what is added to a pixel's place, in half widths and
-             // heights: rays of a pixel differ by it
+             // heights: rays of a pixel differ by it; radius of the planet [km], 0: none is in sight
 };
 
 #define EYE_ALTITUDE eye.x
 #define PICTURE_SHIFT eye.yz
+#define PLANET_RADIUS eye.w
+
+// Of a place in the picture, from (-1, -1) to (1, 1).
+vec3 ViewDirection(vec2 screen) {
+  vec2 at = screen + PICTURE_SHIFT;
+  return normalize(view_forward.xyz + at.x * view_right.xyz + at.y * view_up.xyz);
+}
