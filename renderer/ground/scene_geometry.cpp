@@ -58,13 +58,10 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   if (ground_.terrain) {
     const auto hit = ground_.terrain->Intersect(origin, direction);
     if (hit && !HiddenByPlanet(origin, direction, hit->distance_m)) {
-      Hit found{HitKind::kTerrain,
-                hit->distance_m,
-                hit->normal,
-                hit->normal,
-                hit->geometric_normal,
-                hit->smooth_point,
-                hit->distance_m * pixel_angle_rad};
+      Hit found{HitKind::kTerrain,     hit->distance_m,
+                hit->normal,           hit->normal,
+                hit->geometric_normal, origin + hit->distance_m * direction,
+                hit->smooth_point,     hit->distance_m * pixel_angle_rad};
       if (with_relief_) {
         found.normal =
             MountainSurface::DetailedNormal(GroundAt(found.point, found.footprint_m), found.normal);
@@ -79,7 +76,7 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   if (extent.end != RayEnd::kGround) return {};
   const glm::dvec3 point = origin + extent.end_m * direction;
   const glm::dvec3 up = UpAt(point);
-  return {HitKind::kPlanet, extent.end_m, up, up, up, point, extent.end_m * pixel_angle_rad};
+  return {HitKind::kPlanet, extent.end_m, up, up, up, point, point, extent.end_m * pixel_angle_rad};
 }
 
 }  // namespace alpenglow

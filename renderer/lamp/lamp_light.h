@@ -33,7 +33,8 @@ namespace alpenglow {
 
 /// A surface point that lamps may light.
 struct LitPoint {
-  glm::dvec3 point{0.0};                       // TerrainHit::smooth_point
+  glm::dvec3 point{0.0};
+  glm::dvec3 smooth_point{0.0};                // TerrainHit's, which shadow rays begin at
   glm::dvec3 normal{0.0, 0.0, 1.0};            // unit, of the shading
   glm::dvec3 geometric_normal{0.0, 0.0, 1.0};  // unit, of the triangle, which shadow rays leave
 };
@@ -96,6 +97,7 @@ class LampLight {
 
  private:
   struct State;
+  [[nodiscard]] bool IsShaded(const Lamp& lamp, const LitPoint& at) const;
   explicit LampLight(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

@@ -54,7 +54,8 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
   Hit hit;
   hit.kind = HitKind::kTerrain;
   hit.normal = hit.mesh_normal = hit.geometric_normal = place.normal;
-  hit.point = place.point + 0.01 * cell_m * place.normal;  // nodes lie in the surface, not on it
+  hit.point = hit.smooth_point =
+      place.point + 0.01 * cell_m * place.normal;  // nodes lie in the surface, not on it
   hit.footprint_m = cell_m;
   const LocalSun sun = LocalSunAt(hit.point, light);
   BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
@@ -77,9 +78,10 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
   // would draw facets along the edge of shade (Hanika 2021, Ray Tracing Gems II, ch. 4).
   const bool faces =
       cosine > 0.0 && glm::dot(hit.mesh_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
-  const bool occluded = faces && parts_.ground.terrain && light.effects.Has(Effect::kShadows) &&
-                        parts_.ground.terrain->Occluded(hit.point, hit.geometric_normal, to_disk,
-                                                        std::numeric_limits<double>::infinity());
+  const bool occluded =
+      faces && parts_.ground.terrain && light.effects.Has(Effect::kShadows) &&
+      parts_.ground.terrain->Occluded(hit.smooth_point, hit.geometric_normal, to_disk,
+                                      std::numeric_limits<double>::infinity());
   return faces && !occluded ? cosine : 0.0;
 }
 
@@ -92,10 +94,10 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
-  const BandLight clear =
-      SeesTerrain(hit, light)
-          ? light.on_terrain->Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s})
-          : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+  const BandLight clear = SeesTerrain(hit, light)
+                              ? light.on_terrain->Irradiance({hit.smooth_point, hit.normal, sun.up,
+                                                              sun.altitude_m, sun.mu_s})
+                              : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
   if (from.media == nullptr) return clear;
   const SkyThroughFog fog = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return fog.left * clear + fog.added;
@@ -116,7 +118,7 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light,
 BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
                                 const Lighting& light, const LocalSun& sun) const {
   BandLight sum(air_.bands());
-  const SlopePoint at{hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
+  const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
   const auto rays = patch.Mirrored(hit.normal, to_eye);
   for (const MirroredRay& ray : rays.All()) {
     const BandLight seen = SeesTerrain(hit, light)
@@ -164,7 +166,8 @@ GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
   sent.albedo = body;
   sent.natural = light.irradiance * radiance;
   sent.lamps = static_cast<float>(1.0 / kPi) *
-               (body * parts_.lamps.OnSurface(near, {hit.point, hit.normal, hit.geometric_normal}));
+               (body * parts_.lamps.OnSurface(
+                           near, {hit.point, hit.smooth_point, hit.normal, hit.geometric_normal}));
   return sent;
 }
 

@@ -37,7 +37,7 @@ Image PaintedOf(const SevenView& view, const RenderSettings& settings) {
   eye.place.height_m = ground.eye_height_m;
   const PaintedView painted{eye, view.instant, settings.width, settings.height};
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(Quality::kHigh));
-  painter.Settle(painted);
+  painter.Settle(painted, settings.samples_per_pixel);
   painter.Paint(painted, settings.samples_per_pixel);
   return painter.picture().Read();
 }

@@ -55,6 +55,7 @@ double HorizonDistance(double height_m) {
 }
 
 constexpr double kHighestGround_m = 9000.0;
+constexpr int kMostChunks = 24000;  // that more rays a pixel ask for
 
 }  // namespace
 
@@ -118,8 +119,8 @@ LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
 }
 
 // Of each level a disk about the eye, at most all; and what is kept a while longer.
-int Landscape::ExpectedChunks() const {
-  const double radius = 1.25 * size_.detail / kChunkCells + 2.0;
+int Landscape::ExpectedChunks(double detail) const {
+  const double radius = 1.25 * detail / kChunkCells + 2.0;
   double chunks = 0.0;
   for (int level = 0; level <= tree_.top(); ++level) {
     const double all =
@@ -132,7 +133,7 @@ int Landscape::ExpectedChunks() const {
 
 // A new set grows beside the old one and takes its place when it has all that is wanted.
 void Landscape::MoveAnchor() {
-  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
+  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks(size_.detail));
   if (next_set_) {
     const bool has_all =
         std::all_of(demand_.wanted.begin(), demand_.wanted.end(), [&](const WantedChunk& wanted) {
@@ -147,7 +148,7 @@ void Landscape::MoveAnchor() {
   foot.height_m = 0.0;
   const double away = glm::length(set_->anchor.frame.EnuFromGeodetic(foot).xyz);
   if (away > kAnchorReach_m)
-    next_set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
+    next_set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks(size_.detail));
 }
 
 void Landscape::Add(ChunkSet& set, const LitChunk& lit, int light_number) {
@@ -182,7 +183,10 @@ void Landscape::FollowView(double seconds) {
   const double first_m = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m);
   const double by_height =
       std::clamp(1.0 + 0.35 * std::log2(std::max(eye_.above_m, 1.0) / first_m), 1.0, 3.0);
-  const double wanted = size_.detail * std::min(by_lens * by_height, 4.0);
+  const double usually = size_.detail * std::min(by_lens * by_height, 4.0);
+  double wanted = usually * std::sqrt(view_.rays);
+  while (wanted > usually && ExpectedChunks(wanted) > kMostChunks) wanted *= 0.9;
+  wanted = std::max(wanted, usually);
   detail_ = wanted + (detail_ - wanted) * std::exp(-seconds / kTime_s);
 }
 
@@ -416,7 +420,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   FollowView(seconds);
   if (cache_.Update(eye_, detail_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
-  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks());
+  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks(size_.detail));
   TakeChunks();
   FindDemand(seconds);
   MoveAnchor();

@@ -75,11 +75,11 @@ std::vector<ShaderPiece> AirTexts() {
   return texts;
 }
 
-LandView LandViewOf(const PaintedView& view) {
+LandView LandViewOf(const PaintedView& view, int samples = 1) {
   const ViewAxes axes = AxesOf(view.eye);
   const double half_width = std::tan(0.5 * view.eye.fov_rad);
   const double part = half_width / view.part.z;
-  return {part * axes.right, part * view.height / view.width * axes.up, axes.forward};
+  return {part * axes.right, part * view.height / view.width * axes.up, axes.forward, samples};
 }
 
 // Between neighbouring pixels in the middle of the view [rad].
@@ -291,14 +291,14 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   if (fog_) FollowFog(view, sun, false);
 }
 
-void SkyPainter::Settle(const PaintedView& view) {
+void SkyPainter::Settle(const PaintedView& view, int samples) {
   const SunPosition sun = SunOf(view);
   air_.Settle(AirViewOf(view, sun));
-  land_.Settle(view.eye.place, LandViewOf(view));
+  land_.Settle(view.eye.place, LandViewOf(view, samples));
   TakeHeights();
   if (ground_.Settle(air_.air(), {view.eye.place, sun, view.now})) {
     TakeLight();
-    land_.Settle(view.eye.place, LandViewOf(view));
+    land_.Settle(view.eye.place, LandViewOf(view, samples));
   }
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, sun, kShadeUnit);
   if (fog_) FollowFog(view, sun, true);
@@ -386,12 +386,13 @@ void SkyPainter::PaintLamps(const PaintedView& view) {
   lamp_painter_->PaintGlow(view.width, view.height);
 }
 
-void SkyPainter::PaintStage(const PictureStage& stage, const PaintedView& view, GLenum land) {
+void SkyPainter::PaintStage(const PictureStage& stage, GLenum land) {
   const ShaderProgram& program = ProgramOf(stage);
   ground_textures_.Bind(program, kGroundUnit);
   if (stage.has_shade) shaft_pass_.Bind(program, kShaftUnit);
   program.Use();
-  glUniform1f(program.Uniform("pixel_angle"), static_cast<float>(PixelAngle(view)));
+  if (stage.pass == PictureStage::Pass::kDisks)
+    glUniform1f(program.Uniform("ray_angle"), static_cast<float>(ray_angle_rad_));
   glDepthFunc(land);
   DrawFullScreen(program, no_vertices_);
 }
@@ -414,7 +415,7 @@ void SkyPainter::PaintDisk(const glm::dvec3& direction, double radius_rad,
   glScissor(static_cast<GLint>(std::floor(x - reach)), static_cast<GLint>(std::floor(y - reach)),
             static_cast<GLsizei>(std::ceil(2.0 * reach)) + 1,
             static_cast<GLsizei>(std::ceil(2.0 * reach)) + 1);
-  PaintStage({PictureStage::Pass::kDisks}, view, GL_EQUAL);
+  PaintStage({PictureStage::Pass::kDisks}, GL_EQUAL);
   glDisable(GL_SCISSOR_TEST);
 }
 
@@ -433,8 +434,8 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   glBlendColor(weight, weight, weight, weight);
   glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
   if (share < 1.0) glEnable(GL_BLEND);
-  PaintStage({PictureStage::Pass::kLand, has_shade, has_lamps}, view, GL_LESS);
-  PaintStage({PictureStage::Pass::kSky, has_shade, has_lamps}, view, GL_EQUAL);
+  PaintStage({PictureStage::Pass::kLand, has_shade, has_lamps}, GL_LESS);
+  PaintStage({PictureStage::Pass::kSky, has_shade, has_lamps}, GL_EQUAL);
   glEnable(GL_BLEND);
   UploadMoon(ProgramOf({PictureStage::Pass::kDisks}));
   const SunPosition& sun = SunOf(view);
@@ -450,6 +451,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples) {
   Fit(picture_, view.width, view.height);
   UploadAir(view);
   UploadGround(view);
+  ray_angle_rad_ = PixelAngle(view) / std::sqrt(samples);
   moon_ = ApparentMoonDisk(view.eye.place, view.now, SunOf(view).distance_au);
   PrepareLamps(view);
   air_.textures().Bind(kAirUnit, kTablesBinding);

@@ -85,7 +85,8 @@ class SkyPainter {
   /// @param seconds  since the last call.
   void Update(const PaintedView& view, double seconds);
   /// Waits until all is there that the view needs.
-  void Settle(const PaintedView& view);
+  /// @param samples  that will be painted.
+  void Settle(const PaintedView& view, int samples = 1);
 
   /// Paints the linear picture of the view that was updated or settled last.
   /// @param samples  rays a pixel, spread over it.
@@ -125,7 +126,7 @@ class SkyPainter {
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
   void PaintPicture(const PaintedView& view, double share);
-  void PaintStage(const PictureStage& stage, const PaintedView& view, GLenum land);
+  void PaintStage(const PictureStage& stage, GLenum land);
   void PaintDisk(const glm::dvec3& direction, double radius_rad, const PaintedView& view);
   void UploadMoon(const ShaderProgram& program) const;
   void Begin(const char* pass) const {
@@ -162,6 +163,7 @@ class SkyPainter {
   std::optional<RenderTarget> picture_;
   mutable std::optional<std::pair<PaintedView, SunPosition>> sun_;  // of the view asked for last
   MoonDisk moon_{};
+  double ray_angle_rad_ = 0.0;  // between the rays of all pictures that are summed
   int heights_version_ = -1;
   PassTimer* timer_ = nullptr;
 };

@@ -116,15 +116,15 @@ float FogDistanceOf(vec3 direction, float depth, float distance_km) {
 
 // Light of the air up to a distance, L(d), arrives dimmed by the fog in front of where it is
 // scattered: sum of weight[i] L(distance_km[i]), the last of them the distance itself. On stretches
-// between, light is taken to rise evenly while fog takes from it exponentially.
+// between, light is taken to rise evenly; what fog leaves, on the mean, is Simpson's rule.
 struct FogStretches {
   vec4 distance_km;
   vec4 weight;
 };
 
-float FogMean(float a, float b) {
-  float fall = log(a / max(b, 1e-9));
-  return fall < 1e-2 ? 0.5 * (a + b) : (a - b) / fall;
+// Of what is left between two distances at which it is a and b.
+float FogMean(vec3 direction, float from_km, float to_km, float a, float b) {
+  return (a + 4.0 * FogTransmittance(direction, 0.5 * (from_km + to_km)) + b) / 6.0;
 }
 
 FogStretches FogStretchesTo(vec3 direction, float distance_km) {
@@ -139,8 +139,10 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
   }
   at.w = distance_km;
   ends.w = left;
-  vec4 mean = vec4(FogMean(1.0, ends.x), FogMean(ends.x, ends.y), FogMean(ends.y, ends.z),
-                   FogMean(ends.z, ends.w));
+  vec4 mean = vec4(FogMean(direction, 0.0, at.x, 1.0, ends.x),
+                   FogMean(direction, at.x, at.y, ends.x, ends.y),
+                   FogMean(direction, at.y, at.z, ends.y, ends.z),
+                   FogMean(direction, at.z, at.w, ends.z, ends.w));
   return FogStretches(at, mean - vec4(mean.yzw, 0.0));
 }
 

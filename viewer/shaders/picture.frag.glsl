@@ -9,7 +9,7 @@ out vec4 picture;
 
 uniform sampler2D surface_map;     // of land.frag.glsl
 uniform sampler2D sky_on_surface;  // of the same
-uniform float pixel_angle;         // between rays [rad]
+uniform float ray_angle;           // between rays, of all that a pixel has [rad]
 
 // Light of the air before a distance as fog lets it through; `all` of the whole way, clear.
 vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
@@ -113,7 +113,7 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 disks = vec4(SunDiskRadiance(direction, pixel_angle)) + MoonRadiance(direction, pixel_angle);
+  vec4 disks = vec4(SunDiskRadiance(direction, ray_angle)) + MoonRadiance(direction, ray_angle);
   bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
   vec4 radiance = planet ? vec4(0.0) : disks * TransmittanceToSpace(direction);
 #if HAS_FOG

@@ -98,5 +98,33 @@ TEST(SceneGeometry, TheHorizonOfTheEllipsoidsGroundIsThatOfTheSphericalSkyWithin
   }
 }
 
+TEST(SceneGeometry, WhatTheGroundIsMadeOfIsLookedUpWhereTheRayMeetsItAndLitOnTheSmoothSurface) {
+  constexpr double kCell_m = 50.0, kWave_m = 30.0;
+  ElevationGrid grid = SeaLevelAround(45.0, 0.01);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column)
+      grid.height_m[static_cast<std::size_t>(row * grid.columns + column)] =
+          static_cast<float>(kWave_m * std::sin(0.7 * row) * std::sin(0.5 * column));
+  }
+  grid.step_lat_rad = grid.step_lon_rad = kCell_m / 6.37e6;
+  grid.north_rad = 45.0 * kRadiansPerDegree + 100 * grid.step_lat_rad;
+  grid.west_rad = -100 * grid.step_lon_rad;
+  const LocalFrame frame(kWgs84, {45.0 * kRadiansPerDegree, 0.0, 0.0});
+  const SceneGround ground{frame, Terrain(MeshFromElevation(grid, frame)), 0.0, "", true};
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 45.0 * kRadiansPerDegree);
+  const SceneGeometry geometry(ground, medium, true);
+  const glm::dvec3 eye(0.0, 0.0, 500.0);
+  double farthest_m = 0.0;
+  for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 15) {
+    const glm::dvec3 down = DirectionFromAngles(-0.6, azimuth_deg * kRadiansPerDegree).xyz;
+    const Hit hit = geometry.Trace(eye, down, kPixel_rad);
+    ASSERT_EQ(hit.kind, HitKind::kTerrain);
+    EXPECT_LT(glm::length(hit.point - (eye + hit.distance_m * down)), 1e-9);
+    farthest_m = std::max(farthest_m, glm::length(hit.smooth_point - hit.point));
+  }
+  EXPECT_GT(farthest_m, 1.0) << "bent slopes lie metres off their triangles; a pattern of the "
+                                "ground looked up there slides over the triangles";
+}
+
 }  // namespace
 }  // namespace alpenglow

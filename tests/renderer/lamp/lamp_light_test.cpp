@@ -78,7 +78,7 @@ TEST(LampLight, ACandelaIsACandelaThroughClearAir) {
   Scene scene = NightScene();
   scene.lights = {LightAt(100.0, 0.0, kEyeHeight_m, 1000.0)};
   const Stage stage(scene);
-  const LitPoint facing{kEye, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+  const LitPoint facing{kEye, kEye, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
   const double distance = glm::length(stage.Place(scene.lights[0]) - kEye);
   EXPECT_NEAR(stage.Luminance(stage.light.OnSurface(stage.light.All(), facing)),
               1000.0 / (distance * distance), 0.1 * 0.01)
@@ -88,7 +88,7 @@ TEST(LampLight, ACandelaIsACandelaThroughClearAir) {
 TEST(LampLight, TheTemperatureColoursAndTheCandelaStays) {
   Scene scene = NightScene();
   scene.lights = {LightAt(50.0, 0.0, kEyeHeight_m, 100.0)};
-  const LitPoint facing{kEye, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+  const LitPoint facing{kEye, kEye, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
   std::vector<std::array<double, 3>> colours;
   for (const double kelvin : {2000.0, 6500.0}) {
     scene.lights[0].temperature_k = kelvin;
@@ -273,8 +273,9 @@ TEST_F(LampShadows, AWallShadesTheGroundAndTheAirBehindIt) {
   scene.lights = {LightAt(130.0, 80.0, 20.0, 1000.0)};
   const Stage stage(scene);
   const glm::dvec3 up(0.0, 0.0, 1.0);
-  const LitPoint before{{-80.0, 60.0, 0.0}, up, up};
-  const LitPoint behind{{-80.0, 160.0, 0.0}, up, up};
+  const glm::dvec3 before_it(-80.0, 60.0, 0.0), behind_it(-80.0, 160.0, 0.0);
+  const LitPoint before{before_it, before_it, up, up};
+  const LitPoint behind{behind_it, behind_it, up, up};
   const LampNodes all = stage.light.All();
   EXPECT_GT(stage.Luminance(stage.light.OnSurface(all, behind)),
             2.0 * stage.Luminance(stage.light.OnSurface(all, before)))

@@ -125,12 +125,13 @@ TEST_F(Terminator, LampLightEndsWhereTheRoundBodyTurnsAway) {
       if (!NormalAt(direction)) continue;
       const auto hit = ground.terrain->Intersect({0.0, 0.0, kEyeHeight_m}, direction);
       ASSERT_TRUE(hit);
-      const glm::dvec3 way = from - hit->smooth_point;
+      const glm::dvec3 point = glm::dvec3(0.0, 0.0, kEyeHeight_m) + hit->distance_m * direction;
+      const glm::dvec3 way = from - point;
       const double cosine = glm::dot(hit->normal, glm::normalize(way));
       if (!(cosine > kEdge && cosine < 0.1)) continue;
       ++near_the_edge;
       const Bands<float> seen =
-          light.OnSurface({0}, {hit->smooth_point, hit->normal, hit->geometric_normal});
+          light.OnSurface({0}, {point, hit->smooth_point, hit->normal, hit->geometric_normal});
       const double facing = static_cast<double>(light.At(0).intensity[0]) / glm::dot(way, way);
       EXPECT_NEAR(static_cast<double>(seen[0]) / facing, cosine, 0.003)
           << x << ", " << y << ": 100 m of air take a part of the cosine and glow as much";

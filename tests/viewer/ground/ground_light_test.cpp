@@ -106,7 +106,8 @@ std::vector<Case> LandCases(const LitGround& lit) {
     const auto found = terrain.Intersect(above, {0.0, 0.0, -1.0});
     Case c;
     c.hit.kind = HitKind::kTerrain;
-    c.hit.point = found->smooth_point;
+    c.hit.point = above - glm::dvec3(0.0, 0.0, found->distance_m);
+    c.hit.smooth_point = found->smooth_point;
     c.hit.mesh_normal = found->normal;
     c.hit.geometric_normal = found->geometric_normal;
     c.hit.footprint_m = kPixel_rad * glm::length(c.hit.point - kEye);

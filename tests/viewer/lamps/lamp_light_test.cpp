@@ -223,7 +223,8 @@ Deviation GroundDeviation(const Both& both, bool with_slopes) {
   for (auto& point : points) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(point[3], point[4], point[5]));
     const glm::dvec3 up(0.0, 0.0, 1.0);
-    const LitPoint at{{point[0], point[1], point[2]}, normal, normal}, on_level{at.point, up, up};
+    const glm::dvec3 place(point[0], point[1], point[2]);
+    const LitPoint at{place, place, normal, normal}, on_level{place, place, up, up};
     truth.push_back(double{both.light.OnSurface(both.light.All(), at)[2]});
     level.push_back(double{both.light.OnSurface(both.light.All(), on_level)[2]});
     point[2] -= static_cast<float>(both.eye_m.z);
@@ -280,7 +281,8 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
     for (const float east_m : {-300.0F, -100.0F, 7.0F, 155.0F}) {
       points.push_back({east_m, north_m, static_cast<float>(-both.eye_m.z), 0.0F, 0.0F, 1.0F});
       const glm::dvec3 up(0.0, 0.0, 1.0);
-      const LitPoint at{{east_m, north_m, 0.0}, up, up};
+      const glm::dvec3 place(east_m, north_m, 0.0);
+      const LitPoint at{place, place, up, up};
       const double far = glm::length(both.light.At(0).lamp.position_m - at.point);
       const double direct = double{both.light.At(0).intensity[2]} * 5.0 / (far * far * far);
       lit.push_back(double{both.light.OnSurface(both.light.All(), at)[2]} > 0.5 * direct);

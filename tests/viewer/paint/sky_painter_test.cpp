@@ -50,7 +50,7 @@ class Both {
   ViewDifference Difference(const PaintedView& view) {
     Shot shot(view.now);
     shot.poses = {PoseOf(view.eye)};
-    painter_.Settle(view);
+    painter_.Settle(view, kSamples);
     painter_.Paint(view, kSamples);
     return DifferenceOf(judge_.Render(shot, JudgeSettings()), painter_.picture().Read());
   }
