@@ -7,9 +7,9 @@
 //   PaintOver        lamps themselves, and the cores of their light, added to the picture
 //
 // Errors against LampLight where terrain shades nothing: of the rule with 12 nodes and the float
-// of the card, tests/viewer/lamps/lamp_light_test.cpp. Terrain
-// hides lamps by a horizon around each (ShadeAround), to 2e-3 of the distance and a hundredth of a
-// turn; the edges of its shade in the air lie where the rule has nodes.
+// of the card, tests/viewer/lamps/lamp_light_test.cpp. Terrain hides lamps by a horizon around each
+// (ShadeAround), to 2e-3 of the distance, a hundredth of a turn and a twentieth of the distance; of
+// the way between two nodes of the rule the part that is shaded is left out.
 #pragma once
 
 #include <optional>

@@ -81,17 +81,21 @@ SceneLamps::SceneLamps(const Scene& scene, const SceneGround& ground, const Medi
 }
 
 std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place) {
-  constexpr int kBetween = 3;
+  // So close that crests of 45 m cells are not missed by much.
+  constexpr double kStep_m = 5.0, kMostSteps = 16.0;
   constexpr double kNothing = -1e6;
   const double ratio = std::pow(kFarthestShade_m / kNearestShade_m, 1.0 / (kShadeRings - 1));
   std::vector<float> shade;
   std::vector<double> steepest(kShadeTurns, kNothing);
   for (int ring = 0; ring < kShadeRings; ++ring) {
+    const double before = kNearestShade_m * std::pow(ratio, ring - 1);
+    const int steps =
+        static_cast<int>(std::ceil(std::clamp((ratio - 1.0) * before / kStep_m, 1.0, kMostSteps)));
     for (int turn = 0; turn < kShadeTurns; ++turn) {
       double& slope = steepest[static_cast<std::size_t>(turn)];
       const double angle = 2.0 * kPi * turn / kShadeTurns;
-      for (int i = 1; i <= kBetween; ++i) {
-        const double far = kNearestShade_m * std::pow(ratio, ring - 1 + i / double{kBetween});
+      for (int i = 1; i <= steps; ++i) {
+        const double far = before * std::pow(ratio, i / static_cast<double>(steps));
         const glm::dvec3 point = place + far * glm::dvec3(std::cos(angle), std::sin(angle), 0.0);
         slope = std::max(slope, (stage.TerrainUnder(point, kNothing) - place.z) / far);
       }

@@ -50,7 +50,7 @@ inline constexpr double kFarthestGlow_m = 2e4;
 /// Terrain around a lamp: the slope over which it is seen, over directions of the compass and
 /// distances from the first to the last in equal ratios.
 inline constexpr int kShadeTurns = 96;
-inline constexpr int kShadeRings = 48;
+inline constexpr int kShadeRings = 192;
 inline constexpr double kNearestShade_m = 1.0;
 inline constexpr double kFarthestShade_m = 2e4;
 /// As many layers as every OpenGL has; lamps beyond are not shaded.

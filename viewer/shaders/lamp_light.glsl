@@ -138,10 +138,10 @@ vec3 LampCosines(Lamp lamp, vec3 direction) {
               dot(direction, cross(lamp.side.xyz, lamp.axis.xyz)));
 }
 
-// Share of a lamp's light that terrain lets through to a place, `way` from the lamp. A place is
-// compared with terrain up to a ring less far, and may be lower by two thousandths of its distance:
-// ground does not shade itself.
-float LampLit(Lamp lamp, vec3 way) {
+// How high a place, `way` from the lamp, stands over what terrain shades, in two thousandths of its
+// distance. It is compared with terrain up to a ring less far, and may be lower by one of these and
+// be lit: ground does not shade itself.
+float LampClearance(Lamp lamp, vec3 way) {
 #ifdef LAMP_SHADE
   if (lamp.glow.w < -0.5) return 1.0;
   vec3 at = vec3(dot(way, lamp_ground[0].xyz), dot(way, lamp_ground[1].xyz),
@@ -152,10 +152,22 @@ float LampLit(Lamp lamp, vec3 way) {
   float turn = atan(at.y, at.x) * 0.159154943 + 0.5 / size.x;
   float slope =
       textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.glow.w), 0.0).x;
-  return clamp(1.0 + (at.z / far - slope) / 2e-3, 0.0, 1.0);
+  return 1.0 + (at.z - slope * far) / (2e-3 * max(length(at), 1e-3));
 #else
   return 1.0;
 #endif
+}
+
+// Share of a lamp's light that terrain lets through.
+float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way), 0.0, 1.0); }
+
+// The mean of that between two places, the clearance taken to change evenly.
+float LampLitBetween(float here, float there) {
+  vec2 ends = vec2(here, there);
+  vec2 over = clamp(ends, 0.0, 1.0);
+  vec2 sums = 0.5 * over * over + max(ends - 1.0, 0.0);
+  float apart = here - there;
+  return abs(apart) < 1e-3 ? over.x : (sums.x - sums.y) / apart;
 }
 
 // The angles of scattering between which a spot lights the ray; x > y where nowhere. The cosine to
@@ -196,6 +208,10 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
   float slope = dot(lamp.up.xyz, direction);
   float per_slope = 1.0 / LampNotNought(slope);
   vec4 sum = vec4(0.0);
+#ifdef LAMP_SHADE
+  vec4 light_before = vec4(0.0);
+  float clear_before = 0.0;
+#endif
   for (int i = 0; i < LAMP_NODES; ++i) {
     float angle = exp(low + span * lamp_gauss[i].x);
     float fold = min(angle, 3.14159265 - angle);
@@ -220,11 +236,24 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
 #endif
     float weight = lamp_gauss[i].y * angle;
     if (shaped && !inside) weight *= LampShare(lamp, sine * across - cosine * along);
+    vec4 light = (weight * source) * LampLeft(LampDepth(columns));
 #ifdef LAMP_SHADE
-    weight *= LampLit(lamp, t * direction - lamp.position.xyz);
+    // A node stands for half the way to its neighbours, of which the edge of shade may cut a part:
+    // light does not jump where the edge passes a node.
+    float clear = LampClearance(lamp, t * direction - lamp.position.xyz);
+    float middle = 0.5 * (clear_before + clear);
+    sum += 0.5 * (i == 0 ? LampLitBetween(clear, clear) * light
+                         : LampLitBetween(clear_before, middle) * light_before +
+                               LampLitBetween(clear, middle) * light);
+    light_before = light;
+    clear_before = clear;
+#else
+    sum += light;
 #endif
-    sum += (weight * source) * LampLeft(LampDepth(columns));
   }
+#ifdef LAMP_SHADE
+  sum += 0.5 * LampLitBetween(clear_before, clear_before) * light_before;
+#endif
   return lamp.intensity * (sum * (max(span, 0.0) * share / approach));
 }
 
