@@ -12,8 +12,9 @@
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/picture_text.h"
+#include "lut/program/atomic_file.h"
 #include "lut/sky/sky_view_map.h"
-#include "viewer/capture/screenshot_name.h"
+#include "viewer/capture/numbered_name.h"
 #include "viewer/flight/places.h"
 #include "viewer/window_controls.h"
 
@@ -42,6 +43,7 @@ HudFlight FlightOf(const Flythrough& flight) {
   const FlightReadout readout = flight.cockpit().pilot().Readout(flight.Ground());
   HudFlight shown;
   shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);
+  if (flight.cockpit().pilot().Replays()) shown.mode = "replay";
   shown.heading_rad = eye.heading_rad;
   shown.pitch_rad = eye.pitch_rad;
   shown.roll_rad = eye.roll_rad;
@@ -119,8 +121,11 @@ std::vector<HudRow> TablesOf(const Flythrough& flight) {
 
 }  // namespace
 
-FlightDeck::FlightDeck(Flythrough& flight, const Settings& settings)
-    : flight_(flight), hud_({.scale = settings.hud_scale}), controls_(settings.controls) {
+FlightDeck::FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings)
+    : flight_(flight),
+      recorder_(recorder),
+      hud_({.scale = settings.hud_scale}),
+      controls_(settings.controls) {
   if (!settings.shows_hud) hud_.ToggleVisible();
 }
 
@@ -166,7 +171,7 @@ HudModel FlightDeck::Model() const {
     model.messages.push_back({message.text, message.age_s, message.is_warning});
   const LandProgress progress = flight_.painter().land().Progress();
   if (progress.share < 1.0) model.progress = HudProgress{progress.text, progress.share};
-  model.recording = recording_;
+  model.recording = recorder_.file().has_value();
   model.units = units_;
   return model;
 }
@@ -218,6 +223,7 @@ void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, doub
   for (const Action action : intent.refused)
     Say(fmt::format("{}: not while the window is minimised", RowOf(action).does));
   flight_.Advance(intent.pilot, seconds);
+  NoteFlight(seconds);
   const bool on_picture = events.pointer && !hud_.WantsMouse() && hud_.visible();
   cursor_cd_per_m2_ = on_picture ? flight_.LuminanceAt(events.pointer->right / size.width,
                                                        events.pointer->down / size.height)
@@ -250,6 +256,12 @@ void FlightDeck::Do(Action action, const ImageSize& size) {
       case Action::kScreenshotExr:
         Screenshot(".exr", size);
         break;
+      case Action::kReplay:
+        FlyAgain();
+        break;
+      case Action::kSaveFlight:
+        SaveFlight();
+        break;
       case Action::kHelp:
         hud_.Toggle(HudPanel::kHelp);
         break;
@@ -271,6 +283,41 @@ void FlightDeck::Screenshot(const char* extension, const ImageSize& size) {
 
 void FlightDeck::Capture(const HudCaptureRequest& asked) {
   Screenshot(asked.kind == HudPictureKind::kExr ? ".exr" : ".png", {asked.width, asked.height});
+}
+
+void FlightDeck::Record(bool records) {
+  if (!records) {
+    const std::optional<std::filesystem::path> file = recorder_.file();
+    recorder_.Finish();
+    if (file) Say(fmt::format("{} is written", file->filename().string()));
+    return;
+  }
+  const std::filesystem::path file = NextFlight(".");
+  recorder_.Begin(file);
+  Say(fmt::format("recording into {}", file.filename().string()));
+}
+
+void FlightDeck::SaveFlight() {
+  const CameraPath path = flown_.Path();
+  const std::filesystem::path file = NextFlight(".");
+  WriteTextAtomically(file, TextOf(path));
+  Say(fmt::format("{} is written: {:.0f} s", file.filename().string(), path.end_s()));
+}
+
+void FlightDeck::FlyAgain() {
+  const CameraPath path = flown_.Path();
+  flight_.FlyAgain(path);
+  Say(fmt::format("this flight again, {:.0f} s; then it goes on", path.end_s()));
+}
+
+void FlightDeck::NoteFlight(double seconds) {
+  elapsed_s_ += seconds;
+  recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
+  const bool replays = flight_.cockpit().pilot().Replays();
+  if (std::exchange(replays_, replays) && !replays) Say("here the replay ends");
+  if (replays) return;
+  flown_s_ += seconds;
+  flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }
 
 void FlightDeck::ServeTime(const HudTimeRequest& asked) {
@@ -331,6 +378,7 @@ void FlightDeck::Serve(const HudRequest& asked) {
     if (asked.hold_heading_rad || asked.hold_height_m) autopilot.Set(targets);
     if (asked.units) units_ = *asked.units;
     if (asked.capture) Capture(*asked.capture);
+    if (asked.record) Record(*asked.record);
     quit_ = quit_ || asked.quit;
   });
 }

@@ -111,6 +111,16 @@ void Flythrough::Follow(const CameraPath& path) {
   static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEvent));
 }
 
+void Flythrough::Replay(const CameraPath& flight) {
+  waits_above_ground_m_.reset();
+  cockpit_.Replay(std::make_shared<const CameraPath>(flight), Ground());
+}
+
+void Flythrough::FlyAgain(const CameraPath& flown) {
+  waits_above_ground_m_.reset();
+  cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown), Ground());
+}
+
 void Flythrough::Show(const ReplayFrame& frame) {
   waits_above_ground_m_.reset();
   cockpit_.pilot().PutAt(KeptAbove(Zoomed(frame.eye, 1.0), Ground()(frame.eye.place), 0.0),

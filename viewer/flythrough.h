@@ -58,6 +58,9 @@ class Flythrough {
   void GoTo(const std::string& name);
   /// Flies along a path from its beginning.
   void Follow(const CameraPath& path);
+  /// Shows a flight as it was, and what was flown so far: see Cockpit.
+  void Replay(const CameraPath& flight);
+  void FlyAgain(const CameraPath& flown);
   /// Puts the eye and the time where a replay has them.
   void Show(const ReplayFrame& frame);
 
