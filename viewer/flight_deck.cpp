@@ -256,6 +256,10 @@ void FlightDeck::Do(Action action, const ImageSize& size) {
       case Action::kScreenshotExr:
         Screenshot(".exr", size);
         break;
+      case Action::kLandingLight:
+        SetLandingLight(!landing_light_);
+        Say(landing_light_ ? "landing light on" : "landing light off");
+        break;
       case Action::kReplay:
         FlyAgain();
         break;

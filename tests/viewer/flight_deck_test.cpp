@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 
 constexpr ImageSize kSize{320, 240};
 // Of GLFW.
-constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kR = 82, kW = 87, kRightArrow = 262;
+constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262;
 
 class FlightDeckTest : public tests::Headless {
  protected:
@@ -264,6 +264,53 @@ TEST_F(FlightDeckTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
   EXPECT_TRUE(Messages().back().is_warning);
   EXPECT_THAT(Messages().back().text, HasSubstr("Nowhere at all"));
   EXPECT_FALSE(deck_->quit());
+}
+
+TEST_F(FlightDeckTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
+  Press(kL, kControlKey);
+  ASSERT_FALSE(Messages().empty());
+  EXPECT_EQ(Messages().back().text, "landing light on");
+  HudRequest off;
+  off.lamp = HudLampRequest{0, false};
+  deck_->Serve(off);
+  Press(kL, kControlKey);
+  EXPECT_EQ(Messages().back().text, "landing light on") << "the panel had put it out";
+  Press(kL, kControlKey);
+  EXPECT_EQ(Messages().back().text, "landing light off");
+}
+
+TEST_F(FlightDeckTest, TheLandingLightOfTheKeyShinesOnTheGround) {
+  flight_->cockpit().clock().Set(ParseInstant("2026-06-21T23:00:00Z"));
+  Eye low = flight_->eye();
+  low.place.height_m = 30.0;
+  low.pitch_rad = -0.3;
+  flight_->cockpit().pilot().PutAt(low, flight_->Ground());
+  const auto mean_cd_per_m2 = [&] {
+    const Image image = flight_->Picture({32, 24}, 1);
+    double sum = 0.0;
+    for (const auto& rgb : image.rgb) sum += static_cast<double>(rgb[1]);
+    return sum / static_cast<double>(image.rgb.size());
+  };
+  static_cast<void>(Shown());
+  const double dark = mean_cd_per_m2();
+  Press(kL, kControlKey);
+  static_cast<void>(Shown());
+  EXPECT_GT(mean_cd_per_m2(), 2.0 * dark);
+}
+
+TEST_F(FlightDeckTest, EachMomentOfThePanelIsTheOneThatItNames) {
+  const std::pair<const char*, const char*> cases[] = {{"sunset", "2026-06-21T19:3"},
+                                                       {"dusk", "2026-06-21T20:0"},
+                                                       {"dawn", "2026-06-22T02:5"},
+                                                       {"sunrise", "2026-06-22T03:2"},
+                                                       {"noon", "2026-06-22T11:3"}};
+  for (const auto& [moment, time] : cases) {
+    HudRequest request;
+    request.time.moment = moment;
+    deck_->Serve(request);
+    EXPECT_THAT(FormatUtc(flight_->now()), ::testing::StartsWith(time)) << moment;
+    EXPECT_EQ(Messages().back().text, moment);
+  }
 }
 
 TEST_F(FlightDeckTest, MessagesGoAfterAWhile) {
