@@ -333,13 +333,8 @@ void FlightDeck::ServeTime(const HudTimeRequest& asked) {
   }
   if (asked.rate) clock.SetRate(*asked.rate);
   if (asked.paused) clock.Pause(*asked.paused);
-  if (!asked.moment) return;
-  constexpr std::array<Action, 7> kJumps{Action::kToDawn,   Action::kToSunrise, Action::kToNoon,
-                                         Action::kToSunset, Action::kToDusk,    Action::kToMoonrise,
-                                         Action::kToMoonset};
-  for (std::size_t i = 0; i < kSkyEvents.size(); ++i) {
-    if (NameOf(kSkyEvents[i]) != *asked.moment) continue;
-    if (const auto said = flight_.Do(kJumps[static_cast<std::size_t>(kSkyEvents[i])])) Say(*said);
+  for (const SkyEvent event : kSkyEvents) {
+    if (asked.moment == NameOf(event)) Say(flight_.JumpTo(event));
   }
 }
 

@@ -134,6 +134,8 @@ void Flythrough::Advance(const PilotControls& controls, double seconds) {
   still_eye_ = eye();
 }
 
+std::string Flythrough::JumpTo(SkyEvent event) { return cockpit_.JumpTo(event, MoonEvent); }
+
 std::optional<std::string> Flythrough::Do(Action action) {
   if (auto said = cockpit_.Do(action, Ground(), MoonEvent)) return said;
   constexpr double kStep_ev = 1.0 / 3.0;

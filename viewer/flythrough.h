@@ -69,6 +69,9 @@ class Flythrough {
   /// What an action came to, in words; empty: nothing to say; nothing: it is for others.
   std::optional<std::string> Do(Action action);
 
+  /// Moves the clock on to what the sky does next; says to what.
+  [[nodiscard]] std::string JumpTo(SkyEvent event);
+
   void Use(const QualityRule& rule);
   void Use(ToneCurve curve) { developer_.Use(curve); }
   void Use(const AirChoice& choice);

@@ -205,14 +205,14 @@ std::optional<std::string> Cockpit::DoAutopilot(Action action) {
   return text.empty() ? "autopilot off" : text;
 }
 
-std::string Cockpit::Jump(SkyEvent event, const MoonEventAfter& moon) {
+std::string Cockpit::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
   const bool jumped = clock_.JumpToNext(event, pilot_.eye().place, moon);
   return jumped ? alpenglow::NameOf(event)
                 : fmt::format("no {} here within a year", alpenglow::NameOf(event));
 }
 
 std::optional<std::string> Cockpit::DoTime(Action action, const MoonEventAfter& moon) {
-  if (const auto event = EventOf(action)) return Jump(*event, moon);
+  if (const auto event = EventOf(action)) return JumpTo(*event, moon);
   if (const auto shift_s = ShiftOf(action)) {
     clock_.Shift(*shift_s);
     return "";

@@ -29,6 +29,9 @@ class Cockpit {
   [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground,
                                               const MoonEventAfter& moon = {});
 
+  /// Moves the clock on to what the sky does next; says to what.
+  [[nodiscard]] std::string JumpTo(SkyEvent event, const MoonEventAfter& moon);
+
   /// Flies to a place of the list: on the runway with the aircraft, over it otherwise.
   void GoTo(const NamedPlace& there, const GroundHeight& ground) {
     pilot_.PutAt(EyeAt(there, pilot_.eye(), ground), ground);
@@ -53,7 +56,6 @@ class Cockpit {
   void SkipTrack(double seconds);
   void AdvanceClock(const std::optional<UtcInstant>& before, double seconds);
   void EndReplay(const GroundHeight& ground);
-  [[nodiscard]] std::string Jump(SkyEvent event, const MoonEventAfter& moon);
 
   Pilot pilot_;
   SceneClock clock_;
