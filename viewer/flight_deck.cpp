@@ -225,6 +225,7 @@ void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, doub
   flight_.Advance(intent.pilot, seconds);
   NoteFlight(seconds);
   const bool on_picture = events.pointer && !hud_.WantsMouse() && hud_.visible();
+  if (!on_picture) flight_.LeavePicture();
   cursor_cd_per_m2_ = on_picture ? flight_.LuminanceAt(events.pointer->right / size.width,
                                                        events.pointer->down / size.height)
                                  : std::nullopt;

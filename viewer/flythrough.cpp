@@ -282,9 +282,10 @@ void Flythrough::AimLandingLight() {
 }
 
 std::optional<double> Flythrough::LuminanceAt(double right, double down) {
-  if (!exposure_.ev100 || right < 0.0 || right >= 1.0 || down < 0.0 || down >= 1.0)
-    return std::nullopt;
-  return painter_.picture().LuminanceAt(right, down);
+  const bool is_inside = right >= 0.0 && right < 1.0 && down >= 0.0 && down < 1.0;
+  if (exposure_.ev100 && is_inside) return spot_.At(painter_.picture(), right, down);
+  spot_.Leave();
+  return std::nullopt;
 }
 
 void Flythrough::Paint(const Developer::Screen& screen, double seconds) {

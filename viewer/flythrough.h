@@ -19,6 +19,7 @@
 #include "viewer/paint/exposure_meter.h"
 #include "viewer/paint/reference_picture.h"
 #include "viewer/paint/sky_painter.h"
+#include "viewer/paint/spot_meter.h"
 
 namespace alpenglow {
 
@@ -83,8 +84,10 @@ class Flythrough {
 
   /// A landing light ahead and below, or none.
   void SetLandingLight(bool is_on) { landing_light_ = is_on; }
-  /// Luminance of the last picture [cd/m^2] at shares of its width and height from the upper left.
+  /// Luminance of a picture of a frame or two ago [cd/m^2], at shares of its width and height from
+  /// the upper left; asked once a frame. Nothing outside.
   [[nodiscard]] std::optional<double> LuminanceAt(double right, double down);
+  void LeavePicture() { spot_.Leave(); }
 
   /// Paints onto a screen, exposed as the meter says. `seconds` since the last picture.
   void Paint(const Developer::Screen& screen, double seconds);
@@ -148,6 +151,7 @@ class Flythrough {
   SkyPainter painter_;
   Developer developer_{ToneCurve::kAgx};
   ExposureMeter meter_;
+  SpotMeter spot_;
   FlightExposure exposure_;
   double metered_ev100_ = 15.0;
   bool landing_light_ = false;
