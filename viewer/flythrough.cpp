@@ -240,6 +240,12 @@ Scene Flythrough::SceneSeen() const {
   return seen;
 }
 
+ReferenceScene Flythrough::SceneForRenderer() const {
+  ReferenceScene scene{SceneSeen(), nullptr};
+  if (!has_one_model_) scene.ground = GroundAround();
+  return scene;
+}
+
 std::function<std::shared_ptr<const SceneGround>()> Flythrough::GroundAround() const {
   constexpr double kHalfWidth_m = 60e3;
   constexpr int kMostSamples = 3000;
@@ -263,11 +269,8 @@ void Flythrough::ShowReference(const ImageSize& size) {
       rule_.fixed == std::optional(Quality::kReference) && still_s_ >= kStandsStill_s;
   if (!wanted) return;
   if (!reference_) reference_ = std::make_unique<ReferencePicture>();
-  if (!reference_scene_) {
-    ReferenceScene scene{SceneSeen(), nullptr};
-    if (!has_one_model_) scene.ground = GroundAround();
-    reference_scene_ = std::make_shared<const ReferenceScene>(std::move(scene));
-  }
+  if (!reference_scene_)
+    reference_scene_ = std::make_shared<const ReferenceScene>(SceneForRenderer());
   reference_->Show({reference_scene_, eye(), now(), size.width, size.height});
   if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);
 }

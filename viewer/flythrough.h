@@ -101,11 +101,11 @@ class Flythrough {
   /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
   /// both with what made them in their headers. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
-  /// Whether a scene can say what the land is: not for several elevation models.
-  [[nodiscard]] bool HasOneModel() const { return has_one_model_; }
-  /// The scene as the renderer would have it: from the eye, now; without its land unless
-  /// HasOneModel().
-  [[nodiscard]] Scene SceneSeen() const;
+  /// What the renderer would render: the scene from the eye, now, and where a scene cannot say what
+  /// the land is, of several elevation models, the land that is loaded around the eye.
+  [[nodiscard]] ReferenceScene SceneForRenderer() const;
+  /// The picture of WritePicture, developed onto a screen.
+  void PaintStill(const Developer::Screen& screen);
   /// What made a picture of this size.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
   /// Writes pictures at even steps of the path, its ends included, and notes them down.
@@ -134,6 +134,8 @@ class Flythrough {
 
  private:
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const;
+  /// Without land of several elevation models.
+  [[nodiscard]] Scene SceneSeen() const;
   [[nodiscard]] PaintedQuality Painted() const;
   void StandOnGround();
   void AimLandingLight();

@@ -302,6 +302,25 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
 }
 
+TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
+  try {
+    const HeadlessContext context;
+  } catch (const DisplayError&) {
+    GTEST_SKIP() << "EGL gives no OpenGL here";
+  }
+  tests::WriteTile(folder_ / "west.tif", 0, 0);
+  tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
+  const Outcome outcome = RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW
+                                     "' --headless --size 64x36 --quality high --dem west.tif "
+                                     "--dem east.tif --pitch -30 --explain");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const std::string row = "picture, from renderer's";
+  const std::size_t at = outcome.out.find(row);
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  EXPECT_LT(std::stod(outcome.out.substr(at + row.size())), 3.0)
+      << "per cent: the sea in place of the land would be off by tens";
+}
+
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
   try {
     const HeadlessContext context;
