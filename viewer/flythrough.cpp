@@ -13,12 +13,15 @@
 #include "lut/program/program.h"
 #include "renderer/series/provenance.h"
 #include "viewer/flight/places.h"
+#include "viewer/gl/picture_tiles.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 namespace {
 
 constexpr int kPictureSamples = 4;
+// Of a part of a picture, where the driver does not hold it whole: 0.7 GB.
+constexpr int kLargestPart = 4096;
 // The renderer's picture is begun when the eye has stood for so long.
 constexpr double kStandsStill_s = 0.3;
 
@@ -64,6 +67,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       rule_(settings.quality),
       auto_(1.0 / settings.frame_rate),
       used_(Painted()),
+      largest_part_(settings.largest_part),
       cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
@@ -328,10 +332,25 @@ Image Flythrough::Picture(const ImageSize& size, int samples) {
   const Quality quality = rule_.fixed.value_or(Quality::kHigh);
   painter_.Use(SizesOf(quality));
   Settle(size);
-  painter_.Paint(ViewOf(size), samples);
-  Image image = painter_.picture().Read();
+  AimLandingLight();
+  Image image = PaintedInParts(ViewOf(size), samples);
   painter_.Use(SizesOf(used_.quality));
   return image;
+}
+
+Image Flythrough::PaintedInParts(const PaintedView& whole, int samples) {
+  const int largest = IsDrawable(whole.width, whole.height)
+                          ? std::max(whole.width, whole.height)
+                          : std::min(LargestSquareOfDriver(), kLargestPart);
+  TiledPicture picture(whole.width, whole.height, largest_part_.value_or(largest));
+  for (const TiledPicture::Tile& tile : picture.tiles()) {
+    ThrowIfInterrupted();
+    painter_.Paint(
+        {whole.eye, whole.now, tile.painted.width, tile.painted.height, picture.ViewOf(tile)},
+        samples);
+    picture.Put(tile, painter_.picture().Read());
+  }
+  return picture.Take();
 }
 
 Metadata Flythrough::PictureHeader(const ImageSize& size) const {

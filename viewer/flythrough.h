@@ -36,6 +36,9 @@ struct FlythroughSettings {
   QualityRule quality;
   double frame_rate = 20.0;  // that automatic quality keeps
   ImageSize size;            // of the first picture
+  /// Pictures are painted in parts of at most so many pixels a side; nothing: in one piece as far as
+  /// OpenGL draws them.
+  std::optional<int> largest_part = {};
 };
 
 /// Where the exposure comes from.
@@ -96,7 +99,9 @@ class Flythrough {
 
   /// Waits until all is there that a picture of this size needs.
   void Settle(const ImageSize& size);
-  /// The linear picture of where the eye is, with all that belongs into it there.
+  /// The linear picture of where the eye is, with all that belongs into it there. Of any size: what
+  /// OpenGL cannot draw in one piece is painted in parts. Throws OptionError when memory does not
+  /// hold it.
   [[nodiscard]] Image Picture(const ImageSize& size, int samples);
   /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
   /// both with what made them in their headers. Throws OutputError.
@@ -137,6 +142,8 @@ class Flythrough {
   /// Without land of several elevation models.
   [[nodiscard]] Scene SceneSeen() const;
   [[nodiscard]] PaintedQuality Painted() const;
+  [[nodiscard]] double Ev100Of(const Image& picture) const;
+  [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples);
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
@@ -149,6 +156,7 @@ class Flythrough {
   QualityRule rule_;
   AutoQuality auto_;
   PaintedQuality used_;
+  std::optional<int> largest_part_;
   Cockpit cockpit_;
   SkyPainter painter_;
   Developer developer_{ToneCurve::kAgx};

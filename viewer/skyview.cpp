@@ -216,9 +216,14 @@ void SayNotes(Flythrough& flight) {
     Say(fmt::format("skyview: {}\n", note));
 }
 
+/// Whether nothing but linear pictures is asked for, which are put together of parts.
+bool PaintsInParts(const SkyviewOptions& options) {
+  return !options.benchmark && !options.explain && options.hud != "on";
+}
+
 int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
-  const ImageSize size = ImageSizeFromText(options.size);
+  const ImageSize size = SizeFromText(options.size);
   if (options.screenshot) RequirePictureName(*options.screenshot);
   if (options.video) RequireVideo(*options.video);
   const Scene scene = SceneOf(options);
@@ -235,7 +240,7 @@ int Run(const SkyviewOptions& options) {
                                                     options.vsync == "on" && !options.benchmark});
   if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
   if (window) RequireDrawable(std::max(window->width(), 1), std::max(window->height(), 1));
-  if (headless) RequireDrawable(size.width, size.height);
+  if (headless && !PaintsInParts(options)) RequireDrawable(size.width, size.height);
   Flythrough flight(
       scene, start,
       {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size});

@@ -19,6 +19,7 @@ struct LandView {
   glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
   glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
   glm::dvec3 forward{0.0, 1.0, 0.0};
+  glm::dvec4 drawn_part{0.0, 0.0, 1.0, 1.0};  // ViewOfTile
 };
 
 /// `block Land` of land_block.glsl.

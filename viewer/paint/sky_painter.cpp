@@ -369,7 +369,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
     surface_.emplace(view.width, view.height);
   }
   surface_->Bind();
-  land_.Draw(kViewBinding);
+  land_.Draw(kViewBinding, view.part);
   surface_->BindTextures(kSurfaceUnit, kSkyOnSurfaceUnit);
 }
 
