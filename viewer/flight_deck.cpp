@@ -16,6 +16,7 @@
 #include "lut/sky/sky_view_map.h"
 #include "viewer/capture/numbered_name.h"
 #include "viewer/flight/places.h"
+#include "viewer/gl/picture_tiles.h"
 #include "viewer/window_controls.h"
 
 namespace alpenglow {
@@ -287,7 +288,13 @@ void FlightDeck::Screenshot(const char* extension, const ImageSize& size) {
 }
 
 void FlightDeck::Capture(const HudCaptureRequest& asked) {
-  Screenshot(asked.kind == HudPictureKind::kExr ? ".exr" : ".png", {asked.width, asked.height});
+  const char* const extension = asked.kind == HudPictureKind::kExr ? ".exr" : ".png";
+  const ImageSize size{asked.width, asked.height};
+  if (!asked.with_hud) return Screenshot(extension, size);
+  std::filesystem::path file = NextScreenshot(".");
+  file += extension;
+  WritePicture(file, size);
+  Say(fmt::format("{} is written", file.filename().string()));
 }
 
 void FlightDeck::Record(bool records) {
@@ -386,11 +393,16 @@ void FlightDeck::Serve(const HudRequest& asked) {
 void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   if (file.extension() != ".png")
     throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
+  RequireDrawable(size.width, size.height);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
-  flight_.Settle(size);
-  constexpr double kInstant_s = 1e-3;
-  Advance({}, size, kInstant_s);
-  Paint({screen.framebuffer(), size.width, size.height}, kInstant_s);
+  flight_.PaintStill({screen.framebuffer(), size.width, size.height});
+  // Another one than that of the window, whose panels stay where they are and out of the picture.
+  Hud instruments({.scale = hud_.scale(), .theme = hud_.theme_choice()});
+  HudInput input;
+  input.width = size.width;
+  input.height = size.height;
+  static_cast<void>(instruments.Update(Model(), {}, nullptr, input));
+  instruments.Paint(screen.framebuffer());
   WritePng(file, screen.ReadBytes(), flight_.PictureHeader(size));
 }
 

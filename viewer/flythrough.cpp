@@ -366,11 +366,24 @@ Metadata Flythrough::PictureHeader(const ImageSize& size) const {
   return metadata;
 }
 
+double Flythrough::Ev100Of(const Image& picture) const {
+  return exposure_.ev100.value_or(MeterEv100(picture, kSunDiskLuminance_cd_per_m2) -
+                                  exposure_.compensation_ev);
+}
+
+void Flythrough::PaintStill(const Developer::Screen& screen) {
+  const ImageSize size{screen.width, screen.height};
+  const Image image = Picture(size, kPictureSamples);
+  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  exposure_.ev100 = Ev100Of(image);
+  developer_.Develop(picture, *exposure_.ev100, screen);
+}
+
 void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   RequirePictureName(file);
   const Image image = Picture(size, kPictureSamples);
-  const double ev100 = exposure_.ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2) -
-                                                exposure_.compensation_ev);
+  const double ev100 = Ev100Of(image);
   Metadata metadata = PictureHeader(size);
   metadata["alpenglow.ev100"] = fmt::format("{}", ev100);
   if (file.extension() == ".exr") {

@@ -128,6 +128,24 @@ TEST_F(FlightDeckFiles, F3WritesAPictureIntoTheCurrentFolder) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "no picture is written over";
 }
 
+TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
+  static_cast<void>(Shown());
+  deck_->Advance({}, kSize, kFrame_s);
+  HudRequest request;
+  request.capture = HudCaptureRequest{HudPictureKind::kPng, 480, 360, true};
+  deck_->Serve(request);
+  request.capture->with_hud = false;
+  deck_->Serve(request);
+  const DisplayImage with = ReadPng("skyview-0001.png"), without = ReadPng("skyview-0002.png");
+  ASSERT_EQ(with.width, 480);
+  EXPECT_GT(Changed(with, without), 2000) << "instruments";
+  EXPECT_LT(Changed(with, without), 480 * 360) << "over the same picture";
+  request.capture = HudCaptureRequest{HudPictureKind::kExr, 480, 360, true};
+  deck_->Serve(request);
+  EXPECT_TRUE(Messages().back().is_warning) << "instruments are no light";
+  EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
+}
+
 TEST_F(FlightDeckFiles, APictureThatCannotBeWrittenIsAWarning) {
   static_cast<void>(Shown());
   const std::filesystem::path gone = std::filesystem::current_path() / "gone";
