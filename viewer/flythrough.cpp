@@ -14,6 +14,7 @@
 #include "renderer/series/provenance.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
+#include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
@@ -35,6 +36,16 @@ Eye EyeOfScene(const Scene& scene) {
 std::optional<UtcInstant> MoonEvent(SkyEvent event, const GeodeticPosition& place,
                                     const UtcInstant& after) {
   return event == SkyEvent::kMoonset ? NextMoonset(place, after) : NextMoonrise(place, after);
+}
+
+// Of a square around a place that holds all land, 60 km at most: of less there are finer samples.
+double HalfWidthOfLand(const LandLattice& lattice, const GeodeticPosition& place) {
+  constexpr double kMost_m = 60e3;
+  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
+  const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
+  const double columns = std::max(at.column, lattice.last_column - at.column);
+  const double rows = std::max(at.row, lattice.last_row - at.row);
+  return std::min(std::max(columns * size.column_m, rows * size.row_m) + size.row_m, kMost_m);
 }
 
 // Refuses a medium of too many bands before it is solved.
@@ -251,14 +262,14 @@ ReferenceScene Flythrough::SceneForRenderer() const {
 }
 
 std::function<std::shared_ptr<const SceneGround>()> Flythrough::GroundAround() const {
-  constexpr double kHalfWidth_m = 60e3;
   constexpr int kMostSamples = 3000;
   return [sample = painter_.land().Sampler(), place = eye().place,
+          half_width_m = HalfWidthOfLand(painter_.land().tiles().lattice(), eye().place),
           ellipsoid = EllipsoidOf(scene_.medium)]() -> std::shared_ptr<const SceneGround> {
     GeodeticPosition foot = place;
     foot.height_m = 0.0;
     const LocalFrame frame(ellipsoid, foot);
-    const std::optional<ElevationGrid> grid = sample(place, kHalfWidth_m, kMostSamples);
+    const std::optional<ElevationGrid> grid = sample(place, half_width_m, kMostSamples);
     if (!grid)
       return std::make_shared<const SceneGround>(
           SceneGround{frame, std::nullopt, place.height_m, "", true});

@@ -174,7 +174,8 @@ TEST_F(FlightDeckTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
   const std::vector<Moment> again = Fly(100);
   for (std::size_t i = 0; i < again.size(); ++i) {
     EXPECT_LT(Apart_m(again[i].eye, flown[i + 1].eye), 0.5)
-        << "of 15 m a frame; points are three frames apart";
+        << "of 15 m a frame: 0.34 m as it sets off, 1 mm once it flies evenly, between points that "
+           "are three frames apart";
     EXPECT_NEAR(SecondsBetween(again[i].now, flown[i + 1].now), 0.0, 1e-3);
     EXPECT_NEAR(again[i].eye.heading_rad, flown[i + 1].eye.heading_rad, 1e-3);
   }

@@ -337,8 +337,8 @@ TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
   const std::string row = "picture, from renderer's";
   const std::size_t at = outcome.out.find(row);
   ASSERT_NE(at, std::string::npos) << outcome.out;
-  EXPECT_LT(std::stod(outcome.out.substr(at + row.size())), 3.0)
-      << "per cent: the sea in place of the land would be off by tens";
+  EXPECT_LT(std::stod(outcome.out.substr(at + row.size())), 1.0)
+      << "per cent, as over one model; without land, or with every second sample, it would be more";
 }
 
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
