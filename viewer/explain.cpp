@@ -68,7 +68,7 @@ Image JudgeOf(const Flythrough& flight, const ImageSize& size) {
   settings.samples_per_pixel = kSamples;
   settings.filter = PixelFilter::Kind::kBox;
   settings.layers = LayersOfEdges();
-  return SceneRenderer(flight.SceneSeen()).Render(flight.now(), settings);
+  return RendererOf(flight.SceneForRenderer())->Render(flight.now(), settings);
 }
 
 std::string Row(const std::string& name, const ViewDifference& is, const std::string& time) {
@@ -79,8 +79,6 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
 }  // namespace
 
 std::string ExplainView(Flythrough& flight, const ImageSize& size) {
-  if (!flight.HasOneModel())
-    throw InputError("--explain needs land that a scene can name: one elevation model");
   flight.Settle(size);
   const Quality quality = flight.quality_rule().fixed.value_or(Quality::kMedium);
   const PaintSizes sizes = SizesOf(quality);

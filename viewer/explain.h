@@ -9,8 +9,8 @@
 namespace alpenglow {
 
 /// A table of text: of the picture, and of each shortcut against its best setting, the mean, 99 % and
-/// 99.9 % of pixels (ViewDifference), and the time of a frame that it saves. The land is what the
-/// scene names; throws InputError for several elevation models.
+/// 99.9 % of pixels (ViewDifference), and the time of a frame that it saves. The renderer's land is
+/// what the scene names, or of several elevation models what is loaded around the eye.
 [[nodiscard]] std::string ExplainView(Flythrough& flight, const ImageSize& size);
 
 }  // namespace alpenglow

@@ -12,9 +12,11 @@
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/picture_text.h"
+#include "lut/program/atomic_file.h"
 #include "lut/sky/sky_view_map.h"
-#include "viewer/capture/screenshot_name.h"
+#include "viewer/capture/numbered_name.h"
 #include "viewer/flight/places.h"
+#include "viewer/gl/picture_tiles.h"
 #include "viewer/window_controls.h"
 
 namespace alpenglow {
@@ -42,6 +44,7 @@ HudFlight FlightOf(const Flythrough& flight) {
   const FlightReadout readout = flight.cockpit().pilot().Readout(flight.Ground());
   HudFlight shown;
   shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);
+  if (flight.cockpit().pilot().Replays()) shown.mode = "replay";
   shown.heading_rad = eye.heading_rad;
   shown.pitch_rad = eye.pitch_rad;
   shown.roll_rad = eye.roll_rad;
@@ -119,8 +122,11 @@ std::vector<HudRow> TablesOf(const Flythrough& flight) {
 
 }  // namespace
 
-FlightDeck::FlightDeck(Flythrough& flight, const Settings& settings)
-    : flight_(flight), hud_({.scale = settings.hud_scale}), controls_(settings.controls) {
+FlightDeck::FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings)
+    : flight_(flight),
+      recorder_(recorder),
+      hud_({.scale = settings.hud_scale}),
+      controls_(settings.controls) {
   if (!settings.shows_hud) hud_.ToggleVisible();
 }
 
@@ -166,7 +172,7 @@ HudModel FlightDeck::Model() const {
     model.messages.push_back({message.text, message.age_s, message.is_warning});
   const LandProgress progress = flight_.painter().land().Progress();
   if (progress.share < 1.0) model.progress = HudProgress{progress.text, progress.share};
-  model.recording = recording_;
+  model.recording = recorder_.file().has_value();
   model.units = units_;
   return model;
 }
@@ -218,7 +224,9 @@ void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, doub
   for (const Action action : intent.refused)
     Say(fmt::format("{}: not while the window is minimised", RowOf(action).does));
   flight_.Advance(intent.pilot, seconds);
+  NoteFlight(seconds);
   const bool on_picture = events.pointer && !hud_.WantsMouse() && hud_.visible();
+  if (!on_picture) flight_.LeavePicture();
   cursor_cd_per_m2_ = on_picture ? flight_.LuminanceAt(events.pointer->right / size.width,
                                                        events.pointer->down / size.height)
                                  : std::nullopt;
@@ -250,6 +258,16 @@ void FlightDeck::Do(Action action, const ImageSize& size) {
       case Action::kScreenshotExr:
         Screenshot(".exr", size);
         break;
+      case Action::kLandingLight:
+        SetLandingLight(!landing_light_);
+        Say(landing_light_ ? "landing light on" : "landing light off");
+        break;
+      case Action::kReplay:
+        FlyAgain();
+        break;
+      case Action::kSaveFlight:
+        SaveFlight();
+        break;
       case Action::kHelp:
         hud_.Toggle(HudPanel::kHelp);
         break;
@@ -270,7 +288,48 @@ void FlightDeck::Screenshot(const char* extension, const ImageSize& size) {
 }
 
 void FlightDeck::Capture(const HudCaptureRequest& asked) {
-  Screenshot(asked.kind == HudPictureKind::kExr ? ".exr" : ".png", {asked.width, asked.height});
+  const char* const extension = asked.kind == HudPictureKind::kExr ? ".exr" : ".png";
+  const ImageSize size{asked.width, asked.height};
+  if (!asked.with_hud) return Screenshot(extension, size);
+  std::filesystem::path file = NextScreenshot(".");
+  file += extension;
+  WritePicture(file, size);
+  Say(fmt::format("{} is written", file.filename().string()));
+}
+
+void FlightDeck::Record(bool records) {
+  if (!records) {
+    const std::optional<std::filesystem::path> file = recorder_.file();
+    recorder_.Finish();
+    if (file) Say(fmt::format("{} is written", file->filename().string()));
+    return;
+  }
+  const std::filesystem::path file = NextFlight(".");
+  recorder_.Begin(file);
+  Say(fmt::format("recording into {}", file.filename().string()));
+}
+
+void FlightDeck::SaveFlight() {
+  const CameraPath path = flown_.Path();
+  const std::filesystem::path file = NextFlight(".");
+  WriteTextAtomically(file, TextOf(path));
+  Say(fmt::format("{} is written: {:.0f} s", file.filename().string(), path.end_s()));
+}
+
+void FlightDeck::FlyAgain() {
+  const CameraPath path = flown_.Path();
+  flight_.FlyAgain(path);
+  Say(fmt::format("this flight again, {:.0f} s; then it goes on", path.end_s()));
+}
+
+void FlightDeck::NoteFlight(double seconds) {
+  elapsed_s_ += seconds;
+  recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
+  const bool replays = flight_.cockpit().pilot().Replays();
+  if (std::exchange(replays_, replays) && !replays) Say("here the replay ends");
+  if (replays) return;
+  flown_s_ += seconds;
+  flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }
 
 void FlightDeck::ServeTime(const HudTimeRequest& asked) {
@@ -282,13 +341,8 @@ void FlightDeck::ServeTime(const HudTimeRequest& asked) {
   }
   if (asked.rate) clock.SetRate(*asked.rate);
   if (asked.paused) clock.Pause(*asked.paused);
-  if (!asked.moment) return;
-  constexpr std::array<Action, 7> kJumps{Action::kToDawn,   Action::kToSunrise, Action::kToNoon,
-                                         Action::kToSunset, Action::kToDusk,    Action::kToMoonrise,
-                                         Action::kToMoonset};
-  for (std::size_t i = 0; i < kSkyEvents.size(); ++i) {
-    if (NameOf(kSkyEvents[i]) != *asked.moment) continue;
-    if (const auto said = flight_.Do(kJumps[static_cast<std::size_t>(kSkyEvents[i])])) Say(*said);
+  for (const SkyEvent event : kSkyEvents) {
+    if (asked.moment == NameOf(event)) Say(flight_.JumpTo(event));
   }
 }
 
@@ -331,6 +385,7 @@ void FlightDeck::Serve(const HudRequest& asked) {
     if (asked.hold_heading_rad || asked.hold_height_m) autopilot.Set(targets);
     if (asked.units) units_ = *asked.units;
     if (asked.capture) Capture(*asked.capture);
+    if (asked.record) Record(*asked.record);
     quit_ = quit_ || asked.quit;
   });
 }
@@ -338,11 +393,16 @@ void FlightDeck::Serve(const HudRequest& asked) {
 void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   if (file.extension() != ".png")
     throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
+  RequireDrawable(size.width, size.height);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
-  flight_.Settle(size);
-  constexpr double kInstant_s = 1e-3;
-  Advance({}, size, kInstant_s);
-  Paint({screen.framebuffer(), size.width, size.height}, kInstant_s);
+  flight_.PaintStill({screen.framebuffer(), size.width, size.height});
+  // Another one than that of the window, whose panels stay where they are and out of the picture.
+  Hud instruments({.scale = hud_.scale(), .theme = hud_.theme_choice()});
+  HudInput input;
+  input.width = size.width;
+  input.height = size.height;
+  static_cast<void>(instruments.Update(Model(), {}, nullptr, input));
+  instruments.Paint(screen.framebuffer());
   WritePng(file, screen.ReadBytes(), flight_.PictureHeader(size));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A flight with people: keys, mouse and gamepad, instruments and panels, messages.
+// A flight with people: keys, mouse and gamepad, instruments and panels, messages; what they have
+// flown, to be written down and flown again.
 #pragma once
 
 #include <deque>
@@ -7,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "viewer/flight/flight_log.h"
+#include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
 #include "viewer/hud/hud.h"
 #include "viewer/hud/hud_keys.h"
@@ -22,8 +25,9 @@ class FlightDeck {
     bool shows_hud = true;
     ControlSettings controls;
   };
-  /// Refers to the flight.
-  FlightDeck(Flythrough& flight, const Settings& settings);
+  /// Refers to the flight, and to the recorder, which panels begin and end: it outlives the deck, so
+  /// that a flight is whole however the deck ends.
+  FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings);
 
   /// What hands and panels ask for, and the seconds that have passed. Once a frame.
   void Advance(const WindowEvents& events, const ImageSize& size, double seconds);
@@ -45,8 +49,6 @@ class FlightDeck {
   /// What the benchmark and tests ask for without hands.
   [[nodiscard]] HudModel Model() const;
 
-  void SetRecording(bool recording) { recording_ = recording; }
-
  private:
   struct Message {
     std::string text;
@@ -58,6 +60,10 @@ class FlightDeck {
   void ServeAir(const HudAirRequest& asked);
   void Capture(const HudCaptureRequest& asked);
   void Screenshot(const char* extension, const ImageSize& size);
+  void Record(bool records);
+  void SaveFlight();
+  void FlyAgain();
+  void NoteFlight(double seconds);
   void Age(double seconds);
   void SetLandingLight(bool is_on);
   [[nodiscard]] HudChoices Choices() const;
@@ -66,6 +72,10 @@ class FlightDeck {
   void Try(const Work& work);
 
   Flythrough& flight_;
+  FlightRecorder& recorder_;
+  double elapsed_s_ = 0.0, flown_s_ = 0.0;
+  FlightLog flown_;  // but for what was flown again
+  bool replays_ = false;
   Hud hud_;
   HudKeys keys_;
   DayStrips strips_;
@@ -73,7 +83,7 @@ class FlightDeck {
   std::deque<Message> messages_;
   std::optional<double> cursor_cd_per_m2_;
   double frame_ms_ = 16.0;
-  bool quit_ = false, full_screen_ = false, recording_ = false, landing_light_ = false;
+  bool quit_ = false, full_screen_ = false, landing_light_ = false;
   HudUnits units_ = HudUnits::kMetric;
 };
 

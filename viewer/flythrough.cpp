@@ -13,12 +13,16 @@
 #include "lut/program/program.h"
 #include "renderer/series/provenance.h"
 #include "viewer/flight/places.h"
+#include "viewer/gl/picture_tiles.h"
+#include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 namespace {
 
 constexpr int kPictureSamples = 4;
+// Of a part of a picture, where the driver does not hold it whole: 0.7 GB.
+constexpr int kLargestPart = 4096;
 // The renderer's picture is begun when the eye has stood for so long.
 constexpr double kStandsStill_s = 0.3;
 
@@ -32,6 +36,16 @@ Eye EyeOfScene(const Scene& scene) {
 std::optional<UtcInstant> MoonEvent(SkyEvent event, const GeodeticPosition& place,
                                     const UtcInstant& after) {
   return event == SkyEvent::kMoonset ? NextMoonset(place, after) : NextMoonrise(place, after);
+}
+
+// Of a square around a place that holds all land, 60 km at most: of less there are finer samples.
+double HalfWidthOfLand(const LandLattice& lattice, const GeodeticPosition& place) {
+  constexpr double kMost_m = 60e3;
+  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
+  const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
+  const double columns = std::max(at.column, lattice.last_column - at.column);
+  const double rows = std::max(at.row, lattice.last_row - at.row);
+  return std::min(std::max(columns * size.column_m, rows * size.row_m) + size.row_m, kMost_m);
 }
 
 // Refuses a medium of too many bands before it is solved.
@@ -64,6 +78,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       rule_(settings.quality),
       auto_(1.0 / settings.frame_rate),
       used_(Painted()),
+      largest_part_(settings.largest_part),
       cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
@@ -111,6 +126,16 @@ void Flythrough::Follow(const CameraPath& path) {
   static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEvent));
 }
 
+void Flythrough::Replay(const CameraPath& flight) {
+  waits_above_ground_m_.reset();
+  cockpit_.Replay(std::make_shared<const CameraPath>(flight), Ground());
+}
+
+void Flythrough::FlyAgain(const CameraPath& flown) {
+  waits_above_ground_m_.reset();
+  cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown), Ground());
+}
+
 void Flythrough::Show(const ReplayFrame& frame) {
   waits_above_ground_m_.reset();
   cockpit_.pilot().PutAt(KeptAbove(Zoomed(frame.eye, 1.0), Ground()(frame.eye.place), 0.0),
@@ -123,6 +148,8 @@ void Flythrough::Advance(const PilotControls& controls, double seconds) {
   still_s_ = still_eye_ == eye() ? still_s_ + seconds : 0.0;
   still_eye_ = eye();
 }
+
+std::string Flythrough::JumpTo(SkyEvent event) { return cockpit_.JumpTo(event, MoonEvent); }
 
 std::optional<std::string> Flythrough::Do(Action action) {
   if (auto said = cockpit_.Do(action, Ground(), MoonEvent)) return said;
@@ -228,15 +255,21 @@ Scene Flythrough::SceneSeen() const {
   return seen;
 }
 
+ReferenceScene Flythrough::SceneForRenderer() const {
+  ReferenceScene scene{SceneSeen(), nullptr};
+  if (!has_one_model_) scene.ground = GroundAround();
+  return scene;
+}
+
 std::function<std::shared_ptr<const SceneGround>()> Flythrough::GroundAround() const {
-  constexpr double kHalfWidth_m = 60e3;
   constexpr int kMostSamples = 3000;
   return [sample = painter_.land().Sampler(), place = eye().place,
+          half_width_m = HalfWidthOfLand(painter_.land().tiles().lattice(), eye().place),
           ellipsoid = EllipsoidOf(scene_.medium)]() -> std::shared_ptr<const SceneGround> {
     GeodeticPosition foot = place;
     foot.height_m = 0.0;
     const LocalFrame frame(ellipsoid, foot);
-    const std::optional<ElevationGrid> grid = sample(place, kHalfWidth_m, kMostSamples);
+    const std::optional<ElevationGrid> grid = sample(place, half_width_m, kMostSamples);
     if (!grid)
       return std::make_shared<const SceneGround>(
           SceneGround{frame, std::nullopt, place.height_m, "", true});
@@ -251,11 +284,8 @@ void Flythrough::ShowReference(const ImageSize& size) {
       rule_.fixed == std::optional(Quality::kReference) && still_s_ >= kStandsStill_s;
   if (!wanted) return;
   if (!reference_) reference_ = std::make_unique<ReferencePicture>();
-  if (!reference_scene_) {
-    ReferenceScene scene{SceneSeen(), nullptr};
-    if (!has_one_model_) scene.ground = GroundAround();
-    reference_scene_ = std::make_shared<const ReferenceScene>(std::move(scene));
-  }
+  if (!reference_scene_)
+    reference_scene_ = std::make_shared<const ReferenceScene>(SceneForRenderer());
   reference_->Show({reference_scene_, eye(), now(), size.width, size.height});
   if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);
 }
@@ -270,9 +300,10 @@ void Flythrough::AimLandingLight() {
 }
 
 std::optional<double> Flythrough::LuminanceAt(double right, double down) {
-  if (!exposure_.ev100 || right < 0.0 || right >= 1.0 || down < 0.0 || down >= 1.0)
-    return std::nullopt;
-  return painter_.picture().LuminanceAt(right, down);
+  const bool is_inside = right >= 0.0 && right < 1.0 && down >= 0.0 && down < 1.0;
+  if (exposure_.ev100 && is_inside) return spot_.At(painter_.picture(), right, down);
+  spot_.Leave();
+  return std::nullopt;
 }
 
 void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
@@ -302,20 +333,35 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   painter_.EndTime();
 }
 
-void Flythrough::Settle(const ImageSize& size) {
-  painter_.Settle(ViewOf(size));
+void Flythrough::Settle(const ImageSize& size, int samples) {
+  painter_.Settle(ViewOf(size), samples);
   StandOnGround();
-  painter_.Settle(ViewOf(size));
+  painter_.Settle(ViewOf(size), samples);
 }
 
 Image Flythrough::Picture(const ImageSize& size, int samples) {
   const Quality quality = rule_.fixed.value_or(Quality::kHigh);
   painter_.Use(SizesOf(quality));
-  Settle(size);
-  painter_.Paint(ViewOf(size), samples);
-  Image image = painter_.picture().Read();
+  Settle(size, samples);
+  AimLandingLight();
+  Image image = PaintedInParts(ViewOf(size), samples);
   painter_.Use(SizesOf(used_.quality));
   return image;
+}
+
+Image Flythrough::PaintedInParts(const PaintedView& whole, int samples) {
+  const int largest = IsDrawable(whole.width, whole.height)
+                          ? std::max(whole.width, whole.height)
+                          : std::min(LargestSquareOfDriver(), kLargestPart);
+  TiledPicture picture(whole.width, whole.height, largest_part_.value_or(largest));
+  for (const TiledPicture::Tile& tile : picture.tiles()) {
+    ThrowIfInterrupted();
+    painter_.Paint(
+        {whole.eye, whole.now, tile.painted.width, tile.painted.height, picture.ViewOf(tile)},
+        samples);
+    picture.Put(tile, painter_.picture().Read());
+  }
+  return picture.Take();
 }
 
 Metadata Flythrough::PictureHeader(const ImageSize& size) const {
@@ -331,11 +377,24 @@ Metadata Flythrough::PictureHeader(const ImageSize& size) const {
   return metadata;
 }
 
+double Flythrough::Ev100Of(const Image& picture) const {
+  return exposure_.ev100.value_or(MeterEv100(picture, kSunDiskLuminance_cd_per_m2) -
+                                  exposure_.compensation_ev);
+}
+
+void Flythrough::PaintStill(const Developer::Screen& screen) {
+  const ImageSize size{screen.width, screen.height};
+  const Image image = Picture(size, kPictureSamples);
+  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  exposure_.ev100 = Ev100Of(image);
+  developer_.Develop(picture, *exposure_.ev100, screen);
+}
+
 void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   RequirePictureName(file);
   const Image image = Picture(size, kPictureSamples);
-  const double ev100 = exposure_.ev100.value_or(MeterEv100(image, kSunDiskLuminance_cd_per_m2) -
-                                                exposure_.compensation_ev);
+  const double ev100 = Ev100Of(image);
   Metadata metadata = PictureHeader(size);
   metadata["alpenglow.ev100"] = fmt::format("{}", ev100);
   if (file.extension() == ".exr") {

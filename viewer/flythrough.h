@@ -19,6 +19,7 @@
 #include "viewer/paint/exposure_meter.h"
 #include "viewer/paint/reference_picture.h"
 #include "viewer/paint/sky_painter.h"
+#include "viewer/paint/spot_meter.h"
 
 namespace alpenglow {
 
@@ -35,6 +36,9 @@ struct FlythroughSettings {
   QualityRule quality;
   double frame_rate = 20.0;  // that automatic quality keeps
   ImageSize size;            // of the first picture
+  /// Pictures are painted in parts of at most so many pixels a side; nothing: in one piece as far as
+  /// OpenGL draws them.
+  std::optional<int> largest_part = {};
 };
 
 /// Where the exposure comes from.
@@ -58,6 +62,9 @@ class Flythrough {
   void GoTo(const std::string& name);
   /// Flies along a path from its beginning.
   void Follow(const CameraPath& path);
+  /// Shows a flight as it was, and what was flown so far: see Cockpit.
+  void Replay(const CameraPath& flight);
+  void FlyAgain(const CameraPath& flown);
   /// Puts the eye and the time where a replay has them.
   void Show(const ReplayFrame& frame);
 
@@ -65,6 +72,9 @@ class Flythrough {
   void Advance(const PilotControls& controls, double seconds);
   /// What an action came to, in words; empty: nothing to say; nothing: it is for others.
   std::optional<std::string> Do(Action action);
+
+  /// Moves the clock on to what the sky does next; says to what.
+  [[nodiscard]] std::string JumpTo(SkyEvent event);
 
   void Use(const QualityRule& rule);
   void Use(ToneCurve curve) { developer_.Use(curve); }
@@ -77,8 +87,10 @@ class Flythrough {
 
   /// A landing light ahead and below, or none.
   void SetLandingLight(bool is_on) { landing_light_ = is_on; }
-  /// Luminance of the last picture [cd/m^2] at shares of its width and height from the upper left.
+  /// Luminance of a picture of a frame or two ago [cd/m^2], at shares of its width and height from
+  /// the upper left; asked once a frame. Nothing outside.
   [[nodiscard]] std::optional<double> LuminanceAt(double right, double down);
+  void LeavePicture() { spot_.Leave(); }
 
   /// Paints onto a screen, exposed as the meter says. `seconds` since the last picture.
   void Paint(const Developer::Screen& screen, double seconds);
@@ -86,17 +98,20 @@ class Flythrough {
   void NoteFrame(double seconds);
 
   /// Waits until all is there that a picture of this size needs.
-  void Settle(const ImageSize& size);
-  /// The linear picture of where the eye is, with all that belongs into it there.
+  /// @param samples  rays a pixel that it will have.
+  void Settle(const ImageSize& size, int samples = 1);
+  /// The linear picture of where the eye is, with all that belongs into it there. Of any size: what
+  /// OpenGL cannot draw in one piece is painted in parts. Throws OptionError when memory does not
+  /// hold it.
   [[nodiscard]] Image Picture(const ImageSize& size, int samples);
   /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
   /// both with what made them in their headers. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
-  /// Whether a scene can say what the land is: not for several elevation models.
-  [[nodiscard]] bool HasOneModel() const { return has_one_model_; }
-  /// The scene as the renderer would have it: from the eye, now; without its land unless
-  /// HasOneModel().
-  [[nodiscard]] Scene SceneSeen() const;
+  /// What the renderer would render: the scene from the eye, now, and where a scene cannot say what
+  /// the land is, of several elevation models, the land that is loaded around the eye.
+  [[nodiscard]] ReferenceScene SceneForRenderer() const;
+  /// The picture of WritePicture, developed onto a screen.
+  void PaintStill(const Developer::Screen& screen);
   /// What made a picture of this size.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
   /// Writes pictures at even steps of the path, its ends included, and notes them down.
@@ -125,7 +140,11 @@ class Flythrough {
 
  private:
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const;
+  /// Without land of several elevation models.
+  [[nodiscard]] Scene SceneSeen() const;
   [[nodiscard]] PaintedQuality Painted() const;
+  [[nodiscard]] double Ev100Of(const Image& picture) const;
+  [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples);
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
@@ -138,10 +157,12 @@ class Flythrough {
   QualityRule rule_;
   AutoQuality auto_;
   PaintedQuality used_;
+  std::optional<int> largest_part_;
   Cockpit cockpit_;
   SkyPainter painter_;
   Developer developer_{ToneCurve::kAgx};
   ExposureMeter meter_;
+  SpotMeter spot_;
   FlightExposure exposure_;
   double metered_ev100_ = 15.0;
   bool landing_light_ = false;

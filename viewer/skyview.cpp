@@ -94,7 +94,8 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
     recorder.Note(frame * kFrame_s, flight.eye(), flight.now());
   }
   if (options.hud == "on") {
-    FlightDeck deck(flight, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
+    FlightRecorder none;
+    FlightDeck deck(flight, none, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
     deck.WritePicture(*options.screenshot, size);
   } else {
     flight.WritePicture(*options.screenshot, size);
@@ -104,16 +105,15 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
 /// The whole picture of a window.
 Developer::Screen ScreenOf(const Window& window) { return {0, window.width(), window.height()}; }
 
-void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, Flythrough& flight,
-         Window& window, FlightRecorder& recorder) {
+void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
+         FlightRecorder& recorder) {
   using Clock = std::chrono::steady_clock;
   int frames = 0;
-  double elapsed_s = 0.0;
   const double scale = options.hud_scale > 0.0 ? options.hud_scale : window.content_scale();
-  FlightDeck deck(flight, {scale,
-                           options.hud != "off",
-                           {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
-  deck.SetRecording(options.record.has_value());
+  FlightDeck deck(flight, recorder,
+                  {scale,
+                   options.hud != "off",
+                   {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
   bool looks = false;
   for (Clock::time_point before = Clock::now(); !deck.quit();) {
     ThrowIfInterrupted();
@@ -123,11 +123,6 @@ void Fly(const SkyviewOptions& options, const std::optional<CameraPath>& path, F
     const double seconds = std::chrono::duration<double>(now - before).count();
     before = now;
     deck.Advance(events, {window.width(), window.height()}, seconds);
-    // The pilot has the controls again when the path ends.
-    if (path && path->begin_s() + elapsed_s <= path->end_s())
-      flight.Show(ReplayAt(*path, path->begin_s() + elapsed_s));
-    recorder.Note(elapsed_s, flight.eye(), flight.now());
-    elapsed_s += seconds;
     if (deck.TakeFullScreen()) window.SetFullscreen(!window.fullscreen());
     if (looks != (deck.mouse_mode() == MouseMode::kLook)) {
       looks = !looks;
@@ -221,9 +216,14 @@ void SayNotes(Flythrough& flight) {
     Say(fmt::format("skyview: {}\n", note));
 }
 
+/// Whether nothing but linear pictures is asked for, which are put together of parts.
+bool PaintsInParts(const SkyviewOptions& options) {
+  return !options.benchmark && !options.explain && options.hud != "on";
+}
+
 int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
-  const ImageSize size = ImageSizeFromText(options.size);
+  const ImageSize size = SizeFromText(options.size);
   if (options.screenshot) RequirePictureName(*options.screenshot);
   if (options.video) RequireVideo(*options.video);
   const Scene scene = SceneOf(options);
@@ -240,7 +240,7 @@ int Run(const SkyviewOptions& options) {
                                                     options.vsync == "on" && !options.benchmark});
   if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
   if (window) RequireDrawable(std::max(window->width(), 1), std::max(window->height(), 1));
-  if (headless) RequireDrawable(size.width, size.height);
+  if (headless && !PaintsInParts(options)) RequireDrawable(size.width, size.height);
   Flythrough flight(
       scene, start,
       {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size});
@@ -256,7 +256,8 @@ int Run(const SkyviewOptions& options) {
     const ImageSize drawn = shown ? ImageSize{window->width(), window->height()} : size;
     RunBenchmark(*options.benchmark, flight, drawn, window.get());
   } else if (window) {
-    Fly(options, path, flight, *window, recorder);
+    if (path) flight.Replay(*path);
+    Fly(options, flight, *window, recorder);
   } else if (options.video) {
     WriteFilm(options, *path, size, flight);
   } else if (path) {

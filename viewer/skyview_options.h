@@ -40,6 +40,10 @@ struct SkyviewOptions {
   bool fullscreen = false, headless = false;
 };
 
+[[nodiscard]] inline ImageSize SizeFromText(const std::string& text) {
+  return ImageSizeFromText(text, kLargestImageSide);
+}
+
 inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   CLI::Option* file = app.add_option("SCENE", options.scene_file,
                                      "Scene file (TOML); without it a built-in range, or --dem");
@@ -81,8 +85,11 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
                  "desktop says)")
       ->check(CLI::Range(0.5, 8.0));
   app.add_flag("--invert-y", options.invert_y, "Sticks and mouse look down when pushed up");
-  app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
-      ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
+  app.add_option(
+         "--size", options.size,
+         "Width x height in pixels, 1 to 32768 each; what is no --screenshot is as large as "
+         "OpenGL draws in one piece at most")
+      ->check(ReadableBy([](const std::string& text) { (void)SizeFromText(text); }))
       ->capture_default_str();
   app.add_flag("--fullscreen", options.fullscreen, "Use the whole screen");
   app.add_option("--vsync", options.vsync, "Frames wait for the display: on or off")

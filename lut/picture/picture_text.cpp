@@ -21,15 +21,14 @@ Number NumberFromText(std::string_view text, const Refuse& refuse) {
 
 }  // namespace
 
-ImageSize ImageSizeFromText(const std::string& text) {
-  constexpr int kLargest = 16384;
+ImageSize ImageSizeFromText(const std::string& text, int largest) {
   const auto refuse = [&] {
     throw InputError(
-        fmt::format("size is \"{}\"; write it as 1280x720, each in [1, {}]", text, kLargest));
+        fmt::format("size is \"{}\"; write it as 1280x720, each in [1, {}]", text, largest));
   };
   const auto side = [&](std::string_view digits) {
     const int pixels = NumberFromText<int>(digits, refuse);
-    if (pixels < 1 || pixels > kLargest) refuse();
+    if (pixels < 1 || pixels > largest) refuse();
     return pixels;
   };
   const std::string_view whole = text;

@@ -14,8 +14,8 @@ struct ImageSize {
   int height = 720;
 };
 
-/// "1280x720", each in [1, 16384]; throws InputError.
-[[nodiscard]] ImageSize ImageSizeFromText(const std::string& text);
+/// "1280x720", each in [1, largest]; throws InputError.
+[[nodiscard]] ImageSize ImageSizeFromText(const std::string& text, int largest = 16384);
 
 /// "auto" is nothing, a number in [-30, 30] an exposure value; throws InputError for other texts.
 [[nodiscard]] std::optional<double> Ev100FromText(const std::string& text);

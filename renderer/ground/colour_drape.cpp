@@ -196,13 +196,24 @@ std::shared_ptr<const ColourDrape> ColourDrape::Of(const Scene& scene, const Sce
   return std::shared_ptr<const ColourDrape>(new ColourDrape(scene.terrain.colour, ground));
 }
 
+std::shared_ptr<const ColourDrape> ColourDrape::In(const LocalFrame& frame) const {
+  auto moved = std::make_shared<ColourDrape>(*this);
+  const auto axis = [&](const glm::dvec3& of_frame) {
+    return frame_.EnuFromEcef(frame.EcefFromEnu(Vector<Enu>{of_frame})).xyz;
+  };
+  moved->turn_ = {axis({1.0, 0.0, 0.0}), axis({0.0, 1.0, 0.0}), axis({0.0, 0.0, 1.0})};
+  moved->origin_ = frame_.EnuFromEcef(frame.EcefFromEnu(Point<Enu>{})).xyz;
+  return moved;
+}
+
 ColourDrape::ColourDrape(const std::filesystem::path& file, const SceneGround& ground)
-    : radius_m_(ground.frame.ellipsoid().equatorial_radius_m) {
+    : frame_(ground.frame), radius_m_(ground.frame.ellipsoid().equatorial_radius_m) {
   const Dataset dataset = Open(file);
-  levels_.push_back(
+  std::vector<Level> levels;
+  levels.push_back(
       {dataset->GetRasterXSize(), dataset->GetRasterYSize(), ReadPixels(file, *dataset)});
-  while (levels_.back().columns > 1 && levels_.back().rows > 1) {
-    const Level& fine = levels_.back();
+  while (levels.back().columns > 1 && levels.back().rows > 1) {
+    const Level& fine = levels.back();
     Level coarse{fine.columns / 2, fine.rows / 2, {}};
     for (int y = 0; y < coarse.rows; ++y) {
       for (int x = 0; x < coarse.columns; ++x) {
@@ -218,8 +229,10 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, const SceneGround& g
         coarse.rgb.push_back(mean);
       }
     }
-    levels_.push_back(std::move(coarse));
+    levels.push_back(std::move(coarse));
   }
+  const int columns = levels.front().columns, rows = levels.front().rows;
+  levels_ = std::make_shared<const std::vector<Level>>(std::move(levels));
   const Rectangle bounds = RectangleOf(ground.terrain->mesh());
   first_x_m_ = bounds.west;
   first_y_m_ = bounds.south;
@@ -230,8 +243,8 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, const SceneGround& g
     for (int column = 0; column < kGridNodes; ++column) {
       const double x = first_x_m_ + column * step_x_m_, y = first_y_m_ + row * step_y_m_;
       if (!reference) {
-        places_.push_back({levels_[0].columns * static_cast<double>(column) / (kGridNodes - 1),
-                           levels_[0].rows * (1.0 - static_cast<double>(row) / (kGridNodes - 1))});
+        places_.push_back({columns * static_cast<double>(column) / (kGridNodes - 1),
+                           rows * (1.0 - static_cast<double>(row) / (kGridNodes - 1))});
         continue;
       }
       const double z = -(x * x + y * y) / (2.0 * radius_m_);  // on the sphere
@@ -247,7 +260,7 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, const SceneGround& g
 }
 
 std::array<double, 3> ColourDrape::Bilinear(std::size_t number, const Place& at) const {
-  const Level& level = levels_[number];
+  const Level& level = (*levels_)[number];
   const double scale = 1.0 / static_cast<double>(std::size_t{1} << number);
   const double x = std::clamp(at.x * scale - 0.5, 0.0, level.columns - 1.0);
   const double y = std::clamp(at.y * scale - 0.5, 0.0, level.rows - 1.0);
@@ -268,11 +281,12 @@ std::array<double, 3> ColourDrape::Bilinear(std::size_t number, const Place& at)
 
 std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, double altitude_m,
                                                      double footprint_m) const {
+  const glm::dvec3 own = turn_ * point + origin_;
   // The foot of the point on the sphere.
   const double shrink = radius_m_ / (radius_m_ + altitude_m);
-  const double gx = std::clamp((point.x * shrink - first_x_m_) / step_x_m_, 0.0,
+  const double gx = std::clamp((own.x * shrink - first_x_m_) / step_x_m_, 0.0,
                                static_cast<double>(kGridNodes - 1));
-  const double gy = std::clamp((point.y * shrink - first_y_m_) / step_y_m_, 0.0,
+  const double gy = std::clamp((own.y * shrink - first_y_m_) / step_y_m_, 0.0,
                                static_cast<double>(kGridNodes - 1));
   const int column = std::min(static_cast<int>(gx), kGridNodes - 2);
   const int row = std::min(static_cast<int>(gy), kGridNodes - 2);
@@ -285,13 +299,14 @@ std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, do
     return south + fy * (north - south);
   };
   const Place at{between(&Place::x), between(&Place::y)};
-  if (!(at.x >= 0.0 && at.y >= 0.0 && at.x <= levels_[0].columns && at.y <= levels_[0].rows))
+  const Level& finest_level = levels_->front();
+  if (!(at.x >= 0.0 && at.y >= 0.0 && at.x <= finest_level.columns && at.y <= finest_level.rows))
     return std::nullopt;
   const double wanted = std::log2(std::max(footprint_m / pixel_m_, 1.0));
-  const double finest = std::min(std::floor(wanted), static_cast<double>(levels_.size() - 1));
+  const double finest = std::min(std::floor(wanted), static_cast<double>(levels_->size() - 1));
   const auto level = static_cast<std::size_t>(finest);
   std::array<double, 3> rgb = Bilinear(level, at);
-  if (level + 1 < levels_.size()) {
+  if (level + 1 < levels_->size()) {
     const std::array<double, 3> coarse = Bilinear(level + 1, at);
     for (std::size_t k = 0; k < 3; ++k) rgb[k] += (wanted - finest) * (coarse[k] - rgb[k]);
   }

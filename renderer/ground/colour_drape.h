@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -48,6 +49,12 @@ class ColourDrape {
   [[nodiscard]] static std::shared_ptr<const ColourDrape> Of(const Scene& scene,
                                                              const SceneGround& ground);
 
+  /// The same colours for points of another frame.
+  [[nodiscard]] std::shared_ptr<const ColourDrape> In(const LocalFrame& frame) const;
+
+  /// About the width of a pixel [m].
+  [[nodiscard]] double pixel_m() const { return pixel_m_; }
+
   /// Linear sRGB, averaged over about a footprint; nothing outside the picture.
   /// @param point  in the ground's frame, at that altitude.
   [[nodiscard]] std::optional<std::array<double, 3>> At(const glm::dvec3& point, double altitude_m,
@@ -67,7 +74,10 @@ class ColourDrape {
   ColourDrape(const std::filesystem::path& file, const SceneGround& ground);
   [[nodiscard]] std::array<double, 3> Bilinear(std::size_t level, const Place& at) const;
 
-  std::vector<Level> levels_;  // each half as fine as the one before
+  std::shared_ptr<const std::vector<Level>> levels_;  // each half as fine as the one before
+  LocalFrame frame_;                                  // of the ground that it was laid over
+  glm::dmat3 turn_{1.0};                              // into that frame
+  glm::dvec3 origin_{0.0};
   // Places at the nodes of a grid over the frame's plane.
   double first_x_m_ = 0.0, first_y_m_ = 0.0, step_x_m_ = 1.0, step_y_m_ = 1.0;
   std::vector<Place> places_;

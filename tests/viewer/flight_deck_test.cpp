@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -16,7 +18,8 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr ImageSize kSize{320, 240};
-constexpr int kF1 = 290, kF3 = 292;  // of GLFW
+// Of GLFW.
+constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262;
 
 class FlightDeckTest : public tests::Headless {
  protected:
@@ -29,7 +32,7 @@ class FlightDeckTest : public tests::Headless {
     settings.quality = {Quality::kLow};
     settings.size = kSize;
     flight_ = std::make_unique<Flythrough>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
-    deck_ = std::make_unique<FlightDeck>(*flight_, FlightDeck::Settings{});
+    deck_ = std::make_unique<FlightDeck>(*flight_, recorder_, FlightDeck::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);
     flight_->Settle(kSize);
   }
@@ -39,10 +42,28 @@ class FlightDeckTest : public tests::Headless {
     flight_.reset();
   }
   /// A key that goes down and up.
-  void Press(int key) {
+  void Press(int key, int modifiers = 0) {
     WindowEvents events;
-    events.keys = {{key, 0, 1, 0, ""}, {key, 0, 0, 0, ""}};
+    events.keys = {{key, 0, 1, modifiers, ""}, {key, 0, 0, modifiers, ""}};
     deck_->Advance(events, kSize, kFrame_s);
+  }
+  /// Keys that go down or up, and a frame.
+  void Hold(std::initializer_list<int> keys, bool down) {
+    WindowEvents events;
+    for (const int key : keys) events.keys.push_back({key, 0, down ? 1 : 0, 0, ""});
+    deck_->Advance(events, kSize, kFrame_s);
+  }
+  struct Moment {
+    Eye eye;
+    UtcInstant now;
+  };
+  std::vector<Moment> Fly(int frames) {
+    std::vector<Moment> moments;
+    for (int i = 0; i < frames; ++i) {
+      deck_->Advance({}, kSize, kFrame_s);
+      moments.push_back({flight_->eye(), flight_->now()});
+    }
+    return moments;
   }
   DisplayImage Shown() {
     deck_->Advance({}, kSize, kFrame_s);
@@ -53,6 +74,7 @@ class FlightDeckTest : public tests::Headless {
 
   static constexpr double kFrame_s = 1.0 / 60.0;
   std::unique_ptr<Flythrough> flight_;
+  FlightRecorder recorder_;
   std::unique_ptr<FlightDeck> deck_;
   std::unique_ptr<RenderTarget> screen_;
 };
@@ -106,6 +128,24 @@ TEST_F(FlightDeckFiles, F3WritesAPictureIntoTheCurrentFolder) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "no picture is written over";
 }
 
+TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
+  static_cast<void>(Shown());
+  deck_->Advance({}, kSize, kFrame_s);
+  HudRequest request;
+  request.capture = HudCaptureRequest{HudPictureKind::kPng, 480, 360, true};
+  deck_->Serve(request);
+  request.capture->with_hud = false;
+  deck_->Serve(request);
+  const DisplayImage with = ReadPng("skyview-0001.png"), without = ReadPng("skyview-0002.png");
+  ASSERT_EQ(with.width, 480);
+  EXPECT_GT(Changed(with, without), 2000) << "instruments";
+  EXPECT_LT(Changed(with, without), 480 * 360) << "over the same picture";
+  request.capture = HudCaptureRequest{HudPictureKind::kExr, 480, 360, true};
+  deck_->Serve(request);
+  EXPECT_TRUE(Messages().back().is_warning) << "instruments are no light";
+  EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
+}
+
 TEST_F(FlightDeckFiles, APictureThatCannotBeWrittenIsAWarning) {
   static_cast<void>(Shown());
   const std::filesystem::path gone = std::filesystem::current_path() / "gone";
@@ -116,6 +156,111 @@ TEST_F(FlightDeckFiles, APictureThatCannotBeWrittenIsAWarning) {
   std::filesystem::current_path(gone.parent_path());
   ASSERT_FALSE(Messages().empty());
   EXPECT_TRUE(Messages().back().is_warning) << "and the flight goes on";
+}
+
+double Apart_m(const Eye& a, const Eye& b) {
+  return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
+}
+
+TEST_F(FlightDeckTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
+  flight_->cockpit().clock().SetRate(60.0);
+  Hold({kW, kRightArrow}, true);
+  const std::vector<Moment> flown = Fly(120);
+  Press(kR, kControlKey);
+  ASSERT_FALSE(Messages().empty());
+  EXPECT_THAT(Messages().back().text, HasSubstr("2 s"));
+  EXPECT_EQ(deck_->Model().flight.mode, "replay");
+  EXPECT_LT(Apart_m(flight_->eye(), flown[0].eye), 1.0) << "from where it began";
+  const std::vector<Moment> again = Fly(100);
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    EXPECT_LT(Apart_m(again[i].eye, flown[i + 1].eye), 0.5)
+        << "of 15 m a frame: 0.34 m as it sets off, 1 mm once it flies evenly, between points that "
+           "are three frames apart";
+    EXPECT_NEAR(SecondsBetween(again[i].now, flown[i + 1].now), 0.0, 1e-3);
+    EXPECT_NEAR(again[i].eye.heading_rad, flown[i + 1].eye.heading_rad, 1e-3);
+  }
+  const std::vector<Moment> on = Fly(40);
+  EXPECT_EQ(deck_->Model().flight.mode, "free");
+  EXPECT_THAT(Messages().back().text, HasSubstr("ends"));
+  EXPECT_GT(Apart_m(on.back().eye, flown.back().eye), 100.0) << "the key is still held";
+  EXPECT_LT(Apart_m(on.back().eye, flown.back().eye), 20 * 20.0) << "but was not while it replayed";
+}
+
+TEST_F(FlightDeckTest, WhoTakesOverAReplayFliesOnFromThere) {
+  Hold({kW}, true);
+  static_cast<void>(Fly(120));
+  Hold({kW}, false);
+  const Eye end = flight_->eye();
+  Press(kR, kControlKey);
+  static_cast<void>(Fly(30));
+  const Eye middle = flight_->eye();
+  Press('1');
+  static_cast<void>(Fly(120));
+  EXPECT_LT(Apart_m(flight_->eye(), middle), 20.0) << "a frame of the replay";
+  EXPECT_GT(Apart_m(flight_->eye(), end), 500.0);
+}
+
+TEST_F(FlightDeckTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
+  static_cast<void>(Fly(10));
+  const Eye before = flight_->eye();
+  Press(kR, kControlKey);
+  ASSERT_EQ(Messages().size(), 1U);
+  EXPECT_TRUE(Messages().back().is_warning);
+  EXPECT_THAT(Messages().back().text, HasSubstr("nothing has been flown"));
+  EXPECT_EQ(flight_->eye(), before);
+  EXPECT_EQ(deck_->Model().flight.mode, "free");
+}
+
+TEST_F(FlightDeckFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
+  Press(kF2, kShiftKey);
+  EXPECT_FALSE(std::filesystem::exists("flight-0001.csv")) << "nothing has been flown yet";
+  ASSERT_FALSE(Messages().empty());
+  EXPECT_TRUE(Messages().back().is_warning);
+  Hold({kW}, true);
+  const std::vector<Moment> flown = Fly(61);
+  Press(kF2, kShiftKey);
+  EXPECT_THAT(Messages().back().text, HasSubstr("flight-0001.csv"));
+  const CameraPath path = ReadFlight("flight-0001.csv");
+  EXPECT_LT(Apart_m(EyeOf(path.points().back().pose), flown.back().eye), 1e-3)
+      << "all but the frame in which the key was pressed";
+  EXPECT_NEAR(SecondsBetween(*path.points().back().utc, flown.back().now), 0.0, 1e-3);
+  Press(kF2, kShiftKey);
+  EXPECT_GT(ReadFlight("flight-0002.csv").end_s(), path.end_s());
+}
+
+TEST_F(FlightDeckFiles, ThePanelBeginsAndEndsARecord) {
+  Hold({kW}, true);
+  static_cast<void>(Fly(30));
+  EXPECT_FALSE(deck_->Model().recording);
+  HudRequest begin, end;
+  begin.record = true;
+  end.record = false;
+  deck_->Serve(begin);
+  EXPECT_TRUE(deck_->Model().recording);
+  const std::vector<Moment> flown = Fly(61);
+  EXPECT_EQ(ReadFlight("flight-0001.csv.part").points().size(), 21U)
+      << "every third frame is on the disk before the next one";
+  deck_->Serve(end);
+  EXPECT_FALSE(deck_->Model().recording);
+  const CameraPath path = ReadFlight("flight-0001.csv");
+  EXPECT_EQ(path.begin_s(), 0.0) << "of the record, not of the flight";
+  EXPECT_LT(Apart_m(EyeOf(path.points().front().pose), flown.front().eye), 1e-3);
+  deck_->Serve(begin);
+  static_cast<void>(Fly(1));
+  EXPECT_TRUE(std::filesystem::exists("flight-0002.csv.part")) << "no flight is written over";
+  deck_->Serve(end);
+}
+
+TEST_F(FlightDeckFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
+  {
+    FlightRecorder recorder;
+    FlightDeck deck(*flight_, recorder, {});
+    HudRequest begin;
+    begin.record = true;
+    deck.Serve(begin);
+    deck.Advance({}, kSize, kFrame_s);
+  }
+  EXPECT_EQ(ReadFlight("flight-0001.csv").points().size(), 1U);
 }
 
 TEST_F(FlightDeckTest, APlaceThatIsAskedForMovesTheEye) {
@@ -138,6 +283,53 @@ TEST_F(FlightDeckTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
   EXPECT_TRUE(Messages().back().is_warning);
   EXPECT_THAT(Messages().back().text, HasSubstr("Nowhere at all"));
   EXPECT_FALSE(deck_->quit());
+}
+
+TEST_F(FlightDeckTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
+  Press(kL, kControlKey);
+  ASSERT_FALSE(Messages().empty());
+  EXPECT_EQ(Messages().back().text, "landing light on");
+  HudRequest off;
+  off.lamp = HudLampRequest{0, false};
+  deck_->Serve(off);
+  Press(kL, kControlKey);
+  EXPECT_EQ(Messages().back().text, "landing light on") << "the panel had put it out";
+  Press(kL, kControlKey);
+  EXPECT_EQ(Messages().back().text, "landing light off");
+}
+
+TEST_F(FlightDeckTest, TheLandingLightOfTheKeyShinesOnTheGround) {
+  flight_->cockpit().clock().Set(ParseInstant("2026-06-21T23:00:00Z"));
+  Eye low = flight_->eye();
+  low.place.height_m = 30.0;
+  low.pitch_rad = -0.3;
+  flight_->cockpit().pilot().PutAt(low, flight_->Ground());
+  const auto mean_cd_per_m2 = [&] {
+    const Image image = flight_->Picture({32, 24}, 1);
+    double sum = 0.0;
+    for (const auto& rgb : image.rgb) sum += static_cast<double>(rgb[1]);
+    return sum / static_cast<double>(image.rgb.size());
+  };
+  static_cast<void>(Shown());
+  const double dark = mean_cd_per_m2();
+  Press(kL, kControlKey);
+  static_cast<void>(Shown());
+  EXPECT_GT(mean_cd_per_m2(), 2.0 * dark);
+}
+
+TEST_F(FlightDeckTest, EachMomentOfThePanelIsTheOneThatItNames) {
+  const std::pair<const char*, const char*> cases[] = {{"sunset", "2026-06-21T19:3"},
+                                                       {"dusk", "2026-06-21T20:0"},
+                                                       {"dawn", "2026-06-22T02:5"},
+                                                       {"sunrise", "2026-06-22T03:2"},
+                                                       {"noon", "2026-06-22T11:3"}};
+  for (const auto& [moment, time] : cases) {
+    HudRequest request;
+    request.time.moment = moment;
+    deck_->Serve(request);
+    EXPECT_THAT(FormatUtc(flight_->now()), ::testing::StartsWith(time)) << moment;
+    EXPECT_EQ(Messages().back().text, moment);
+  }
 }
 
 TEST_F(FlightDeckTest, MessagesGoAfterAWhile) {

@@ -12,6 +12,7 @@
 #include "tests/fixtures/lost_messages.h"
 #include "tests/viewer/land/land_files.h"
 #include "tests/viewer/shaders/headless.h"
+#include "viewer/gl/picture_tiles.h"
 
 namespace alpenglow {
 namespace {
@@ -45,6 +46,25 @@ TEST_F(Skyview, WithoutADisplayItWritesThePictureAsPng) {
   EXPECT_EQ(image.height, 36);
   EXPECT_GT(image.rgb[2], image.rgb[0]) << "the sky over the scene is blue";
   EXPECT_EQ(ReadPngMetadata(InFolder("view.png")).at("alpenglow.painter"), "skyview");
+}
+
+TEST_F(Skyview, APictureMayBeWiderThanTheDriverDraws) {
+  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const std::string wide =
+      InFolder("s.toml") + " --headless --quality low --size 32768x3 --pitch 20 --screenshot ";
+  const Outcome outcome = Run(wide + InFolder("wide.exr"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const Image image = ReadExr(InFolder("wide.exr"));
+  ASSERT_EQ(image.width, 32768);
+  for (int x = 1; x < image.width; ++x) {
+    const float before = image.at(x - 1, 1)[2], here = image.at(x, 1)[2];
+    ASSERT_NEAR(here, before, 0.01F * before) << "a sky without seams, column " << x;
+  }
+  const HeadlessContext context;
+  if (IsDrawable(32768, 3)) return;
+  const Outcome one_piece = Run(wide + InFolder("wide.png") + " --hud on");
+  EXPECT_EQ(one_piece.status, 2) << "instruments are drawn in one piece";
+  EXPECT_THAT(one_piece.error, HasSubstr("--size 32768x3"));
 }
 
 TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
@@ -178,7 +198,7 @@ TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
   EXPECT_EQ(Run("--headless --explain --screenshot a.png").status, 2);
   EXPECT_EQ(Run(InFolder("s.toml") + " --dem x.hgt").status, 2);
   for (const char* wrong :
-       {"--size 0x10", "--size 20000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
+       {"--size 0x10", "--size 40000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
         "--vsync maybe", "--hud-scale 9", "--frame-rate 0"}) {
     const Outcome outcome = Run(std::string("--headless --screenshot a.png ") + wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
@@ -300,6 +320,25 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   EXPECT_GT(std::stod(height), 300.0) << "over the ground in the middle of both: " << height;
   const Outcome beside = Shot(both + " --latitude 47.5 --longitude 8 --altitude 3000");
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
+}
+
+TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
+  try {
+    const HeadlessContext context;
+  } catch (const DisplayError&) {
+    GTEST_SKIP() << "EGL gives no OpenGL here";
+  }
+  tests::WriteTile(folder_ / "west.tif", 0, 0);
+  tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
+  const Outcome outcome = RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW
+                                     "' --headless --size 64x36 --quality high --dem west.tif "
+                                     "--dem east.tif --pitch -30 --explain");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const std::string row = "picture, from renderer's";
+  const std::size_t at = outcome.out.find(row);
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  EXPECT_LT(std::stod(outcome.out.substr(at + row.size())), 1.0)
+      << "per cent, as over one model; without land, or with every second sample, it would be more";
 }
 
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {

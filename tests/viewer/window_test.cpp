@@ -126,6 +126,22 @@ TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
   EXPECT_EQ(again.status, 3) << "the record would be written over what is replayed";
 }
 
+TEST_F(SkyviewWindow, AReplayBeginsWhereTheFlightDid) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  WriteText(folder_ / "p.csv",
+            "t_s,latitude,longitude,height_m,heading,utc\n0,46.5,8,3000,350,2026-06-21T10:00:00Z\n"
+            "1000,46.6,8,3100,10,2026-06-21T10:16:40Z\n");
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9 16x9 16x9'",
+                              "--replay p.csv --record f.csv --frames 2 --screenshot shot.png");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const CameraPath shown = ReadCameraPath(folder_ / "f.csv");
+  EXPECT_NEAR(shown.points().back().pose.place.height_m, 3003.0, 3.0) << "of its first minute";
+  const double since_s =
+      SecondsBetween(ParseInstant("2026-06-21T10:00:00Z"), *shown.points().back().utc);
+  EXPECT_GE(since_s, 0.0);
+  EXPECT_LT(since_s, 60.0);
+}
+
 TEST_F(SkyviewWindow, OfADisplayThatGoesTheRecordIsWholeAndTheStatusFive) {
   if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   for (const auto& [word, said] : {std::pair{"gone", "display has gone"}, {"reset", "was reset"}}) {

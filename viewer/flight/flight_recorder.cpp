@@ -19,9 +19,16 @@ Eye EyeOf(const CameraPose& pose) {
   return {pose.place, pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad};
 }
 
+bool IsDue(double elapsed_s, double last_s, double interval_s) {
+  // Frames of a sixtieth of a second come in threes, so that half of one is no reason to wait.
+  constexpr double kEarly_s = 0.005;
+  return elapsed_s >= last_s + interval_s - kEarly_s;
+}
+
 struct FlightRecorder::State {
+  std::filesystem::path name;
   GrowingFile file;
-  std::optional<double> last_s;  // of the last point
+  std::optional<double> begin_s, last_s;  // of the first and the last point
   double synced_s = 0.0;
   std::optional<std::string> fault;
   // A disk may take longer than a frame; the lines are in the system's hands already.
@@ -30,7 +37,7 @@ struct FlightRecorder::State {
     return request;
   }};
 
-  explicit State(const std::filesystem::path& name) : file(name) {
+  explicit State(const std::filesystem::path& of) : name(of), file(of) {
     if (!file.kept()) return;
     Say(fmt::format("skyview: {} is a flight that was cut short; it is {} now\n",
                     file.part().string(), file.kept()->string()));
@@ -59,13 +66,21 @@ FlightRecorder::~FlightRecorder() {
   }
 }
 
+void FlightRecorder::Begin(const std::filesystem::path& file) {
+  Finish();
+  state_ = std::make_unique<State>(file);
+}
+
+std::optional<std::filesystem::path> FlightRecorder::file() const {
+  return state_ && !state_->fault ? std::optional(state_->name) : std::nullopt;
+}
+
 void FlightRecorder::Note(double elapsed_s, const Eye& eye, const UtcInstant& now) {
-  // Frames of a sixtieth of a second come in threes, so that half of one is no reason to wait.
-  constexpr double kEarly_s = 0.005;
   if (!state_ || state_->fault) return;
-  if (state_->last_s && elapsed_s < *state_->last_s + kInterval_s - kEarly_s) return;
+  if (state_->last_s && !IsDue(elapsed_s, *state_->last_s, kInterval_s)) return;
+  if (!state_->begin_s) state_->begin_s = elapsed_s;
   try {
-    state_->Append({elapsed_s, PoseOf(eye), now});
+    state_->Append({elapsed_s - *state_->begin_s, PoseOf(eye), now});
     state_->last_s = elapsed_s;
   } catch (const OutputError& error) {
     state_->fault = error.what();

@@ -17,6 +17,9 @@ namespace alpenglow {
 [[nodiscard]] CameraPose PoseOf(const Eye& eye);
 [[nodiscard]] Eye EyeOf(const CameraPose& pose);
 
+/// Whether so much has passed since the point noted last that another one is to be noted.
+[[nodiscard]] bool IsDue(double elapsed_s, double last_s, double interval_s);
+
 /// Takes down where the eye is, 25 times a second at most, as it flies: FILE.part has every line
 /// before the next frame is drawn and becomes FILE when the flight ends, however it ends. After a
 /// SIGKILL FILE.part stays with all that was flown, after a loss of power with all but the last two
@@ -25,7 +28,7 @@ class FlightRecorder {
  public:
   static constexpr double kInterval_s = 0.04;
 
-  /// Takes nothing down.
+  /// Takes nothing down until it begins.
   FlightRecorder();
   /// Begins FILE.part; says so when it finds one, of a flight that was cut short, and keeps that
   /// under another name. Throws OutputError, also when another process records into the file.
@@ -35,9 +38,16 @@ class FlightRecorder {
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
 
-  /// @param elapsed_s  since the flight began; passed over when the last point is too near. Of a
-  /// file that takes no more is told once, and the flight goes on without it.
+  /// Begins another file, as the constructor does; finishes the one before.
+  void Begin(const std::filesystem::path& file);
+
+  /// @param elapsed_s  since any moment; the file counts from the first point. Passed over when the
+  /// last point is too near. Of a file that takes no more is told once, and the flight goes on
+  /// without it.
   void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
+
+  /// What is being recorded into; nothing: nothing is.
+  [[nodiscard]] std::optional<std::filesystem::path> file() const;
 
   /// Gives the file its name; nothing before the first Note. Throws OutputError, also for lines
   /// that the file has not taken.

@@ -26,6 +26,7 @@ void Pilot::SetTrack(std::shared_ptr<const CameraPath> track, Lens lens) {
   track_ = std::move(track);
   track_lens_ = lens;
   track_s_ = track_ ? track_->begin_s() : 0.0;
+  track_factor_ = 1.0;
   if (!track_ && mode_ == FlightMode::kTrack) mode_ = FlightMode::kFree;
 }
 
@@ -142,7 +143,7 @@ void Pilot::Show(const GroundHeight& ground) {
     eye_ = Turned(EyeOf(track_->PoseAt(track_s_)), look_right_rad_, look_up_rad_);
     if (track_lens_ == Lens::kOfEye) eye_.fov_rad = fov_rad;
   }
-  eye_ = KeptAbove(eye_, ground(eye_.place), kStanding_m);
+  eye_ = KeptAbove(eye_, ground(eye_.place), Replays() ? 0.0 : kStanding_m);
 }
 
 void Pilot::StepSpeed(int step) {

@@ -51,11 +51,16 @@ class Pilot {
   [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
   /// Puts the eye somewhere else, in the mode that it is in; leaves a track for the free camera.
   void PutAt(const Eye& eye, const GroundHeight& ground);
-  /// What kTrack follows, from its beginning. Gives it up when there is none.
+  /// What kTrack follows, from its beginning, as fast as it is. Gives it up when there is none.
   /// @param lens  whose field of view is seen: the eye's own, or that of the track (a replay)
   enum class Lens { kOfEye, kOfTrack };
   void SetTrack(std::shared_ptr<const CameraPath> track, Lens lens = Lens::kOfEye);
   [[nodiscard]] bool HasTrack() const { return track_ != nullptr; }
+  /// Whether a track is followed through its own lens.
+  [[nodiscard]] bool Replays() const {
+    return mode_ == FlightMode::kTrack && track_lens_ == Lens::kOfTrack;
+  }
+  [[nodiscard]] bool IsAtEndOfTrack() const { return !track_ || track_s_ >= track_->end_s(); }
 
   /// Lets real seconds pass. Where the ground has come up over the aircraft by more than 30 m (its
   /// terrain was loaded), it flies on 150 m over it.

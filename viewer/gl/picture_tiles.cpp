@@ -14,14 +14,25 @@
 namespace alpenglow {
 namespace {
 
-/// The first pixel of each of `count` parts of a side, and its end.
+int Parts(int whole, int part) { return (whole + part - 1) / part; }
+
+/// The first pixel of each part of a side, and its end.
 std::vector<int> Cuts(int side, int largest) {
-  const int count = (side + largest - 1) / largest;
+  const int step = std::min(kTileStep, largest);
+  const int steps = Parts(side, step);
+  const int count = Parts(steps, largest / step);
   std::vector<int> cuts;
   for (int i = 0; i <= count; ++i) {
-    cuts.push_back(static_cast<int>(static_cast<long long>(side) * i / count));
+    const auto whole_steps = static_cast<int>(static_cast<long long>(steps) * i / count);
+    cuts.push_back(std::min(step * whole_steps, side));
   }
   return cuts;
+}
+
+PictureTile WithRim(const PictureTile& tile, int rim, int width, int height) {
+  const int left = std::max(tile.left - rim, 0), top = std::max(tile.top - rim, 0);
+  return {left, top, std::min(tile.left + tile.width + rim, width) - left,
+          std::min(tile.top + tile.height + rim, height) - top};
 }
 
 /// What Linux says is left for programs, without touching what others use.
@@ -57,10 +68,10 @@ int LongestSide() {
 std::vector<PictureTile> TilesOf(int width, int height, int largest_side) {
   const std::vector<int> columns = Cuts(width, largest_side), rows = Cuts(height, largest_side);
   std::vector<PictureTile> tiles;
-  for (std::size_t row = 0; row + 1 < rows.size(); ++row) {
+  for (std::size_t row = rows.size() - 1; row > 0; --row) {
     for (std::size_t column = 0; column + 1 < columns.size(); ++column) {
-      tiles.push_back({columns[column], rows[row], columns[column + 1] - columns[column],
-                       rows[row + 1] - rows[row]});
+      tiles.push_back({columns[column], height - rows[row], columns[column + 1] - columns[column],
+                       rows[row] - rows[row - 1]});
     }
   }
   return tiles;
@@ -73,19 +84,26 @@ glm::dvec4 ViewOfTile(const PictureTile& tile, int width, int height) {
           static_cast<double>(height) / tile.height};
 }
 
-TiledPicture::TiledPicture(int width, int height, int largest_side)
-    : tiles_(TilesOf(width, height, largest_side)) {
+TiledPicture::TiledPicture(int width, int height, int largest_side) {
+  const bool is_one = std::max(width, height) <= largest_side;
+  const int rim = is_one ? 0 : std::min(kTileStep, largest_side / 4);
+  const std::vector<PictureTile> kept = is_one ? std::vector{PictureTile{0, 0, width, height}}
+                                               : TilesOf(width, height, largest_side - 2 * rim);
+  for (const PictureTile& tile : kept) tiles_.push_back({tile, WithRim(tile, rim, width, height)});
   // Besides the picture, what writes it: halves, or bytes and their rows.
   constexpr int kBytesOfWriters = 8;
   RequireMemoryFor(width, height, static_cast<int>(sizeof(picture_.rgb[0])) + kBytesOfWriters);
   picture_ = Image(width, height);
 }
 
-void TiledPicture::Put(const PictureTile& tile, const Image& painted) {
-  ALPENGLOW_ENSURE(painted.width, ==, tile.width);
-  ALPENGLOW_ENSURE(painted.height, ==, tile.height);
-  for (int y = 0; y < tile.height; ++y) {
-    std::copy_n(&painted.at(0, y), tile.width, &picture_.at(tile.left, tile.top + y));
+void TiledPicture::Put(const Tile& tile, const Image& painted) {
+  ALPENGLOW_ENSURE(painted.width, ==, tile.painted.width);
+  ALPENGLOW_ENSURE(painted.height, ==, tile.painted.height);
+  const PictureTile& kept = tile.kept;
+  const int rim_left = kept.left - tile.painted.left, rim_top = kept.top - tile.painted.top;
+  for (int y = 0; y < kept.height; ++y) {
+    std::copy_n(&painted.at(rim_left, rim_top + y), kept.width,
+                &picture_.at(kept.left, kept.top + y));
   }
 }
 

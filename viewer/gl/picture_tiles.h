@@ -15,8 +15,10 @@ struct PictureTile {
   int left, top, width, height;
 };
 
-/// Row by row from the upper left corner: tiles that cover a picture once, as equal as they can be,
-/// none larger than largest_side x largest_side. All arguments >= 1.
+/// Row by row from the upper left corner: tiles that cover a picture once, none larger than
+/// largest_side x largest_side, as equal as they can be in steps of kTileStep from the lower left
+/// corner (of largest_side, where that is less). All arguments >= 1.
+inline constexpr int kTileStep = 120;
 [[nodiscard]] std::vector<PictureTile> TilesOf(int width, int height, int largest_side);
 
 /// Which part of the view a tile sees: (x, y, u, v), with positions in the whole view from (-1, -1),
@@ -26,22 +28,32 @@ struct PictureTile {
 [[nodiscard]] glm::dvec4 ViewOfTile(const PictureTile& tile, int width, int height);
 
 /// A picture put together.
+///
+/// What a painter interpolates between every few pixels (shafts, lamps' light: 2 to 6, 8) needs pixels
+/// on both sides: tiles are painted with a rim of their neighbours, and begin where such steps do in
+/// the whole picture.
 class TiledPicture {
  public:
-  /// Throws OptionError when it would take more memory than this machine has to spare.
+  struct Tile {
+    PictureTile kept, painted;
+  };
+
+  /// @param largest_side  of what is painted. Throws OptionError when the picture would take more
+  /// memory than this machine has to spare.
   TiledPicture(int width, int height, int largest_side);
 
-  [[nodiscard]] const std::vector<PictureTile>& tiles() const { return tiles_; }
-  [[nodiscard]] glm::dvec4 ViewOf(const PictureTile& tile) const {
-    return ViewOfTile(tile, picture_.width, picture_.height);
+  [[nodiscard]] const std::vector<Tile>& tiles() const { return tiles_; }
+  /// Of what is painted for a tile.
+  [[nodiscard]] glm::dvec4 ViewOf(const Tile& tile) const {
+    return ViewOfTile(tile.painted, picture_.width, picture_.height);
   }
-  /// The tile as it was painted, of its size.
-  void Put(const PictureTile& tile, const Image& painted);
+  /// What was painted for the tile, with its rim.
+  void Put(const Tile& tile, const Image& painted);
   /// The picture, once all tiles are put.
   [[nodiscard]] Image Take() { return std::move(picture_); }
 
  private:
-  std::vector<PictureTile> tiles_;
+  std::vector<Tile> tiles_;
   Image picture_;
 };
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/tone_curve.h"
 
 namespace alpenglow {
 namespace {
@@ -117,15 +116,6 @@ void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLen
 void RenderTarget::UseDepth(GLuint texture) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture, 0);
-}
-
-double RenderTarget::LuminanceAt(double right, double down) const {
-  std::array<float, 3> rgb{};
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
-  glReadPixels(static_cast<int>(right * width_), height_ - 1 - static_cast<int>(down * height_), 1,
-               1, GL_RGB, GL_FLOAT, rgb.data());
-  return shared::Luminance<double>(static_cast<double>(rgb[0]), static_cast<double>(rgb[1]),
-                                   static_cast<double>(rgb[2]));
 }
 
 Image RenderTarget::Read(std::size_t output) const {

@@ -48,9 +48,6 @@ class RenderTarget {
   /// target's is an error.
   void Write(const Image& image) const;
 
-  /// Luminance of linear sRGB at shares of width and height from the upper left, each in [0, 1).
-  [[nodiscard]] double LuminanceAt(double right, double down) const;
-
   // What was drawn, row 0 at the top. Each waits until it is drawn.
   /// Red, green and blue.
   [[nodiscard]] Image Read(std::size_t output = 0) const;

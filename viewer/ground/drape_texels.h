@@ -18,6 +18,10 @@ struct FlatRectangle {
 /// Around all vertices.
 [[nodiscard]] FlatRectangle RectangleOf(const TriangleMesh& mesh);
 
+/// What of a rectangle a picture covers, to a hundredth of its sides; all of it where that is
+/// nothing.
+[[nodiscard]] FlatRectangle CoveredPart(const ColourDrape& drape, const FlatRectangle& of);
+
 /// Row 0 is the southernmost; linear sRGB in 16 bits, and 65535 where there is a picture.
 struct DrapeTexels {
   FlatRectangle place;

@@ -85,7 +85,8 @@ class GroundFollower::Maker {
                       std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // nothing is loaded there yet
-    site_ = std::make_shared<const GroundSite>(std::move(ground), cover_, drape_, air);
+    auto drape = drape_ ? drape_->In(ground.frame) : nullptr;
+    site_ = std::make_shared<const GroundSite>(std::move(ground), cover_, std::move(drape), air);
     air_ = request.air;
     ground_ = request.ground;
     middle_ = foot;

@@ -58,6 +58,7 @@ class Hud {
   void ToggleMenu() { panels_.ToggleMenu(); }
 
   void SetTheme(HudThemeChoice choice) { choice_ = choice; }
+  [[nodiscard]] HudThemeChoice theme_choice() const { return choice_; }
   [[nodiscard]] HudTheme theme() const { return theme_; }
   /// Another display: letters are made anew. Throws InputError for a scale out of range.
   void SetScale(double scale);

@@ -131,7 +131,7 @@ struct HudChoices {
   std::vector<std::string> places;    // names
   std::vector<std::string> moments;   // "sunrise", "noon", "moonrise", ...
   std::vector<std::string> planets;   // presets of the atmosphere
-  std::vector<std::string> mixtures;  // of aerosol
+  std::vector<std::string> mixtures;  // of aerosol; none: there is no list of them
   std::vector<std::string> tone_curves;
   std::vector<std::string> qualities;  // "auto", "low", ...
   std::vector<HudLamp> lamps;

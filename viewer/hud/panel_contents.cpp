@@ -161,7 +161,8 @@ HudRequest WithAir(const PanelView& view, HudRequest request) {
   request.air.planet = NameList("planet", air.planet, view.choices.planets);
   request.air.visibility_km =
       Slider("visibility", air.visibility_km, {1.0, 400.0, "%.3g km", true});
-  request.air.mixture = NameList("aerosol", air.mixture, view.choices.mixtures);
+  if (!view.choices.mixtures.empty())
+    request.air.mixture = NameList("aerosol", air.mixture, view.choices.mixtures);
   request.air.aerosol_scale = Slider("its amount", air.aerosol_scale, {0.01, 10.0, "x %.2f", true});
   request.air.ozone_du = Slider("ozone", air.ozone_du, {0.0, 600.0, "%.0f DU"});
   request.air.ground_albedo = Slider("ground albedo", air.ground_albedo, {0.0, 1.0, "%.2f"});

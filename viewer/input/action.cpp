@@ -114,6 +114,7 @@ constexpr ActionRow kTable[] = {
     {Action::kDarker, kAgain, kAll, kPictureKeys, "a third of a stop darker", "Shift+K", ""},
     {Action::kResetExposure, kOnce, kAll, kPictureKeys, "as the meter says", "Ctrl+K", ""},
     {Action::kNextQuality, kOnce, kAll, kPictureKeys, "next quality", "O", ""},
+    {Action::kLandingLight, kOnce, kAll, kPictureKeys, "landing light on and off", "Ctrl+L", ""},
     {Action::kHud, kOnce, kAll, kProgramKeys, "hide everything but the picture", "H", ""},
     {Action::kNightTheme, kOnce, kAll, kProgramKeys, "colours for the night", "Shift+H", ""},
     {Action::kMouseMode, kOnce, kAll, kProgramKeys, "mouse: cursor, look, fly", "Tab", ""},

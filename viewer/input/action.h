@@ -92,6 +92,7 @@ enum class Action {
   kDarker,
   kResetExposure,
   kNextQuality,
+  kLandingLight,
   // The program.
   kHud,
   kNightTheme,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 namespace alpenglow {
 namespace {
@@ -90,8 +91,44 @@ std::optional<std::string> Cockpit::Do(Action action, const GroundHeight& ground
 
 void Cockpit::Advance(const PilotControls& controls, double seconds, const GroundHeight& ground) {
   const bool stands = clock_.paused() && pilot_.mode() != FlightMode::kFree;
+  const bool replays = pilot_.Replays() && !pilot_.IsAtEndOfTrack();
+  const auto before = replays ? pilot_.TrackUtc() : std::nullopt;
   pilot_.Advance(controls, stands ? 0.0 : seconds, ground);
-  clock_.Advance(pilot_.time_factor() * seconds);
+  AdvanceClock(before, seconds);
+  if (!pilot_.Replays()) waits_.reset();
+  if (pilot_.Replays() && pilot_.IsAtEndOfTrack()) EndReplay(ground);
+}
+
+// A replay's time goes as it went, stood or jumped; what people add to it stays.
+void Cockpit::AdvanceClock(const std::optional<UtcInstant>& before, double seconds) {
+  if (before) {
+    clock_.Shift(SecondsBetween(*before, *pilot_.TrackUtc()));
+  } else {
+    clock_.Advance(pilot_.time_factor() * seconds);
+  }
+}
+
+void Cockpit::EndReplay(const GroundHeight& ground) {
+  if (waits_) {
+    pilot_ = *std::exchange(waits_, std::nullopt);
+  } else {
+    static_cast<void>(Enter(FlightMode::kFree, ground));
+    pilot_.SetTrack(nullptr);
+  }
+}
+
+void Cockpit::Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground) {
+  waits_.reset();
+  clock_.Pause(false);
+  pilot_.PutAt(pilot_.eye(), ground);  // leaves another track
+  pilot_.SetTrack(std::move(flight), Pilot::Lens::kOfTrack);
+  static_cast<void>(Enter(FlightMode::kTrack, ground));
+}
+
+void Cockpit::FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeight& ground) {
+  Pilot now = pilot_.Replays() && waits_ ? *waits_ : pilot_;
+  Replay(std::move(flown), ground);
+  waits_ = std::move(now);
 }
 
 std::string Cockpit::Enter(FlightMode mode, const GroundHeight& ground) {
@@ -168,14 +205,14 @@ std::optional<std::string> Cockpit::DoAutopilot(Action action) {
   return text.empty() ? "autopilot off" : text;
 }
 
-std::string Cockpit::Jump(SkyEvent event, const MoonEventAfter& moon) {
+std::string Cockpit::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
   const bool jumped = clock_.JumpToNext(event, pilot_.eye().place, moon);
   return jumped ? alpenglow::NameOf(event)
                 : fmt::format("no {} here within a year", alpenglow::NameOf(event));
 }
 
 std::optional<std::string> Cockpit::DoTime(Action action, const MoonEventAfter& moon) {
-  if (const auto event = EventOf(action)) return Jump(*event, moon);
+  if (const auto event = EventOf(action)) return JumpTo(*event, moon);
   if (const auto shift_s = ShiftOf(action)) {
     clock_.Shift(*shift_s);
     return "";

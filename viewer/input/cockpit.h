@@ -3,6 +3,7 @@
 // is not done here.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -28,10 +29,20 @@ class Cockpit {
   [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground,
                                               const MoonEventAfter& moon = {});
 
+  /// Moves the clock on to what the sky does next; says to what.
+  [[nodiscard]] std::string JumpTo(SkyEvent event, const MoonEventAfter& moon);
+
   /// Flies to a place of the list: on the runway with the aircraft, over it otherwise.
   void GoTo(const NamedPlace& there, const GroundHeight& ground) {
     pilot_.PutAt(EyeAt(there, pilot_.eye(), ground), ground);
   }
+
+  /// Shows a flight as it was flown, with its field of view and, where it has instants, its time.
+  /// The free camera takes over where it ends.
+  void Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground);
+  /// The same of what this pilot has flown so far: whoever flies now goes on where it ends. Who
+  /// takes over before flies on from there.
+  void FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeight& ground);
 
   /// Lets real seconds pass, however many. Paused, aircraft, track and clock stand; the free camera
   /// still flies, and one can look around. A flight at 4 times its speed takes the clock along.
@@ -43,10 +54,12 @@ class Cockpit {
   [[nodiscard]] std::optional<std::string> DoTime(Action action, const MoonEventAfter& moon);
   [[nodiscard]] std::string Enter(FlightMode mode, const GroundHeight& ground);
   void SkipTrack(double seconds);
-  [[nodiscard]] std::string Jump(SkyEvent event, const MoonEventAfter& moon);
+  void AdvanceClock(const std::optional<UtcInstant>& before, double seconds);
+  void EndReplay(const GroundHeight& ground);
 
   Pilot pilot_;
   SceneClock clock_;
+  std::optional<Pilot> waits_;  // to go on when FlyAgain has come to its end
 };
 
 }  // namespace alpenglow

@@ -65,8 +65,10 @@ LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_l
   block.north = Padded(eye.north);
   block.up = Padded(eye.up);
   block.eye_above.y = static_cast<float>(new_light);
+  const glm::dvec4& part = view.drawn_part;
   block.eye_view = glm::vec4(
-      glm::dvec4(columns, rows, glm::length(view.right) / columns, glm::length(view.up) / rows));
+      glm::dvec4(columns * (1.0 - part.x * part.z), rows * (1.0 - part.y * part.w),
+                 glm::length(view.right) / part.z / columns, glm::length(view.up) / part.w / rows));
   return block;
 }
 

@@ -20,6 +20,7 @@ struct LandView {
   glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
   glm::dvec3 forward{0.0, 1.0, 0.0};
   int rays = 1;  // that a pixel will have: for more, land is finer
+  glm::dvec4 drawn_part{0.0, 0.0, 1.0, 1.0};  // ViewOfTile
 };
 
 /// `block Land` of land_block.glsl.

@@ -472,7 +472,8 @@ LandBlock Landscape::Block() const {
   return block;
 }
 
-void Landscape::Draw(GLuint view_binding) {
+void Landscape::Draw(GLuint view_binding, const glm::dvec4& part) {
+  view_.drawn_part = part;
   LandPass::Clear();
   if (mesh_) mesh_->Draw(pass_, eye_place_, view_, view_binding);
   if (!set_ || drawn_.empty()) return;

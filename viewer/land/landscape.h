@@ -64,7 +64,8 @@ class Landscape {
   void Settle(const GeodeticPosition& eye, const LandView& view);
   /// Draws what the last Update chose into the bound SurfaceMap, over what is in it. The uniform
   /// block View must be bound to `view_binding`.
-  void Draw(GLuint view_binding);
+  /// @param part  of the view that is drawn: ViewOfTile.
+  void Draw(GLuint view_binding, const glm::dvec4& part = {0.0, 0.0, 1.0, 1.0});
 
   /// Lights all vertices anew by this function, beside drawing; the old light fades into the new
   /// when that is complete. Asked again meanwhile, it goes on with the newest after that.

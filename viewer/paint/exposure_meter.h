@@ -5,18 +5,13 @@
 #include <optional>
 
 #include "lut/picture/image.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/pixel_reader.h"
 #include "viewer/gl/render_target.h"
 
 namespace alpenglow {
 
 class ExposureMeter {
  public:
-  ExposureMeter() = default;
-  ~ExposureMeter();
-  ExposureMeter(const ExposureMeter&) = delete;
-  ExposureMeter& operator=(const ExposureMeter&) = delete;
-
   /// Copies every so-manieth pixel, at most kLongSide a row, and begins to read them; nothing while
   /// an earlier copy is still being read.
   void Look(const RenderTarget& picture);
@@ -31,8 +26,7 @@ class ExposureMeter {
   void Copy(const RenderTarget& picture);
 
   std::optional<RenderTarget> small_;
-  GlBuffer pixels_;
-  GLsync arrives_ = nullptr;
+  PixelReader reader_;
 };
 
 }  // namespace alpenglow

@@ -24,14 +24,18 @@ bool IsSame(const ReferencePicture::View& a, const ReferencePicture::View& b) {
 
 }  // namespace
 
+std::unique_ptr<SceneRenderer> RendererOf(const ReferenceScene& of) {
+  return of.ground ? std::make_unique<SceneRenderer>(of.scene, of.ground())
+                   : std::make_unique<SceneRenderer>(of.scene);
+}
+
 /// The renderer of the scene shown last.
 class ReferencePicture::Renderers {
  public:
   const SceneRenderer& Of(const std::shared_ptr<const ReferenceScene>& of) {
     if (of_ != of) {
       renderer_.reset();  // before the next one takes its memory
-      renderer_ = of->ground ? std::make_unique<SceneRenderer>(of->scene, of->ground())
-                             : std::make_unique<SceneRenderer>(of->scene);
+      renderer_ = RendererOf(*of);
       of_ = of;
     }
     return *renderer_;

@@ -22,6 +22,8 @@ struct ReferenceScene {
   std::function<std::shared_ptr<const SceneGround>()> ground;
 };
 
+[[nodiscard]] std::unique_ptr<SceneRenderer> RendererOf(const ReferenceScene& scene);
+
 /// A renderer is prepared when a scene is first shown (seconds) and kept. Of a view there come a
 /// small picture of a ray a pixel, then full ones of 1, 4, 16 and 64. A view that changes stops
 /// what is being made of the old one.

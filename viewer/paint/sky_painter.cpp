@@ -13,6 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/moon_disk.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/colour_drape.h"
 #include "renderer/ground/surface.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
@@ -160,14 +161,15 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
     : scene_(scene),
       ellipsoid_(EllipsoidUnder(scene)),
       sizes_(sizes),
-      material_(scene.ground, nullptr, scene.medium.wavelengths_nm),
+      lamp_ground_(LampGroundOf(scene)),
+      drape_(DrapeOf(scene, lamp_ground_)),
+      material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
       air_(SolveAir(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)), sizes.air,
            AirViewOf(first, ApparentSunAt(first.eye.place, first.now))),
       land_(land, LandSizeOf(sizes), ellipsoid_),
-      ground_(scene.ground, nullptr, {}),
+      ground_(scene.ground, drape_.colours, {}),
       shade_(ellipsoid_),
       shaft_pass_(AirTexts()),
-      lamp_ground_(LampGroundOf(scene)),
       lamps_(scene, lamp_ground_, OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       ground_textures_(air_.air()->diffuse) {
   if (scene.fog) {
@@ -179,7 +181,31 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
   AirTextures::Prepare(shaft_pass_.program(), kAirUnit, kTablesBinding);
   shade_.SetSize(sizes.shade.size);
   lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
+  UploadDrape();
   CheckGl("SkyPainter");
+}
+
+// Where lamps stand on no terrain, it is loaded for the sake of its frame and its rim.
+SkyPainter::Drape SkyPainter::DrapeOf(const Scene& scene, const SceneGround& lamp_ground) {
+  if (scene.terrain.colour.empty()) return {};
+  std::optional<SceneGround> loaded;
+  if (!lamp_ground.terrain) loaded.emplace(LoadGround(scene));
+  const SceneGround& ground = loaded ? *loaded : lamp_ground;
+  Drape drape{ColourDrape::Of(scene, ground)};
+  drape.place = RectangleOf(ground.terrain->mesh());
+  return drape;
+}
+
+void SkyPainter::UploadDrape() {
+  constexpr double kMostTexels = 4096.0;  // a side: 180 MB
+  constexpr double kTexelsAPixel = 4.0;   // interpolated once more, edges stay where they are
+  if (!drape_.colours) return;
+  drape_.place = CoveredPart(*drape_.colours, drape_.place);
+  const double side_m = std::max(drape_.place.width_m, drape_.place.depth_m);
+  const double wanted = std::ceil(kTexelsAPixel * side_m / drape_.colours->pixel_m());
+  const auto texels = static_cast<std::size_t>(std::clamp(wanted, 1.0, kMostTexels));
+  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
+  ground_textures_.SetDrape(DrapeTexels(*drape_.colours, drape_.place, texels));
 }
 
 const ShaderProgram& SkyPainter::ProgramOf(const PictureStage& stage) {
@@ -358,7 +384,8 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
           ? GroundLightBlockOf(ground_.lit()->tilt(), to_sun, sizes_.relief_pixels * pixel_rad)
           : GroundLightBlock{};
   UploadBlock(blocks_.ground_light, kGroundLightBinding, &light, sizeof(light));
-  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(material_);
+  GroundSurfaceBlock cover = GroundSurfaceBlockOf(material_);
+  if (drape_.colours) cover = Draped(cover, drape_.place, eye.x, eye.y);
   UploadBlock(blocks_.ground_surface, kGroundSurfaceBinding, &cover, sizeof(cover));
 }
 
@@ -369,7 +396,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
     surface_.emplace(view.width, view.height);
   }
   surface_->Bind();
-  land_.Draw(kViewBinding);
+  land_.Draw(kViewBinding, view.part);
   surface_->BindTextures(kSurfaceUnit, kSkyOnSurfaceUnit);
 }
 

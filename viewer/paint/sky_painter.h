@@ -24,6 +24,7 @@
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
+#include "viewer/ground/drape_texels.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/lamps/fog_follower.h"
@@ -133,16 +134,25 @@ class SkyPainter {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
 
+  /// The scene's picture of colours, if it names one.
+  struct Drape {
+    std::shared_ptr<const ColourDrape> colours;
+    FlatRectangle place{};  // around the terrain, then what of it is draped
+  };
+  [[nodiscard]] static Drape DrapeOf(const Scene& scene, const SceneGround& lamp_ground);
+  void UploadDrape();
+
   Scene scene_;
   Ellipsoid ellipsoid_;
   PaintSizes sizes_;
+  SceneGround lamp_ground_;  // that lamps and fog stand on
+  Drape drape_;
   GroundMaterial material_;
   AirFollower air_;
   Landscape land_;
   GroundFollower ground_;
   ShadeFollower shade_;
   ShaftPass shaft_pass_;
-  SceneGround lamp_ground_;  // that lamps and fog stand on
   SceneLamps lamps_;
   struct Fog {
     Fog(LocalMedia of, const FogUnits& units)

@@ -74,6 +74,22 @@ Scene DrapedWith(const std::filesystem::path& file) {
   return scene;
 }
 
+TEST_F(DrapedColours, AreTheSameForPointsOfAnotherFrame) {
+  const auto file = folder_ / "plain.tif";
+  WritePicture(file, nullptr);
+  const SceneGround ground = Plain();
+  const auto drape = ColourDrape::Of(DrapedWith(file), ground);
+  const LocalFrame other(kWgs84, PlaceFromDegrees(46.02, 8.03, 0.0));
+  const auto moved = drape->In(other);
+  for (const double latitude : {45.98, 46.0, 46.03}) {
+    GeodeticPosition place = PlaceFromDegrees(latitude, 7.99, 300.0);
+    const auto own = drape->At(ground.frame.EnuFromGeodetic(place).xyz, 300.0, 1.0);
+    const auto seen = moved->At(other.EnuFromGeodetic(place).xyz, 300.0, 1.0);
+    ASSERT_TRUE(own && seen);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR((*own)[k], (*seen)[k], 1e-9) << latitude;
+  }
+}
+
 TEST_F(DrapedColours, WithoutAPlaceOfItsOwnCoversTheTerrainFromRimToRim) {
   const auto file = folder_ / "plain.tif";
   WritePicture(file, nullptr);

@@ -33,6 +33,25 @@ TEST(PictureTiles, TheyCoverEveryPixelOnceAndNoneIsTooLarge) {
   }
 }
 
+TEST(PictureTiles, TheyAreCutWhereTheStepsOfThePictureAre) {
+  const int width = 1000, height = 700;
+  TiledPicture picture(width, height, 500);
+  int with_rims = 0;
+  for (const TiledPicture::Tile& tile : picture.tiles()) {
+    EXPECT_EQ(tile.kept.left % kTileStep, 0);
+    EXPECT_EQ((height - tile.kept.top - tile.kept.height) % kTileStep, 0) << "from the bottom";
+    EXPECT_EQ(tile.painted.left % kTileStep, 0);
+    EXPECT_LE(std::max(tile.painted.width, tile.painted.height), 500);
+    const bool is_inner = tile.kept.left > 0 && tile.kept.left + tile.kept.width < width;
+    if (!is_inner) continue;
+    EXPECT_EQ(tile.painted.width, tile.kept.width + 2 * kTileStep);
+    ++with_rims;
+  }
+  EXPECT_GT(with_rims, 2);
+  for (const int step : {2, 3, 4, 5, 6, 8}) EXPECT_EQ(kTileStep % step, 0) << "of shafts and lamps";
+  EXPECT_EQ(TiledPicture(200, 100, 200).tiles().size(), 1U) << "in one piece without a rim";
+}
+
 TEST(PictureTiles, OneTileSeesTheWholeView) {
   EXPECT_EQ(ViewOfTile({0, 0, 300, 200}, 300, 200), glm::dvec4(0.0, 0.0, 1.0, 1.0));
   const glm::dvec4 upper_left = ViewOfTile({0, 0, 150, 50}, 300, 200);
@@ -77,8 +96,9 @@ TEST_F(PaintedTiles, PutTogetherTheyAreThePictureInOnePiece) {
   const int width = 37, height = 23;
   const Image whole = Painted(program, width, height, {0.0, 0.0, 1.0, 1.0});
   TiledPicture picture(width, height, 9);
-  for (const PictureTile& tile : picture.tiles()) {
-    picture.Put(tile, Painted(program, tile.width, tile.height, picture.ViewOf(tile)));
+  for (const TiledPicture::Tile& tile : picture.tiles()) {
+    picture.Put(tile,
+                Painted(program, tile.painted.width, tile.painted.height, picture.ViewOf(tile)));
   }
   const Image together = picture.Take();
   int differing = 0, of_triangle = 0;

@@ -117,6 +117,57 @@ TEST(Cockpit, ALongFrameIsNotCutShort) {
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:07Z");
 }
 
+/// 10 s of the pilot that were an hour of the scene, with a narrow view.
+std::shared_ptr<const CameraPath> AnHour() {
+  CameraPose begin{PlaceFromDegrees(46.0, 8.0, 1000.0)}, end{PlaceFromDegrees(46.1, 8.0, 2000.0)};
+  begin.fov_rad = end.fov_rad = 0.3;
+  return std::make_shared<CameraPath>(
+      std::vector<CameraPathPoint>{{0.0, begin, ParseInstant("2025-01-02T08:00:00Z")},
+                                   {10.0, end, ParseInstant("2025-01-02T09:00:00Z")}});
+}
+
+TEST(Cockpit, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEnd) {
+  Cockpit cockpit = NewCockpit();
+  static_cast<void>(cockpit.Do(Action::kPause, Sea));
+  cockpit.Replay(AnHour(), Sea);
+  cockpit.Advance({}, 5.0, Sea);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:30:00Z") << "as fast as it went then";
+  EXPECT_EQ(cockpit.pilot().eye().fov_rad, 0.3);
+  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kTrack);
+  static_cast<void>(cockpit.Do(Action::kTrackBack, Sea));
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
+  static_cast<void>(cockpit.Do(Action::kPause, Sea));
+  cockpit.Advance({}, 5.0, Sea);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z") << "paused it stands";
+  static_cast<void>(cockpit.Do(Action::kPause, Sea));
+  cockpit.Advance({}, 11.0, Sea);
+  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kFree);
+  EXPECT_NEAR(cockpit.pilot().eye().place.height_m, 2000.0, 1e-6);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:00Z");
+  cockpit.Advance({}, 1.0, Sea);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:01Z") << "real time again";
+}
+
+TEST(Cockpit, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
+  Cockpit cockpit = NewCockpit();
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
+  static_cast<void>(cockpit.Do(Action::kHoldHeading, Sea));
+  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0, Sea);
+  const FlightReadout flown = cockpit.pilot().Readout(Sea);
+  for (int time = 0; time < 2; ++time) {  // asked for in the middle, it begins again
+    cockpit.FlyAgain(AnHour(), Sea);
+    EXPECT_TRUE(cockpit.pilot().Replays());
+    cockpit.Advance({}, 5.0, Sea);
+  }
+  EXPECT_TRUE(cockpit.pilot().Replays());
+  cockpit.Advance({}, 5.0, Sea);
+  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kAircraft);
+  const FlightReadout on = cockpit.pilot().Readout(Sea);
+  EXPECT_EQ(on.aircraft->bank_rad, flown.aircraft->bank_rad);
+  EXPECT_EQ(on.above_ground_m, flown.above_ground_m);
+  EXPECT_EQ(on.autopilot, flown.autopilot);
+}
+
 TEST(Cockpit, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
   Cockpit cockpit = NewCockpit();
   cockpit.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{

@@ -2,6 +2,7 @@
 // Pictures of the graphics card against those of the renderer, pixel by pixel.
 #include "viewer/paint/sky_painter.h"
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/seven_views.h"
+#include "tests/viewer/land/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/paint/view_difference.h"
@@ -117,6 +119,69 @@ TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
   ExpectWithin(both.Difference(ViewOf(BareScene(400e3, 160.0, -20.0, 50.0), 400e3, now)),
                {0.0081, 0.26},
                "at the limb light falls by e within half a pixel: one in a hundred is on it");
+}
+
+class DrapedLand : public tests::LandFolder {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    try {
+      context_.emplace();
+    } catch (const DisplayError&) {
+      GTEST_SKIP() << "EGL gives no OpenGL here";
+    }
+    tests::WriteTile(folder_ / "land.tif", 0, 0);
+    WriteColours(folder_ / "colours.tif");
+  }
+
+  /// Squares of red and green, a kilometre wide.
+  static void WriteColours(const std::filesystem::path& file) {
+    constexpr int kSide = 64, kSquare = 8;
+    constexpr std::array<std::array<int, 2>, 3> kRedAndGreen{{{200, 40}, {60, 160}, {50, 60}}};
+    GDALRegister_GTiff();
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    GDALDataset* const dataset = driver->Create(file.c_str(), kSide, kSide, 3, GDT_Byte, nullptr);
+    for (std::size_t band = 0; band < 3; ++band) {
+      std::vector<std::uint8_t> values;
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const int square = (i % kSide / kSquare + i / kSide / kSquare) % 2;
+        values.push_back(
+            static_cast<std::uint8_t>(kRedAndGreen[band][static_cast<std::size_t>(square)]));
+      }
+      EXPECT_EQ(dataset->GetRasterBand(static_cast<int>(band) + 1)
+                    ->RasterIO(GF_Write, 0, 0, kSide, kSide, values.data(), kSide, kSide, GDT_Byte,
+                               0, 0, nullptr),
+                CE_None);
+    }
+    GDALClose(dataset);
+  }
+
+  [[nodiscard]] Scene DrapedScene() const {
+    Scene scene;
+    scene.medium = MediumPreset("bruneton2017");
+    scene.place = tests::PlaceOfSample(100.0, 200.0, 0.0);
+    scene.camera = CameraFromDegrees({4500.0, false}, 340.0, -25.0, 0.0, 60.0);
+    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
+    scene.terrain.file = folder_ / "land.tif";
+    scene.terrain.colour = folder_ / "colours.tif";
+    return scene;
+  }
+  std::optional<HeadlessContext> context_;
+};
+
+TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {
+  const Scene scene = DrapedScene();
+  const UtcInstant now = ParseInstant("2026-06-21T10:00:00Z");
+  Both both(scene, now);
+  PaintedView view = ViewOf(scene, 4500.0, now);
+  ExpectWithin(
+      both.Difference(view), {0.010, 0.115},
+      "half of it is of bare land; sixteen rays a pixel on rims of squares. A quarter of a "
+      "pixel of colours aside, it would be five times as much");
+  const GeodeticPosition elsewhere = tests::PlaceOfSample(220.0, 30.0, 4500.0);
+  view.eye.place = elsewhere;
+  view.eye.heading_rad = 220.0 * kRadiansPerDegree;
+  ExpectWithin(both.Difference(view), {0.016, 0.15}, "in the frame of the scene's place still");
 }
 
 /// Three bands, quick to solve.

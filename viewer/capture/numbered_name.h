@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names of screenshots that a key asks for.
+// Names of files that a key asks for.
 #pragma once
 
 #include <filesystem>
@@ -9,5 +9,8 @@ namespace alpenglow {
 /// The next free of skyview-0001, skyview-0002, ... in the folder: with neither a .png nor an .exr,
 /// so that both of one frame have one number.
 [[nodiscard]] std::filesystem::path NextScreenshot(const std::filesystem::path& folder);
+
+/// The next free of flight-0001.csv, flight-0002.csv, ...: neither there nor being recorded into.
+[[nodiscard]] std::filesystem::path NextFlight(const std::filesystem::path& folder);
 
 }  // namespace alpenglow

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/capture/numbered_name.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+
+#include "lut/program/growing_file.h"
+
+namespace alpenglow {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first numbered name that has no file with any of the extensions.
+fs::path NextFree(const fs::path& folder, const char* stem,
+                  std::initializer_list<const char*> extensions) {
+  for (int number = 1;; ++number) {
+    const fs::path free = folder / fmt::format("{}-{:04d}", stem, number);
+    const auto is_taken = [&](const char* extension) {
+      const fs::path file = free.string() + extension;
+      return fs::exists(file) || fs::exists(GrowingFile::PartOf(file));
+    };
+    if (std::none_of(extensions.begin(), extensions.end(), is_taken)) return free;
+  }
+}
+
+}  // namespace
+
+fs::path NextScreenshot(const fs::path& folder) {
+  return NextFree(folder, "skyview", {".png", ".exr"});
+}
+
+fs::path NextFlight(const fs::path& folder) {
+  fs::path file = NextFree(folder, "flight", {".csv"});
+  file += ".csv";
+  return file;
+}
+
+}  // namespace alpenglow
