@@ -20,11 +20,11 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/terrain.h"
-#include "viewer/embedded_text.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/shade/heights_around.h"
 #include "viewer/shade/shade_quality.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow {
 namespace {
@@ -163,9 +163,7 @@ class Picture {
  public:
   explicit Picture(const View& view)
       : pass_(AirTexts(view)),
-        program_({{"full_screen",
-                   std::string(viewer::EmbeddedText("viewer/shaders/full_screen.vert.glsl"))}},
-                 Texts(view)),
+        program_(FullScreenProgram(Texts(view))),
         target_(kWidth, kHeight, RenderTarget::Depth::kNone) {
     std::vector<glm::vec4> texels;
     for (const float distance_m : view.distance_m)
@@ -191,8 +189,7 @@ class Picture {
       target_.Bind();
       pass_.Bind(program_, kShaftUnit);
       program_.BindSampler("surface_map", kSurfaceUnit);
-      glBindVertexArray(no_vertices_.id());
-      glDrawArrays(GL_TRIANGLES, 0, 3);
+      DrawFullScreen(program_, no_vertices_);
       glFinish();
       best.pass_ms = std::min(best.pass_ms, middle - begin);
       best.between_ms = std::min(best.between_ms, Milliseconds() - middle);

@@ -16,8 +16,9 @@
 #include "renderer/ground/surface.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/paint/full_screen.h"
+#include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -69,8 +70,8 @@ void Fit(std::optional<RenderTarget>& target, int width, int height) {
 }
 
 std::vector<ShaderPiece> AirTexts() {
-  std::vector<ShaderPiece> texts = SharedTexts();
-  texts.push_back(ViewerPiece("viewer/shaders/view_block.glsl"));
+  std::vector<ShaderPiece> texts =
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
   for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
   return texts;
 }
@@ -147,8 +148,8 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
                      "#define TransmittanceToSun(h, mu) "
                      "(TransmittanceToSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
-  add({ViewerPiece("viewer/shaders/air_block.glsl"), ViewerPiece("viewer/shaders/octahedral.glsl"),
-       ViewerPiece("viewer/shaders/sun_light.glsl")});
+  add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
+                            "viewer/shaders/sun_light.glsl"}));
   add(GroundTexts(kind.material, kind.dropped_octaves));
   add(ShaftTexts());
   add(has_lamps ? kind.lamps->texts() : NoLampTexts());
@@ -188,8 +189,8 @@ const ShaderProgram& SkyPainter::ProgramOf(const PictureStage& stage) {
   const std::optional<PhaseKind> fog =
       scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
   const PictureKind kind{material_, &*lamp_painter_, fog, sizes_.dropped_octaves};
-  ShaderProgram made =
-      FullScreenProgram(PictureTexts(kind, stage), "viewer/shaders/picture.frag.glsl");
+  ShaderProgram made = FullScreenProgram(
+      WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
   made.BindBlock("Air", kAirBinding);
   made.BindBlock("View", kViewBinding);
   made.BindBlock("Ground", kGroundBinding);

@@ -1,33 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/shade/shaft_pass.h"
 
-#include <string>
-
 #include "atmosphere/text/error.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
 
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
-
 std::vector<ShaderPiece> PassTexts(std::vector<ShaderPiece> air) {
-  for (const char* name : {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl",
-                           "viewer/shaders/shafts.frag.glsl"}) {
-    air.push_back(Piece(name));
-  }
-  return air;
+  return WithViewerPieces(std::move(air),
+                          {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl",
+                           "viewer/shaders/shafts.frag.glsl"});
 }
 
 }  // namespace
 
 std::vector<ShaderPiece> ShaftTexts() {
-  return {Piece("viewer/shaders/shaft_texel.glsl"), Piece("viewer/shaders/shafts.glsl")};
+  return WithViewerPieces({}, {"viewer/shaders/shaft_texel.glsl", "viewer/shaders/shafts.glsl"});
 }
 
 ShaftPass::ShaftPass(std::vector<ShaderPiece> air)
-    : program_({Piece("viewer/shaders/full_screen.vert.glsl")}, PassTexts(std::move(air))) {}
+    : program_(FullScreenProgram(PassTexts(std::move(air)))) {}
 
 void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width,
                       int height, int surface_unit, int shade_unit, const ShaftDetail& detail) {
@@ -43,8 +38,7 @@ void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye,
   glUniform1i(program_.Uniform("surface_map"), surface_unit);
   glUniform2i(program_.Uniform("picture_size"), width, height);
   glUniform1i(program_.Uniform("shaft_scale"), scale_);
-  glBindVertexArray(no_vertices_.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  DrawFullScreen(program_, no_vertices_);
   CheckGl("ShaftPass::Paint");
 }
 
