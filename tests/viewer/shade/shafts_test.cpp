@@ -19,6 +19,7 @@
 #include "viewer/shade/shade_texture.h"
 #include "viewer/shade/shaft_pass.h"
 #include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
@@ -241,12 +242,18 @@ class ShaftPicture {
 
   /// What shade takes.
   [[nodiscard]] Image Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
-    const std::vector<ShaderPiece> air = {
-        {"view",
-         "const vec4 view_right = vec4(0.2, 0.0, 0.0, 0.0), view_up = vec4(0.0, 0.0, 0.08, 0.0),\n"
-         "           view_forward = vec4(0.0, 0.998, 0.06, 0.0);\n"},
-        {"air", kSingleTo}};
+    constexpr GLuint kViewBinding = 1;
+    const std::vector<ShaderPiece> air = {ViewerPiece("viewer/shaders/view_block.glsl"),
+                                          {"air", kSingleTo}};
     ShaftPass pass(air);
+    ViewBlock view{};
+    view.view_right = {0.2, 0.0, 0.0, 0.0};
+    view.view_up = {0.0, 0.0, 0.08, 0.0};
+    view.view_forward = {0.0, 0.998, 0.06, 0.0};
+    const GlBuffer buffer;
+    glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, buffer.id());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(view), &view, GL_STATIC_DRAW);
+    pass.program().BindBlock("View", kViewBinding);
     glm::dmat4 map_from_eye(1.0);
     map_from_eye[3] = glm::dvec4(0.0, -6000.0, 1700.0, 1.0);
     pass.Paint(shade, map_from_eye, kWidth, kHeight, 0, 1, detail);
