@@ -206,11 +206,7 @@ void LampPainter::PaintGlow(int width, int height) {
   if (quality_.step == 1) return;
   const int columns = (width + quality_.step - 1) / quality_.step + 1;
   const int rows = (height + quality_.step - 1) / quality_.step + 1;
-  if (!lattice_ || lattice_->width() != columns || lattice_->height() != rows) {
-    // It binds what it makes: not in the place of the surface map.
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLatticeUnit));
-    lattice_.emplace(columns, rows, RenderTarget::Depth::kNone);
-  }
+  Fit(lattice_, columns, rows);
   Bind();
   lattice_->Bind();
   glow_program_->Use();

@@ -38,7 +38,7 @@ enum Unit {
   kSkyOnSurfaceUnit,
   kShaftUnit,
   kShadeUnit,
-  kPictureUnit,
+  kUploadUnit,
   kAirUnit,
   kGroundUnit = kAirUnit + AirTextures::kUnits,
   kLampUnit = kGroundUnit + 3,
@@ -60,13 +60,6 @@ constexpr double kMetresPerKilometre = 1000.0;
 void UploadBlock(const GlBuffer& buffer, GLuint binding, const void* bytes, std::size_t size) {
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
   glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(size), bytes, GL_DYNAMIC_DRAW);
-}
-
-// (Re)makes a target when it is missing or of another size.
-void Fit(std::optional<RenderTarget>& target, int width, int height) {
-  if (target && target->width() == width && target->height() == height) return;
-  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
-  target.emplace(width, height, RenderTarget::Depth::kNone);
 }
 
 std::vector<ShaderPiece> AirTexts() {
@@ -267,7 +260,7 @@ void SkyPainter::TakeHeights() {
 void SkyPainter::TakeLight() {
   land_.Relight(ground_.Light());
   if (ground_.sea_mirror().empty()) return;
-  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
+  glActiveTexture(GL_TEXTURE0 + kUploadUnit);
   ground_textures_.SetSeaMirror(ground_.sea_mirror());
 }
 
@@ -365,13 +358,11 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
 
 void SkyPainter::PaintLand(const PaintedView& view) {
   Begin("land");
-  if (!surface_ || surface_->width() != view.width || surface_->height() != view.height) {
-    glActiveTexture(GL_TEXTURE0 + kPictureUnit);
-    surface_.emplace(view.width, view.height);
-  }
+  Fit(surface_, view.width, view.height);
   surface_->Bind();
   land_.Draw(kViewBinding);
-  surface_->BindTextures(kSurfaceUnit, kSkyOnSurfaceUnit);
+  surface_->BindTexture(kSurfaceUnit, SurfaceMap::kSurface);
+  surface_->BindTexture(kSkyOnSurfaceUnit, SurfaceMap::kSky);
 }
 
 void SkyPainter::PaintShafts(const PaintedView& view) {
@@ -422,7 +413,7 @@ void SkyPainter::PaintDisk(const glm::dvec3& direction, double radius_rad,
 void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   Begin("picture");
   picture_->Bind();
-  picture_->UseDepth(surface_->depth());
+  picture_->UseDepthOf(*surface_);
   lamp_painter_->Bind();
   if (fog_) fog_->painter.Bind(*fog_->follower->map(), FogViewOf(view, SunOf(view)));
   const bool has_shade = sizes_.has_shafts && shade_.shade().Shades();

@@ -29,9 +29,7 @@ void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye,
   ALPENGLOW_ENSURE(detail.scale, >=, 1);
   scale_ = detail.scale;
   const auto part = [&](int side) { return (side + scale_ - 1) / scale_; };
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shade_unit));  // a new target binds its own
-  if (!map_ || map_->width() != part(width) || map_->height() != part(height))
-    map_.emplace(part(width), part(height), RenderTarget::Depth::kNone);
+  Fit(map_, part(width), part(height));
   map_->Bind();
   program_.Use();
   shade.Bind(program_, shade_unit, map_from_eye, detail.steps);

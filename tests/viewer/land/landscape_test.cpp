@@ -35,13 +35,18 @@ struct LookOut {
     const double wide = std::tan(0.5 * fov_rad);
     return {wide * right, wide * kHeight / kWidth * glm::cross(right, forward), forward};
   }
-  /// Through the middle of a pixel, row 0 at the bottom; of any length.
+  /// Through the middle of a pixel, row 0 at the top; of any length.
   [[nodiscard]] glm::dvec3 Ray(int x, int y) const {
     const LandView view = View();
     return view.forward + (2.0 * (x + 0.5) / kWidth - 1.0) * view.right +
-           (2.0 * (y + 0.5) / kHeight - 1.0) * view.up;
+           (1.0 - 2.0 * (y + 0.5) / kHeight) * view.up;
   }
 };
+
+// Row 0 at the top.
+const glm::vec4& PixelAt(const std::vector<glm::vec4>& picture, int x, int y) {
+  return picture[static_cast<std::size_t>(y * kWidth + x)];
+}
 
 // Written apart from octahedral.glsl.
 glm::dvec3 UnitOf(const glm::vec4& surface) {
@@ -84,7 +89,7 @@ class LandscapePictures : public LandFolder {
     map_->Bind();
     land.Draw(kView);
     CheckGl("draw");
-    return map_->ReadSurface();
+    return map_->ReadValues(SurfaceMap::kSurface);
   }
   [[nodiscard]] std::vector<glm::vec4> Settled(Landscape& land, const LookOut& eye) const {
     land.Settle(eye.place, eye.View());
@@ -111,7 +116,7 @@ Misses MissesOf(const std::vector<glm::vec4>& picture, const LookOut& eye, const
   };
   for (int y = 0; y < kHeight; y += 4) {
     for (int x = 0; x < kWidth; x += 4) {
-      const glm::vec4& pixel = picture[static_cast<std::size_t>(y * kWidth + x)];
+      const glm::vec4& pixel = PixelAt(picture, x, y);
       const auto hit = terrain.Intersect(origin, glm::normalize(turned(eye.Ray(x, y))));
       if (!hit && pixel.w == 0.0F) continue;
       if (!hit || pixel.w == 0.0F) {
@@ -202,10 +207,8 @@ TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
     eye.place.height_m = *land.GroundUnder(eye.place) + std::exp2(i % 12);
     const auto picture = Settled(land, eye);
     for (int x = 0; x < kWidth; ++x) {
-      int y = 0;
-      const auto is_land = [&] {
-        return picture[static_cast<std::size_t>(y * kWidth + x)].w > 0.0F;
-      };
+      int y = 0;  // from below
+      const auto is_land = [&] { return PixelAt(picture, x, kHeight - 1 - y).w > 0.0F; };
       // Beyond the rim there is no land under a low view from above.
       while (y < kHeight && !is_land()) ++y;
       ASSERT_TRUE(i % 12 >= 8 || y == 0) << "column " << x;
@@ -285,9 +288,7 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
       return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, sun_x});
     };
   };
-  const auto middle = [&] {
-    return Draw(land, eye)[static_cast<std::size_t>(10 * kWidth + kWidth / 2)];
-  };
+  const auto middle = [&] { return PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11); };
   land.Settle(eye.place, eye.View());
   EXPECT_EQ(middle().z, 4.0F) << "without a function the whole sun shines";
   land.Relight(light(-2.0F));
@@ -297,7 +298,7 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   land.Settle(eye.place, eye.View());
   EXPECT_FALSE(land.IsRelighting());
   EXPECT_NEAR(middle().z, -2.0F, 1e-3F);
-  const glm::vec4 sky = map_->ReadSky()[static_cast<std::size_t>(10 * kWidth + kWidth / 2)];
+  const glm::vec4 sky = PixelAt(map_->ReadValues(SurfaceMap::kSky), kWidth / 2, kHeight - 11);
   EXPECT_NEAR(sky.x, 0.1F, 2e-4F);
   EXPECT_NEAR(sky.w, 0.4F, 4e-4F);
 }
@@ -358,7 +359,7 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, -1.0F});
   });
-  EXPECT_NEAR(Settled(land, eye)[kWidth / 2].z, -1.0F, 1e-5F);
+  EXPECT_NEAR(PixelAt(Settled(land, eye), kWidth / 2, kHeight - 1).z, -1.0F, 1e-5F);
 }
 
 }  // namespace
