@@ -133,16 +133,12 @@ std::vector<glm::vec4> RenderTarget::ReadValues(std::size_t output) const {
 }
 
 DisplayImage RenderTarget::ReadBytes() const {
-  return ReadFramebuffer(framebuffer_.id(), width_, height_);
-}
-
-DisplayImage ReadFramebuffer(GLuint framebuffer, int width, int height) {
-  const std::size_t row = 3 * static_cast<std::size_t>(width);
-  DisplayImage image{width, height, {}};
-  image.rgb.resize(row * static_cast<std::size_t>(height));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  const std::size_t row = 3 * static_cast<std::size_t>(width_);
+  DisplayImage image{width_, height_, {}};
+  image.rgb.resize(row * static_cast<std::size_t>(height_));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
   TurnUpsideDown(image.rgb, row);
   return image;
 }

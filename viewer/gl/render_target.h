@@ -74,7 +74,4 @@ void Fit(std::optional<Target>& target, int width, int height) {
 /// Filtering of a bound texture: linear or none, clamped at the edges.
 void ClampAndFilter(GLenum target, bool linear);
 
-/// Of the framebuffer that is drawn into (0: the window), row 0 at the top.
-[[nodiscard]] DisplayImage ReadFramebuffer(GLuint framebuffer, int width, int height);
-
 }  // namespace alpenglow

@@ -18,8 +18,7 @@ constexpr double kMetres = 1000.0;
 
 void Activate(int unit) { glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit)); }
 
-}  // namespace
-
+// @param now  eye and sun, which may have moved since the map was made.
 FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   FogBlock block{};
   const double height_km = std::isinf(map.scale_height_m) ? 0.0 : map.scale_height_m / kMetres;
@@ -32,6 +31,8 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   block.map_size = {map.size.elevations, map.size.azimuths, map.size.depths, 0.0};
   return block;
 }
+
+}  // namespace
 
 std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
   return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", PhaseExpression(kind))},

@@ -482,12 +482,6 @@ std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) cons
   return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
 }
 
-std::optional<ElevationGrid> Landscape::SampledGrid(const GeodeticPosition& place,
-                                                    double half_width_m, int most_samples) const {
-  if (mesh_) return mesh_->SampledGrid(place, half_width_m, most_samples);
-  return cache_.loaded()->SampledGrid(place, half_width_m, most_samples);
-}
-
 std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
 Landscape::Sampler() const {
   if (mesh_) {
@@ -538,12 +532,6 @@ LandFigures Landscape::Figures() const {
     for (const auto& [key, kept] : set->chunks) figures.chunk_bytes += BytesOf(*kept.chunk);
   }
   return figures;
-}
-
-std::optional<GeodeticPosition> Landscape::Middle() const {
-  if (mesh_) return tiles_->source().mesh->place;
-  if (tiles_->tiles().empty()) return std::nullopt;
-  return tiles_->Middle();
 }
 
 }  // namespace alpenglow

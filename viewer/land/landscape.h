@@ -13,12 +13,12 @@
 #include <unordered_map>
 #include <vector>
 
+#include "viewer/job/latest_job.h"
 #include "viewer/land/chunk_buffers.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
-#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 
@@ -74,11 +74,7 @@ class Landscape {
   /// Height of the ground [m] under a place, the same as is drawn near the eye; nothing where there
   /// is none or it is not loaded.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
-  /// See LoadedHeights::SampledGrid.
-  [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
-                                                         double half_width_m,
-                                                         int most_samples) const;
-  /// SampledGrid of what is loaded now, for any thread while this lives.
+  /// LoadedHeights::SampledGrid of what is loaded now, for any thread while this lives.
   [[nodiscard]] std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
   Sampler() const;
   /// Another range of the finest level, see LandSize.
@@ -86,7 +82,7 @@ class Landscape {
     size_.detail = detail;
     cache_.SetDetail(detail);
   }
-  /// Counts up when heights have come: SampledGrid may have changed.
+  /// Counts up when heights have come: the Sampler may have changed.
   [[nodiscard]] int heights_version() const {
     return heights_version_ + (mesh_ && mesh_->IsRead() ? 1 : 0);
   }
@@ -96,8 +92,6 @@ class Landscape {
   /// made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
-  /// The middle of the land; nothing without any.
-  [[nodiscard]] std::optional<GeodeticPosition> Middle() const;
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 
  private:

@@ -212,15 +212,11 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   const SiteAir& air = lit.site().air();
   light.on_terrain =
       std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
-  // In two parts, as a sky that ends on an even planet takes it.
-  const std::string place = "GroundPlaceAt(" + kPoint + ")";
-  const std::string even = "EvenPlanetRadiance(" + place + ", SunAcross(" + place + ", " + place +
-                           ".up, 1e9), LevelSky(dot(" + place + ".up, sun.xyz)))";
-  return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
-                     {"dot(" + even + " + PlanetOverEven(" + kPoint + ", " + kToEye +
-                          "), vec4(1.0, 0.0, 1.0, 0.0))",
-                      [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); },
-                      {0, 2}});
+  return Differences(
+      lit, light, eye_m, PlanetCases(lit, eye_m),
+      {"dot(PlanetRadiance(" + kPoint + ", " + kToEye + "), vec4(1.0, 0.0, 1.0, 0.0))",
+       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); },
+       {0, 2}});
 }
 
 double Quantile(const std::vector<double>& ascending, double share) {

@@ -329,7 +329,6 @@ TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
   EXPECT_TRUE(std::all_of(picture.begin(), picture.end(),
                           [](const glm::vec4& pixel) { return pixel.w == 0.0F; }));
   EXPECT_FALSE(land.GroundUnder(eye.place));
-  EXPECT_FALSE(land.Middle());
 }
 
 TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
@@ -353,7 +352,7 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   EXPECT_GT(misses.both, 500);
   EXPECT_LT(Quantile(misses.distance, 1.0), 1e-5);
   EXPECT_LT(Quantile(misses.normal, 1.0), 1e-4);
-  const auto grid = land.SampledGrid(eye.place, 1000.0, 9);
+  const auto grid = land.Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
   EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);
   land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
