@@ -322,8 +322,29 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
   EXPECT_LT(Quantile(misses.distance, 0.5), 1e-4) << "2 m over ground that floats place to 1 mm";
 }
 
+// Beside these tiles coarse land reaches 130 m higher than the fine land in its place: over a range
+// of heights each has the other drawn.
+TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
+  WriteTiles(2);
+  for (int i = 0; i < 12; ++i) {
+    const double height_m = 5400.0 + 15.0 * i;
+    SCOPED_TRACE(height_m);
+    const LookOut eye{PlaceOfSample(200.3, 91.7, height_m), 2.8, -0.3};
+    Landscape fresh(Folder(), {96.0}, kWgs84), flown(Folder(), {96.0}, kWgs84);
+    const auto judge = Settled(fresh, eye);
+    LookOut higher = eye;
+    higher.place.height_m += 100.0 * (i % 3);
+    flown.Settle(higher.place, higher.View());
+    EXPECT_EQ(Settled(flown, eye), judge);
+    EXPECT_EQ(Settled(flown, eye), judge) << "nor on how often that is asked";
+  }
+}
+
 TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
   Landscape land({}, {96.0}, kWgs84);
+  land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
+    return std::vector<VertexLight>(vertices.size());
+  });
   const LookOut eye{{0.8, 0.1, 1000.0}, 0.0, 0.0};
   const auto picture = Settled(land, eye);
   EXPECT_TRUE(std::all_of(picture.begin(), picture.end(),
