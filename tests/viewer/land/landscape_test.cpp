@@ -83,6 +83,8 @@ class LandscapePictures : public LandFolder {
     block.view_right = padded(view.right);
     block.view_up = padded(view.up);
     block.view_forward = padded(view.forward);
+    block.eye = {1e-3 * eye.place.height_m, 0.0, 0.0,
+                 1e-3 * OsculatingRadius(kWgs84, eye.place.latitude_rad)};
     const GlBuffer buffer;
     glBindBufferBase(GL_UNIFORM_BUFFER, kView, buffer.id());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
@@ -338,6 +340,36 @@ TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
     EXPECT_EQ(Settled(flown, eye), judge);
     EXPECT_EQ(Settled(flown, eye), judge) << "nor on how often that is asked";
   }
+}
+
+// A cone of 25 km around a sample.
+auto Mountain(int column, int row, double top_m) {
+  return [=](int at_column, int at_row) {
+    const double away_m = std::hypot(32.0 * (at_column - column), 46.0 * (at_row - row));
+    return static_cast<float>(top_m * std::max(1.0 - away_m / 25e3, 0.0));
+  };
+}
+
+// From 3 km the horizon lies 196 km away. At 250 km it hides what is lower than 230 m, at 600 km
+// what is lower than 12.8 km.
+TEST_F(LandscapePictures, ThePlanetHidesWhatIsBeyondTheHorizonButNotWhatRisesOverIt) {
+  constexpr int kEast = 7869, kNorth = -12960;  // 250 km, 600 km
+  constexpr int kSamples = 101, kStride = 16;
+  constexpr int kHalf = kStride * (kSamples - 1) / 2;
+  WriteTile(folder_ / "near.tif", kEast - kHalf, -kHalf, kSamples, kStride,
+            Mountain(kEast, 0, 4000.0));
+  WriteTile(folder_ / "far.tif", -kHalf, kNorth - kHalf, kSamples, kStride,
+            Mountain(0, kNorth, 8000.0));
+  Landscape land(Folder(), {96.0}, kWgs84);
+  const GeodeticPosition eye = PlaceOfSample(0.0, 0.0, 3000.0);
+  const auto pixels = [&](double heading_rad) {
+    const auto picture = Settled(land, {eye, heading_rad, -0.03, 0.2});
+    EXPECT_GT(land.Figures().triangles, 0) << "it stands in the view";
+    return std::count_if(picture.begin(), picture.end(),
+                         [](const glm::vec4& pixel) { return pixel.w > 0.0F; });
+  };
+  EXPECT_GT(pixels(0.5 * kPi), 1000) << "15 mrad high and 190 wide, of 0.8 mrad a pixel";
+  EXPECT_EQ(pixels(0.0), 0);
 }
 
 TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
