@@ -141,7 +141,6 @@ struct Window::State {
   bool pointer_is_inside = false;  // and not captured
   bool captured = false;
   bool vsync = true;
-  std::string title;
   std::optional<Rectangle> before_fullscreen;
   std::function<void()> at_lost_display;
 
@@ -299,12 +298,6 @@ double Window::content_scale() const {
   float right = 1.0F, down = 1.0F;
   glfwGetWindowContentScale(state_->window, &right, &down);
   return right > 0.0F ? static_cast<double>(right) : 1.0;
-}
-
-void Window::SetTitle(const std::string& title) {
-  if (title == state_->title) return;  // the desktop draws it anew
-  state_->title = title;
-  glfwSetWindowTitle(state_->window, title.c_str());
 }
 
 bool Window::fullscreen() const { return glfwGetWindowMonitor(state_->window) != nullptr; }

@@ -38,7 +38,6 @@ class Window {
   /// Pixels for a unit of 1/96 inch, as the desktop has it.
   [[nodiscard]] double content_scale() const;
 
-  void SetTitle(const std::string& title);
   [[nodiscard]] bool fullscreen() const;
   /// On the screen that the window's middle is on; back to where the window was.
   void SetFullscreen(bool fullscreen);

@@ -20,11 +20,13 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/terrain.h"
-#include "viewer/embedded_text.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/shade/heights_around.h"
 #include "viewer/shade/shade_quality.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -33,6 +35,7 @@ constexpr int kWidth = 1280, kHeight = 720;
 constexpr double kSunRadius_rad = 0.00465;
 constexpr double kReach_km = 25.0;  // of the band that is compared
 constexpr int kSurfaceUnit = 0, kShadeUnit = 1, kShaftUnit = 2;
+constexpr GLuint kViewBinding = 1;
 
 double Milliseconds() {
   return std::chrono::duration<double, std::milli>(
@@ -148,12 +151,8 @@ std::vector<double> Judge(const View& view, const glm::dvec3& to_sun) {
   return shares;
 }
 
-std::vector<ShaderPiece> AirTexts(const View& view) {
-  const auto axis = [](const char* name, const glm::dvec3& v) {
-    return fmt::format("const vec4 {} = vec4({:.9f}, {:.9f}, {:.9f}, 0.0);\n", name, v.x, v.y, v.z);
-  };
-  return {{"view", axis("view_right", view.right) + axis("view_up", view.up) +
-                       axis("view_forward", view.forward)},
+std::vector<ShaderPiece> AirTexts() {
+  return {ViewerPiece("viewer/shaders/view_block.glsl"),
           {"air",
            "vec4 SingleTo(vec3 direction, float distance_km) {\n"
            "  return 1.0 - exp(-distance_km / vec4(25.0, 12.0, 45.0, 80.0));\n}\n"}};
@@ -162,11 +161,9 @@ std::vector<ShaderPiece> AirTexts(const View& view) {
 class Picture {
  public:
   explicit Picture(const View& view)
-      : pass_(AirTexts(view)),
-        program_({{"full_screen",
-                   std::string(viewer::EmbeddedText("viewer/shaders/full_screen.vert.glsl"))}},
-                 Texts(view)),
-        target_(kWidth, kHeight, RenderTarget::Depth::kNone) {
+      : pass_(AirTexts()), program_(FullScreenProgram(Texts())), target_(kWidth, kHeight) {
+    UploadView(view);
+    pass_.program().BindBlock("View", kViewBinding);
     std::vector<glm::vec4> texels;
     for (const float distance_m : view.distance_m)
       texels.emplace_back(0.0F, 0.0F, 0.0F, distance_m);
@@ -191,8 +188,7 @@ class Picture {
       target_.Bind();
       pass_.Bind(program_, kShaftUnit);
       program_.BindSampler("surface_map", kSurfaceUnit);
-      glBindVertexArray(no_vertices_.id());
-      glDrawArrays(GL_TRIANGLES, 0, 3);
+      DrawFullScreen(program_, no_vertices_);
       glFinish();
       best.pass_ms = std::min(best.pass_ms, middle - begin);
       best.between_ms = std::min(best.between_ms, Milliseconds() - middle);
@@ -202,9 +198,17 @@ class Picture {
   [[nodiscard]] Image Read() const { return target_.Read(); }
 
  private:
-  static std::vector<ShaderPiece> Texts(const View& view) {
-    std::vector<ShaderPiece> texts = AirTexts(view);
-    for (ShaderPiece& piece : ShaftTexts()) texts.push_back(std::move(piece));
+  void UploadView(const View& view) const {
+    ViewBlock block{};
+    block.view_right = {glm::vec3(view.right), 0.0F};
+    block.view_up = {glm::vec3(view.up), 0.0F};
+    block.view_forward = {glm::vec3(view.forward), 0.0F};
+    glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, view_.id());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
+  }
+
+  static std::vector<ShaderPiece> Texts() {
+    std::vector<ShaderPiece> texts = ShaftTexts();
     texts.push_back({"picture",
                      "uniform sampler2D surface_map;\nout vec4 picture;\nvoid main() {\n"
                      "  float way = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w;\n"
@@ -213,6 +217,7 @@ class Picture {
     return texts;
   }
 
+  GlBuffer view_;
   ShaftPass pass_;
   ShaderProgram program_;
   RenderTarget target_;

@@ -12,9 +12,9 @@
 #include "tests/fixtures/lit_air.h"
 #include "viewer/air/air_textures.h"
 #include "viewer/air/solved_air.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow {
 namespace {
@@ -87,18 +87,14 @@ void Pass(benchmark::State& state, const std::string& statement, int width, int 
                                         "  float km = 60.0 + 50.0 * screen.x;\n"
                                         "  {}\n}}\n",
                                         statement)});
-  const ShaderProgram program(
-      {{"full", std::string(viewer::EmbeddedText("viewer/shaders/full_screen.vert.glsl"))}},
-      pieces);
+  const ShaderProgram program = FullScreenProgram(pieces);
   AirTextures::Prepare(program, 0, 0);
   const RenderTarget target(width, height, RenderTarget::Depth::kNone);
   const GlVertexArray no_vertices;
   const auto draw = [&] {
     target.Bind();
-    program.Use();
     textures.Bind(0, 0);
-    glBindVertexArray(no_vertices.id());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    DrawFullScreen(program, no_vertices);
     glFinish();
   };
   draw();  // drivers compile at the first draw

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <string>
 
+#include "renderer/effect/picture_change.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/seven_views.h"
 #include "viewer/gl/gl_context.h"
@@ -21,6 +22,18 @@
 
 namespace alpenglow {
 namespace {
+
+/// PixelChange of each pixel, in grey; those that are left out are blue.
+Image DifferencePicture(const Image& judge, const Image& painted) {
+  const std::vector<bool> edges = EdgesOf(judge);
+  const double floor = ChangeFloor(judge);
+  Image picture(judge.width, judge.height);
+  for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
+    const auto change = static_cast<float>(PixelChange(judge.rgb[i], painted.rgb[i], floor));
+    picture.rgb[i] = edges[i] ? std::array{0.0F, 0.0F, 1.0F} : std::array{change, change, change};
+  }
+  return picture;
+}
 
 Image JudgeOf(const SevenView& view, const RenderSettings& settings,
               const std::filesystem::path& file) {

@@ -16,8 +16,8 @@
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
-#include "viewer/paint/full_screen.h"
 #include "viewer/paint/sky_painter.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow {
 namespace {
@@ -40,8 +40,7 @@ constexpr char kReferenceText[] =
 class ReferencePass {
  public:
   ReferencePass()
-      : program_({ViewerPiece("viewer/shaders/full_screen.vert.glsl")},
-                 {{"reference pass", kReferenceText}}),
+      : program_(FullScreenProgram({{"reference pass", kReferenceText}})),
         target_(kWidth, kHeight, RenderTarget::Depth::kNone) {
     constexpr int kSide = 32;
     const std::vector<float> texels(std::size_t{4} * kSide * kSide * kSide, 0.25F);

@@ -5,9 +5,9 @@
 #include <tuple>
 #include <utility>
 
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -71,10 +71,7 @@ glm::vec4 AxesOf(int one, int other) {
 }  // namespace
 
 std::vector<ShaderPiece> AirTableTexts() {
-  std::vector<ShaderPiece> pieces;
-  for (const char* name : {"viewer/air/air_map.glsl", "viewer/shaders/air_tables.glsl"})
-    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
-  return pieces;
+  return WithViewerPieces({}, {"viewer/air/air_map.glsl", "viewer/shaders/air_tables.glsl"});
 }
 
 AirTextures::AirTextures() = default;

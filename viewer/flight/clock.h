@@ -43,7 +43,6 @@ class SceneClock {
   [[nodiscard]] const UtcInstant& now() const { return now_; }
   /// Seconds per second: what is asked for, and what it does (0 while paused).
   [[nodiscard]] double rate() const { return rate_; }
-  [[nodiscard]] double running_rate() const { return paused_ ? 0.0 : rate_; }
   [[nodiscard]] bool paused() const { return paused_; }
 
   /// Lets real seconds pass.

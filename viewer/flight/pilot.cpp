@@ -218,10 +218,6 @@ FlightReadout Pilot::Readout(const GroundHeight& ground) const {
     readout.speed_m_per_s = readout.aircraft->speed_m_per_s;
     readout.vertical_speed_m_per_s = readout.aircraft->vertical_speed_m_per_s;
   }
-  if (mode_ == FlightMode::kTrack) {
-    readout.track_s = track_s_ - track_->begin_s();
-    readout.track_end_s = track_->end_s() - track_->begin_s();
-  }
   return readout;
 }
 

@@ -34,7 +34,6 @@ struct FlightReadout {
   std::optional<AircraftReadout> aircraft;  // in aircraft mode
   std::string_view aircraft_name;           // "" elsewhere
   std::string autopilot;                    // as TextOf(AutopilotTargets)
-  std::optional<double> track_s, track_end_s;
 };
 
 class Pilot {

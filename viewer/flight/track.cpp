@@ -123,12 +123,6 @@ std::vector<CameraPathPoint> EvenPoints(const CameraPath& knots, const TrackStyl
 
 }  // namespace
 
-bool IsTrackName(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return ending == ".gpx" || ending == ".kml";
-}
-
 CameraPath PathAlong(const Track& track, const TrackStyle& style, const GroundHeight& ground) {
   RequireInRange(style.speed_m_per_s, 0.1, 1e5, "speed of the track");
   RequireInRange(style.over_ground_m, 0.0, 1e6, "height over the ground of the track");

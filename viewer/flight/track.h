@@ -13,9 +13,6 @@
 
 namespace alpenglow {
 
-/// Whether a file's name ends in .gpx or .kml, large or small.
-[[nodiscard]] bool IsTrackName(const std::filesystem::path& file);
-
 struct TrackStyle {
   double speed_m_per_s = 60.0;   // of a track without times
   double over_ground_m = 100.0;  // of a track without heights

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "atmosphere/text/error.h"
+#include "viewer/gl/gl_context.h"
 
 namespace alpenglow {
 namespace {
@@ -13,32 +15,25 @@ namespace {
 struct FormatRow {
   GLint internal;
   GLenum format, type;
-  int bytes;
 };
 
 const FormatRow& RowOf(PixelFormat format) {
   static constexpr FormatRow kRows[] = {
-      {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
-      {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8},
-      {GL_R11F_G11F_B10F, GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV, 4},
-      {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},
+      {GL_RGBA32F, GL_RGBA, GL_FLOAT},
+      {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT},
   };
   return kRows[static_cast<std::size_t>(format)];
 }
 
 // Memory is asked for here, and refused by the next error.
 void Allocate(const GlTexture& texture, int width, int height, const FormatRow& row) {
-  while (glGetError() != GL_NO_ERROR) {
-  }
+  GLint bound = 0;
+  glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
   glBindTexture(GL_TEXTURE_2D, texture.id());
   glTexImage2D(GL_TEXTURE_2D, 0, row.internal, width, height, 0, row.format, row.type, nullptr);
-  const GLenum error = glGetError();
-  if (error == GL_OUT_OF_MEMORY) {
-    throw DisplayError(
-        fmt::format("the graphics card has no memory for a picture of {}x{}", width, height));
-  }
-  ALPENGLOW_ENSURE(error, ==, static_cast<GLenum>(GL_NO_ERROR));
+  CheckGl(fmt::format("a picture of {}x{}", width, height).c_str());
   ClampAndFilter(GL_TEXTURE_2D, false);
+  glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
 }
 
 // OpenGL's row 0 is the lowest.
@@ -51,8 +46,6 @@ void TurnUpsideDown(std::vector<Pixel>& pixels, std::size_t row) {
 }
 
 }  // namespace
-
-int BytesOf(PixelFormat format) { return RowOf(format).bytes; }
 
 void ClampAndFilter(GLenum target, bool linear) {
   const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
@@ -74,7 +67,7 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
   }
   glDrawBuffers(static_cast<GLsizei>(outputs.size()), outputs.data());
   if (depth == Depth::k32Bit) {
-    Allocate(depth_, width, height, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4});
+    Allocate(depth_, width, height, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT});
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.id(), 0);
   }
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
@@ -102,55 +95,40 @@ void RenderTarget::Write(const Image& image) const {
 }
 
 template <typename Pixel>
-void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLenum format,
-                            GLenum type) const {
+void RenderTarget::ReadInto(std::vector<Pixel>& pixels, std::size_t output, GLenum format) const {
   pixels.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
   glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(output));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_, height_, format, type, pixels.data());
+  glReadPixels(0, 0, width_, height_, format, GL_FLOAT, pixels.data());
   glReadBuffer(GL_COLOR_ATTACHMENT0);
   TurnUpsideDown(pixels, static_cast<std::size_t>(width_));
 }
 
-void RenderTarget::UseDepth(GLuint texture) const {
+void RenderTarget::UseDepthOf(const RenderTarget& other) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture, 0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, other.depth_.id(), 0);
 }
 
-Image RenderTarget::Read(std::size_t output) const {
+Image RenderTarget::Read() const {
   Image image(width_, height_);
-  ReadInto(image.rgb, output, GL_RGB, GL_FLOAT);
+  ReadInto(image.rgb, 0, GL_RGB);
   return image;
 }
 
 std::vector<glm::vec4> RenderTarget::ReadValues(std::size_t output) const {
   std::vector<glm::vec4> values;
-  ReadInto(values, output, GL_RGBA, GL_FLOAT);
+  ReadInto(values, output, GL_RGBA);
   return values;
 }
 
-std::vector<std::array<std::uint16_t, 4>> RenderTarget::ReadHalves(std::size_t output) const {
-  std::vector<std::array<std::uint16_t, 4>> halves;
-  ReadInto(halves, output, GL_RGBA, GL_HALF_FLOAT);
-  return halves;
-}
-
-DisplayImage RenderTarget::ReadBytes(std::size_t output) const {
+DisplayImage RenderTarget::ReadBytes() const {
+  const std::size_t row = 3 * static_cast<std::size_t>(width_);
+  DisplayImage image{width_, height_, {}};
+  image.rgb.resize(row * static_cast<std::size_t>(height_));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
-  glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(output));
-  DisplayImage image = ReadFramebuffer(framebuffer_.id(), width_, height_);
-  glReadBuffer(GL_COLOR_ATTACHMENT0);
-  return image;
-}
-
-DisplayImage ReadFramebuffer(GLuint framebuffer, int width, int height) {
-  const std::size_t row = 3 * static_cast<std::size_t>(width);
-  DisplayImage image{width, height, {}};
-  image.rgb.resize(row * static_cast<std::size_t>(height));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
   TurnUpsideDown(image.rgb, row);
   return image;
 }

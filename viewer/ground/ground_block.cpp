@@ -8,8 +8,8 @@
 #include <string>
 
 #include "atmosphere/text/error.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -23,8 +23,6 @@ glm::vec4 FourOf(const BandLight& light) {
 
 // Lower than any ground.
 constexpr double kNoSea_m = -1e9;
-
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
 // What the shader's cover has at a step of the root of a cosine.
 double ByRootOfMu(const GroundMaterial& material, std::size_t node) {
@@ -100,9 +98,9 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, int dropped
                        material.drape() != nullptr ? 1 : 0, planet_is_water ? 1 : 0,
                        LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
                        SeaMirror::kSide, dropped_octaves)},
-          Piece("viewer/shaders/ground.glsl"),
-          Piece("viewer/shaders/ground_surface.glsl"),
-          Piece("viewer/shaders/ground_light.glsl")};
+          ViewerPiece("viewer/shaders/ground.glsl"),
+          ViewerPiece("viewer/shaders/ground_surface.glsl"),
+          ViewerPiece("viewer/shaders/ground_light.glsl")};
 }
 
 GroundTextures::GroundTextures(const DiffuseLight& diffuse) {

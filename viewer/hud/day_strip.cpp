@@ -87,21 +87,6 @@ bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b) {
 
 }  // namespace
 
-UtcInstant InstantInStrip(const UtcInstant& begin, double day_fraction) {
-  return AddSeconds(begin, day_fraction * kDay_s);
-}
-
-double FractionInStrip(const UtcInstant& begin, const UtcInstant& instant) {
-  return SecondsBetween(begin, instant) / kDay_s;
-}
-
-UtcInstant SolarMidnightBefore(const UtcInstant& now, double longitude_rad) {
-  const double offset_s = longitude_rad / (2.0 * kPi) * kDay_s;
-  const UtcInstant solar = AddSeconds(now, offset_s);
-  // Whole seconds, so that a day has one beginning.
-  return AddSeconds(UtcInstant{solar.modified_julian_day, 0.0}, -std::round(offset_s));
-}
-
 DayStrip MakeDayStrip(const DayStripRequest& request) {
   ALPENGLOW_ENSURE(request.columns, >=, 2);
   DayStrip strip;
@@ -111,7 +96,7 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
   strip.colours.resize(static_cast<std::size_t>(request.columns) * kRows);
   const Sky sky(request);
   for (int x = 0; x < request.columns; ++x) {
-    const UtcInstant instant = InstantInStrip(request.begin, (x + 0.5) / request.columns);
+    const UtcInstant instant = AddSeconds(request.begin, (x + 0.5) / request.columns * kDay_s);
     const SunPosition sun = ApparentSunAt(request.place, instant);
     strip.sun_elevation_rad.push_back(sun.elevation_rad);
     Column column;

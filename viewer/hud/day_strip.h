@@ -44,15 +44,6 @@ struct DayStrip {
 /// Column i shows the instant begin + (i + 1/2) / columns of 24 hours.
 [[nodiscard]] DayStrip MakeDayStrip(const DayStripRequest& request);
 
-/// The instant of a share of the strip, [0, 1].
-[[nodiscard]] UtcInstant InstantInStrip(const UtcInstant& begin, double day_fraction);
-/// And back; outside [0, 1] for instants of other days.
-[[nodiscard]] double FractionInStrip(const UtcInstant& begin, const UtcInstant& instant);
-
-/// Midnight of mean solar time at the longitude, the last one before `now`: where strips begin for
-/// places whose zone nobody has told.
-[[nodiscard]] UtcInstant SolarMidnightBefore(const UtcInstant& now, double longitude_rad);
-
 /// Strips made on a thread of their own, redone when what they show has changed enough to be seen:
 /// the air, the day, or the place by more than half a degree or a tenth of its height.
 class DayStrips {

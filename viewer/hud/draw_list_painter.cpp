@@ -4,19 +4,15 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
 
 constexpr GLuint kPlace = 0, kAtlasPlace = 1, kColour = 2;
 constexpr int kAtlasUnit = 0;
-
-std::vector<ShaderPiece> Stage(const char* name) {
-  return {{name, std::string(viewer::EmbeddedText(name))}};
-}
 
 const void* Offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
@@ -43,7 +39,8 @@ bool Clip(const ImVec4& rectangle, const ImVec2& size) {
 }  // namespace
 
 DrawListPainter::DrawListPainter()
-    : program_(Stage("viewer/shaders/hud.vert.glsl"), Stage("viewer/shaders/hud.frag.glsl"),
+    : program_({ViewerPiece("viewer/shaders/hud.vert.glsl")},
+               {ViewerPiece("viewer/shaders/hud.frag.glsl")},
                {{kPlace, "place"}, {kAtlasPlace, "atlas_place"}, {kColour, "colour"}}) {
   program_.BindSampler("atlas", kAtlasUnit);
   glBindVertexArray(layout_.id());

@@ -275,16 +275,4 @@ std::string ControlsMarkdown() {
   return text;
 }
 
-std::string ControlsText() {
-  std::string text;
-  std::string_view section;
-  for (const ActionRow& row : kTable) {
-    if (row.section != section)
-      text += fmt::format("{}{}\n", text.empty() ? "" : "\n", row.section);
-    section = row.section;
-    text += fmt::format("  {:<24} {}\n", KeysText(row), row.does);
-  }
-  return text;
-}
-
 }  // namespace alpenglow

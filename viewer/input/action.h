@@ -156,7 +156,5 @@ struct KeyChord {
 
 /// The table for a README.
 [[nodiscard]] std::string ControlsMarkdown();
-/// The table for `skyview --keys` and files of text: sections, keys, what they do.
-[[nodiscard]] std::string ControlsText();
 
 }  // namespace alpenglow

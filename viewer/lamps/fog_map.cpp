@@ -165,6 +165,12 @@ class FogMarch {
   FogLight light_;
 };
 
+// Sine of the elevation at a place of the axis in [0, 1]; dense at the horizontal.
+double FogElevationSine(double unit) {
+  const double root = 2.0 * unit - 1.0;
+  return root * std::abs(root);
+}
+
 void AddRays(const FogMarch& march, FogMap& map) {
   const FogMapSize& size = map.size;
   const double sun_azimuth = std::atan2(map.view.to_sun.y, map.view.to_sun.x);
@@ -207,11 +213,6 @@ void AddSurfaces(const FogMarch& march, const FogLayer& layer, FogMap& map) {
 }
 
 }  // namespace
-
-double FogElevationSine(double unit) {
-  const double root = 2.0 * unit - 1.0;
-  return root * std::abs(root);
-}
 
 FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const AirIntegrator<float>& air,
                   const DiffuseLight& diffuse, const FogView& view, const FogMapSize& size) {

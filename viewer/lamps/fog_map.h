@@ -69,7 +69,4 @@ struct FogMap {
                                 const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                                 const FogView& view, const FogMapSize& size = {});
 
-/// Sine of the elevation at a place of the axis in [0, 1]; dense at the horizontal.
-[[nodiscard]] double FogElevationSine(double unit);
-
 }  // namespace alpenglow

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/lamps/phase_macro.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -18,8 +18,7 @@ constexpr double kMetres = 1000.0;
 
 void Activate(int unit) { glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit)); }
 
-}  // namespace
-
+// @param now  eye and sun, which may have moved since the map was made.
 FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   FogBlock block{};
   const double height_km = std::isinf(map.scale_height_m) ? 0.0 : map.scale_height_m / kMetres;
@@ -33,16 +32,14 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   return block;
 }
 
+}  // namespace
+
 std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
   return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", PhaseExpression(kind))},
-          {"viewer/shaders/fog_light.glsl",
-           std::string(viewer::EmbeddedText("viewer/shaders/fog_light.glsl"))}};
+          ViewerPiece("viewer/shaders/fog_light.glsl")};
 }
 
-std::vector<ShaderPiece> NoFogTexts() {
-  return {{"viewer/shaders/no_fog.glsl",
-           std::string(viewer::EmbeddedText("viewer/shaders/no_fog.glsl"))}};
-}
+std::vector<ShaderPiece> NoFogTexts() { return {ViewerPiece("viewer/shaders/no_fog.glsl")}; }
 
 void FogPainter::Connect(const ShaderProgram& program) const {
   program.Use();

@@ -15,8 +15,6 @@ struct FogBlock {
   glm::vec4 layer, eye, sun, phase, map_size;
 };
 static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
-/// @param now  eye and sun, which may have moved since the map was made.
-[[nodiscard]] FogBlock FogBlockOf(const FogMap& map, const FogView& now);
 
 /// Texts for a fragment stage, after SharedTexts(): FogTo(direction, distance_km) and the rest of
 /// fog_light.glsl. @param kind  of the fog's phase function.

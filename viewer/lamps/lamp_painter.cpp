@@ -10,9 +10,10 @@
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/phase_macro.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -22,8 +23,6 @@ enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit };
 /// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
 /// 1 / angle is straight enough between its points.
 constexpr double kCoreBegin_steps = 2.0, kCoreEnd_steps = 8.0;
-
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
 std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   const std::vector<LampLayer>& layers = shape.layers();
@@ -54,44 +53,38 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   return text;
 }
 
-std::vector<ShaderPiece> Together(std::vector<ShaderPiece> texts,
-                                  std::initializer_list<const char*> names) {
-  for (const char* name : names) texts.push_back(Piece(name));
-  return texts;
-}
-
 }  // namespace
 
 std::vector<ShaderPiece> LampTexts(const SceneLamps& shape, const LampQuality& quality) {
-  return Together({{"lamp constants", DefinesOf(shape, quality)}},
-                  {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamp_picture.glsl"});
+  return WithViewerPieces({{"lamp constants", DefinesOf(shape, quality)}},
+                          {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamp_picture.glsl"});
 }
 
-std::vector<ShaderPiece> NoLampTexts() { return {Piece("viewer/shaders/no_lamps.glsl")}; }
+std::vector<ShaderPiece> NoLampTexts() { return {ViewerPiece("viewer/shaders/no_lamps.glsl")}; }
 
 LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
                          const LampUnits& units)
     : quality_(quality), units_(units), texts_(LampTexts(shape, quality)) {
   ALPENGLOW_ENSURE(quality.nodes, >=, 2);
   ALPENGLOW_ENSURE(quality.nodes, <=, 32);
-  std::vector<ShaderPiece> texts = SharedTexts();
-  texts.push_back(Piece("viewer/shaders/view_block.glsl"));
+  std::vector<ShaderPiece> texts =
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
   std::vector<ShaderPiece> corners = texts;
   texts.insert(texts.end(), texts_.begin(), texts_.end());
   // The last is of pixels.
   corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
-  corners.push_back(Piece("viewer/shaders/lamp_corners.glsl"));
+  corners.push_back(ViewerPiece("viewer/shaders/lamp_corners.glsl"));
   if (quality.step > 1) {
-    glow_program_.emplace(std::vector{Piece("viewer/shaders/full_screen.vert.glsl")},
-                          Together(texts, {"viewer/shaders/lamp_glow.frag.glsl"}));
-    core_program_.emplace(Together(corners, {"viewer/shaders/lamp_core.vert.glsl"}),
-                          Together(texts, {"viewer/shaders/lamp_core.frag.glsl"}));
+    glow_program_.emplace(
+        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamp_glow.frag.glsl"})));
+    core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamp_core.vert.glsl"}),
+                          WithViewerPieces(texts, {"viewer/shaders/lamp_core.frag.glsl"}));
     Connect(*glow_program_);
     Connect(*core_program_);
   }
   disk_program_.emplace(
-      Together(corners, {"viewer/shaders/lamp_disk.vert.glsl"}),
-      Together(texts, {"viewer/shaders/lamp_disk.frag.glsl"}),
+      WithViewerPieces(corners, {"viewer/shaders/lamp_disk.vert.glsl"}),
+      WithViewerPieces(texts, {"viewer/shaders/lamp_disk.frag.glsl"}),
       std::vector<VertexAttribute>{{0, "disk_towards"}, {1, "disk_light"}, {2, "disk_place"}});
   Connect(*disk_program_);
   UploadTables(shape);
@@ -213,18 +206,13 @@ void LampPainter::PaintGlow(int width, int height) {
   if (quality_.step == 1) return;
   const int columns = (width + quality_.step - 1) / quality_.step + 1;
   const int rows = (height + quality_.step - 1) / quality_.step + 1;
-  if (!lattice_ || lattice_->width() != columns || lattice_->height() != rows) {
-    // It binds what it makes: not in the place of the surface map.
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLatticeUnit));
-    lattice_.emplace(columns, rows, RenderTarget::Depth::kNone);
-  }
+  Fit(lattice_, columns, rows);
   Bind();
   lattice_->Bind();
   glow_program_->Use();
   glUniform2f(glow_program_->Uniform("picture_size"), static_cast<float>(width),
               static_cast<float>(height));
-  glBindVertexArray(no_vertices_.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  DrawFullScreen(*glow_program_, no_vertices_);
   CheckGl("LampPainter::PaintGlow");
 }
 

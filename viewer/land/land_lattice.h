@@ -20,7 +20,6 @@ struct LatticeBox {
   int first_column = 0, first_row = 0;
   int last_column = -1, last_row = -1;
 
-  [[nodiscard]] bool IsEmpty() const { return last_column < first_column || last_row < first_row; }
   [[nodiscard]] bool Holds(int column, int row) const {
     return column >= first_column && column <= last_column && row >= first_row && row <= last_row;
   }

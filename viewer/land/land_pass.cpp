@@ -3,21 +3,17 @@
 
 #include <glm/geometric.hpp>
 
-#include "viewer/embedded_text.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
 
 constexpr GLuint kLandBinding = 8;
 
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
-
 std::vector<ShaderPiece> Vertices() {
-  std::vector<ShaderPiece> texts = SharedTexts();
-  for (const char* const name : {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
-                                 "viewer/shaders/land.vert.glsl"})
-    texts.push_back(Piece(name));
-  return texts;
+  return WithViewerPieces(SharedTexts(),
+                          {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
+                           "viewer/shaders/land.vert.glsl"});
 }
 
 // Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.
@@ -31,10 +27,10 @@ ShaderProgram LandProgram(bool reversed_depth) {
     attributes.push_back({static_cast<GLuint>(attributes.size()), name});
   return ShaderProgram(
       Vertices(),
-      {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
-       Piece(reversed_depth ? "viewer/shaders/reversed_depth.glsl"
-                            : "viewer/shaders/logarithmic_depth.glsl"),
-       Piece("viewer/shaders/land.frag.glsl")},
+      WithViewerPieces({}, {"viewer/shaders/land_block.glsl", "viewer/shaders/octahedral.glsl",
+                            reversed_depth ? "viewer/shaders/reversed_depth.glsl"
+                                           : "viewer/shaders/logarithmic_depth.glsl",
+                            "viewer/shaders/land.frag.glsl"}),
       attributes);
 }
 

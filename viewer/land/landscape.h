@@ -10,13 +10,14 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "viewer/job/latest_job.h"
-#include "viewer/land/chunk_buffers.h"
+#include "viewer/land/chunk_maker.h"
+#include "viewer/land/chunk_set.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
+#include "viewer/land/light_fade.h"
 #include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
 
@@ -76,11 +77,7 @@ class Landscape {
   /// Height of the ground [m] under a place, the same as is drawn near the eye; nothing where there
   /// is none or it is not loaded.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
-  /// See LoadedHeights::SampledGrid.
-  [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
-                                                         double half_width_m,
-                                                         int most_samples) const;
-  /// SampledGrid of what is loaded now, for any thread while this lives.
+  /// LoadedHeights::SampledGrid of what is loaded now, for any thread while this lives.
   [[nodiscard]] std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
   Sampler() const;
   /// Another range of the finest level, see LandSize.
@@ -88,7 +85,7 @@ class Landscape {
     size_.detail = detail;
     cache_.SetDetail(detail);
   }
-  /// Counts up when heights have come: SampledGrid may have changed.
+  /// Counts up when heights have come: the Sampler may have changed.
   [[nodiscard]] int heights_version() const {
     return heights_version_ + (mesh_ && mesh_->IsRead() ? 1 : 0);
   }
@@ -98,62 +95,24 @@ class Landscape {
   /// made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
-  /// The middle of the land; nothing without any.
-  [[nodiscard]] std::optional<GeodeticPosition> Middle() const;
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 
  private:
-  struct Kept {
-    std::shared_ptr<const LandChunk> chunk;
-    int slot = -1;  // on the card; -1: nothing to draw
-    long last_wanted = 0;
-    int light = 0;  // number of the light on the side that is being filled
-  };
-  // All chunks of one anchor.
-  struct ChunkSet {
-    ChunkSet(const LandAnchor& at, int slots) : anchor(at), buffers(slots) {}
-    LandAnchor anchor;
-    ChunkBuffers buffers;
-    std::unordered_map<ChunkKey, Kept, ChunkKeyHash> chunks;
-  };
-  struct Order {
-    std::shared_ptr<const LoadedHeights> heights;
-    LandAnchor anchor;
-    std::vector<ChunkKey> make;
-    std::vector<std::shared_ptr<const LandChunk>> relight;
-    int top = 0;
-    LightOfVertices light;
-    int light_number = 0;
-    bool for_next_anchor = false;
-  };
-  struct LitChunk {
-    std::shared_ptr<const LandChunk> chunk;
-    std::vector<ChunkVertex> vertices;
-    std::vector<ChunkLight> light;
-  };
-  struct Made {
-    std::vector<LitChunk> made, relit;
-    int light_number;
-    bool for_next_anchor;
-  };
-  static Made Work(const Order& order);
-
   [[nodiscard]] LandEye EyeAt(const GeodeticPosition& eye) const;
   [[nodiscard]] LandAnchor AnchorAt(const GeodeticPosition& eye) const;
   [[nodiscard]] int ExpectedChunks(double detail) const;
   void MoveAnchor();
   void TakeChunks();
-  void Add(ChunkSet& set, const LitChunk& lit, int light_number);
   void FollowView(double seconds);
   void FindDemand(double seconds);
   void LetLevelsReach(double seconds);
   void AskForChunks();
   void AskForLight();
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
-  void Evict(ChunkSet& set) const;
-  void FinishLight(double seconds);
   void Choose();
   void RaiseAbove(double seconds);
+  void WaitForWork();
+  [[nodiscard]] bool IsAllThere(std::size_t chunks_before) const;
   [[nodiscard]] LandBlock Block() const;
 
   std::shared_ptr<const LandTiles> tiles_;
@@ -171,22 +130,16 @@ class Landscape {
   LandDemand demand_;
   std::vector<double> reach_m_;
   std::vector<LevelRange> ranges_;
-  std::vector<DrawnChunk> around_;              // in view or not
-  std::vector<ChunkBuffers::Drawn> drawn_;      // in view
-  LightOfVertices light_;                       // of chunks that are made
-  std::optional<LightOfVertices> light_asked_;  // to follow
-  int light_number_ = 0;                        // of light_
-  bool relighting_ = false;
-  LightSide shown_ = LightSide::kFirst;
-  double fading_ = 1.0;     // share of the way from the side before to shown_
-  double relight_s_ = 0.0;  // that the last relighting took
+  std::vector<DrawnChunk> around_;          // in view or not
+  std::vector<ChunkBuffers::Drawn> drawn_;  // in view
+  LightFade fade_;
   long frame_ = 0;
   int heights_version_ = 0;
   bool is_working_ = false;
   std::vector<std::string> notes_;
   LandPass pass_;
-  std::optional<MeshLand> mesh_;   // instead of tiles
-  LatestJob<Order, Made> worker_;  // last: it uses all above
+  std::optional<MeshLand> mesh_;              // instead of tiles
+  LatestJob<ChunkOrder, MadeChunks> worker_;  // last: it uses all above
 };
 
 }  // namespace alpenglow

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <limits>
 
 namespace alpenglow {
@@ -14,6 +15,13 @@ constexpr double kLatestStart = 0.9;  // of a level's turning, as a share of its
 // Of the part of a range beyond a place; 0 inside.
 double Outside(double place, double first, double last) {
   return std::max({first - place, place - last, 0.0});
+}
+
+// Of a chunk's nearest point, along columns and rows [m].
+glm::dvec2 Away(const ChunkKey& key, const LandEye& eye) {
+  const double side = std::exp2(key.level) * kChunkCells;
+  return {Outside(eye.at.column, key.column * side, (key.column + 1) * side) * eye.size.column_m,
+          Outside(eye.at.row, key.row * side, (key.row + 1) * side) * eye.size.row_m};
 }
 
 double RangeOf(int level, const LandEye& eye, double detail) {
@@ -75,12 +83,14 @@ bool ChunkTree::Exists(const ChunkKey& key) const {
   return known->second;
 }
 
-double ChunkTree::Distance(const ChunkKey& key, const LandEye& eye) const {
-  const double side = std::exp2(key.level) * kChunkCells;
-  const double columns =
-      Outside(eye.at.column, key.column * side, (key.column + 1) * side) * eye.size.column_m;
-  const double rows = Outside(eye.at.row, key.row * side, (key.row + 1) * side) * eye.size.row_m;
-  return std::hypot(columns, rows, eye.above_m);
+double ChunkTree::Distance(const ChunkKey& key, const LandEye& eye) {
+  const glm::dvec2 away = Away(key, eye);
+  return std::hypot(away.x, away.y, eye.above_m);
+}
+
+double ChunkTree::Beside(const ChunkKey& key, const LandEye& eye) {
+  const glm::dvec2 away = Away(key, eye);
+  return std::hypot(away.x, away.y);
 }
 
 double ChunkTree::Diagonal(int level, const LandEye& eye) {
@@ -112,7 +122,7 @@ class Demand {
 
   LandDemand Find() {
     for (const ChunkKey& root : tree_.Roots(eye_)) {
-      found_.wanted.push_back({root, tree_.Distance(root, eye_)});
+      found_.wanted.push_back({root, ChunkTree::Distance(root, eye_)});
       if (is_there_(root)) Split(root);
     }
     return std::move(found_);
@@ -123,7 +133,7 @@ class Demand {
   void Split(const ChunkKey& parent) {
     if (parent.level == 0) return;
     const int level = parent.level - 1;
-    const double distance = tree_.Distance(parent, eye_);
+    const double distance = ChunkTree::Distance(parent, eye_);
     const double range = RangeOf(level, eye_, detail_);
     if (distance >= kAhead * range) return;
     const double urgency = distance < range ? distance : 1e9 + distance;
@@ -156,21 +166,21 @@ class Drawing {
     for (const ChunkKey& root : tree_.Roots(eye_))
       if (is_there(root)) Visit(root);
     std::sort(drawn_.begin(), drawn_.end(),
-              [](const DrawnChunk& a, const DrawnChunk& b) { return a.distance_m < b.distance_m; });
+              [](const DrawnChunk& a, const DrawnChunk& b) { return a.beside_m < b.beside_m; });
     return std::move(drawn_);
   }
 
  private:
   [[nodiscard]] bool IsSplit(const ChunkKey& key) const {
     if (key.level == 0) return false;
-    return tree_.Distance(key, eye_) < ranges_[static_cast<std::size_t>(key.level) - 1].end_m;
+    return ChunkTree::Distance(key, eye_) < ranges_[static_cast<std::size_t>(key.level) - 1].end_m;
   }
 
   void Visit(const ChunkKey& key) {
     if (IsSplit(key)) {
       for (const ChunkKey& child : tree_.Children(key)) Visit(child);
     } else {
-      drawn_.push_back({key, tree_.Distance(key, eye_), CoarseSides(key)});
+      drawn_.push_back({key, ChunkTree::Beside(key, eye_), CoarseSides(key)});
     }
   }
 

@@ -45,7 +45,9 @@ class ChunkTree {
   /// Whether any tile touches the chunk.
   [[nodiscard]] bool Exists(const ChunkKey& key) const;
   /// d of a chunk's nearest point [m].
-  [[nodiscard]] double Distance(const ChunkKey& key, const LandEye& eye) const;
+  [[nodiscard]] static double Distance(const ChunkKey& key, const LandEye& eye);
+  /// The same without h: how far beside the eye.
+  [[nodiscard]] static double Beside(const ChunkKey& key, const LandEye& eye);
   /// Of a chunk of this level, aslant [m].
   [[nodiscard]] static double Diagonal(int level, const LandEye& eye);
   /// The samples that making a chunk reads: its own and those around, of its level and the next.
@@ -86,7 +88,7 @@ struct LandDemand {
 /// A chunk that is drawn, and its sides where a coarser one is drawn.
 struct DrawnChunk {
   ChunkKey key;
-  double distance_m;
+  double beside_m;
   unsigned coarse_sides;
 };
 

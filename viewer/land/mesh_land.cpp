@@ -95,28 +95,21 @@ void MeshLand::Update(double seconds) {
     terrain_ = std::move(*read);
     Upload();
   }
-  fading_ = std::min(fading_ + seconds / std::max(light_s_, 0.2), 1.0);
-  if (lighting_) light_s_ += seconds;
-  if (const auto light = lighter_.Take()) {
-    second_is_new_ = !second_is_new_;
-    alpenglow::Upload(GL_ARRAY_BUFFER, second_is_new_ ? second_light_ : first_light_, *light);
-    fading_ = 0.0;
-    lighting_ = false;
-  }
-  if (terrain_ && light_asked_ && !lighting_ && fading_ == 1.0) {
-    lighting_ = true;
-    light_s_ = 0.0;
-    lighter_.Ask({terrain_, *std::exchange(light_asked_, std::nullopt)});
-  }
+  if (!terrain_) return;
+  const auto light = lighter_.Take();
+  if (light) alpenglow::Upload(GL_ARRAY_BUFFER, LightOn(fade_.from()), *light);
+  const int before = fade_.number();
+  fade_.Advance(seconds, light.has_value());
+  if (fade_.number() != before) lighter_.Ask({terrain_, fade_.light()});
 }
 
 void MeshLand::Draw(const LandPass& pass, const GeodeticPosition& eye, const LandView& view,
                     GLuint view_binding) {
   if (!terrain_) return;
   glBindVertexArray(layout_.id());
-  DescribeLight(second_is_new_ ? first_light_ : second_light_, 5);
-  DescribeLight(second_is_new_ ? second_light_ : first_light_, 8);
-  const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), view, fading_);
+  DescribeLight(LightOn(fade_.from()), 5);
+  DescribeLight(LightOn(Other(fade_.from())), 8);
+  const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), view, fade_.share());
   pass.Run(block, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),
                    GL_UNSIGNED_INT, nullptr);

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "renderer/terrain/terrain.h"
+#include "viewer/job/latest_job.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/land/light_fade.h"
 
 namespace alpenglow {
 
@@ -29,8 +30,8 @@ class MeshLand {
   void Draw(const LandPass& pass, const GeodeticPosition& eye, const LandView& view,
             GLuint view_binding);
 
-  void Relight(LightOfVertices light) { light_asked_ = std::move(light); }
-  [[nodiscard]] bool IsRelighting() const { return light_asked_ || lighting_ || fading_ < 1.0; }
+  void Relight(LightOfVertices light) { fade_.Ask(std::move(light)); }
+  [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
 
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
@@ -47,6 +48,9 @@ class MeshLand {
     LightOfVertices light;
   };
   void Upload();
+  [[nodiscard]] const GlBuffer& LightOn(LightSide side) const {
+    return side == LightSide::kFirst ? first_light_ : second_light_;
+  }
   void DescribeLight(const GlBuffer& buffer, GLuint first_location) const;
 
   std::filesystem::path file_;
@@ -54,9 +58,7 @@ class MeshLand {
   std::shared_ptr<const Terrain> terrain_;
   GlVertexArray layout_;
   GlBuffer positions_, normals_, triangles_, first_light_, second_light_;
-  std::optional<LightOfVertices> light_asked_;
-  bool lighting_ = false, second_is_new_ = false;
-  double fading_ = 1.0, light_s_ = 0.0;
+  LightFade fade_;
   LatestJob<std::filesystem::path, std::shared_ptr<const Terrain>> reader_;
   LatestJob<Order, std::vector<ChunkLight>> lighter_;
 };

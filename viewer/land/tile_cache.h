@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "viewer/job/latest_job.h"
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/loaded_heights.h"
-#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

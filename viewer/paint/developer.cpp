@@ -7,8 +7,9 @@
 
 #include "lut/picture/dither.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/paint/full_screen.h"
 #include "viewer/paint/tone_table.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -30,7 +31,8 @@ void UploadDither() {
 ShaderProgram ProgramOf(ToneCurve curve) {
   std::vector<ShaderPiece> texts = SharedTexts();
   texts.push_back({"curve", fmt::format("#define CURVE {}\n", static_cast<int>(curve))});
-  ShaderProgram program = FullScreenProgram(texts, "viewer/shaders/develop.frag.glsl");
+  ShaderProgram program =
+      FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/develop.frag.glsl"}));
   program.BindSampler("linear_picture", kPicture);
   program.BindSampler("dither_noise", kDither);
   program.BindSampler("tone_table", kTable);

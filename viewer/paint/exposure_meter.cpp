@@ -12,8 +12,7 @@ void ExposureMeter::Copy(const RenderTarget& picture) {
     return std::clamp(side * kLongSide / longest, 1, std::max(side, 1));
   };
   const int width = shrunk(picture.width()), height = shrunk(picture.height());
-  if (!small_ || small_->width() != width || small_->height() != height)
-    small_.emplace(width, height, RenderTarget::Depth::kNone);
+  Fit(small_, width, height);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, small_->framebuffer());
   glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, 0, width, height,

@@ -17,8 +17,9 @@
 #include "renderer/ground/surface.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/paint/full_screen.h"
+#include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -38,7 +39,7 @@ enum Unit {
   kSkyOnSurfaceUnit,
   kShaftUnit,
   kShadeUnit,
-  kPictureUnit,
+  kUploadUnit,
   kAirUnit,
   kGroundUnit = kAirUnit + AirTextures::kUnits,
   kLampUnit = kGroundUnit + 3,
@@ -62,16 +63,9 @@ void UploadBlock(const GlBuffer& buffer, GLuint binding, const void* bytes, std:
   glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(size), bytes, GL_DYNAMIC_DRAW);
 }
 
-// (Re)makes a target when it is missing or of another size.
-void Fit(std::optional<RenderTarget>& target, int width, int height) {
-  if (target && target->width() == width && target->height() == height) return;
-  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
-  target.emplace(width, height, RenderTarget::Depth::kNone);
-}
-
 std::vector<ShaderPiece> AirTexts() {
-  std::vector<ShaderPiece> texts = SharedTexts();
-  texts.push_back(ViewerPiece("viewer/shaders/view_block.glsl"));
+  std::vector<ShaderPiece> texts =
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
   for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
   return texts;
 }
@@ -148,8 +142,8 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
                      "#define TransmittanceToSun(h, mu) "
                      "(TransmittanceToSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
-  add({ViewerPiece("viewer/shaders/air_block.glsl"), ViewerPiece("viewer/shaders/octahedral.glsl"),
-       ViewerPiece("viewer/shaders/sun_light.glsl")});
+  add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
+                            "viewer/shaders/sun_light.glsl"}));
   add(GroundTexts(kind.material, kind.dropped_octaves));
   add(ShaftTexts());
   add(has_lamps ? kind.lamps->texts() : NoLampTexts());
@@ -214,8 +208,8 @@ const ShaderProgram& SkyPainter::ProgramOf(const PictureStage& stage) {
   const std::optional<PhaseKind> fog =
       scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
   const PictureKind kind{material_, &*lamp_painter_, fog, sizes_.dropped_octaves};
-  ShaderProgram made =
-      FullScreenProgram(PictureTexts(kind, stage), "viewer/shaders/picture.frag.glsl");
+  ShaderProgram made = FullScreenProgram(
+      WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
   made.BindBlock("Air", kAirBinding);
   made.BindBlock("View", kViewBinding);
   made.BindBlock("Ground", kGroundBinding);
@@ -292,7 +286,7 @@ void SkyPainter::TakeHeights() {
 void SkyPainter::TakeLight() {
   land_.Relight(ground_.Light());
   if (ground_.sea_mirror().empty()) return;
-  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
+  glActiveTexture(GL_TEXTURE0 + kUploadUnit);
   ground_textures_.SetSeaMirror(ground_.sea_mirror());
 }
 
@@ -391,13 +385,11 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
 
 void SkyPainter::PaintLand(const PaintedView& view) {
   Begin("land");
-  if (!surface_ || surface_->width() != view.width || surface_->height() != view.height) {
-    glActiveTexture(GL_TEXTURE0 + kPictureUnit);
-    surface_.emplace(view.width, view.height);
-  }
+  Fit(surface_, view.width, view.height);
   surface_->Bind();
   land_.Draw(kViewBinding, view.part);
-  surface_->BindTextures(kSurfaceUnit, kSkyOnSurfaceUnit);
+  surface_->BindTexture(kSurfaceUnit, SurfaceMap::kSurface);
+  surface_->BindTexture(kSkyOnSurfaceUnit, SurfaceMap::kSky);
 }
 
 void SkyPainter::PaintShafts(const PaintedView& view) {
@@ -449,7 +441,7 @@ void SkyPainter::PaintDisk(const glm::dvec3& direction, double radius_rad,
 void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   Begin("picture");
   picture_->Bind();
-  picture_->UseDepth(surface_->depth());
+  picture_->UseDepthOf(*surface_);
   lamp_painter_->Bind();
   if (fog_) fog_->painter.Bind(*fog_->follower->map(), FogViewOf(view, SunOf(view)));
   const bool has_shade = sizes_.has_shafts && shade_.shade().Shades();

@@ -93,16 +93,4 @@ ViewDifference DifferenceOf(const Image& judge, const Image& painted) {
           1.0 - count / static_cast<double>(judge.rgb.size())};
 }
 
-Image DifferencePicture(const Image& judge, const Image& painted) {
-  ALPENGLOW_ENSURE(judge.rgb.size(), ==, painted.rgb.size());
-  const std::vector<bool> edges = EdgesOf(judge);
-  const double floor = ChangeFloor(judge);
-  Image picture(judge.width, judge.height);
-  for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
-    const auto change = static_cast<float>(PixelChange(judge.rgb[i], painted.rgb[i], floor));
-    picture.rgb[i] = edges[i] ? std::array{0.0F, 0.0F, 1.0F} : std::array{change, change, change};
-  }
-  return picture;
-}
-
 }  // namespace alpenglow

@@ -32,7 +32,4 @@ struct ViewDifference {
 ///     pictures that are nothing but edges.
 [[nodiscard]] ViewDifference DifferenceOf(const Image& judge, const Image& painted);
 
-/// PixelChange of each pixel, in grey; those that are left out are blue.
-[[nodiscard]] Image DifferencePicture(const Image& judge, const Image& painted);
-
 }  // namespace alpenglow

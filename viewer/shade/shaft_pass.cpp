@@ -1,50 +1,42 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/shade/shaft_pass.h"
 
-#include <string>
-
 #include "atmosphere/text/error.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
 
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
-
 std::vector<ShaderPiece> PassTexts(std::vector<ShaderPiece> air) {
-  for (const char* name : {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl",
-                           "viewer/shaders/shafts.frag.glsl"}) {
-    air.push_back(Piece(name));
-  }
-  return air;
+  return WithViewerPieces(std::move(air),
+                          {"viewer/shaders/shade_march.glsl", "viewer/shaders/shaft_texel.glsl",
+                           "viewer/shaders/shafts.frag.glsl"});
 }
 
 }  // namespace
 
 std::vector<ShaderPiece> ShaftTexts() {
-  return {Piece("viewer/shaders/shaft_texel.glsl"), Piece("viewer/shaders/shafts.glsl")};
+  return WithViewerPieces({}, {"viewer/shaders/shaft_texel.glsl", "viewer/shaders/shafts.glsl"});
 }
 
 ShaftPass::ShaftPass(std::vector<ShaderPiece> air)
-    : program_({Piece("viewer/shaders/full_screen.vert.glsl")}, PassTexts(std::move(air))) {}
+    : program_(FullScreenProgram(PassTexts(std::move(air)))) {}
 
 void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width,
                       int height, int surface_unit, int shade_unit, const ShaftDetail& detail) {
   ALPENGLOW_ENSURE(detail.scale, >=, 1);
   scale_ = detail.scale;
   const auto part = [&](int side) { return (side + scale_ - 1) / scale_; };
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(shade_unit));  // a new target binds its own
-  if (!map_ || map_->width() != part(width) || map_->height() != part(height))
-    map_.emplace(part(width), part(height), RenderTarget::Depth::kNone);
+  Fit(map_, part(width), part(height));
   map_->Bind();
   program_.Use();
   shade.Bind(program_, shade_unit, map_from_eye, detail.steps);
   glUniform1i(program_.Uniform("surface_map"), surface_unit);
   glUniform2i(program_.Uniform("picture_size"), width, height);
   glUniform1i(program_.Uniform("shaft_scale"), scale_);
-  glBindVertexArray(no_vertices_.id());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  DrawFullScreen(program_, no_vertices_);
   CheckGl("ShaftPass::Paint");
 }
 

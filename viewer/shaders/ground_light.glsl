@@ -119,17 +119,3 @@ vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
   return PlanetAt(at, SunAcross(at, at.up, 1e9), LevelSky(dot(at.up, sun.xyz)), to_eye);
 }
-
-// What it is brighter than an even planet: to be added, through the air, to the light of a sky that
-// ends on that. 0 for mountains without a sea.
-vec4 PlanetOverEven(vec3 point_m, vec3 to_eye) {
-#if PLANET_IS_WATER || GROUND_COVER != MOUNTAIN_COVER
-  GroundPlace at = GroundPlaceAt(point_m);
-  vec4 across = SunAcross(at, at.up, 1e9);
-  vec4 sky_irradiance = LevelSky(dot(at.up, sun.xyz));
-  return PlanetAt(at, across, sky_irradiance, to_eye) -
-         EvenPlanetRadiance(at, across, sky_irradiance);
-#else
-  return vec4(0.0);
-#endif
-}

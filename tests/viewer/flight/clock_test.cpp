@@ -42,7 +42,6 @@ TEST(Clock, PausedItStandsAndItsHandsCanBeMoved) {
   clock.Pause(true);
   clock.Advance(100.0);
   EXPECT_EQ(Shows(clock), "2026-06-21T04:00:00Z");
-  EXPECT_EQ(clock.running_rate(), 0.0);
   EXPECT_EQ(clock.rate(), 600.0) << "kept for when it runs again";
   clock.Shift(-60.0);
   EXPECT_EQ(Shows(clock), "2026-06-21T03:59:00Z");

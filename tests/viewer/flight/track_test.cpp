@@ -158,13 +158,6 @@ TEST(TrackPath, ATrackIsRefusedThatGoesNowhere) {
       HasSubstr("speed of the track"));
 }
 
-TEST(TrackPath, ItsFilesAreKnownByTheirNames) {
-  EXPECT_TRUE(IsTrackName("a/flight.GPX"));
-  EXPECT_TRUE(IsTrackName("flight.kml"));
-  EXPECT_FALSE(IsTrackName("flight.csv"));
-  EXPECT_FALSE(IsTrackName("gpx"));
-}
-
 TEST(TrackPath, IsAPathThatReplaysAndSeriesRead) {
   const CameraPath path = PathAlong(Circle(), {}, Sea);
   EXPECT_THAT(TextOf(path), HasSubstr("t_s,latitude,longitude,height_m,heading,pitch,roll,fov"));

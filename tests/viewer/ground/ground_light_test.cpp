@@ -16,9 +16,9 @@
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/embedded_text.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -29,10 +29,9 @@ constexpr double kEye_m = 4000.0;
 constexpr double kPixel_rad = 8e-4;
 
 std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
-  std::vector<ShaderPiece> pieces = SharedTexts();
-  for (const char* name : {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                           "viewer/shaders/sun_light.glsl"})
-    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  std::vector<ShaderPiece> pieces = WithViewerPieces(
+      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+                      "viewer/shaders/sun_light.glsl"});
   pieces.push_back(tests::SunInClosedForm());
   for (ShaderPiece& piece : GroundTexts(material)) pieces.push_back(std::move(piece));
   return pieces;
@@ -214,15 +213,11 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   const SiteAir& air = lit.site().air();
   light.on_terrain =
       std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
-  // In two parts, as a sky that ends on an even planet takes it.
-  const std::string place = "GroundPlaceAt(" + kPoint + ")";
-  const std::string even = "EvenPlanetRadiance(" + place + ", SunAcross(" + place + ", " + place +
-                           ".up, 1e9), LevelSky(dot(" + place + ".up, sun.xyz)))";
-  return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
-                     {"dot(" + even + " + PlanetOverEven(" + kPoint + ", " + kToEye +
-                          "), vec4(1.0, 0.0, 1.0, 0.0))",
-                      [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); },
-                      {0, 2}});
+  return Differences(
+      lit, light, eye_m, PlanetCases(lit, eye_m),
+      {"dot(PlanetRadiance(" + kPoint + ", " + kToEye + "), vec4(1.0, 0.0, 1.0, 0.0))",
+       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); },
+       {0, 2}});
 }
 
 double Quantile(const std::vector<double>& ascending, double share) {

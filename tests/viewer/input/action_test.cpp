@@ -128,12 +128,5 @@ TEST(Action, TheReadmeShowsTheTable) {
                                                      << ControlsMarkdown();
 }
 
-TEST(Action, TheHelpNamesEveryActionOnce) {
-  const std::string text = ControlsText();
-  for (const ActionRow& row : ActionTable()) {
-    EXPECT_THAT(text, HasSubstr(" " + std::string(row.does) + "\n"));
-  }
-}
-
 }  // namespace
 }  // namespace alpenglow

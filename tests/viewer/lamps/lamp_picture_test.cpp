@@ -15,9 +15,10 @@
 #include "renderer/lamp/lamp_light.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/embedded_text.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -36,8 +37,6 @@ void main() {
   picture = vec4(LampGlowRgb(direction, LampRayEnd(direction, 0.0)), 1.0);
 }
 )";
-
-ShaderPiece Piece(const char* name) { return {name, std::string(viewer::EmbeddedText(name))}; }
 
 /// A runway's edge in light fog before an eye that looks north from its end.
 Scene Runway() {
@@ -79,21 +78,18 @@ struct Night {
     glClear(GL_COLOR_BUFFER_BIT);
     LampPainter painter(lamps, quality, {});
     painter.Prepare(lamps, {{0.0, 0.0, 6.0}, glm::dmat3(1.0), 6.0, kPixel_rad}, 0.0);
-    std::vector<ShaderPiece> texts = SharedTexts();
-    texts.push_back(Piece("viewer/shaders/view_block.glsl"));
+    std::vector<ShaderPiece> texts =
+        WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
     texts.insert(texts.end(), painter.texts().begin(), painter.texts().end());
     texts.push_back({"stage", kStage});
-    const ShaderProgram program({Piece("viewer/shaders/full_screen.vert.glsl")}, texts);
+    const ShaderProgram program = FullScreenProgram(texts);
     painter.Connect(program);
     surface.BindTexture(0);
     painter.PaintGlow(kWidth, kHeight);
     const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
     picture.Bind();
     painter.Bind();
-    program.Use();
-    const GlVertexArray no_vertices;
-    glBindVertexArray(no_vertices.id());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    DrawFullScreen(program, GlVertexArray());
     painter.PaintOver(kPixel_rad);
     return picture.Read();
   }

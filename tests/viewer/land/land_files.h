@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,8 +31,10 @@ inline float HeightOfSample(int column, int row) {
 }
 
 /// Writes a tile of every `stride`-th sample from sample (column, row) of the land on.
+/// @param height  [m] of a sample.
 inline void WriteTile(const std::filesystem::path& file, int first_column, int first_row,
-                      int samples = kTileSamples, int stride = 1) {
+                      int samples = kTileSamples, int stride = 1,
+                      const std::function<float(int column, int row)>& height = HeightOfSample) {
   GDALRegister_GTiff();
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   GDALDataset* const dataset =
@@ -47,7 +50,7 @@ inline void WriteTile(const std::filesystem::path& file, int first_column, int f
   std::vector<float> heights;
   for (int row = 0; row < samples; ++row)
     for (int column = 0; column < samples; ++column)
-      heights.push_back(HeightOfSample(first_column + stride * column, first_row + stride * row));
+      heights.push_back(height(first_column + stride * column, first_row + stride * row));
   EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, samples, samples, heights.data(),
                                                 samples, samples, GDT_Float32, 0, 0, nullptr),
             CE_None);

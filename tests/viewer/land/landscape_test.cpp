@@ -35,13 +35,18 @@ struct LookOut {
     const double wide = std::tan(0.5 * fov_rad);
     return {wide * right, wide * kHeight / kWidth * glm::cross(right, forward), forward};
   }
-  /// Through the middle of a pixel, row 0 at the bottom; of any length.
+  /// Through the middle of a pixel, row 0 at the top; of any length.
   [[nodiscard]] glm::dvec3 Ray(int x, int y) const {
     const LandView view = View();
     return view.forward + (2.0 * (x + 0.5) / kWidth - 1.0) * view.right +
-           (2.0 * (y + 0.5) / kHeight - 1.0) * view.up;
+           (1.0 - 2.0 * (y + 0.5) / kHeight) * view.up;
   }
 };
+
+// Row 0 at the top.
+const glm::vec4& PixelAt(const std::vector<glm::vec4>& picture, int x, int y) {
+  return picture[static_cast<std::size_t>(y * kWidth + x)];
+}
 
 // Written apart from octahedral.glsl.
 glm::dvec3 UnitOf(const glm::vec4& surface) {
@@ -78,13 +83,15 @@ class LandscapePictures : public LandFolder {
     block.view_right = padded(view.right);
     block.view_up = padded(view.up);
     block.view_forward = padded(view.forward);
+    block.eye = {1e-3 * eye.place.height_m, 0.0, 0.0,
+                 1e-3 * OsculatingRadius(kWgs84, eye.place.latitude_rad)};
     const GlBuffer buffer;
     glBindBufferBase(GL_UNIFORM_BUFFER, kView, buffer.id());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
     map_->Bind();
     land.Draw(kView);
     CheckGl("draw");
-    return map_->ReadSurface();
+    return map_->ReadValues(SurfaceMap::kSurface);
   }
   [[nodiscard]] std::vector<glm::vec4> Settled(Landscape& land, const LookOut& eye) const {
     land.Settle(eye.place, eye.View());
@@ -111,7 +118,7 @@ Misses MissesOf(const std::vector<glm::vec4>& picture, const LookOut& eye, const
   };
   for (int y = 0; y < kHeight; y += 4) {
     for (int x = 0; x < kWidth; x += 4) {
-      const glm::vec4& pixel = picture[static_cast<std::size_t>(y * kWidth + x)];
+      const glm::vec4& pixel = PixelAt(picture, x, y);
       const auto hit = terrain.Intersect(origin, glm::normalize(turned(eye.Ray(x, y))));
       if (!hit && pixel.w == 0.0F) continue;
       if (!hit || pixel.w == 0.0F) {
@@ -202,10 +209,8 @@ TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
     eye.place.height_m = *land.GroundUnder(eye.place) + std::exp2(i % 12);
     const auto picture = Settled(land, eye);
     for (int x = 0; x < kWidth; ++x) {
-      int y = 0;
-      const auto is_land = [&] {
-        return picture[static_cast<std::size_t>(y * kWidth + x)].w > 0.0F;
-      };
+      int y = 0;  // from below
+      const auto is_land = [&] { return PixelAt(picture, x, kHeight - 1 - y).w > 0.0F; };
       // Beyond the rim there is no land under a low view from above.
       while (y < kHeight && !is_land()) ++y;
       ASSERT_TRUE(i % 12 >= 8 || y == 0) << "column " << x;
@@ -285,9 +290,7 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
       return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, sun_x});
     };
   };
-  const auto middle = [&] {
-    return Draw(land, eye)[static_cast<std::size_t>(10 * kWidth + kWidth / 2)];
-  };
+  const auto middle = [&] { return PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11); };
   land.Settle(eye.place, eye.View());
   EXPECT_EQ(middle().z, 4.0F) << "without a function the whole sun shines";
   land.Relight(light(-2.0F));
@@ -297,7 +300,7 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   land.Settle(eye.place, eye.View());
   EXPECT_FALSE(land.IsRelighting());
   EXPECT_NEAR(middle().z, -2.0F, 1e-3F);
-  const glm::vec4 sky = map_->ReadSky()[static_cast<std::size_t>(10 * kWidth + kWidth / 2)];
+  const glm::vec4 sky = PixelAt(map_->ReadValues(SurfaceMap::kSky), kWidth / 2, kHeight - 11);
   EXPECT_NEAR(sky.x, 0.1F, 2e-4F);
   EXPECT_NEAR(sky.w, 0.4F, 4e-4F);
 }
@@ -321,14 +324,64 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
   EXPECT_LT(Quantile(misses.distance, 0.5), 1e-4) << "2 m over ground that floats place to 1 mm";
 }
 
+// Beside these tiles coarse land reaches 130 m higher than the fine land in its place: over a range
+// of heights each has the other drawn.
+TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
+  WriteTiles(2);
+  for (int i = 0; i < 12; ++i) {
+    const double height_m = 5400.0 + 15.0 * i;
+    SCOPED_TRACE(height_m);
+    const LookOut eye{PlaceOfSample(200.3, 91.7, height_m), 2.8, -0.3};
+    Landscape fresh(Folder(), {96.0}, kWgs84), flown(Folder(), {96.0}, kWgs84);
+    const auto judge = Settled(fresh, eye);
+    LookOut higher = eye;
+    higher.place.height_m += 100.0 * (i % 3);
+    flown.Settle(higher.place, higher.View());
+    EXPECT_EQ(Settled(flown, eye), judge);
+    EXPECT_EQ(Settled(flown, eye), judge) << "nor on how often that is asked";
+  }
+}
+
+// A cone of 25 km around a sample.
+auto Mountain(int column, int row, double top_m) {
+  return [=](int at_column, int at_row) {
+    const double away_m = std::hypot(32.0 * (at_column - column), 46.0 * (at_row - row));
+    return static_cast<float>(top_m * std::max(1.0 - away_m / 25e3, 0.0));
+  };
+}
+
+// From 3 km the horizon lies 196 km away. At 250 km it hides what is lower than 230 m, at 600 km
+// what is lower than 12.8 km.
+TEST_F(LandscapePictures, ThePlanetHidesWhatIsBeyondTheHorizonButNotWhatRisesOverIt) {
+  constexpr int kEast = 7869, kNorth = -12960;  // 250 km, 600 km
+  constexpr int kSamples = 101, kStride = 16;
+  constexpr int kHalf = kStride * (kSamples - 1) / 2;
+  WriteTile(folder_ / "near.tif", kEast - kHalf, -kHalf, kSamples, kStride,
+            Mountain(kEast, 0, 4000.0));
+  WriteTile(folder_ / "far.tif", -kHalf, kNorth - kHalf, kSamples, kStride,
+            Mountain(0, kNorth, 8000.0));
+  Landscape land(Folder(), {96.0}, kWgs84);
+  const GeodeticPosition eye = PlaceOfSample(0.0, 0.0, 3000.0);
+  const auto pixels = [&](double heading_rad) {
+    const auto picture = Settled(land, {eye, heading_rad, -0.03, 0.2});
+    EXPECT_GT(land.Figures().triangles, 0) << "it stands in the view";
+    return std::count_if(picture.begin(), picture.end(),
+                         [](const glm::vec4& pixel) { return pixel.w > 0.0F; });
+  };
+  EXPECT_GT(pixels(0.5 * kPi), 1000) << "15 mrad high and 190 wide, of 0.8 mrad a pixel";
+  EXPECT_EQ(pixels(0.0), 0);
+}
+
 TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
   Landscape land({}, {96.0}, kWgs84);
+  land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
+    return std::vector<VertexLight>(vertices.size());
+  });
   const LookOut eye{{0.8, 0.1, 1000.0}, 0.0, 0.0};
   const auto picture = Settled(land, eye);
   EXPECT_TRUE(std::all_of(picture.begin(), picture.end(),
                           [](const glm::vec4& pixel) { return pixel.w == 0.0F; }));
   EXPECT_FALSE(land.GroundUnder(eye.place));
-  EXPECT_FALSE(land.Middle());
 }
 
 TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
@@ -352,13 +405,13 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   EXPECT_GT(misses.both, 500);
   EXPECT_LT(Quantile(misses.distance, 1.0), 1e-5);
   EXPECT_LT(Quantile(misses.normal, 1.0), 1e-4);
-  const auto grid = land.SampledGrid(eye.place, 1000.0, 9);
+  const auto grid = land.Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
   EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);
   land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, -1.0F});
   });
-  EXPECT_NEAR(Settled(land, eye)[kWidth / 2].z, -1.0F, 1e-5F);
+  EXPECT_NEAR(PixelAt(Settled(land, eye), kWidth / 2, kHeight - 1).z, -1.0F, 1e-5F);
 }
 
 }  // namespace

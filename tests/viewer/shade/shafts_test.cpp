@@ -15,10 +15,12 @@
 #include "tests/fixtures/rough_land.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/embedded_text.h"
 #include "viewer/shade/shade_map.h"
 #include "viewer/shade/shade_texture.h"
 #include "viewer/shade/shaft_pass.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -84,9 +86,8 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
   glm::dmat4 map_from_eye(1.0);
   map_from_eye[3] = glm::dvec4(eye, 1.0);
 
-  const std::vector<ShaderPiece> pieces = {
-      {"air", kSingleTo},
-      {"march", std::string(viewer::EmbeddedText("viewer/shaders/shade_march.glsl"))}};
+  const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
+                                           ViewerPiece("viewer/shaders/shade_march.glsl")};
   std::vector<tests::Arguments<float>> points;
   for (const Ray& ray : rays)
     points.push_back({static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
@@ -145,21 +146,19 @@ TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
   glm::dmat4 map_from_eye(1.0);
   map_from_eye[3] = glm::dvec4(400.0, 300.0, 4000.0, 1.0);
   const auto down_km = static_cast<float>(1e-3 * (4000.0 - map->floor_m));
-  const std::vector<float> taken = tests::EvaluateOnGpu(
-      {{"air", kSingleTo},
-       {"march", std::string(viewer::EmbeddedText("viewer/shaders/shade_march.glsl"))}},
-      "MarchedShade(vec3(0.0, 0.0, -1.0), a[0]).x", {{1e9F}, {down_km}},
-      [&](const ShaderProgram& program) {
-        texture.Bind(program, 1, map_from_eye, {4, 8});
-      });
+  const std::vector<float> taken =
+      tests::EvaluateOnGpu({{"air", kSingleTo}, ViewerPiece("viewer/shaders/shade_march.glsl")},
+                           "MarchedShade(vec3(0.0, 0.0, -1.0), a[0]).x", {{1e9F}, {down_km}},
+                           [&](const ShaderProgram& program) {
+                             texture.Bind(program, 1, map_from_eye, {4, 8});
+                           });
   EXPECT_NEAR(taken[0], taken[1], 1e-6F);
   EXPECT_LT(taken[0], 0.3F) << "of a ray of any length";
 }
 
 TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
-  const std::vector<ShaderPiece> pieces = {
-      {"air", kSingleTo},
-      {"march", std::string(viewer::EmbeddedText("viewer/shaders/shade_march.glsl"))}};
+  const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
+                                           ViewerPiece("viewer/shaders/shade_march.glsl")};
   std::vector<tests::Arguments<float>> points;
   for (int i = -30; i <= 30; ++i) points.push_back({0.1F * static_cast<float>(i)});
   const std::vector<float> sums = tests::EvaluateOnGpu(pieces, "SunlightUpTo(a[0])", points);
@@ -174,9 +173,8 @@ TEST_F(Shafts, SunlightOverAnEdgeSumsUpToThatOfTheLimbDarkenedDisk) {
 }
 
 TEST_F(Shafts, DarknessBetweenTwoPlacesIsTheMeanOfThatOnTheWay) {
-  const std::vector<ShaderPiece> pieces = {
-      {"air", kSingleTo},
-      {"march", std::string(viewer::EmbeddedText("viewer/shaders/shade_march.glsl"))}};
+  const std::vector<ShaderPiece> pieces = {{"air", kSingleTo},
+                                           ViewerPiece("viewer/shaders/shade_march.glsl")};
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (const float from : {-5e4F, -300.0F, -4.0F, -1.0F, 0.2F, 3.0F, 700.0F}) {
@@ -203,8 +201,7 @@ TEST_F(Shafts, DarknessBetweenTwoPlacesIsTheMeanOfThatOnTheWay) {
 }
 
 TEST_F(Shafts, ATexelKeepsLightAndDistance) {
-  const ShaderPiece texel{"texel",
-                          std::string(viewer::EmbeddedText("viewer/shaders/shaft_texel.glsl"))};
+  const ShaderPiece texel = ViewerPiece("viewer/shaders/shaft_texel.glsl");
   std::vector<tests::Arguments<float>> points;
   for (const float light : {0.0F, 1e-6F, 0.37F, 80.0F}) {
     for (const float km : {0.0015F, 0.2F, 17.3F, 900.0F, 1e9F}) points.push_back({light, km});
@@ -245,12 +242,18 @@ class ShaftPicture {
 
   /// What shade takes.
   [[nodiscard]] Image Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
-    const std::vector<ShaderPiece> air = {
-        {"view",
-         "const vec4 view_right = vec4(0.2, 0.0, 0.0, 0.0), view_up = vec4(0.0, 0.0, 0.08, 0.0),\n"
-         "           view_forward = vec4(0.0, 0.998, 0.06, 0.0);\n"},
-        {"air", kSingleTo}};
+    constexpr GLuint kViewBinding = 1;
+    const std::vector<ShaderPiece> air = {ViewerPiece("viewer/shaders/view_block.glsl"),
+                                          {"air", kSingleTo}};
     ShaftPass pass(air);
+    ViewBlock view{};
+    view.view_right = {0.2, 0.0, 0.0, 0.0};
+    view.view_up = {0.0, 0.0, 0.08, 0.0};
+    view.view_forward = {0.0, 0.998, 0.06, 0.0};
+    const GlBuffer buffer;
+    glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, buffer.id());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(view), &view, GL_STATIC_DRAW);
+    pass.program().BindBlock("View", kViewBinding);
     glm::dmat4 map_from_eye(1.0);
     map_from_eye[3] = glm::dvec4(0.0, -6000.0, 1700.0, 1.0);
     pass.Paint(shade, map_from_eye, kWidth, kHeight, 0, 1, detail);
@@ -261,17 +264,12 @@ class ShaftPicture {
                      "  float far = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w;\n"
                      "  float way = far > 0.0 ? 1e-3 * far : 1e9;\n"
                      "  picture = ShadedSingle(way, SingleTo(vec3(0.0), way));\n}\n"});
-    const ShaderProgram picture(
-        {{"full_screen",
-          std::string(viewer::EmbeddedText("viewer/shaders/full_screen.vert.glsl"))}},
-        texts);
+    const ShaderProgram picture = FullScreenProgram(texts);
     const RenderTarget target(kWidth, kHeight, RenderTarget::Depth::kNone);
     target.Bind();
     pass.Bind(picture, 2);
     picture.BindSampler("surface_map", 0);
-    const GlVertexArray no_vertices;
-    glBindVertexArray(no_vertices.id());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    DrawFullScreen(picture, GlVertexArray());
     CheckGl("ShaftPicture");
     return target.Read();
   }

@@ -13,12 +13,12 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
-#include "viewer/embedded_text.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/paint/sky_painter.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -41,7 +41,7 @@ class Glslang : public TemporaryFolder {
   }
   /// Checks `stage`, a file of the viewer named "....vert.glsl" or "....frag.glsl", after `texts`.
   void ExpectAccepted(std::vector<ShaderPiece> texts, const std::string& stage) const {
-    texts.push_back({stage, std::string(viewer::EmbeddedText("viewer/shaders/" + stage))});
+    texts.push_back(ViewerPiece("viewer/shaders/" + stage));
     ExpectTextAccepted(texts, stage);
   }
   void ExpectTextAccepted(const std::vector<ShaderPiece>& texts, const std::string& stage) const {
@@ -55,12 +55,8 @@ class Glslang : public TemporaryFolder {
   }
 };
 
-ShaderPiece Piece(const std::string& name) {
-  return {name, std::string(viewer::EmbeddedText(name))};
-}
-
 TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
-  ShaderPiece view = Piece("viewer/shaders/view_block.glsl");
+  ShaderPiece view = ViewerPiece("viewer/shaders/view_block.glsl");
   ExpectAccepted({}, "full_screen.vert.glsl");
   ExpectAccepted({}, "hud.vert.glsl");
   ExpectAccepted({}, "hud.frag.glsl");
@@ -72,18 +68,18 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   const std::vector<ShaderPiece> shafts = {
       view,
       {"air", "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"},
-      Piece("viewer/shaders/shade_march.glsl"),
-      Piece("viewer/shaders/shaft_texel.glsl")};
+      ViewerPiece("viewer/shaders/shade_march.glsl"),
+      ViewerPiece("viewer/shaders/shaft_texel.glsl")};
   ExpectAccepted(shafts, "shafts.frag.glsl");
   std::vector<ShaderPiece> land = SharedTexts();
   land.push_back(view);
-  land.push_back(Piece("viewer/shaders/land_block.glsl"));
+  land.push_back(ViewerPiece("viewer/shaders/land_block.glsl"));
   ExpectAccepted(land, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
-    ExpectAccepted(
-        {Piece("viewer/shaders/land_block.glsl"), Piece("viewer/shaders/octahedral.glsl"),
-         Piece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
-        "land.frag.glsl");
+    ExpectAccepted({ViewerPiece("viewer/shaders/land_block.glsl"),
+                    ViewerPiece("viewer/shaders/octahedral.glsl"),
+                    ViewerPiece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
+                   "land.frag.glsl");
   }
 }
 
@@ -108,13 +104,13 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
     const Scene scene = LampScene(with_fog);
     const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
     std::vector<ShaderPiece> texts = SharedTexts();
-    texts.push_back(Piece("viewer/shaders/view_block.glsl"));
+    texts.push_back(ViewerPiece("viewer/shaders/view_block.glsl"));
     std::vector<ShaderPiece> corners = texts;
     const std::vector<ShaderPiece> of_lamps = LampTexts(lamps, {.nodes = 6, .step = 4});
     texts.insert(texts.end(), of_lamps.begin(), of_lamps.end());
     corners.insert(corners.end(), of_lamps.begin(),
                    of_lamps.end() - 1);  // the last is of pixels
-    corners.push_back(Piece("viewer/shaders/lamp_corners.glsl"));
+    corners.push_back(ViewerPiece("viewer/shaders/lamp_corners.glsl"));
     ExpectAccepted(corners, "lamp_core.vert.glsl");
     ExpectAccepted(corners, "lamp_disk.vert.glsl");
     for (const char* stage :
@@ -150,11 +146,9 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
     GroundCover cover;
     cover.kind = kind;
     if (kind == GroundCover::Kind::kLambert) cover.sea_level_m = 0.0;
-    std::vector<ShaderPiece> texts = SharedTexts();
-    for (const char* name :
-         {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-          "viewer/shaders/sun_light.glsl"})
-      texts.push_back({name, std::string(viewer::EmbeddedText(name))});
+    std::vector<ShaderPiece> texts = WithViewerPieces(
+        SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+                        "viewer/shaders/sun_light.glsl"});
     texts.push_back(tests::SunInClosedForm());
     const std::vector<double> bands{450.0, 550.0, 650.0};
     for (ShaderPiece& piece : GroundTexts(GroundMaterial(cover, nullptr, bands)))

@@ -11,25 +11,10 @@
 #include "tests/fixtures/shared_text_cases.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 
 namespace alpenglow::tests {
-
-/// A picture of one pixel to draw into: without a window there is none, and OpenGL wants one even
-/// for draws that stop before the rasteriser.
-class OnePixel {
- public:
-  OnePixel() {
-    glBindTexture(GL_TEXTURE_2D, pixel_.id());
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    glBindFramebuffer(GL_FRAMEBUFFER, target_.id());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixel_.id(), 0);
-  }
-
- private:
-  GlTexture pixel_;
-  GlFramebuffer target_;
-};
 
 /// Values of an expression in a[0] ... a[7], one a point, recorded by transform feedback.
 /// @param prepare  gives the program what its texts read besides the arguments.
@@ -43,7 +28,9 @@ inline std::vector<float> EvaluateOnGpu(
                     "second.y, second.z, second.w);\n  value = " +
                         expression + ";\n}\n"});
   const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"value"});
-  const OnePixel target;
+  // Without a window there is nothing to draw into, and OpenGL wants it even for draws that stop
+  // before the rasteriser.
+  const RenderTarget target(1, 1);
   const GlVertexArray layout;
   glBindVertexArray(layout.id());
   const GlBuffer arguments;

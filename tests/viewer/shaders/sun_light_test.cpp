@@ -9,7 +9,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/embedded_text.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -31,10 +31,8 @@ std::vector<tests::Arguments<float>> RisingDisks() {
 }
 
 std::vector<float> OfDisks(const char* component) {
-  std::vector<ShaderPiece> pieces = SharedTexts();
-  for (const char* name : {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"}) {
-    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
-  }
+  const std::vector<ShaderPiece> pieces = WithViewerPieces(
+      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"});
   return tests::EvaluateOnGpu(pieces, std::string("DiskOverHorizon(a[0], a[1], a[2])") + component,
                               RisingDisks());
 }
@@ -55,8 +53,7 @@ TEST_F(SunLight, OfADiskThatRisesIsThatOfTheRenderer) {
 TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   std::vector<ShaderPiece> pieces = SharedTexts();
   pieces.push_back({"view", "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"});
-  pieces.push_back({"viewer/shaders/sun_light.glsl",
-                    std::string(viewer::EmbeddedText("viewer/shaders/sun_light.glsl"))});
+  pieces.push_back(ViewerPiece("viewer/shaders/sun_light.glsl"));
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (double rho = 0.0; rho < 1.2; rho += 0.05) {
@@ -79,9 +76,8 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
 TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
-  std::vector<ShaderPiece> pieces = SharedTexts();
-  for (const char* name : {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"})
-    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  const std::vector<ShaderPiece> pieces = WithViewerPieces(
+      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"});
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (double right = -1.3; right <= 1.3; right += 0.1) {

@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/embedded_text.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -46,10 +46,9 @@ GLint SizeOf(const ShaderProgram& program, const char* block) {
 
 // A program that reads all blocks of the picture.
 ShaderProgram PictureBlocks() {
-  std::vector<ShaderPiece> pieces = SharedTexts();
-  for (const char* name : {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
-                           "viewer/shaders/ground.glsl"})
-    pieces.push_back({name, std::string(viewer::EmbeddedText(name))});
+  std::vector<ShaderPiece> pieces = WithViewerPieces(
+      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
+                      "viewer/shaders/ground.glsl"});
   pieces.push_back({"main", "void main() { gl_Position = shell + eye + forest; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
 }
@@ -137,8 +136,8 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   block.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
   block.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
   const GlBuffer buffer;
-  std::vector<ShaderPiece> texts = SharedTexts();
-  texts.push_back({"ground", std::string(viewer::EmbeddedText("viewer/shaders/ground.glsl"))});
+  const std::vector<ShaderPiece> texts =
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/ground.glsl"});
   return tests::EvaluateOnGpu(texts, expression, GroundPoints(), [&](const ShaderProgram& program) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 3, buffer.id());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);

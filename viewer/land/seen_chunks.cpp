@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/land/seen_chunks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "viewer/land/skyline.h"
+
+namespace alpenglow {
+namespace {
+
+// The four sides of the view and what is before it, as planes through the eye; inside is positive.
+class ViewPyramid {
+ public:
+  ViewPyramid(const EyeInAnchor& eye, const LandView& view) : at_(eye.at) {
+    const double wide = glm::length(view.right), high = glm::length(view.up);
+    const glm::dvec3 forward = eye.Turned(view.forward);
+    const glm::dvec3 right = eye.Turned(view.right) / wide, up = eye.Turned(view.up) / high;
+    planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
+               high * forward - up, forward};
+  }
+  // Whether any of a box may be inside.
+  [[nodiscard]] bool Touches(const glm::dvec3& low, const glm::dvec3& high) const {
+    return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec3& plane) {
+      const glm::dvec3 corner{plane.x > 0.0 ? high.x : low.x, plane.y > 0.0 ? high.y : low.y,
+                              plane.z > 0.0 ? high.z : low.z};
+      return glm::dot(plane, corner - at_) > 0.0;
+    });
+  }
+
+ private:
+  glm::dvec3 at_;
+  std::array<glm::dvec3, 5> planes_;
+};
+
+// No vertex is missing.
+bool IsFull(const LandChunk& chunk) { return chunk.triangles.size() == kChunkIndices; }
+
+// Lines of the surface along every eighth row and column of a chunk.
+void AddCrests(Skyline& skyline, const LandChunk& chunk, const EyeInAnchor& eye) {
+  constexpr int kStride = kChunkCells / 2;
+  const auto between = [&](int i, int j) {
+    const auto v = static_cast<std::size_t>(j * kChunkSide + i);
+    const glm::dvec3 own(chunk.own[v].position_m);
+    if (chunk.coarse.empty()) return Skyline::Between{eye.From(own), eye.From(own)};
+    const auto [first, second] = chunk.ends[v];
+    const glm::dvec3 coarse = 0.5 * (glm::dvec3(chunk.coarse[first].position_m) +
+                                     glm::dvec3(chunk.coarse[second].position_m));
+    return Skyline::Between{eye.From(own), eye.From(coarse)};
+  };
+  for (int line = 0; line <= kChunkCells; line += kStride) {
+    std::array<Skyline::Between, kChunkSide> row, column;
+    for (int k = 0; k < kChunkSide; ++k) {
+      row[static_cast<std::size_t>(k)] = between(k, line);
+      column[static_cast<std::size_t>(k)] = between(line, k);
+    }
+    skyline.Add(row);
+    skyline.Add(column);
+  }
+}
+
+// A part of a chunk, as the skyline may hide it.
+struct SeenPart {
+  std::size_t chunk;  // which of those in view
+  glm::dvec3 middle;  // in the eye's frame
+  double radius_m, highest_m, nearest_m;
+};
+
+SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye) {
+  const glm::dvec3 low(box.low), high(box.high);
+  const glm::dvec3 middle = eye.From(0.5 * (low + high));
+  const glm::dvec3 half = 0.5 * (high - low);
+  // The box leans in the eye's frame: its highest corner counts.
+  const glm::dvec3 rise = glm::abs(eye.up) * half;
+  const double radius = std::hypot(half.x, half.y) + half.z * std::hypot(eye.up.x, eye.up.y);
+  return {chunk, middle, radius, middle.z + rise.x + rise.y + rise.z,
+          Skyline::NearestOf(middle, radius)};
+}
+
+// Whether each chunk has a part that no nearer land hides.
+std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks,
+                            const EyeInAnchor& eye) {
+  std::vector<SeenPart> parts;
+  for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk)
+    for (const ChunkBox& box : chunks[chunk].chunk->parts)
+      if (box.low.x <= box.high.x) parts.push_back(PartOf(box, chunk, eye));
+  std::sort(parts.begin(), parts.end(),
+            [](const SeenPart& a, const SeenPart& b) { return a.nearest_m < b.nearest_m; });
+  Skyline skyline;
+  std::vector<char> is_seen(chunks.size(), 0);
+  for (const SeenPart& part : parts) {
+    if (is_seen[part.chunk] != 0) continue;
+    if (skyline.Hides(part.middle, part.radius_m, part.highest_m)) continue;
+    is_seen[part.chunk] = 1;
+    if (IsFull(*chunks[part.chunk].chunk)) AddCrests(skyline, *chunks[part.chunk].chunk, eye);
+  }
+  return is_seen;
+}
+
+}  // namespace
+
+std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
+                                        const EyeInAnchor& eye, const LandView& view) {
+  const ViewPyramid pyramid(eye, view);
+  std::erase_if(chunks, [&](const ChunkBuffers::Drawn& drawn) {
+    return !pyramid.Touches(drawn.chunk->low, drawn.chunk->high);
+  });
+  return chunks;
+}
+
+std::vector<ChunkBuffers::Drawn> WithoutHidden(const std::vector<ChunkBuffers::Drawn>& chunks,
+                                               const EyeInAnchor& eye) {
+  const std::vector<char> is_seen = NotHidden(chunks, eye);
+  std::vector<ChunkBuffers::Drawn> seen;
+  for (std::size_t i = 0; i < chunks.size(); ++i)
+    if (is_seen[i] != 0) seen.push_back(chunks[i]);
+  return seen;
+}
+
+}  // namespace alpenglow

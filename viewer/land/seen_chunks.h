@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Which chunks the eye may see. Never leaves one out by mistake; keeps their order.
+#pragma once
+
+#include <vector>
+
+#include "viewer/land/chunk_buffers.h"
+#include "viewer/land/land_pass.h"
+
+namespace alpenglow {
+
+/// Those that may reach into the view.
+[[nodiscard]] std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
+                                                      const EyeInAnchor& eye, const LandView& view);
+
+/// Those that have a part which no nearer land hides (skyline.h), for an eye over the ground.
+[[nodiscard]] std::vector<ChunkBuffers::Drawn> WithoutHidden(
+    const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye);
+
+}  // namespace alpenglow
