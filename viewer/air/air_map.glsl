@@ -5,9 +5,10 @@
 // Rows count from the horizon: quadratic in the tangent of half the angle from it, over that of the
 // range; those above it end where rays meet no land any more. Columns count from the sun's azimuth,
 // quadratic in the tangent of a quarter of the angle between, nodes of the aerosol's phase function
-// from the forward direction, quadratic in the sine of half the angle. None needs the angle itself. Distances are shares t of a ray's
-// reach: from where it first meets air below the altitude that no land exceeds (the ceiling) to the
-// ground or, above the horizon, to where it leaves it. With crowding k > -1
+// from the forward direction, quadratic in the sine of half the angle. None needs the angle itself.
+// Distances are shares t of a ray's reach: from where it first meets air below the altitude that no
+// land exceeds (the ceiling) to the ground or, above the horizon, to where it leaves it. With
+// crowding k > -1
 //
 //   w = t (1 + k) / (1 + k t)
 //

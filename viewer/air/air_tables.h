@@ -12,8 +12,8 @@
 // divided by 1 - T as well, T the transmittance on that way: a mean source, which hardly changes
 // with distance,
 //
-//   S(direction, d) = single (1 - T) [p_R(nu) a_R + p_M(nu) a_M],   D(direction, d) = diffuse (1 - T),
-//   T = exp(-d extinction)
+//   S(direction, d) = single (1 - T) [p_R(nu) a_R + p_M(nu) a_M],
+//   D(direction, d) = diffuse (1 - T),   T = exp(-d extinction)
 //
 // S is sunlight scattered once where the planet's own shadow lets it in, terrain left out; D all
 // light scattered more than once. Axes: air_map.glsl.
@@ -41,8 +41,8 @@ struct AirTablesSize {
 /// How fine tables are. Each step is about twice as exact and takes about twice as long to make.
 enum class AirQuality { kFirst, kLow, kMedium, kHigh };
 
-/// From high up rows are longer, because the terminator crosses them, and ways through the air below
-/// short. kFirst is for a first frame that must not wait.
+/// From high up rows are longer, because the terminator crosses them, and ways through the air
+/// below short. kFirst is for a first frame that must not wait.
 [[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m);
 
 /// Texels of four floats, x fastest.
@@ -99,8 +99,8 @@ struct MediumTables {
 
 [[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air);
 
-/// On the calling thread alone. `air`, `diffuse` and `medium` must be of one medium; neither is kept. Throws
-/// InputError for a medium of more than four bands.
+/// On the calling thread alone. `air`, `diffuse` and `medium` must be of one medium; neither is
+/// kept. Throws InputError for a medium of more than four bands.
 [[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);

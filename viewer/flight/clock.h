@@ -41,7 +41,7 @@ class SceneClock {
   explicit SceneClock(const UtcInstant& start) : now_(start) {}
 
   [[nodiscard]] const UtcInstant& now() const { return now_; }
-  /// Seconds per second: what is asked for, and what it does (0 while paused).
+  /// Seconds per second; kept while the clock is paused.
   [[nodiscard]] double rate() const { return rate_; }
   [[nodiscard]] bool paused() const { return paused_; }
 

@@ -24,9 +24,10 @@ class RenderTarget {
   /// One picture of kRgba32F.
   RenderTarget(int width, int height, Depth depth = Depth::kNone)
       : RenderTarget(width, height, {PixelFormat::kRgba32F}, depth) {}
-  /// Contents are undefined until drawn. @param width, height >= 1. @param formats of the outputs of
-  /// the fragment stage at locations 0, 1, ...: one to eight. Throws DisplayError when the graphics
-  /// card has no memory for them. What texture units are bound to stays.
+  /// Contents are undefined until drawn; what texture units are bound to stays. Throws DisplayError
+  /// when the graphics card has no memory for them.
+  /// @param width, height >= 1.
+  /// @param formats of the outputs of the fragment stage at locations 0, 1, ...: one to eight.
   RenderTarget(int width, int height, const std::vector<PixelFormat>& formats, Depth depth);
 
   /// Draws go here from now on, over the whole picture, into all outputs.

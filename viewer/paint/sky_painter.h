@@ -2,9 +2,10 @@
 // Pictures of sky and land on the graphics card: what the renderer computes is made beside drawing
 // as tables, maps and light of vertices, and the card interpolates.
 //
-// A frame is four passes: what the eye sees of the land (Landscape), what shade takes from rays
-// (ShaftPass), the linear picture, and its development for a display. How far it is from
-// SceneRenderer's: viewer/README.md, and `skyview --explain` of a view.
+// The passes of a frame: what the eye sees of the land (Landscape), what shade takes from rays
+// (ShaftPass), the glow of lamps (LampPainter), the linear picture, the lamps over it. Developer
+// shows it. How far it is from SceneRenderer's: tests/bench/README.md, and `skyview --explain` of a
+// view.
 #pragma once
 
 #include <array>
@@ -178,7 +179,7 @@ class SkyPainter {
   PassTimer* timer_ = nullptr;
 };
 
-/// The land of a scene; a mesh is none.
+/// The land of a scene: its elevation model, its mesh or the built-in range.
 [[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
 }  // namespace alpenglow
