@@ -198,7 +198,6 @@ void SkyPainter::UploadDrape() {
   const double side_m = std::max(drape_.place.width_m, drape_.place.depth_m);
   const double wanted = std::ceil(kTexelsAPixel * side_m / drape_.colours->pixel_m());
   const auto texels = static_cast<std::size_t>(std::clamp(wanted, 1.0, kMostTexels));
-  glActiveTexture(GL_TEXTURE0 + kPictureUnit);
   ground_textures_.SetDrape(DrapeTexels(*drape_.colours, drape_.place, texels));
 }
 
