@@ -155,7 +155,8 @@ std::vector<ShaderPiece> AirTexts() {
   return {ViewerPiece("viewer/shaders/view_block.glsl"),
           {"air",
            "vec4 SingleTo(vec3 direction, float distance_km) {\n"
-           "  return 1.0 - exp(-distance_km / vec4(25.0, 12.0, 45.0, 80.0));\n}\n"}};
+           "  return 1.0 - exp(-distance_km / vec4(25.0, 12.0, 45.0, 80.0));\n}\n"
+           "vec4 SkyRadiance(vec3 direction) { return SingleTo(direction, 1e9); }\n"}};
 }
 
 class Picture {
@@ -213,7 +214,7 @@ class Picture {
                      "uniform sampler2D surface_map;\nout vec4 picture;\nvoid main() {\n"
                      "  float way = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w;\n"
                      "  way = way > 0.0 ? 1e-3 * way : 1e9;\n"
-                     "  picture = 1.0 - ShadedSingle(way, vec4(1.0));\n}\n"});
+                     "  picture = 1.0 - TakenByShade(way, vec4(1.0));\n}\n"});
     return texts;
   }
 

@@ -21,9 +21,10 @@ void UploadDither() {
   for (int y = 0; y < kDitherTileSize; ++y) {
     for (int x = 0; x < kDitherTileSize; ++x) {
       for (int channel = 0; channel < 3; ++channel) noise.push_back(DitherNoise(x, y, channel));
+      noise.push_back(0.0F);
     }
   }
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, kDitherTileSize, kDitherTileSize, 0, GL_RGB, GL_FLOAT,
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kDitherTileSize, kDitherTileSize, 0, GL_RGBA, GL_FLOAT,
                noise.data());
   ClampAndFilter(GL_TEXTURE_2D, false);
 }
@@ -43,8 +44,8 @@ ShaderProgram ProgramOf(ToneCurve curve) {
 
 void UploadTable() {
   const ToneTable table;
-  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGB32F, ToneTable::kSide, ToneTable::kSide, ToneTable::kSide, 0,
-               GL_RGB, GL_FLOAT, table.codes().data());
+  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, ToneTable::kSide, ToneTable::kSide, ToneTable::kSide,
+               0, GL_RGB, GL_FLOAT, table.codes().data());
   ClampAndFilter(GL_TEXTURE_3D, true);
 }
 

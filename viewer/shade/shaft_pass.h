@@ -27,7 +27,7 @@ struct ShaftDetail {
 
 class ShaftPass {
  public:
-  /// @param air  texts that say what View is and define SingleTo (shade_march.glsl). Their blocks
+  /// @param air  texts that say what View is and define SingleTo (shade_march.glsl) and SkyRadiance. Their blocks
   ///             and samplers are for the caller to bind, in program().
   explicit ShaftPass(std::vector<ShaderPiece> air);
 
@@ -50,7 +50,7 @@ class ShaftPass {
   int scale_ = 1;
 };
 
-/// What the fragment shader of a picture needs to ask ShadedSingle.
+/// What the fragment shader of a picture needs to ask TakenByShade.
 [[nodiscard]] std::vector<ShaderPiece> ShaftTexts();
 
 }  // namespace alpenglow

@@ -64,7 +64,7 @@ void main() {
   float distance_km = 1e-3 * surface.w;
   AirTo air = AirToPoint(direction, distance_km);
 #if HAS_SHADE
-  air.single -= ShadedSingle(distance_km, air.single);
+  air.single -= TakenByShade(distance_km, air.single);
 #endif
   vec4 ground =
       air.transmittance * GroundSeen(direction, surface, texelFetch(sky_on_surface, pixel, 0));
@@ -93,7 +93,7 @@ void main() {
   vec3 direction = ViewDirection(screen);
   vec4 radiance = SkyRadiance(direction);
 #if HAS_SHADE
-  radiance -= ShadedSingle(1e9, min(SingleTo(direction, 1e9), radiance));
+  radiance -= min(TakenByShade(1e9, radiance), radiance);
 #endif
 #if HAS_FOG
   const float out_of_fog_km = 1e3;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What share of their single scattering shade takes from the rays of every shaft_scale-th pixel in
-// both directions. Shares change less from ray to ray than light does, and in full shade not at all.
+// both directions; of rays that meet no terrain what share of all their light. Shares change less
+// from ray to ray than light does, and in full shade not at all.
 
 uniform sampler2D surface_map;  // distance [m] in the fourth component, 0 where no terrain is seen
 uniform ivec2 picture_size;
@@ -14,6 +15,6 @@ void main() {
   vec3 direction = ViewDirection(at);
   float distance_m = texelFetch(surface_map, pixel, 0).w;
   float distance_km = distance_m > 0.0 ? 1e-3 * distance_m : 1e9;
-  vec4 single = max(SingleTo(direction, distance_km), vec4(1e-20));
-  shaft = ShaftTexel(MarchedShade(direction, distance_km) / single, distance_km);
+  vec4 light = distance_m > 0.0 ? SingleTo(direction, distance_km) : SkyRadiance(direction);
+  shaft = ShaftTexel(MarchedShade(direction, distance_km) / max(light, vec4(1e-20)), distance_km);
 }

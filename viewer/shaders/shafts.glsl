@@ -5,9 +5,9 @@
 uniform sampler2D shaft_map;
 uniform vec2 shaft_place;  // of a pixel on it: times x, plus y
 
-// Light that terrain's shade takes from `single`, what AirToPoint says of the ray of this pixel up to
-// a distance; where the ray meets no terrain, up to the end of the air.
-vec4 ShadedSingle(float distance_km, vec4 single) {
+// Light that terrain's shade takes from what AirToPoint says of single scattering on the ray of this
+// pixel up to a distance; where the ray meets no terrain, from SkyRadiance.
+vec4 TakenByShade(float distance_km, vec4 light) {
   const float kTolerance = 0.05;  // of distances, as binary logarithms
   vec2 at = gl_FragCoord.xy * shaft_place.x + shaft_place.y;
   ivec2 last = textureSize(shaft_map, 0) - 1;
@@ -25,5 +25,5 @@ vec4 ShadedSingle(float distance_km, vec4 single) {
   // A millionth each: one of them counts where all that lie nearer have come too far or not enough.
   weight = (weight + 1e-6) / (away * away + kTolerance * kTolerance);
   vec4 sum = weight.x * texel[0] + weight.y * texel[1] + weight.z * texel[2] + weight.w * texel[3];
-  return sum / (weight.x + weight.y + weight.z + weight.w) * single;
+  return sum / (weight.x + weight.y + weight.z + weight.w) * light;
 }

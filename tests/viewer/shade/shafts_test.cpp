@@ -33,7 +33,8 @@ constexpr double kCell_m = 60.0;
 constexpr std::array<double, 2> kReach_km = {12.0, 45.0};
 constexpr const char* kSingleTo =
     "vec4 SingleTo(vec3 direction, float distance_km) {\n"
-    "  return vec4(1.0 - exp(-distance_km / vec2(12.0, 45.0)), 0.0, 0.0);\n}\n";
+    "  return vec4(1.0 - exp(-distance_km / vec2(12.0, 45.0)), 0.0, 0.0);\n}\n"
+    "vec4 SkyRadiance(vec3 direction) { return SingleTo(direction, 1e9); }\n";
 
 /// What the shade takes along a path, as a share of the light of the whole ray.
 double TakenOf(const SunlitPath& lit, double length_m, double reach_km) {
@@ -263,7 +264,7 @@ class ShaftPicture {
                      "uniform sampler2D surface_map;\nout vec4 picture;\nvoid main() {\n"
                      "  float far = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0).w;\n"
                      "  float way = far > 0.0 ? 1e-3 * far : 1e9;\n"
-                     "  picture = ShadedSingle(way, SingleTo(vec3(0.0), way));\n}\n"});
+                     "  picture = TakenByShade(way, SingleTo(vec3(0.0), way));\n}\n"});
     const ShaderProgram picture = FullScreenProgram(texts);
     const RenderTarget target(kWidth, kHeight, RenderTarget::Depth::kNone);
     target.Bind();

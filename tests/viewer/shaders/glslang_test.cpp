@@ -67,7 +67,9 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   }
   const std::vector<ShaderPiece> shafts = {
       view,
-      {"air", "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"},
+      {"air",
+       "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"
+       "vec4 SkyRadiance(vec3 direction) { return vec4(direction.z); }\n"},
       ViewerPiece("viewer/shaders/shade_march.glsl"),
       ViewerPiece("viewer/shaders/shaft_texel.glsl")};
   ExpectAccepted(shafts, "shafts.frag.glsl");
