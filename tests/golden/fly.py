@@ -35,7 +35,7 @@ class Display:
     def __init__(self, size):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{size}x24", "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{size}x24", "-nolisten", "tcp", "-noreset"],
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as number:
@@ -50,7 +50,8 @@ class Flight:
     """A skyview in a window; ended with the object."""
 
     def __init__(self, options, display, arguments, size=None):
-        self.environment = dict(os.environ, DISPLAY=display.name)
+        # ImageMagick's threads spin: beside two busy cores a picture would take minutes.
+        self.environment = dict(os.environ, DISPLAY=display.name, OMP_NUM_THREADS="1")
         self.folder = options.out
         self.log = open(options.out / "skyview.log", "ab")
         self.process = subprocess.Popen(

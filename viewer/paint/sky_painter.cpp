@@ -323,9 +323,14 @@ void SkyPainter::Settle(const PaintedView& view, int samples) {
   if (fog_) FollowFog(view, sun, true);
 }
 
-void SkyPainter::UploadAir(const PaintedView& view) const {
-  const AirBlock block =
-      AirBlockOf(OnOsculatingSphere(air_.air()->medium, view.eye.place.latitude_rad));
+void SkyPainter::UploadAir(const PaintedView& view) {
+  const Medium& medium = air_.air()->medium;
+  auto& [air, block] = air_block_;
+  if (air != air_.air()) block = AirBlockOf(medium);
+  air = air_.air();
+  block.shell.x =
+      static_cast<float>(OnOsculatingSphere(medium, view.eye.place.latitude_rad).planet_radius_m /
+                         kMetresPerKilometre);
   UploadBlock(blocks_.air, kAirBinding, &block, sizeof(block));
 }
 

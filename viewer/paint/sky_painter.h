@@ -38,6 +38,7 @@
 #include "viewer/paint/paint_sizes.h"
 #include "viewer/shade/shade_follower.h"
 #include "viewer/shade/shaft_pass.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
 
@@ -117,7 +118,7 @@ class SkyPainter {
   };
   [[nodiscard]] const SunPosition& SunOf(const PaintedView& view) const;
   void TakeHeights();
-  void UploadAir(const PaintedView& view) const;
+  void UploadAir(const PaintedView& view);
   void UploadView(const PaintedView& view, const glm::dvec2& shift) const;
   void UploadGround(const PaintedView& view) const;
   void TakeLight();
@@ -172,6 +173,8 @@ class SkyPainter {
   GlVertexArray no_vertices_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
+  // Of the air that was drawn last: colours of its bands take milliseconds.
+  std::pair<std::shared_ptr<const SolvedAir>, AirBlock> air_block_;
   mutable std::optional<std::pair<PaintedView, SunPosition>> sun_;  // of the view asked for last
   MoonDisk moon_{};
   double ray_angle_rad_ = 0.0;  // between the rays of all pictures that are summed
