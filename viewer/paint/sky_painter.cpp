@@ -234,6 +234,7 @@ void SkyPainter::Use(const PaintSizes& sizes) {
   land_.SetDetail(sizes.land_detail);
   if (same_programs) return;
   programs_.clear();
+  ready_.clear();
   lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
 }
 
@@ -418,6 +419,19 @@ void SkyPainter::PaintStage(const PictureStage& stage, GLenum land) {
     glUniform1f(program.Uniform("ray_angle"), static_cast<float>(ray_angle_rad_));
   glDepthFunc(land);
   DrawFullScreen(program, no_vertices_);
+  ready_.insert(stage);
+}
+
+// Drivers finish a program when it is drawn with, which takes tenths of a second: of stages that
+// will be needed when shade begins or ends, or a disk comes into view, that is done in the first
+// frames, over one pixel that is painted after. Whether it was to be done.
+bool SkyPainter::MakeReady(const PictureStage& stage, GLenum land) {
+  if (ready_.contains(stage) || (stage.has_shade && !shaft_pass_.HasMap())) return false;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, 1, 1);
+  PaintStage(stage, land);
+  glDisable(GL_SCISSOR_TEST);
+  return true;
 }
 
 void SkyPainter::PaintDisk(const glm::dvec3& direction, double radius_rad,
@@ -457,10 +471,13 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   glBlendColor(weight, weight, weight, weight);
   glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
   if (share < 1.0) glEnable(GL_BLEND);
+  if (share == 1.0 && !MakeReady({PictureStage::Pass::kLand, !has_shade, has_lamps}, GL_LESS))
+    MakeReady({PictureStage::Pass::kSky, !has_shade, has_lamps}, GL_EQUAL);
   PaintStage({PictureStage::Pass::kLand, has_shade, has_lamps}, GL_LESS);
   PaintStage({PictureStage::Pass::kSky, has_shade, has_lamps}, GL_EQUAL);
   glEnable(GL_BLEND);
   UploadMoon(ProgramOf({PictureStage::Pass::kDisks}));
+  if (share == 1.0) MakeReady({PictureStage::Pass::kDisks}, GL_EQUAL);
   const SunPosition& sun = SunOf(view);
   PaintDisk(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz, sun.angular_radius_rad,
             view);

@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -130,6 +131,7 @@ class SkyPainter {
   void PaintLamps(const PaintedView& view);
   void PaintPicture(const PaintedView& view, double share);
   void PaintStage(const PictureStage& stage, GLenum land);
+  bool MakeReady(const PictureStage& stage, GLenum land);
   void PaintDisk(const glm::dvec3& direction, double radius_rad, const PaintedView& view);
   void UploadMoon(const ShaderProgram& program) const;
   void Begin(const char* pass) const {
@@ -168,6 +170,7 @@ class SkyPainter {
   std::optional<Fog> fog_;
   std::optional<LampPainter> lamp_painter_;         // of sizes_
   std::map<PictureStage, ShaderProgram> programs_;  // of sizes_, made when first drawn with
+  std::set<PictureStage> ready_;                    // those that have been drawn with
   GroundTextures ground_textures_;
   Blocks blocks_;
   GlVertexArray no_vertices_;

@@ -40,6 +40,8 @@ class ShaftPass {
   void Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width, int height,
              int surface_unit, int shade_unit, const ShaftDetail& detail);
 
+  /// Whether Paint has been called.
+  [[nodiscard]] bool HasMap() const { return map_.has_value(); }
   /// Gives a program, which becomes the one in use, what shafts.glsl reads. After Paint.
   void Bind(const ShaderProgram& picture, int unit) const;
 
