@@ -38,6 +38,13 @@ constexpr double kRoom = 0.85;
 constexpr double kDown_s = 0.5;
 constexpr double kUp_s = 2.0;
 constexpr double kLongestWait_s = 64.0;
+constexpr std::size_t kLeastFrames = 3, kMostFrames = 9;
+
+double MedianOf(std::deque<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 }  // namespace
 
@@ -63,27 +70,29 @@ AutoQuality::AutoQuality(double wanted_frame_s) : wanted_s_(wanted_frame_s), ste
 const PaintedQuality& AutoQuality::painted() const { return StepAt(step_).painted; }
 
 void AutoQuality::Note(double frame_s) {
-  constexpr double kMemory_s = 0.25;
-  const double share = std::clamp(frame_s / kMemory_s, 0.05, 1.0);
-  mean_s_ = since_change_s_ == 0.0 ? frame_s : mean_s_ + share * (frame_s - mean_s_);
+  frames_s_.push_back(frame_s);
+  if (frames_s_.size() > kMostFrames) frames_s_.pop_front();
   since_change_s_ += std::max(frame_s, wanted_s_);
+  if (frames_s_.size() < kLeastFrames) return;
+  const double usual_s = MedianOf(frames_s_);
   const int last = static_cast<int>(kSteps.size()) - 1;
   int next = step_;
-  if (mean_s_ > kTooLong * wanted_s_ && since_change_s_ >= kDown_s) {
+  if (usual_s > kTooLong * wanted_s_ && since_change_s_ >= kDown_s) {
     const auto expected_s = [&](int step) {
-      return mean_s_ * StepAt(step).cost / StepAt(step_).cost;
+      return usual_s * StepAt(step).cost / StepAt(step_).cost;
     };
     while (next < last && expected_s(next) > wanted_s_) ++next;
     // A step up that was a mistake is not soon tried again.
     if (since_change_s_ < wait_up_s_) wait_up_s_ = std::min(2.0 * wait_up_s_, kLongestWait_s);
   } else if (step_ > 0 && since_change_s_ >= wait_up_s_ &&
-             mean_s_ * StepAt(step_ - 1).cost / StepAt(step_).cost < kRoom * wanted_s_) {
+             usual_s * StepAt(step_ - 1).cost / StepAt(step_).cost < kRoom * wanted_s_) {
     next = step_ - 1;
   }
   if (since_change_s_ > 2.0 * kLongestWait_s) wait_up_s_ = kUp_s;
   if (next == step_) return;
   step_ = next;
   since_change_s_ = 0.0;
+  frames_s_.clear();
 }
 
 }  // namespace alpenglow

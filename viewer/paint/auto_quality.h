@@ -2,6 +2,7 @@
 // How well a picture is drawn, and who chooses it by the time that frames take.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -33,10 +34,11 @@ struct PaintedQuality {
 [[nodiscard]] std::string TextOf(const PaintedQuality& painted);
 
 /// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a third of it, so
-/// that frames take about as long as wanted. It goes down a step after half a second of frames that
-/// take 1.15 times too long, several at once if they take much longer, and up after two seconds of
-/// frames of which the next step would still take less than 0.85 of the time; a step that was too
-/// slow is not tried again before a time that doubles with each failure.
+/// that frames take about as long as wanted. What counts is the median of the last nine frames: one
+/// in which a driver finished a program says nothing. It goes down a step after half a second, and
+/// three frames, that take 1.15 times too long, several at once if they take much longer, and up
+/// after two seconds of frames of which the next step would still take less than 0.85 of the time; a
+/// step that was too slow is not tried again before a time that doubles with each failure.
 class AutoQuality {
  public:
   /// @param wanted_frame_s  > 0
@@ -49,7 +51,7 @@ class AutoQuality {
  private:
   double wanted_s_;
   int step_;
-  double mean_s_ = 0.0;  // of frames since the last change
+  std::deque<double> frames_s_;  // the last since the last change
   double since_change_s_ = 0.0;
   double wait_up_s_ = 2.0;
 };

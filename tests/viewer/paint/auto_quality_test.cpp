@@ -52,10 +52,20 @@ TEST(AutoQuality, ASlowMachineGetsTheCheapestPicture) {
   EXPECT_EQ(RunFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.33}));
 }
 
-TEST(AutoQuality, AHugeFrameIsAnsweredAtOnce) {
+TEST(AutoQuality, ThreeHugeFramesAreAnsweredAtOnce) {
   AutoQuality quality(1.0 / 30.0);
-  quality.Note(0.6);
+  for (int frame = 0; frame < 3; ++frame) quality.Note(0.6);
   EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.33}));
+}
+
+TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
+  AutoQuality quality(1.0 / 30.0);
+  const PaintedQuality first = quality.painted();
+  quality.Note(0.7);
+  for (int frame = 0; frame < 20; ++frame) {
+    quality.Note(frame % 5 == 4 ? 0.3 : 0.03);
+    EXPECT_EQ(quality.painted(), first) << frame;
+  }
 }
 
 TEST(QualityRule, IsReadFromItsName) {
