@@ -49,9 +49,7 @@ static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4)
 
 /// GroundRadiance and PlanetRadiance for this material; to be read after the shared texts,
 /// air_block, view_block, sun_light and TransmittanceToSun.
-/// @param dropped_octaves  in [0, 3]: of the finest detail, left out to save time.
-[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material,
-                                                   int dropped_octaves = 0);
+[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material);
 
 /// The samplers of these texts.
 class GroundTextures {

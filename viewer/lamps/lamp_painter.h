@@ -25,6 +25,8 @@ namespace alpenglow {
 struct LampQuality {
   int nodes = 12;  // of the integral along a ray, [2, 32]
   int step = 1;    // pixels between rays; 1: each has its own
+
+  bool operator==(const LampQuality&) const = default;
 };
 /// High is off by 0.5 % in the mean from LampLight and 99.9 % of pixels are within 2 %
 /// (tests/viewer/lamps/lamp_picture_test.cpp). Medium was measured against 12 nodes at each of
@@ -62,6 +64,7 @@ class LampPainter {
 
   /// @param dimmest_cd_per_m2  see SceneLamps::Before.
   void Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2);
+  [[nodiscard]] const LampQuality& quality() const { return quality_; }
   /// Nothing of what follows adds any light.
   [[nodiscard]] bool IsDark() const { return lamps_ == 0 && disks_ == 0; }
 

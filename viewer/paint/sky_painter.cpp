@@ -144,7 +144,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   }
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
                             "viewer/shaders/sun_light.glsl"}));
-  add(GroundTexts(kind.material, kind.dropped_octaves));
+  add(GroundTexts(kind.material));
   add(ShaftTexts());
   add(has_lamps ? kind.lamps->texts() : NoLampTexts());
   return texts;
@@ -206,7 +206,7 @@ const ShaderProgram& SkyPainter::ProgramOf(const PictureStage& stage) {
   if (found != programs_.end()) return found->second;
   const std::optional<PhaseKind> fog =
       scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
-  const PictureKind kind{material_, &*lamp_painter_, fog, sizes_.dropped_octaves};
+  const PictureKind kind{material_, &*lamp_painter_, fog};
   ShaderProgram made = FullScreenProgram(
       WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
   made.BindBlock("Air", kAirBinding);
@@ -224,18 +224,11 @@ const ShaderProgram& SkyPainter::ProgramOf(const PictureStage& stage) {
 }
 
 void SkyPainter::Use(const PaintSizes& sizes) {
-  const bool same_programs = sizes.lamps.nodes == sizes_.lamps.nodes &&
-                             sizes.lamps.step == sizes_.lamps.step &&
-                             sizes.dropped_octaves == sizes_.dropped_octaves;
   if (fog_ && !(sizes.fog == sizes_.fog)) fog_->air = nullptr;
   sizes_ = sizes;
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
   land_.SetDetail(sizes.land_detail);
-  if (same_programs) return;
-  programs_.clear();
-  ready_.clear();
-  lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
 }
 
 void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool waits) {
@@ -265,8 +258,14 @@ void SkyPainter::FollowFog(const PaintedView& view, const SunPosition& sun, bool
 void SkyPainter::PrepareLamps(const PaintedView& view) {
   // Lamps dimmer than this are not seen beside what else there is.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
-  lamp_painter_->Prepare(lamps_, LampViewFrom(lamp_ground_.frame, view.eye.place, PixelAngle(view)),
-                         kDimmest_cd_per_m2);
+  const LampView seen = LampViewFrom(lamp_ground_.frame, view.eye.place, PixelAngle(view));
+  lamp_painter_->Prepare(lamps_, seen, kDimmest_cd_per_m2);
+  if (lamp_painter_->IsDark() || lamp_painter_->quality() == sizes_.lamps) return;
+  // Programs of another quality, now that they are needed.
+  std::erase_if(programs_, [](const auto& made) { return made.first.has_lamps; });
+  std::erase_if(ready_, [](const PictureStage& stage) { return stage.has_lamps; });
+  lamp_painter_.emplace(lamps_, sizes_.lamps, kLampUnits);
+  lamp_painter_->Prepare(lamps_, seen, kDimmest_cd_per_m2);
 }
 
 const SunPosition& SkyPainter::SunOf(const PaintedView& view) const {
@@ -371,6 +370,7 @@ void SkyPainter::UploadGround(const PaintedView& view) const {
   const auto axis = [&](const glm::dvec3& of_pattern) {
     return glm::vec4(here.EnuFromEcef(pattern.EcefFromEnu(Vector<Enu>{of_pattern})).xyz, 0.0);
   };
+  block.cover_lines.w = static_cast<float>(sizes_.dropped_octaves);
   block.mesh_east = axis({1.0, 0.0, 0.0});
   block.mesh_north = axis({0.0, 1.0, 0.0});
   block.mesh_up = axis({0.0, 0.0, 1.0});

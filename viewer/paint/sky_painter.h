@@ -64,7 +64,6 @@ struct PictureKind {
   const GroundMaterial& material;
   const LampPainter* lamps;      // null: none
   std::optional<PhaseKind> fog;  // its phase function
-  int dropped_octaves = 0;       // of the ground's detail
 };
 /// The texts that a stage of the picture is made of, but for picture.frag.glsl itself.
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,

@@ -5,11 +5,6 @@
 // Places are metres from the eye along the east and north axes of the mesh. Of every family of
 // noise the eye's own place comes as lattice cell and fraction of the longest octave, so that float
 // holds places thousands of kilometres from the origin of the pattern.
-// Octaves of the finest detail that are left out, to save time.
-#ifndef DROPPED_OCTAVES
-#define DROPPED_OCTAVES 0
-#endif
-
 #define BROAD 0
 #define FINE 1
 #define RELIEF 2
@@ -19,7 +14,8 @@ layout(std140) uniform Ground {
   vec4 meadow;
   vec4 rock;
   vec4 snow;
-  vec4 cover_lines;     // tree line, snow line [m]; 1 with relief finer than the mesh, else 0
+  vec4 cover_lines;     // tree line, snow line [m]; 1 with relief finer than the mesh, else 0;
+                        // octaves of the finest detail that are left out, to save time
   vec4 noise_cell[3];   // of the eye, east and north: by family
   vec4 noise_place[3];  // fraction of the cell, east and north
   vec4 mesh_east;       // axes of the mesh in the frame of the eye
@@ -53,14 +49,21 @@ NoiseCell OctaveCell(vec2 offset, int family, float wavelength, int cells, uint 
   return NoiseCellAt(ivec2(noise_cell[family].xy) * cells, place, seed);
 }
 
-// The octaves that a footprint keeps. All are summed: software drivers have no early end of loops.
+// How many octaves are summed: from waves of two footprints down OctaveShare is 0.
+int OctavesKept(ivec4 of, float footprint) {
+  float kept = ceil(log2(max(float(of.x) / (2.0 * footprint), 1.0)));
+  return min(of.y - int(cover_lines.w), int(kept));
+}
+
+// The octaves that a footprint keeps.
 float DetailNoise(vec2 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
+  int octaves = OctavesKept(of, footprint);
   float sum = 0.0;
   float amplitude = 1.0;
   float wavelength = float(of.x);
   int cells = 1;
-  for (int octave = 0; octave < of.y - DROPPED_OCTAVES; ++octave) {
+  for (int octave = 0; octave < octaves; ++octave) {
     NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
     sum += OctaveShare(wavelength, footprint) * amplitude *
            NoiseOfHashes(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y);
@@ -74,11 +77,12 @@ float DetailNoise(vec2 offset, int family, float footprint) {
 // Its derivatives to the east and north [1/m].
 vec2 DetailSlope(vec2 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
+  int octaves = OctavesKept(of, footprint);
   vec2 sum = vec2(0.0);
   float amplitude = 1.0;
   float wavelength = float(of.x);
   int cells = 1;
-  for (int octave = 0; octave < of.y - DROPPED_OCTAVES; ++octave) {
+  for (int octave = 0; octave < octaves; ++octave) {
     NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
     sum += OctaveShare(wavelength, footprint) * (amplitude / wavelength) *
            vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),

@@ -135,7 +135,7 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
          {PictureStage::Pass::kLand, PictureStage::Pass::kSky, PictureStage::Pass::kDisks}) {
       for (int choice = 0; choice < 4; ++choice) {
         const PictureStage stage{pass, choice % 2 == 1, choice / 2 == 1};
-        ExpectAccepted(PictureTexts({material, &painter, fog, 1}, stage), "picture.frag.glsl");
+        ExpectAccepted(PictureTexts({material, &painter, fog}, stage), "picture.frag.glsl");
       }
     }
   }
