@@ -297,6 +297,17 @@ TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
 
 class SkyviewLand : public tests::LandFolder {
  protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    try {
+      const HeadlessContext context;
+    } catch (const DisplayError&) {
+      GTEST_SKIP() << "EGL gives no OpenGL here";
+    }
+    tests::WriteTile(folder_ / "west.tif", 0, 0);
+    tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
+  }
+
   /// Of 8 to 8.1 degrees east, 46.6 to 46.7 north and beyond.
   [[nodiscard]] Outcome Shot(const std::string& arguments) const {
     return RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW
@@ -306,13 +317,6 @@ class SkyviewLand : public tests::LandFolder {
 };
 
 TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
-  try {
-    const HeadlessContext context;
-  } catch (const DisplayError&) {
-    GTEST_SKIP() << "EGL gives no OpenGL here";
-  }
-  tests::WriteTile(folder_ / "west.tif", 0, 0);
-  tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
   const std::string both = "--dem west.tif --dem east.tif --pitch -20";
   const Outcome outcome = Shot(both);
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -323,13 +327,6 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
 }
 
 TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
-  try {
-    const HeadlessContext context;
-  } catch (const DisplayError&) {
-    GTEST_SKIP() << "EGL gives no OpenGL here";
-  }
-  tests::WriteTile(folder_ / "west.tif", 0, 0);
-  tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
   const Outcome outcome = RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW
                                      "' --headless --size 64x36 --quality high --dem west.tif "
                                      "--dem east.tif --pitch -30 --explain");
