@@ -236,6 +236,18 @@ std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, E
 
 }  // namespace
 
+LandSource LandSourceOf(const Scene& scene) {
+  LandSource source;
+  source.voids = scene.terrain.voids;
+  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel)
+    source.files = {scene.terrain.file};
+  if (scene.terrain.kind == TerrainSource::Kind::kMesh)
+    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place};
+  if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange)
+    source.range_centre = scene.terrain.centre.value_or(scene.place);
+  return source;
+}
+
 ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
   const LandTile& wanted = tiles.tiles()[static_cast<std::size_t>(tile)];
   ElevationModel model;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/scene/scene.h"
 #include "renderer/terrain/elevation.h"
 #include "viewer/land/height_pyramid.h"
 #include "viewer/land/land_lattice.h"
@@ -29,6 +30,9 @@ struct LandSource {
   };
   std::optional<Mesh> mesh = std::nullopt;
 };
+
+/// The land of a scene: its elevation model, its mesh or the built-in range.
+[[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
 /// One file, or the built-in range (no file).
 struct LandTile {

@@ -8,66 +8,25 @@
 // view.
 #pragma once
 
-#include <array>
 #include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
-#include <map>
-#include <memory>
 #include <optional>
-#include <set>
-#include <string>
-#include <vector>
+#include <utility>
 
 #include "atmosphere/sun/moon_disk.h"
 #include "lut/picture/image.h"
 #include "renderer/scene/scene.h"
-#include "viewer/air/air_follower.h"
-#include "viewer/flight/flight.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/gl/shader.h"
-#include "viewer/ground/drape_texels.h"
-#include "viewer/ground/ground_block.h"
-#include "viewer/ground/ground_follower.h"
-#include "viewer/lamps/fog_follower.h"
-#include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/land/landscape.h"
 #include "viewer/land/surface_map.h"
-#include "viewer/paint/developer.h"
-#include "viewer/paint/exposure_meter.h"
 #include "viewer/paint/paint_sizes.h"
-#include "viewer/shade/shade_follower.h"
+#include "viewer/paint/painted_scene.h"
+#include "viewer/paint/painted_view.h"
+#include "viewer/paint/picture_blocks.h"
+#include "viewer/paint/picture_programs.h"
 #include "viewer/shade/shaft_pass.h"
-#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
-
-/// When and from where a picture is painted.
-struct PaintedView {
-  Eye eye;
-  UtcInstant now;
-  int width, height;                    // of what is painted
-  glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // of the whole view that it is: ViewOfTile
-};
-
-/// One of the picture's programs.
-struct PictureStage {
-  enum class Pass { kLand, kSky, kDisks };
-  Pass pass;
-  bool has_shade = false, has_lamps = false;
-
-  auto operator<=>(const PictureStage&) const = default;
-};
-/// What the texts of a picture depend on.
-struct PictureKind {
-  const GroundMaterial& material;
-  const LampPainter* lamps;      // null: none
-  std::optional<PhaseKind> fog;  // its phase function
-};
-/// The texts that a stage of the picture is made of, but for picture.frag.glsl itself.
-[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
-                                                    const PictureStage& stage);
 
 class SkyPainter {
  public:
@@ -77,9 +36,9 @@ class SkyPainter {
   SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
              const PaintSizes& sizes);
 
-  void Use(const PaintSizes& sizes);
+  void Use(const PaintSizes& sizes) { scene_.Use(sizes); }
   /// Other air; shown when it is solved.
-  void Replace(const Medium& medium) { air_.Replace(medium); }
+  void Replace(const Medium& medium) { scene_.Replace(medium); }
 
   /// A lamp that moves with the eye; nothing: none.
   void SetLandingLight(const std::optional<LandingLight>& light) { lamps_.SetLandingLight(light); }
@@ -106,85 +65,45 @@ class SkyPainter {
   /// Times of its passes are told to it; null: none.
   void SetTimer(PassTimer* timer) { timer_ = timer; }
 
-  [[nodiscard]] const Landscape& land() const { return land_; }
-  [[nodiscard]] Landscape& land() { return land_; }
-  [[nodiscard]] const AirFollower& air() const { return air_; }
-  [[nodiscard]] const GroundFollower& ground() const { return ground_; }
-  [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
+  [[nodiscard]] const Landscape& land() const { return scene_.land(); }
+  [[nodiscard]] Landscape& land() { return scene_.land(); }
+  [[nodiscard]] const AirFollower& air() const { return scene_.air(); }
+  [[nodiscard]] const GroundFollower& ground() const { return scene_.ground(); }
+  [[nodiscard]] const ShadeFollower& shade() const { return scene_.shade(); }
 
  private:
-  struct Blocks {
-    GlBuffer air, view, ground, ground_light, ground_surface;
+  /// Disks of the sky.
+  struct Bodies {
+    SunPosition sun;
+    MoonDisk moon;
   };
-  [[nodiscard]] const SunPosition& SunOf(const PaintedView& view) const;
-  void TakeHeights();
-  void UploadAir(const PaintedView& view);
-  void UploadView(const PaintedView& view, const glm::dvec2& shift) const;
-  void UploadGround(const PaintedView& view) const;
-  void TakeLight();
-  [[nodiscard]] const ShaderProgram& ProgramOf(const PictureStage& stage);
+  [[nodiscard]] const SunPosition& SunOf(const PaintedView& view);
+  [[nodiscard]] Bodies BodiesOf(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
-  void FollowFog(const PaintedView& view, const SunPosition& sun, bool waits);
+  void DescribeDisks(const MoonDisk& moon, double ray_angle_rad);
+  void PaintSample(const PaintedView& view, const Bodies& bodies, double share);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
-  void PaintPicture(const PaintedView& view, double share);
-  void PaintStage(const PictureStage& stage, GLenum land);
-  bool MakeReady(const PictureStage& stage, GLenum land);
+  void PaintPicture(const PaintedView& view, const Bodies& bodies, double share);
+  void PaintLandAndSky(double share);
+  void PaintDisks(const PaintedView& view, const Bodies& bodies, double share);
   void PaintDisk(const glm::dvec3& direction, double radius_rad, const PaintedView& view);
-  void UploadMoon(const ShaderProgram& program) const;
+  void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
 
-  /// The scene's picture of colours, if it names one.
-  struct Drape {
-    std::shared_ptr<const ColourDrape> colours;
-    FlatRectangle place{};  // around the terrain, then what of it is draped
-  };
-  [[nodiscard]] static Drape DrapeOf(const Scene& scene, const SceneGround& lamp_ground);
-  void UploadDrape();
-
-  Scene scene_;
-  Ellipsoid ellipsoid_;
-  PaintSizes sizes_;
-  SceneGround lamp_ground_;  // that lamps and fog stand on
-  Drape drape_;
-  GroundMaterial material_;
-  AirFollower air_;
-  Landscape land_;
-  GroundFollower ground_;
-  ShadeFollower shade_;
-  ShaftPass shaft_pass_;
+  PaintedScene scene_;
   SceneLamps lamps_;
-  struct Fog {
-    Fog(LocalMedia of, const FogUnits& units)
-        : media(std::make_shared<const LocalMedia>(std::move(of))), painter(units) {}
-
-    std::shared_ptr<const LocalMedia> media;
-    FogPainter painter;
-    std::shared_ptr<const SolvedAir> air;  // that the map is made in
-    std::optional<FogFollower> follower;
-  };
-  std::optional<Fog> fog_;
-  std::optional<LampPainter> lamp_painter_;         // of sizes_
-  std::map<PictureStage, ShaderProgram> programs_;  // of sizes_, made when first drawn with
-  std::set<PictureStage> ready_;                    // those that have been drawn with
-  GroundTextures ground_textures_;
-  Blocks blocks_;
-  GlVertexArray no_vertices_;
+  LampPainter lamp_painter_;
+  ShaftPass shaft_pass_;
+  PicturePrograms programs_;  // of all above
+  PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
-  // Of the air that was drawn last: colours of its bands take milliseconds.
-  std::pair<std::shared_ptr<const SolvedAir>, AirBlock> air_block_;
-  mutable std::optional<std::pair<PaintedView, SunPosition>> sun_;  // of the view asked for last
-  MoonDisk moon_{};
-  double ray_angle_rad_ = 0.0;  // between the rays of all pictures that are summed
-  int heights_version_ = -1;
+  std::optional<std::pair<PaintedView, SunPosition>> sun_;  // of the view asked for last
   PassTimer* timer_ = nullptr;
 };
-
-/// The land of a scene: its elevation model, its mesh or the built-in range.
-[[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
 }  // namespace alpenglow

@@ -17,7 +17,7 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/paint/sky_painter.h"
+#include "viewer/paint/picture_texts.h"
 #include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
@@ -135,7 +135,7 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
          {PictureStage::Pass::kLand, PictureStage::Pass::kSky, PictureStage::Pass::kDisks}) {
       for (int choice = 0; choice < 4; ++choice) {
         const PictureStage stage{pass, choice % 2 == 1, choice / 2 == 1};
-        ExpectAccepted(PictureTexts({material, &painter, fog}, stage), "picture.frag.glsl");
+        ExpectAccepted(PictureTexts({material, painter, fog}, stage), "picture.frag.glsl");
       }
     }
   }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// A scene as it is painted: its air, its land, the light on that, the shade in the air and the fog,
+// each made beside drawing and kept up with an eye that moves and a sun that does.
+#pragma once
+
+#include <optional>
+
+#include "atmosphere/sun/sun.h"
+#include "renderer/ground/ground_material.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/scene/scene.h"
+#include "viewer/air/air_follower.h"
+#include "viewer/ground/ground_block.h"
+#include "viewer/ground/ground_follower.h"
+#include "viewer/ground/scene_drape.h"
+#include "viewer/lamps/scene_fog.h"
+#include "viewer/land/landscape.h"
+#include "viewer/paint/paint_sizes.h"
+#include "viewer/paint/painted_view.h"
+#include "viewer/shade/shade_follower.h"
+
+namespace alpenglow {
+
+/// To be used on the thread of the context that is current when it is made.
+class PaintedScene {
+ public:
+  /// The air is solved here; land is read beside drawing. Throws as SkyPainter does.
+  PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
+               const PaintSizes& sizes);
+
+  void Use(const PaintSizes& sizes);
+  /// Other air; shown when it is solved.
+  void Replace(const Medium& medium) { air_.Replace(medium); }
+
+  /// Takes over what has become ready and asks for what is missing. Never waits, but for the first
+  /// fog in other air.
+  /// @param sun      apparent, seen from the eye.
+  /// @param seconds  since the last call.
+  void Update(const PaintedView& view, const SunPosition& sun, double seconds);
+  /// Waits until all is there that the view needs.
+  /// @param samples  rays a pixel that will be painted.
+  void Settle(const PaintedView& view, const SunPosition& sun, int samples);
+
+  [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
+  [[nodiscard]] const GeodeticPosition& place() const { return scene_.place; }
+  [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
+  /// What lamps and fog stand on.
+  [[nodiscard]] const SceneGround& lamp_ground() const { return lamp_ground_; }
+  [[nodiscard]] const SceneDrape& drape() const { return drape_; }
+  [[nodiscard]] const GroundMaterial& material() const { return material_; }
+  [[nodiscard]] const AirFollower& air() const { return air_; }
+  [[nodiscard]] const Landscape& land() const { return land_; }
+  [[nodiscard]] Landscape& land() { return land_; }
+  [[nodiscard]] const GroundFollower& ground() const { return ground_; }
+  [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
+  [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
+  /// Whether terrain keeps light from the air, and that is painted.
+  [[nodiscard]] bool HasShade() const { return sizes_.has_shafts && shade_.shade().Shades(); }
+  /// Null: none.
+  [[nodiscard]] const SceneFog* fog() const { return fog_ ? &*fog_ : nullptr; }
+  /// Nothing without fog.
+  [[nodiscard]] std::optional<PhaseKind> fog_phase() const;
+
+ private:
+  void TakeHeights();
+  void TakeLight();
+
+  Scene scene_;
+  Ellipsoid ellipsoid_;
+  PaintSizes sizes_;
+  SceneGround lamp_ground_;
+  SceneDrape drape_;
+  GroundMaterial material_;
+  AirFollower air_;
+  Landscape land_;
+  GroundFollower ground_;
+  GroundTextures ground_textures_;
+  ShadeFollower shade_;
+  std::optional<SceneFog> fog_;
+  int heights_version_ = -1;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/painted_view.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace alpenglow {
+
+double PixelAngle(const PaintedView& view) {
+  return 2.0 * std::tan(0.5 * view.eye.fov_rad) / (view.width * view.part.z);
+}
+
+LandView LandViewOf(const PaintedView& view, int samples) {
+  const ViewAxes axes = AxesOf(view.eye);
+  const double half_width = std::tan(0.5 * view.eye.fov_rad);
+  const double part = half_width / view.part.z;
+  return {part * axes.right, part * view.height / view.width * axes.up, axes.forward, samples};
+}
+
+// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences".
+glm::dvec2 ShiftOf(int sample, int samples, const PaintedView& view) {
+  if (samples == 1) return glm::dvec2(0.0);
+  const double x = 0.5 + 0.7548776662466927 * sample, y = 0.5 + 0.5698402909980532 * sample;
+  return {(2.0 * (x - std::floor(x)) - 1.0) / view.width,
+          (2.0 * (y - std::floor(y)) - 1.0) / view.height};
+}
+
+std::optional<DiskBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
+                                    const PaintedView& view) {
+  const LandView axes = LandViewOf(view);
+  const double along = glm::dot(direction, axes.forward);
+  if (along <= 0.0) return std::nullopt;
+  const auto pixel = [&](const glm::dvec3& axis, double part, int side) {
+    const double at = glm::dot(direction, axis) / glm::dot(axis, axis) / along - part;
+    return 0.5 * side * (1.0 + at);
+  };
+  const double x = pixel(axes.right, view.part.x * view.part.z, view.width);
+  const double y = pixel(axes.up, view.part.y * view.part.w, view.height);
+  // Twice the radius: off the middle of the view disks are drawn out.
+  const double reach = 2.0 * radius_rad / PixelAngle(view) / along + 2.0;
+  if (x < -reach || y < -reach || x > view.width + reach || y > view.height + reach)
+    return std::nullopt;
+  const int side = static_cast<int>(std::ceil(2.0 * reach)) + 1;
+  return DiskBox{static_cast<int>(std::floor(x - reach)), static_cast<int>(std::floor(y - reach)),
+                 side, side};
+}
+
+glm::dvec3 DirectionToSun(const SunPosition& sun) {
+  return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+}
+
+}  // namespace alpenglow

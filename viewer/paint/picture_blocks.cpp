@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/picture_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "renderer/ground/surface.h"
+#include "viewer/ground/ground_block.h"
+#include "viewer/paint/picture_units.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kMetresPerKilometre = 1000.0;
+
+template <typename Block>
+void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+}
+
+double RadiusUnder(const Eye& eye, const Medium& medium) {
+  return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
+}
+
+// The frame of the ground's pattern, which a draped picture lies in too.
+LocalFrame PatternOf(const PaintedScene& scene) {
+  GeodeticPosition origin = scene.place();
+  origin.height_m = 0.0;
+  return {scene.ellipsoid(), origin};
+}
+
+// On the pattern's plane, east and north [m].
+glm::dvec2 OnPattern(const PaintedScene& scene, const glm::dvec3& eye) {
+  const Medium& medium = scene.air().air()->medium;
+  const GeodeticPosition& origin = scene.place();
+  const double radius =
+      medium.follows_wgs84 ? OsculatingRadius(kWgs84, origin.latitude_rad) : medium.planet_radius_m;
+  return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius + eye.x,
+          origin.latitude_rad * radius + eye.y};
+}
+
+GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
+  const LocalFrame pattern = PatternOf(scene), here(scene.ellipsoid(), view.eye.place);
+  const MountainSurface surface(
+      scene.air().air()->medium.wavelengths_nm,
+      CoverInSeason(scene.place().latitude_rad, view.now.modified_julian_day));
+  const glm::dvec2 at = OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz);
+  GroundBlock block = GroundBlockOf(surface, at.x, at.y, true);
+  const auto axis = [&](const glm::dvec3& of_pattern) {
+    return glm::vec4(here.EnuFromEcef(pattern.EcefFromEnu(Vector<Enu>{of_pattern})).xyz, 0.0);
+  };
+  block.cover_lines.w = static_cast<float>(scene.sizes().dropped_octaves);
+  block.mesh_east = axis({1.0, 0.0, 0.0});
+  block.mesh_north = axis({0.0, 1.0, 0.0});
+  block.mesh_up = axis({0.0, 0.0, 1.0});
+  return block;
+}
+
+GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
+                             const SunPosition& sun) {
+  if (!scene.ground().lit()) return {};
+  return GroundLightBlockOf(scene.ground().lit()->tilt(), DirectionToSun(sun),
+                            scene.sizes().relief_pixels * PixelAngle(view));
+}
+
+GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
+  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.material());
+  if (!scene.drape().colours) return cover;
+  const glm::dvec3 at = PatternOf(scene).EnuFromGeodetic(eye.place).xyz;
+  return Draped(cover, scene.drape().place, at.x, at.y);
+}
+
+}  // namespace
+
+void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
+  const std::shared_ptr<const SolvedAir>& air = scene.air().air();
+  if (known_air_ != air) air_block_ = AirBlockOf(air->medium);
+  known_air_ = air;
+  air_block_.shell.x = static_cast<float>(RadiusUnder(eye, air->medium));
+  Upload(air_, kAirBinding, air_block_);
+}
+
+void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
+                               const SunPosition& sun, const glm::dvec2& shift) const {
+  const Medium& medium = scene.air().air()->medium;
+  const LandView axes = LandViewOf(view);
+  const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
+  glm::vec4 irradiance = GpuBandsOf(medium.solar_irradiance);
+  irradiance /= static_cast<float>(sun.distance_au * sun.distance_au);
+  const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
+  const ViewBlock block{{glm::vec3(axes.right), 0.0F},
+                        {glm::vec3(axes.up), 0.0F},
+                        {glm::vec3(axes.forward), 0.0F},
+                        {glm::vec3(DirectionToSun(sun)), sun.angular_radius_rad},
+                        irradiance,
+                        {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)}};
+  Upload(view_, kViewBinding, block);
+}
+
+void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view,
+                                 const SunPosition& sun) const {
+  Upload(ground_, kGroundBinding, GroundAround(scene, view));
+  Upload(ground_light_, kGroundLightBinding, LightAround(scene, view, sun));
+  Upload(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Where what programs of a picture read is bound: one number each, so that passes do not take each
+// other's places.
+#pragma once
+
+#include "viewer/air/air_textures.h"
+#include "viewer/lamps/fog_painter.h"
+#include "viewer/lamps/lamp_painter.h"
+
+namespace alpenglow {
+
+/// Of uniform blocks.
+enum PictureBinding : GLuint {
+  kAirBinding,
+  kViewBinding,
+  kGroundBinding,
+  kGroundLightBinding,
+  kGroundSurfaceBinding,
+  kTablesBinding,
+  kLampsBinding,
+  kFogBinding
+};
+
+/// Of textures.
+enum PictureUnit {
+  kSurfaceUnit,
+  kSkyOnSurfaceUnit,
+  kShaftUnit,
+  kShadeUnit,
+  kUploadUnit,
+  kAirUnit,
+  kGroundUnit = kAirUnit + AirTextures::kUnits,
+  kLampUnit = kGroundUnit + 3,
+  kFogUnit = kLampUnit + 5,
+};
+
+inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
+inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
+
+}  // namespace alpenglow
