@@ -8,7 +8,7 @@
 // view.
 #pragma once
 
-#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <utility>
 
@@ -30,9 +30,8 @@ namespace alpenglow {
 
 class SkyPainter {
  public:
-  /// An OpenGL context must be current, now and in all calls. The air is solved here; land is read
-  /// beside drawing. Throws InputError for a medium of more than four wavelengths and for land that
-  /// is named and cannot be read.
+  /// An OpenGL context must be current, now and in all calls. Throws what PaintedScene does, and
+  /// what SceneLamps does.
   SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
              const PaintSizes& sizes);
 
