@@ -91,11 +91,11 @@ void VerticesLit(benchmark::State& state) {
     const std::size_t at = i * (mesh.positions.size() / 160000);
     vertices.push_back(TheSite()->Vertex(mesh.positions[at], mesh.normals[at]));
   }
-  const auto detail =
-      state.range(0) == 1 ? LitGround::Detail::kWithTilt : LitGround::Detail::kPlain;
-  for (auto unused : state) benchmark::DoNotOptimize(lit.LightOf(vertices, detail));
+  for (auto unused : state) {
+    for (const GroundVertex& vertex : vertices) benchmark::DoNotOptimize(lit.At(vertex));
+  }
 }
-BENCHMARK(VerticesLit)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);  // 1: with tilt
+BENCHMARK(VerticesLit)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace alpenglow

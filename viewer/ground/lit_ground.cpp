@@ -57,7 +57,7 @@ LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
   ALPENGLOW_ENSURE(site_->medium().wavelengths_nm.size(), <=, LitVertex{}.sky.size());
 }
 
-LitVertex LitGround::At(const GroundVertex& vertex, Detail detail) const {
+LitVertex LitGround::At(const GroundVertex& vertex) const {
   const SceneGeometry& geometry = site_->geometry();
   const glm::dvec3 point = InDoubles(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);
@@ -69,33 +69,6 @@ LitVertex LitGround::At(const GroundVertex& vertex, Detail detail) const {
   std::copy_n(sky.value.begin(), sky.count, lit.sky.begin());
   lit.sun_x = static_cast<float>(
       shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii));
-  if (detail == Detail::kWithTilt) lit.tilt = TiltAt(at, sky);
-  return lit;
-}
-
-// Differences as wide as relief tilts: the light is no plane.
-std::array<float, 4> LitGround::TiltAt(const SlopePoint& at, const BandLight& sky) const {
-  constexpr double kStep = 0.12;
-  std::array<float, 4> tilt{};
-  for (const glm::length_t axis : {0, 1}) {
-    SlopePoint tilted = at;
-    tilted.normal[axis] += kStep;
-    tilted.normal = glm::normalize(tilted.normal);
-    const BandLight light = light_.on_terrain->Irradiance(tilted);
-    const auto share = [&](std::size_t band) {
-      return (light[band] / std::max(sky[band], 1e-30F) - 1.0F) / static_cast<float>(kStep);
-    };
-    tilt[static_cast<std::size_t>(axis)] = share(0);
-    tilt[static_cast<std::size_t>(axis) + 2] = share(sky.count - 1);
-  }
-  return tilt;
-}
-
-std::vector<LitVertex> LitGround::LightOf(std::span<const GroundVertex> vertices,
-                                          Detail detail) const {
-  std::vector<LitVertex> lit;
-  lit.reserve(vertices.size());
-  for (const GroundVertex& vertex : vertices) lit.push_back(At(vertex, detail));
   return lit;
 }
 

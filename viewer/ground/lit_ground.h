@@ -28,10 +28,6 @@ struct LitVertex {
   std::array<float, 4> sky;  // irradiance of sky and slopes per unit solar irradiance, by band
   float sun_x;  // height of the disk's centre over the edge of terrain that cuts it [radii of the
                 // disk]: see SunlightOverEdge. The planet's own horizon is not among the edges.
-  /// How the sky's light changes, as a share of it, with a normal n + x east + y north, not
-  /// shortened: by x and by y, in the first band and in the last; even between: below 1 % rms of
-  /// the light, for MountainSurface's relief. 0 unless asked for.
-  std::array<float, 4> tilt;
 };
 
 /// From one local frame to another of the same ellipsoid.
@@ -62,33 +58,23 @@ class LitGround {
   [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
   [[nodiscard]] const GroundSite& site() const { return *site_; }
 
-  /// What is asked for of the light.
-  enum class Detail {
-    kPlain,
-    kWithTilt,  // two and a half times the work
-  };
-  [[nodiscard]] LitVertex At(const GroundVertex& vertex, Detail detail = Detail::kPlain) const;
-  [[nodiscard]] std::vector<LitVertex> LightOf(std::span<const GroundVertex> vertices,
-                                               Detail detail = Detail::kPlain) const;
+  [[nodiscard]] LitVertex At(const GroundVertex& vertex) const;
 
   /// Of vertices in another frame of the same ellipsoid, which have position_m and normal.
   template <typename Vertex>
   [[nodiscard]] std::vector<LitVertex> LightIn(const LocalFrame& frame,
-                                               std::span<const Vertex> vertices,
-                                               Detail detail = Detail::kPlain) const {
+                                               std::span<const Vertex> vertices) const {
     const SiteFromFrame turned(site_->ground().frame, frame);
     std::vector<LitVertex> lit;
     lit.reserve(vertices.size());
     for (const Vertex& vertex : vertices) {
       lit.push_back(
-          At(site_->Vertex(turned.Point(vertex.position_m), turned.Along(vertex.normal)), detail));
+          At(site_->Vertex(turned.Point(vertex.position_m), turned.Along(vertex.normal))));
     }
     return lit;
   }
 
  private:
-  [[nodiscard]] std::array<float, 4> TiltAt(const SlopePoint& at, const BandLight& sky) const;
-
   std::shared_ptr<const GroundSite> site_;
   Lighting light_;
   ShadowHeights shadow_;

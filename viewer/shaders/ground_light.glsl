@@ -50,53 +50,26 @@ vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
   return sky_irradiance * max(1.0 + gained / max(open, 0.1 * sky_level), 0.1);
 }
 
-// The same by the tilt of LitVertex (lit_ground.h): sharper, and more to interpolate.
-vec4 SkyTilted(vec3 normal, vec3 mesh_normal, vec4 sky_irradiance, vec4 tilt) {
-  float raised = dot(mesh_normal, mesh_up.xyz) / max(dot(normal, mesh_up.xyz), 0.05);
-  vec3 moved = raised * normal - mesh_normal;
-  vec2 by = vec2(dot(moved, mesh_east.xyz), dot(moved, mesh_north.xyz));
-  float first = dot(tilt.xy, by);
-  float last = dot(tilt.zw, by);
-  return sky_irradiance * max(1.0 + first + (last - first) * vec4(0.0, 1.0, 2.0, 3.0) / 3.0, 0.1);
-}
-
-// Land under a sky on its mesh and on its relief.
-vec4 LandUnder(GroundPlace at, vec3 normal, vec3 mesh_normal, float sun_x, vec4 sky_on_relief,
-               vec4 sky_on_level, vec3 to_eye) {
+// The terrain.
+// @param point_m  from the eye; mesh_normal: unit, without finer relief; sun_x, sky_irradiance: of
+//     LitVertex (lit_ground.h); to_eye: unit.
+vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
+  GroundPlace at = GroundPlaceAt(point_m);
+  vec4 sky_on_level = SkyOn(at.up, mesh_normal, at.up, sky_irradiance);
 #if GROUND_COVER == WATER_COVER
   return WaterRadiance(at.up, SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
 #else
   float altitude = 1e3 * at.altitude;
+  vec3 normal = DetailedNormal(at.offset, mesh_normal, at.footprint);
   vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), at.footprint);
-  vec4 radiance =
-      CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x), sky_on_relief, to_eye);
+  vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),
+                                SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
 #if HAS_SEA
   if (altitude <= water.y)
     radiance = WaterRadiance(at.up, SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
 #endif
   return radiance;
 #endif
-}
-
-// The terrain.
-// @param point_m  from the eye; mesh_normal: unit, without finer relief; sun_x, sky_irradiance: of
-//     LitVertex (lit_ground.h); to_eye: unit.
-vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
-  GroundPlace at = GroundPlaceAt(point_m);
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, at.footprint);
-  return LandUnder(at, normal, mesh_normal, sun_x,
-                   SkyOn(normal, mesh_normal, at.up, sky_irradiance),
-                   SkyOn(at.up, mesh_normal, at.up, sky_irradiance), to_eye);
-}
-
-// The same with the tilt of LitVertex.
-vec4 GroundRadianceTilted(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance,
-                          vec4 tilt, vec3 to_eye) {
-  GroundPlace at = GroundPlaceAt(point_m);
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, at.footprint);
-  return LandUnder(at, normal, mesh_normal, sun_x,
-                   SkyTilted(normal, mesh_normal, sky_irradiance, tilt),
-                   SkyOn(at.up, mesh_normal, at.up, sky_irradiance), to_eye);
 }
 
 // An even planet of the medium's albedo, which is what the light of the sky has at its lower end.

@@ -113,8 +113,7 @@ std::vector<Case> LandCases(const LitGround& lit) {
     c.hit.normal = MountainSurface::DetailedNormal(
         lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m), c.hit.mesh_normal);
     c.to_eye = glm::normalize(kEye - c.hit.point);
-    c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal),
-                     LitGround::Detail::kWithTilt);
+    c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
     const double over_plane =
         glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;
     if (std::abs(over_plane) > 1.0 && std::abs(c.light.sun_x) > 1.0F) cases.push_back(c);
@@ -140,11 +139,10 @@ std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
   return cases;
 }
 
-/// How a shader is asked for the light of a place, and for which bands.
+/// How a shader is asked for the light of a place.
 struct Question {
-  std::string expression;  // of the sum of the bands
+  std::string radiance;
   std::function<tests::Arguments<float>(const Case&)> arguments;
-  std::vector<std::size_t> bands;
 };
 
 /// The point from the eye, and what of the normal is needed to know it, before what a question adds.
@@ -158,21 +156,21 @@ const std::string kPoint = "vec3(a[0], a[1], a[2])";
 const std::string kToEye = "normalize(-vec3(a[0], a[1], a[2]))";
 const std::string kNormal = "vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * a[4]))";
 
-/// Ascending relative differences.
+/// Ascending relative differences of the sum of two bands: of light, arguments hold no more.
 std::vector<double> Differences(const LitGround& lit, const Lighting& light, double eye_m,
                                 const std::vector<Case>& cases, const Question& question) {
   const Blocks blocks(lit, light, eye_m);
   std::vector<tests::Arguments<float>> points;
   for (const Case& c : cases) points.push_back(question.arguments(c));
-  const std::vector<float> gpu =
-      tests::EvaluateOnGpu(Texts(lit.site().material()), question.expression, points,
-                           [&](const ShaderProgram& program) { blocks.Upload(program); });
+  const std::vector<float> gpu = tests::EvaluateOnGpu(
+      Texts(lit.site().material()), "dot(" + question.radiance + ", vec4(1.0, 0.0, 1.0, 0.0))",
+      points, [&](const ShaderProgram& program) { blocks.Upload(program); });
   std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const GroundRadiance judge = lit.site().light().Towards(
         cases[i].hit, cases[i].to_eye, {light, nullptr}, LampNodes{}, {0.0, 0.0});
     double sum = 0.0;
-    for (const std::size_t band : question.bands) {
+    for (const std::size_t band : {0U, 2U}) {
       sum += static_cast<double>(judge.natural[band]) /
              static_cast<double>(lit.lighting().irradiance[band]);
     }
@@ -183,28 +181,12 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
 }
 
 std::vector<double> LandDifferences(const LitGround& lit) {
-  return Differences(
-      lit, lit.lighting(), kEye_m, LandCases(lit),
-      {"dot(GroundRadiance(" + kPoint + ", " + kNormal + ", a[5], vec4(a[6], 0.0, a[7], 0.0), " +
-           kToEye + "), vec4(1.0, 0.0, 1.0, 0.0))",
-       [](const Case& c) {
-         return PlaceOf(c, kEye_m, {c.light.sun_x, c.light.sky[0], c.light.sky[2]});
-       },
-       {0, 2}});
-}
-
-/// In the first band, the sky's sign saying whether the sun shines.
-std::vector<double> TiltedDifferences(const LitGround& lit) {
-  return Differences(
-      lit, lit.lighting(), kEye_m, LandCases(lit),
-      {"GroundRadianceTilted(" + kPoint + ", " + kNormal +
-           ", 4.0 * sign(a[5]), vec4(abs(a[5])), vec4(a[6], a[7], 0.0, 0.0), " + kToEye + ").x",
-       [](const Case& c) {
-         return PlaceOf(
-             c, kEye_m,
-             {std::copysign(c.light.sky[0], c.light.sun_x), c.light.tilt[0], c.light.tilt[1]});
-       },
-       {0}});
+  return Differences(lit, lit.lighting(), kEye_m, LandCases(lit),
+                     {"GroundRadiance(" + kPoint + ", " + kNormal +
+                          ", a[5], vec4(a[6], 0.0, a[7], 0.0), " + kToEye + ")",
+                      [](const Case& c) {
+                        return PlaceOf(c, kEye_m, {c.light.sun_x, c.light.sky[0], c.light.sky[2]});
+                      }});
 }
 
 /// Under the sky of a plain as wide as the view.
@@ -213,11 +195,9 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   const SiteAir& air = lit.site().air();
   light.on_terrain =
       std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
-  return Differences(
-      lit, light, eye_m, PlanetCases(lit, eye_m),
-      {"dot(PlanetRadiance(" + kPoint + ", " + kToEye + "), vec4(1.0, 0.0, 1.0, 0.0))",
-       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); },
-       {0, 2}});
+  return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
+                     {"PlanetRadiance(" + kPoint + ", " + kToEye + ")",
+                      [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});
 }
 
 double Quantile(const std::vector<double>& ascending, double share) {
@@ -256,16 +236,6 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
     EXPECT_LT(Quantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
     EXPECT_LT(Quantile(differences, 0.9), 0.03)
         << "the sky's light on relief is corrected by that of an open place";
-  }
-}
-
-TEST_F(GroundOnGpu, WithTheTiltOfTheirVerticesMountainsAreTheRenderersMoreClosely) {
-  const auto site = tests::RoughSite();
-  for (const double elevation_deg : {50.0, 12.0, -3.0}) {
-    const std::vector<double> differences =
-        TiltedDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-    EXPECT_LT(Quantile(differences, 0.5), 3e-3) << elevation_deg;
-    EXPECT_LT(Quantile(differences, 0.9), 0.01) << elevation_deg;
   }
 }
 

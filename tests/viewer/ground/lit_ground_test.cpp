@@ -152,14 +152,14 @@ TEST(LitGround, VerticesInAFrameFarAwayAreTheSameVertices) {
   };
   const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
   std::vector<Framed> framed;
-  std::vector<GroundVertex> own;
+  std::vector<LitVertex> judge;
   for (std::size_t i = 0; i < mesh.positions.size(); i += 101) {
-    own.push_back(TheSite()->Vertex(mesh.positions[i], mesh.normals[i]));
+    judge.push_back(lit.At(TheSite()->Vertex(mesh.positions[i], mesh.normals[i])));
     const Point<Ecef> point = here.EcefFromEnu(Point<Enu>{InDoubles(mesh.positions[i])});
     const Vector<Ecef> normal = here.EcefFromEnu(Vector<Enu>{InDoubles(mesh.normals[i])});
     framed.push_back({there.EnuFromEcef(point).xyz, there.EnuFromEcef(normal).xyz});
   }
-  const auto judge = lit.LightOf(own), light = lit.LightIn<Framed>(there, framed);
+  const std::vector<LitVertex> light = lit.LightIn<Framed>(there, framed);
   for (std::size_t i = 0; i < judge.size(); ++i) {
     EXPECT_NEAR(light[i].sky[1] / judge[i].sky[1], 1.0F, 2e-3F) << "4 mm, in steps of altitude";
     if (std::abs(judge[i].sun_x) > 4.0F) continue;
@@ -229,37 +229,6 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     }
     EXPECT_LT(std::sqrt(sum2), 0.025) << elevation_deg;
     EXPECT_LT(std::sqrt(sum2), 0.75 * std::sqrt(without2)) << "what the correction is for";
-  }
-}
-
-TEST(LitGround, TheTiltOfAVertexIsThatOfItsRelief) {
-  for (const double elevation_deg : {40.0, 5.0, -3.0}) {
-    const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
-    const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
-    std::array<double, 4> sum2{};
-    int places = 0;
-    for (std::size_t i = 0; i < mesh.positions.size(); i += 17, ++places) {
-      const GroundVertex vertex = TheSite()->Vertex(mesh.positions[i], mesh.normals[i]);
-      const glm::dvec3 point = InDoubles(vertex.position_m), normal = InDoubles(vertex.normal);
-      const glm::dvec3 relief =
-          MountainSurface::DetailedNormal(TheSite()->geometry().GroundAt(point, 1.0), normal);
-      const glm::dvec3 moved = normal.z / relief.z * relief - normal;
-      const LitVertex smooth = lit.At(vertex, LitGround::Detail::kWithTilt);
-      const LitVertex rough = lit.At(tests::VertexAt(*TheSite(), point, relief));
-      for (std::size_t band = 0; band < 4; ++band) {
-        const double last = static_cast<double>(band) / 3.0;
-        const auto by = [&](std::size_t axis) {
-          return (1.0 - last) * static_cast<double>(smooth.tilt[axis]) +
-                 last * static_cast<double>(smooth.tilt[axis + 2]);
-        };
-        const double gained = 1.0 + by(0) * moved.x + by(1) * moved.y;
-        const double error =
-            static_cast<double>(smooth.sky[band]) * gained / static_cast<double>(rough.sky[band]) -
-            1.0;
-        sum2[band] += error * error;
-      }
-    }
-    for (const double sum : sum2) EXPECT_LT(std::sqrt(sum / places), 0.01) << elevation_deg;
   }
 }
 
