@@ -106,6 +106,8 @@ class Landscape {
   void FollowView(double seconds);
   void FindDemand(double seconds);
   void LetLevelsReach(double seconds);
+  void Ask(const ChunkSet& set, std::vector<ChunkKey> make,
+           std::vector<std::shared_ptr<const LandChunk>> relight);
   void AskForChunks();
   void AskForLight();
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;

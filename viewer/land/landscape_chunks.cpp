@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "viewer/land/landscape.h"
 
@@ -35,7 +36,6 @@ int Landscape::ExpectedChunks(double detail) const {
 
 // A new set grows beside the old one and takes its place when it has all that is wanted.
 void Landscape::MoveAnchor() {
-  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks(size_.detail));
   if (next_set_) {
     const bool has_all =
         std::all_of(demand_.wanted.begin(), demand_.wanted.end(), [&](const WantedChunk& wanted) {
@@ -78,39 +78,21 @@ std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
   return keys;
 }
 
+void Landscape::Ask(const ChunkSet& set, std::vector<ChunkKey> make,
+                    std::vector<std::shared_ptr<const LandChunk>> relight) {
+  if (make.empty() && relight.empty()) return;
+  worker_.Ask({cache_.loaded(), set.anchor(), std::move(make), std::move(relight), tree_.top(),
+               fade_.light(), fade_.number(), &set == next_set_.get()});
+  is_working_ = true;
+}
+
 void Landscape::AskForChunks() {
-  if (is_working_) return;
-  for (const bool next : {false, true}) {
-    const ChunkSet* const set = next ? next_set_.get() : set_.get();
-    if (set == nullptr) continue;
-    std::vector<ChunkKey> missing = Missing(*set);
-    if (missing.empty()) continue;
-    worker_.Ask({cache_.loaded(),
-                 set->anchor(),
-                 std::move(missing),
-                 {},
-                 tree_.top(),
-                 fade_.light(),
-                 fade_.number(),
-                 next});
-    is_working_ = true;
-    return;
-  }
+  for (const ChunkSet* const set : {set_.get(), next_set_.get()})
+    if (!is_working_ && set != nullptr) Ask(*set, Missing(*set), {});
 }
 
 void Landscape::AskForLight() {
-  if (is_working_ || !fade_.IsFilling()) return;
-  std::vector<std::shared_ptr<const LandChunk>> others = set_->NotLitBy(fade_.number());
-  if (others.empty()) return;
-  worker_.Ask({cache_.loaded(),
-               set_->anchor(),
-               {},
-               std::move(others),
-               tree_.top(),
-               fade_.light(),
-               fade_.number(),
-               false});
-  is_working_ = true;
+  if (!is_working_ && fade_.IsFilling()) Ask(*set_, {}, set_->NotLitBy(fade_.number()));
 }
 
 }  // namespace alpenglow
