@@ -6,33 +6,18 @@
 
 #include <cmath>
 
-#include "tests/viewer/land/land_files.h"
-#include "tests/viewer/shaders/headless.h"
+#include "tests/viewer/land/headless_land.h"
 #include "viewer/gl/picture_tiles.h"
 
 namespace alpenglow {
 namespace {
 
-class PicturesInParts : public tests::LandFolder {
+class PicturesInParts : public tests::HeadlessTile {
  protected:
-  void SetUp() override {
-    LandFolder::SetUp();
-    try {
-      context_.emplace();
-    } catch (const DisplayError&) {
-      GTEST_SKIP() << "EGL gives no OpenGL here";
-    }
-    tests::WriteTile(folder_ / "land.tif", 0, 0);
-  }
-
   /// Mountains under a low sun, with shafts.
   [[nodiscard]] Flythrough FlightOf(std::optional<int> largest_part) const {
-    Scene scene;
-    scene.medium = MediumPreset("bruneton2017");
-    scene.place = tests::PlaceOfSample(120.0, 200.0, 0.0);
-    scene.camera = CameraFromDegrees({3500.0, false}, 330.0, -8.0, 7.0, 75.0);
-    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-    scene.terrain.file = folder_ / "land.tif";
+    const Scene scene = SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
+                                      CameraFromDegrees({3500.0, false}, 330.0, -8.0, 7.0, 75.0));
     FlythroughSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kMedium};
@@ -43,7 +28,6 @@ class PicturesInParts : public tests::LandFolder {
 
   static constexpr ImageSize kSize{560, 300};
   static constexpr int kPart = 480;
-  std::optional<HeadlessContext> context_;
 };
 
 /// Of the larger of both, in the channel that differs most.

@@ -26,18 +26,10 @@ class Skyview : public BareSceneFolder {
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
     return RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW "' " + arguments);
   }
-  static bool HasOpenGl() {
-    try {
-      const HeadlessContext context;
-      return true;
-    } catch (const DisplayError&) {
-      return false;
-    }
-  }
 };
 
 TEST_F(Skyview, WithoutADisplayItWritesThePictureAsPng) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome =
       Run(InFolder("s.toml") + " --headless --size 64x36 --screenshot " + InFolder("view.png"));
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -49,7 +41,7 @@ TEST_F(Skyview, WithoutADisplayItWritesThePictureAsPng) {
 }
 
 TEST_F(Skyview, APictureMayBeWiderThanTheDriverDraws) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string wide =
       InFolder("s.toml") + " --headless --quality low --size 32768x3 --pitch 20 --screenshot ";
   const Outcome outcome = Run(wide + InFolder("wide.exr"));
@@ -68,7 +60,7 @@ TEST_F(Skyview, APictureMayBeWiderThanTheDriverDraws) {
 }
 
 TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") +
                               " --headless --size 32x18 --frames 3 --altitude 10000 --time "
                               "sunset-30m --screenshot " +
@@ -80,7 +72,7 @@ TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
 }
 
 TEST_F(Skyview, AFlightIsRecordedAndAReplayIsTheSameFlight) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string small = InFolder("s.toml") + " --headless --size 32x18 ";
   Outcome outcome = Run(small + "--heading 350 --altitude 2000 --frames 31 --record " +
                         InFolder("flight.csv") + " --screenshot " + InFolder("end.png"));
@@ -98,7 +90,7 @@ TEST_F(Skyview, AFlightIsRecordedAndAReplayIsTheSameFlight) {
 }
 
 TEST_F(Skyview, ARecordedFlightIsRenderedBySkyseries) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   Outcome outcome = Run(InFolder("s.toml") +
                         " --headless --size 8x4 --heading 350 --altitude 2000 --frames 31 "
                         "--record " +
@@ -113,7 +105,7 @@ TEST_F(Skyview, ARecordedFlightIsRenderedBySkyseries) {
 }
 
 TEST_F(Skyview, AReplayBecomesAFilm) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   if (RunCommand("ffmpeg -version").status != 0) GTEST_SKIP() << "there is no ffmpeg here";
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading\n0,46.5,8,3000,350\n1,46.5,8,3000,355\n");
@@ -129,7 +121,7 @@ TEST_F(Skyview, AReplayBecomesAFilm) {
 }
 
 TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 16x9 --benchmark 0.2");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.out, ::testing::MatchesRegex("([a-z._]+ [0-9.]+ [0-9.]+ [0-9.]+\n)+"));
@@ -139,7 +131,7 @@ TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
 }
 
 TEST_F(Skyview, InstrumentsAreInAPictureOnlyWhereTheyAreAskedFor) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string shot = InFolder("s.toml") + " --headless --size 320x240 --screenshot ";
   ASSERT_EQ(Run(shot + InFolder("bare.png")).status, 0);
   ASSERT_EQ(Run(shot + InFolder("off.png") + " --hud off").status, 0);
@@ -152,7 +144,7 @@ TEST_F(Skyview, InstrumentsAreInAPictureOnlyWhereTheyAreAskedFor) {
 }
 
 TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string shot = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
   const Outcome wrong = Run(shot + InFolder("a.png") + " --quality best");
   EXPECT_EQ(wrong.status, 3);
@@ -162,7 +154,7 @@ TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
 }
 
 TEST_F(Skyview, AViewIsExplainedInATable) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 32x18 --explain");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   for (const char* said : {"picture, from renderer's", "air tables", "levels of land", "saves"})
@@ -170,7 +162,7 @@ TEST_F(Skyview, AViewIsExplainedInATable) {
 }
 
 TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading,utc\n0,46.5,8,3000,350,2026-06-21T10:00:00Z\n"
             "10,46.6,8,5000,10,2026-06-21T16:00:00Z\n");
@@ -222,7 +214,7 @@ TEST_F(Skyview, AWrongInputEndsWithStatusThreeAndNamesIt) {
 }
 
 TEST_F(Skyview, AMediumOfManyBandsIsRefused) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   WriteText(folder_ / "bands.toml",
             "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nnone = true\n"
             "[atmosphere]\nfile = \"eight.toml\"\n");
@@ -240,7 +232,7 @@ TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFourBeforeTheFlight) {
 }
 
 TEST_F(Skyview, LostMessagesLoseNoPicture) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   for (const tests::Lost how : {tests::Lost::kFull, tests::Lost::kClosed, tests::Lost::kPipe}) {
     fs::remove(folder_ / "a.png");
     const std::optional<int> status =
@@ -279,7 +271,7 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
 
 // Hard case 49.
 TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
-  if (!HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string shot = " s.toml --headless --size 16x9 --screenshot a.png";
   if (Run(shot).error.find("Mesa") == std::string::npos) {
     GTEST_SKIP() << "only Mesa's drivers can be told to be old";
@@ -299,11 +291,7 @@ class SkyviewLand : public tests::LandFolder {
  protected:
   void SetUp() override {
     LandFolder::SetUp();
-    try {
-      const HeadlessContext context;
-    } catch (const DisplayError&) {
-      GTEST_SKIP() << "EGL gives no OpenGL here";
-    }
+    if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
     tests::WriteTile(folder_ / "west.tif", 0, 0);
     tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
   }
@@ -339,11 +327,6 @@ TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
 }
 
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
-  try {
-    const HeadlessContext context;
-  } catch (const DisplayError&) {
-    GTEST_SKIP() << "EGL gives no OpenGL here";
-  }
   std::filesystem::create_directory(folder_ / "land");
   tests::WriteTile(folder_ / "land/west.tif", 0, 0);
   WriteText(folder_ / "land/broken.tif", "not a picture at all");

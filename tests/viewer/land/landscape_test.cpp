@@ -9,8 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "renderer/terrain/terrain.h"
-#include "tests/viewer/land/land_files.h"
-#include "tests/viewer/shaders/headless.h"
+#include "tests/viewer/land/headless_land.h"
 #include "viewer/land/surface_map.h"
 #include "viewer/shaders/uniform_blocks.h"
 
@@ -56,20 +55,11 @@ glm::dvec3 UnitOf(const glm::vec4& surface) {
       glm::dvec3(std::copysign(1.0 - std::abs(y), x), std::copysign(1.0 - std::abs(x), y), z));
 }
 
-class LandscapePictures : public LandFolder {
+class LandscapePictures : public HeadlessLand {
  protected:
   void SetUp() override {
-    LandFolder::SetUp();
-    try {
-      context_ = std::make_unique<HeadlessContext>();
-    } catch (const DisplayError& error) {
-      GTEST_SKIP() << error.what();
-    }
-    map_.emplace(kWidth, kHeight);
-  }
-  void TearDown() override {
-    map_.reset();
-    LandFolder::TearDown();
+    HeadlessLand::SetUp();
+    if (!IsSkipped()) map_.emplace(kWidth, kHeight);
   }
 
   [[nodiscard]] LandSource Folder() const { return {{folder_}, VoidPolicy::kFill, std::nullopt}; }
@@ -98,7 +88,6 @@ class LandscapePictures : public LandFolder {
     return Draw(land, eye);
   }
 
-  std::unique_ptr<HeadlessContext> context_;
   std::optional<SurfaceMap> map_;
 };
 

@@ -11,8 +11,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/seven_views.h"
-#include "tests/viewer/land/land_files.h"
-#include "tests/viewer/shaders/headless.h"
+#include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/paint/view_difference.h"
 
@@ -121,16 +120,10 @@ TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
                "at the limb light falls by e within half a pixel: one in a hundred is on it");
 }
 
-class DrapedLand : public tests::LandFolder {
+class DrapedLand : public tests::HeadlessTile {
  protected:
   void SetUp() override {
-    LandFolder::SetUp();
-    try {
-      context_.emplace();
-    } catch (const DisplayError&) {
-      GTEST_SKIP() << "EGL gives no OpenGL here";
-    }
-    tests::WriteTile(folder_ / "land.tif", 0, 0);
+    HeadlessTile::SetUp();
     WriteColours(folder_ / "colours.tif");
   }
 
@@ -157,16 +150,11 @@ class DrapedLand : public tests::LandFolder {
   }
 
   [[nodiscard]] Scene DrapedScene() const {
-    Scene scene;
-    scene.medium = MediumPreset("bruneton2017");
-    scene.place = tests::PlaceOfSample(100.0, 200.0, 0.0);
-    scene.camera = CameraFromDegrees({4500.0, false}, 340.0, -25.0, 0.0, 60.0);
-    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-    scene.terrain.file = folder_ / "land.tif";
+    Scene scene = SceneOverTile(tests::PlaceOfSample(100.0, 200.0, 0.0),
+                                CameraFromDegrees({4500.0, false}, 340.0, -25.0, 0.0, 60.0));
     scene.terrain.colour = folder_ / "colours.tif";
     return scene;
   }
-  std::optional<HeadlessContext> context_;
 };
 
 TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {

@@ -5,26 +5,38 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <string>
 
 #include "atmosphere/text/error.h"
 #include "viewer/gl/gl_context.h"
 
 namespace alpenglow::tests {
 
+/// A context that is current; null where EGL gives none.
+inline std::unique_ptr<HeadlessContext> ContextOrNone() {
+  try {
+    return std::make_unique<HeadlessContext>();
+  } catch (const DisplayError&) {
+    return nullptr;
+  }
+}
+
+inline bool HasOpenGl() { return ContextOrNone() != nullptr; }
+
 /// Tests of this fixture have a current OpenGL context. They are skipped only where EGL gives none.
-class Headless : public ::testing::Test {
+/// @tparam Base  a fixture that they need too.
+template <typename Base>
+class HeadlessWith : public Base {
  protected:
   void SetUp() override {
-    try {
-      context_ = std::make_unique<HeadlessContext>();
-    } catch (const DisplayError& error) {
-      GTEST_SKIP() << error.what();
-    }
+    Base::SetUp();
+    context_ = ContextOrNone();
+    if (!context_) GTEST_SKIP() << "EGL gives no OpenGL here";
   }
 
  private:
   std::unique_ptr<HeadlessContext> context_;
 };
+
+using Headless = HeadlessWith<::testing::Test>;
 
 }  // namespace alpenglow::tests

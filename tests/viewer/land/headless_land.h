@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Scenes over a tile of mountains, for pictures of the graphics card.
+#pragma once
+
+#include "renderer/scene/scene.h"
+#include "tests/viewer/land/land_files.h"
+#include "tests/viewer/shaders/headless.h"
+
+namespace alpenglow::tests {
+
+using HeadlessLand = HeadlessWith<LandFolder>;
+
+/// A folder with one tile, and a current OpenGL context.
+class HeadlessTile : public HeadlessLand {
+ protected:
+  void SetUp() override {
+    HeadlessLand::SetUp();
+    WriteTile(folder_ / "land.tif", 0, 0);
+  }
+
+  /// In air of three bands, quick to solve.
+  [[nodiscard]] Scene SceneOverTile(const GeodeticPosition& place, const Camera& camera) const {
+    Scene scene;
+    scene.medium = MediumPreset("bruneton2017");
+    scene.place = place;
+    scene.camera = camera;
+    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
+    scene.terrain.file = folder_ / "land.tif";
+    return scene;
+  }
+};
+
+}  // namespace alpenglow::tests
