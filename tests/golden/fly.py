@@ -299,7 +299,8 @@ def replay(options, track, arguments):
     if options.scene is None:
         land = f'dem = "{options.dem}"' if options.dem else ""
         scene.write_text(f'[place]\nlatitude = {options.latitude}\n'
-                         f'longitude = {options.longitude}\n[terrain]\n{land}\n')
+                         f'longitude = {options.longitude}\n'
+                         f'[camera]\nabove_ground_m = 300.0\n[terrain]\n{land}\n')
     subprocess.run([series, scene, "--path", track, "--count", "3", *small, "--png", "--out",
                     options.out / "series.%d.exr"], check=True)
     pictures = [options.out / f"{name}.{i}.png" for i in range(3) for name in ["replay", "series"]]
