@@ -300,8 +300,10 @@ void FlightDeck::Capture(const HudCaptureRequest& asked) {
 void FlightDeck::Record(bool records) {
   if (!records) {
     const std::optional<std::filesystem::path> file = recorder_.file();
-    recorder_.Finish();
-    if (file) Say(fmt::format("{} is written", file->filename().string()));
+    const bool is_written = recorder_.Finish();
+    if (file)
+      Say(fmt::format("{} is {}", file->filename().string(),
+                      is_written ? "written" : "not written: nothing was flown"));
     return;
   }
   const std::filesystem::path file = NextFlight(".");
@@ -323,13 +325,13 @@ void FlightDeck::FlyAgain() {
 }
 
 void FlightDeck::NoteFlight(double seconds) {
-  elapsed_s_ += seconds;
-  recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
   const bool replays = flight_.cockpit().pilot().Replays();
   if (std::exchange(replays_, replays) && !replays) Say("here the replay ends");
-  if (replays) return;
-  flown_s_ += seconds;
-  flown_.Note(flown_s_, flight_.eye(), flight_.now());
+  elapsed_s_ += seconds;
+  flown_s_ += replays ? 0.0 : seconds;
+  if (!flight_.KnowsGround()) return;  // a point inside the ground could not be rendered
+  recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
+  if (!replays) flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }
 
 void FlightDeck::ServeTime(const HudTimeRequest& asked) {

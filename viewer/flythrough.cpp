@@ -83,7 +83,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
                SizesOf(used_.quality)) {
-  if (scene.camera.height.above_ground) waits_above_ground_m_ = scene.camera.height.value_m;
+  if (scene.camera.height.above_ground) AwaitGround(scene.camera.height.value_m);
 }
 
 GroundHeight Flythrough::Ground() const {
@@ -92,14 +92,18 @@ GroundHeight Flythrough::Ground() const {
   };
 }
 
+void Flythrough::AwaitGround(std::optional<double> above_ground_m) {
+  knows_ground_ = false;
+  waits_above_ground_m_ = above_ground_m;
+}
+
 void Flythrough::StandOnGround() {
-  if (!waits_above_ground_m_) return;
-  const std::optional<double> ground = painter_.land().GroundUnder(eye().place);
-  const bool is_known = ground || painter_.land().Progress().share >= 1.0;
-  if (!is_known) return;
+  if (knows_ground_ || !painter_.land().KnowsGround(eye().place)) return;
+  knows_ground_ = true;
+  const std::optional<double> above_m = std::exchange(waits_above_ground_m_, std::nullopt);
+  if (!above_m) return cockpit_.pilot().KeepAbove(Ground());
   Eye stands = eye();
-  stands.place.height_m = ground.value_or(0.0) + *waits_above_ground_m_;
-  waits_above_ground_m_.reset();
+  stands.place.height_m = Ground()(stands.place) + *above_m;
   cockpit_.pilot().PutAt(stands, Ground());
 }
 
@@ -108,42 +112,42 @@ void Flythrough::Place(const EyePlacement& placement) {
       waits_above_ground_m_.value_or(eye().place.height_m - Ground()(eye().place));
   Eye placed = Placed(eye(), placement);
   if (placement.height_m) {
-    waits_above_ground_m_.reset();
+    AwaitGround();
   } else if (placement.latitude_deg || placement.longitude_deg) {
-    waits_above_ground_m_ = std::max(above_m, 0.0);
+    AwaitGround(std::max(above_m, 0.0));
   }
   cockpit_.pilot().PutAt(placed, Ground());
 }
 
 void Flythrough::GoTo(const std::string& name) {
-  waits_above_ground_m_.reset();
+  AwaitGround();
   cockpit_.GoTo(PlaceNamed(name), Ground());
 }
 
 void Flythrough::Follow(const CameraPath& path) {
-  waits_above_ground_m_.reset();
+  AwaitGround();
   cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
   static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEvent));
 }
 
 void Flythrough::Replay(const CameraPath& flight) {
-  waits_above_ground_m_.reset();
+  AwaitGround();
   cockpit_.Replay(std::make_shared<const CameraPath>(flight), Ground());
 }
 
 void Flythrough::FlyAgain(const CameraPath& flown) {
-  waits_above_ground_m_.reset();
+  AwaitGround();
   cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown), Ground());
 }
 
 void Flythrough::Show(const ReplayFrame& frame) {
-  waits_above_ground_m_.reset();
-  cockpit_.pilot().PutAt(KeptAbove(Zoomed(frame.eye, 1.0), Ground()(frame.eye.place), 0.0),
-                         Ground());
-  if (frame.now) cockpit_.clock().Set(*frame.now);
+  AwaitGround();
+  const CameraPathPoint shown{frame.path_s, PoseOf(Zoomed(frame.eye, 1.0)), frame.now};
+  cockpit_.Replay(std::make_shared<const CameraPath>(std::vector{shown}), Ground());
 }
 
 void Flythrough::Advance(const PilotControls& controls, double seconds) {
+  StandOnGround();
   cockpit_.Advance(controls, seconds, Ground());
   still_s_ = still_eye_ == eye() ? still_s_ + seconds : 0.0;
   still_eye_ = eye();
@@ -314,7 +318,6 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
     return std::max(static_cast<int>(std::lround(wanted.scale * side)), 1);
   };
   const ImageSize size{scaled(screen.width), scaled(screen.height)};
-  StandOnGround();
   AimLandingLight();
   const PaintedView view = ViewOf(size);
   painter_.Update(view, seconds);
@@ -412,8 +415,8 @@ void Flythrough::WriteReplay(const CameraPath& path,
     ThrowIfInterrupted();
     const double along_s = (path.end_s() - path.begin_s()) * static_cast<double>(i) / steps;
     Show(ReplayAt(path, path.begin_s() + along_s));
-    recorder.Note(along_s, eye(), now());
     WritePicture(files[i], size);
+    recorder.Note(along_s, eye(), now());  // the ground there is loaded by now
   }
 }
 

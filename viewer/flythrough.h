@@ -131,6 +131,9 @@ class Flythrough {
   [[nodiscard]] ToneCurve curve() const { return developer_.curve(); }
   /// Height of the ground under a place; of the bare planet where there is no land.
   [[nodiscard]] GroundHeight Ground() const;
+  /// Whether the eye stands where it was put: over the ground there, or where there is none. Until
+  /// the land under a place is loaded it may be inside; from then on it never is.
+  [[nodiscard]] bool KnowsGround() const { return knows_ground_; }
   [[nodiscard]] SkyPainter& painter() { return painter_; }
   [[nodiscard]] const SkyPainter& painter() const { return painter_; }
   /// "auto: medium at 0.7x", "high", "reference, 16 rays a pixel".
@@ -145,6 +148,7 @@ class Flythrough {
   [[nodiscard]] PaintedQuality Painted() const;
   [[nodiscard]] double Ev100Of(const Image& picture) const;
   [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples);
+  void AwaitGround(std::optional<double> above_ground_m = std::nullopt);
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
@@ -166,7 +170,8 @@ class Flythrough {
   FlightExposure exposure_;
   double metered_ev100_ = 15.0;
   bool landing_light_ = false;
-  std::optional<double> waits_above_ground_m_;  // the ground under the eye is not known yet
+  bool knows_ground_ = false;                   // under the eye, since it was put there
+  std::optional<double> waits_above_ground_m_;  // until then: how high it will stand over it
   std::unique_ptr<ReferencePicture> reference_;
   std::shared_ptr<const ReferenceScene> reference_scene_;
   std::optional<Eye> still_eye_;

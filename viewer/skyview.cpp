@@ -88,6 +88,7 @@ UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
 void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const ImageSize& size,
                    FlightRecorder& recorder) {
   constexpr double kFrame_s = 1.0 / 60.0;
+  if (options.record) flight.Settle(size);  // nothing is noted before the ground is known
   recorder.Note(0.0, flight.eye(), flight.now());
   for (int frame = 1; frame < options.frames; ++frame) {
     flight.Advance({}, kFrame_s);

@@ -133,6 +133,7 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
       ->needs(video)
       ->capture_default_str();
   benchmark->excludes(video)->excludes("--replay")->excludes("--record");
+  for (CLI::Option* flies_nothing : {explain, video}) flies_nothing->excludes("--record");
   AddCommonOptions(app, "skyview", options.common);
   app.callback([&options] {
     if (options.headless && !options.screenshot && !options.benchmark && !options.video &&

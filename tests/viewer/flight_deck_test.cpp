@@ -10,6 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/land/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow {
@@ -261,6 +262,60 @@ TEST_F(FlightDeckFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
     deck.Advance({}, kSize, kFrame_s);
   }
   EXPECT_EQ(ReadFlight("flight-0001.csv").points().size(), 1U);
+}
+
+class FlightDeckOverLand : public tests::LandFolder {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    try {
+      context_.emplace();
+    } catch (const DisplayError& error) {
+      GTEST_SKIP() << error.what();
+    }
+    tests::WriteTile(folder_ / "land.tif", 0, 0);
+  }
+  /// 300 m over mountains about 1500 m high.
+  [[nodiscard]] Flythrough FlightOverMountains() const {
+    Scene scene;
+    scene.medium = MediumPreset("bruneton2017");
+    scene.place = tests::PlaceOfSample(120.0, 200.0, 0.0);
+    scene.camera = CameraFromDegrees({300.0, true}, 0.0, 0.0, 0.0, 60.0);
+    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
+    scene.terrain.file = folder_ / "land.tif";
+    FlythroughSettings settings;
+    settings.land = LandSourceOf(scene);
+    settings.quality = {Quality::kLow};
+    settings.size = kSize;
+    return {scene, ParseInstant("2026-06-21T10:00:00Z"), settings};
+  }
+  std::optional<HeadlessContext> context_;
+};
+
+TEST_F(FlightDeckOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
+  Flythrough flight = FlightOverMountains();
+  FlightRecorder recorder(folder_ / "f.csv");
+  FlightDeck deck(flight, recorder, {});
+  const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);
+  const auto fly = [&](const WindowEvents& events) {
+    deck.Advance(events, kSize, 1.0 / 60.0);
+    deck.Paint({screen.framebuffer(), kSize.width, kSize.height}, 1.0 / 60.0);
+  };
+  int frames = 0;
+  for (; !flight.KnowsGround(); ++frames) fly({});
+  EXPECT_GT(frames, 1) << "land is read beside drawing";
+  for (int i = 0; i < 12; ++i) fly({});
+  WindowEvents again;
+  again.keys = {{kR, 0, 1, kControlKey, ""}, {kR, 0, 0, kControlKey, ""}};
+  fly(again);
+  EXPECT_THAT(deck.Model().messages.back().text, HasSubstr("nothing has been flown"))
+      << "the eye has stood, though the ground came up to it";
+  EXPECT_TRUE(recorder.Finish());
+  const CameraPath path = ReadFlight(folder_ / "f.csv");
+  EXPECT_GE(path.points().size(), 4U);
+  for (const CameraPathPoint& point : path.points())
+    EXPECT_NEAR(point.pose.place.height_m, flight.Ground()(point.pose.place) + 300.0, 0.01)
+        << "places and heights are written in millimetres, on slopes of 60 degrees at most";
 }
 
 TEST_F(FlightDeckTest, APlaceThatIsAskedForMovesTheEye) {

@@ -12,12 +12,89 @@
 namespace alpenglow {
 namespace {
 
-class PicturesInParts : public tests::HeadlessTile {
+class FlightsOverLand : public tests::HeadlessTile {
  protected:
   /// Mountains under a low sun, with shafts.
+  [[nodiscard]] Scene SceneAt(const Height& height) const {
+    return SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
+                         CameraFromDegrees(height, 330.0, -8.0, 7.0, 75.0));
+  }
+  /// @param files  of the land; none: that of the scene.
+  [[nodiscard]] static Flythrough SmallFlight(const Scene& scene,
+                                              std::vector<std::filesystem::path> files = {}) {
+    FlythroughSettings settings;
+    settings.land = LandSourceOf(scene);
+    if (!files.empty()) settings.land.files = std::move(files);
+    settings.quality = {Quality::kLow};
+    settings.size = kSmall;
+    return {scene, ParseInstant("2026-06-21T18:20:00Z"), settings};
+  }
+
+  static constexpr ImageSize kSmall{32, 18};
+};
+
+double OverTheGround_m(const Flythrough& flight) {
+  return flight.eye().place.height_m - flight.Ground()(flight.eye().place);
+}
+
+TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {
+  constexpr int kFar = 6000;  // samples; 190 km, whose land is not loaded before the eye is there
+  tests::WriteTile(folder_ / "far.tif", kFar, 0);
+  Flythrough flight =
+      SmallFlight(SceneAt({300.0, true}), {folder_ / "land.tif", folder_ / "far.tif"});
+  EXPECT_FALSE(flight.KnowsGround()) << "nothing has been read yet";
+  flight.Settle(kSmall);
+  EXPECT_TRUE(flight.KnowsGround());
+  EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6);
+  EyePlacement far;
+  far.longitude_deg = tests::PlaceOfSample(kFar + 70.0, 0.0, 0.0).longitude_rad / kRadiansPerDegree;
+  flight.Place(far);
+  EXPECT_FALSE(flight.KnowsGround()) << "of another place";
+  flight.Settle(kSmall);
+  EXPECT_TRUE(flight.KnowsGround());
+  EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6);
+}
+
+TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
+  for (const double latitude_deg : {10.0, 46.0}) {
+    Flythrough flight = SmallFlight(SceneAt({300.0, true}));
+    flight.Place({latitude_deg, {}, {}, {}, {}});
+    flight.Advance({}, 1.0 / 60.0);
+    EXPECT_TRUE(flight.KnowsGround()) << latitude_deg;
+    EXPECT_EQ(flight.eye().place.height_m, 300.0) << "over the ellipsoid";
+  }
+}
+
+// Land that has grown since, or that of another model.
+TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
+  const GeodeticPosition place = tests::PlaceOfSample(120.0, 200.0, 100.0);
+  const CameraPath low({{0.0, {place}}, {1.0, {place, 0.5}}});
+  {
+    Flythrough flight = SmallFlight(SceneAt({3500.0, false}));
+    FlightRecorder recorder(folder_ / "shown.csv");
+    flight.WriteReplay(low, {folder_ / "0.png", folder_ / "1.png"}, kSmall, recorder);
+    EXPECT_GT(OverTheGround_m(flight), 0.05) << "10 cm";
+    recorder.Finish();
+    const double height_m = flight.eye().place.height_m;
+    const CameraPath shown_path = ReadFlight(folder_ / "shown.csv");
+    for (const CameraPathPoint& point : shown_path.points())
+      EXPECT_NEAR(point.pose.place.height_m, height_m, 1e-3) << "as written, in millimetres";
+    for (const char* name : {"0.png", "1.png"}) {
+      const std::string shown = ReadPngMetadata(folder_ / name).at("alpenglow.camera_height");
+      EXPECT_NEAR(std::stod(shown), height_m, 0.1) << name;
+    }
+  }
+  Flythrough window = SmallFlight(SceneAt({3500.0, false}));
+  window.Replay(low);
+  window.Settle(kSmall);
+  window.Advance({}, 0.5);
+  EXPECT_GT(OverTheGround_m(window), 0.05);
+}
+
+class PicturesInParts : public FlightsOverLand {
+ protected:
   [[nodiscard]] Flythrough FlightOf(std::optional<int> largest_part) const {
-    const Scene scene = SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
-                                      CameraFromDegrees({3500.0, false}, 330.0, -8.0, 7.0, 75.0));
+    const Scene scene = SceneAt({3500.0, false});
     FlythroughSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kMedium};

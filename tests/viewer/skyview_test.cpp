@@ -188,6 +188,8 @@ TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
   EXPECT_EQ(Run("--nonsense").status, 2);
   EXPECT_EQ(Run("--headless --screenshot a.png --frames 0").status, 2);
   EXPECT_EQ(Run("--headless --explain --screenshot a.png").status, 2);
+  EXPECT_EQ(Run("--headless --explain --record f.csv").status, 2) << "nothing is flown";
+  EXPECT_EQ(Run("--headless --replay p.csv --video a.mp4 --record f.csv").status, 2);
   EXPECT_EQ(Run(InFolder("s.toml") + " --dem x.hgt").status, 2);
   for (const char* wrong :
        {"--size 0x10", "--size 40000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
@@ -312,6 +314,20 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   EXPECT_GT(std::stod(height), 300.0) << "over the ground in the middle of both: " << height;
   const Outcome beside = Shot(both + " --latitude 47.5 --longitude 8 --altitude 3000");
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
+}
+
+TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedThere) {
+  Outcome outcome = Shot("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const DisplayImage flown = ReadPng(folder_ / "a.png");
+  outcome = Shot("--dem west.tif --replay f.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(ReadPng(folder_ / "a.png").rgb, flown.rgb);
+  WriteText(folder_ / "s.toml",
+            "[place]\nlatitude = 46.65\nlongitude = 8.05\n[terrain]\ndem = \"west.tif\"\n");
+  outcome = RunCommand("'" ALPENGLOW_SKYSERIES
+                       "' s.toml --path f.csv --count 1 --size 32x18 --effects sky --out f.exr");
+  EXPECT_EQ(outcome.status, 0) << "no point lies in the ground: " << outcome.error;
 }
 
 TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {

@@ -110,6 +110,18 @@ TEST_F(SkyviewWindow, ASignalEndsTheFlightAndItsRecordIsWhole) {
   }
 }
 
+TEST_F(SkyviewWindow, AFlightThatEndsBeforeItsLandIsThereLeavesNoRecordAndSaysSo) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  WriteText(folder_ / "s.toml",
+            "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nrange = true\n"
+            "[atmosphere]\npreset = \"bruneton2017\"\n");
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9'", "--record f.csv");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("f.csv is not written: nothing was flown"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part"));
+}
+
 TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
   if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome killed = Run(DisplayWith("raise:9"), "--record f.csv");

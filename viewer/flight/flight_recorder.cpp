@@ -88,12 +88,15 @@ void FlightRecorder::Note(double elapsed_s, const Eye& eye, const UtcInstant& no
   }
 }
 
-void FlightRecorder::Finish() {
+bool FlightRecorder::Finish() {
   const std::unique_ptr<State> state = std::move(state_);
-  if (!state) return;
+  if (!state) return false;
   state->sync.Wait();
   if (state->fault) throw OutputError(*state->fault);
   state->file.Finish();
+  if (!state->last_s)
+    Say(fmt::format("skyview: {} is not written: nothing was flown\n", state->name.string()));
+  return state->last_s.has_value();
 }
 
 CameraPath ReadFlight(const std::filesystem::path& file) {

@@ -49,9 +49,9 @@ class FlightRecorder {
   /// What is being recorded into; nothing: nothing is.
   [[nodiscard]] std::optional<std::filesystem::path> file() const;
 
-  /// Gives the file its name; nothing before the first Note. Throws OutputError, also for lines
-  /// that the file has not taken.
-  void Finish();
+  /// Gives the file its name; before the first Note there is none, which is said. Returns whether
+  /// there is a file. Throws OutputError, also for lines that the file has not taken.
+  bool Finish();
 
  private:
   struct State;

@@ -14,7 +14,9 @@ namespace alpenglow {
 namespace {
 
 constexpr double kStep_s = 1.0 / 120.0;
-constexpr double kStanding_m = 1.5;   // of the eye over the ground
+constexpr double kStanding_m = 1.5;  // of the eye over the ground
+// Of a replay, which goes as low as it was flown; less and rounding would show land from below.
+constexpr double kReplayed_m = 0.1;
 constexpr double kOnGround_m = 15.0;  // so near to it a flight begins on its wheels
 
 }  // namespace
@@ -143,7 +145,7 @@ void Pilot::Show(const GroundHeight& ground) {
     eye_ = Turned(EyeOf(track_->PoseAt(track_s_)), look_right_rad_, look_up_rad_);
     if (track_lens_ == Lens::kOfEye) eye_.fov_rad = fov_rad;
   }
-  eye_ = KeptAbove(eye_, ground(eye_.place), Replays() ? 0.0 : kStanding_m);
+  eye_ = KeptAbove(eye_, ground(eye_.place), Replays() ? kReplayed_m : kStanding_m);
 }
 
 void Pilot::StepSpeed(int step) {

@@ -50,6 +50,8 @@ class Pilot {
   [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
   /// Puts the eye somewhere else, in the mode that it is in; leaves a track for the free camera.
   void PutAt(const Eye& eye, const GroundHeight& ground);
+  /// Lifts the eye out of ground that has become known.
+  void KeepAbove(const GroundHeight& ground) { Show(ground); }
   /// What kTrack follows, from its beginning, as fast as it is. Gives it up when there is none.
   /// @param lens  whose field of view is seen: the eye's own, or that of the track (a replay)
   enum class Lens { kOfEye, kOfTrack };

@@ -77,6 +77,8 @@ class Landscape {
   /// Height of the ground [m] under a place, the same as is drawn near the eye; nothing where there
   /// is none or it is not loaded.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
+  /// Whether GroundUnder has said its last word: all land that a place has is loaded.
+  [[nodiscard]] bool KnowsGround(const GeodeticPosition& place) const;
   /// LoadedHeights::SampledGrid of what is loaded now, for any thread while this lives.
   [[nodiscard]] std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
   Sampler() const;

@@ -13,6 +13,10 @@ std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) cons
   return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
 }
 
+bool Landscape::KnowsGround(const GeodeticPosition& place) const {
+  return mesh_ ? mesh_->IsRead() : cache_.HasRead(place);
+}
+
 std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
 Landscape::Sampler() const {
   if (mesh_) {

@@ -30,6 +30,9 @@ class TileCache {
   /// Whether all tiles that a chunk reads are there as fine as it needs them, or never will be.
   [[nodiscard]] bool CanMake(const ChunkKey& key) const;
 
+  /// Whether all tiles around a place have been read, however fine, or cannot be.
+  [[nodiscard]] bool HasRead(const GeodeticPosition& place) const;
+
   /// Tiles wanted for the eye, and how many of them are there.
   [[nodiscard]] int wanted() const { return wanted_; }
   [[nodiscard]] int there() const { return there_; }

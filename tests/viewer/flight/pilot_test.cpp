@@ -195,5 +195,19 @@ TEST(Pilot, PutSomewhereElseItFliesOnThere) {
   EXPECT_EQ(pilot.mode(), FlightMode::kFree) << "there is no air";
 }
 
+TEST(Pilot, AReplayGoesAsLowAsItWasFlownButNotIntoTheGround) {
+  const auto shown_m = [](double flown_m) {
+    Pilot pilot(EyeAt(1500.0), kWgs84);
+    const CameraPose low{PlaceFromDegrees(46.0, 8.0, flown_m)};
+    pilot.SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{{0.0, low}}),
+                   Pilot::Lens::kOfTrack);
+    EXPECT_FALSE(pilot.Enter(FlightMode::kTrack, [](const auto&) { return 100.0; }));
+    return pilot.eye().place.height_m;
+  };
+  EXPECT_EQ(shown_m(100.5), 100.5) << "lower than people stand";
+  EXPECT_GT(shown_m(100.0), 100.01) << "the card has places of land in single precision, to 1 cm";
+  EXPECT_LT(shown_m(20.0), 100.5) << "up by no more than it needs";
+}
+
 }  // namespace
 }  // namespace alpenglow
