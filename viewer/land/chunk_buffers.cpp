@@ -128,9 +128,8 @@ void ChunkBuffers::Draw(std::span<const Drawn> chunks, LightSide from) {
 }
 
 std::size_t ChunkBuffers::bytes() const {
-  const auto taken = static_cast<GLsizeiptr>(slots_) - static_cast<GLsizeiptr>(free_.size());
   return static_cast<std::size_t>(kWholeBytes +
-                                  taken * (kVertexBytes + 2 * kLightBytes + kTriangleBytes));
+                                  slots_ * (kVertexBytes + 2 * kLightBytes + kTriangleBytes));
 }
 
 }  // namespace alpenglow

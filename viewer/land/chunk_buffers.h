@@ -38,7 +38,7 @@ class ChunkBuffers {
   /// other side.
   void Draw(std::span<const Drawn> chunks, LightSide from);
 
-  /// Of the slots that are taken, and of triangles of whole chunks.
+  /// Of all slots, taken or not, and of triangles of whole chunks.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -166,6 +166,9 @@ class ChunkMaker {
     chunk_.low = glm::dvec3(std::numeric_limits<double>::infinity());
     chunk_.high = -chunk_.low;
     AddCoarseVertices();
+    chunk_.vertices.reserve(kChunkVertices);
+    chunk_.own.reserve(kChunkVertices);
+    chunk_.ends.reserve(kChunkVertices);
     for (int j = 0; j < kChunkSide; ++j)
       for (int i = 0; i < kChunkSide; ++i) AddVertex(i0_ + i, j0_ + j);
     AddTriangles();
@@ -184,6 +187,7 @@ class ChunkMaker {
 
   void AddCoarseVertices() {
     if (key_.level == top_) return;
+    chunk_.coarse.reserve(static_cast<std::size_t>(CoarseSide() * CoarseSide()));
     for (int j = CoarseJ0(); j < CoarseJ0() + CoarseSide(); ++j)
       for (int i = CoarseI0(); i < CoarseI0() + CoarseSide(); ++i)
         chunk_.coarse.push_back(LitVertex(coarse_, i, j));

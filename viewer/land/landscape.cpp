@@ -24,7 +24,6 @@ double HorizonDistance(double height_m) {
 }
 
 constexpr double kHighestGround_m = 9000.0;
-constexpr int kMostChunks = 24000;  // that more rays a pixel ask for
 
 }  // namespace
 
@@ -37,7 +36,8 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
       cache_(tiles_, tree_, size.most_bytes),
       reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
       worker_(MakeChunks) {
-  RequireInRange(size.detail, 64.0, 1024.0, "the detail of the land");
+  RequireInRange(size.detail, LandSize::kLeastDetail, LandSize::kMostDetail,
+                 "the detail of the land");
   if (source.mesh) {
     mesh_.emplace(source.mesh->file, LocalFrame(ellipsoid, source.mesh->place));
   } else if (source.files.empty() && source.range_centre) {
@@ -65,10 +65,9 @@ void Landscape::FollowView(double seconds) {
   const double first_m = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m);
   const double by_height =
       std::clamp(1.0 + 0.35 * std::log2(std::max(eye_.above_m, 1.0) / first_m), 1.0, 3.0);
-  const double usually = size_.detail * std::min(by_lens * by_height, 4.0);
-  double wanted = usually * std::sqrt(view_.rays);
-  while (wanted > usually && ExpectedChunks(wanted) > kMostChunks) wanted *= 0.9;
-  wanted = std::max(wanted, usually);
+  double wanted = size_.detail * std::min(by_lens * by_height, 4.0) * std::sqrt(view_.rays);
+  while (wanted > LandSize::kLeastDetail && ExpectedChunks(wanted) > size_.most_chunks)
+    wanted = std::max(0.95 * wanted, LandSize::kLeastDetail);
   detail_ = wanted + (detail_ - wanted) * std::exp(-seconds / kTime_s);
 }
 
@@ -137,7 +136,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   FollowView(seconds);
   if (cache_.Update(eye_, detail_)) ++heights_version_;
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
-  if (!set_) set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks(size_.detail));
+  if (!set_) set_ = NewSet();
   TakeChunks();
   FindDemand(seconds);
   MoveAnchor();

@@ -25,12 +25,18 @@ namespace alpenglow {
 
 /// How much land is drawn and kept.
 struct LandSize {
-  /// Samples from the eye to where the second level begins, in [64, 1024]. Triangles grow as its
-  /// square, and so does what chunks take beside heights: 45 kB each, 1,200 of them at 96. A view
-  /// narrower than 60 degrees has up to twice as much detail and one from high above up to three
-  /// times, together four times: as many triangles are seen. Pictures of several rays a pixel have
-  /// the root of their number times as much, as far as 24,000 chunks go (1.1 GB).
+  static constexpr double kLeastDetail = 64.0, kMostDetail = 1024.0;
+  /// Samples from the eye to where the second level begins. Triangles and chunks grow as its
+  /// square: 1,300 chunks at 96, over a square of 3601 samples. A view narrower than 60 degrees has
+  /// up to twice as much detail and one from high above up to three times, together four times: as
+  /// many triangles are seen. Pictures of several rays a pixel have the root of their number times
+  /// as much. All this as far as `most_chunks` go.
   double detail = 96.0;
+  /// Of chunks that are kept, unless kLeastDetail takes more (2,500 at most). Beside heights they
+  /// take 42 kB each, 13 in memory and 29 on the card, whose buffers have room for up to a quarter
+  /// more: 2.0 GB. There are two sets of them for as long as it takes to make another about an eye
+  /// that has flown 100 km.
+  int most_chunks = 48000;
   /// Of heights that are kept [bytes], see TileCache.
   std::size_t most_bytes = std::size_t{512} << 20;
 };
@@ -103,6 +109,7 @@ class Landscape {
   [[nodiscard]] LandEye EyeAt(const GeodeticPosition& eye) const;
   [[nodiscard]] LandAnchor AnchorAt(const GeodeticPosition& eye) const;
   [[nodiscard]] int ExpectedChunks(double detail) const;
+  [[nodiscard]] std::unique_ptr<ChunkSet> NewSet() const;
   void MoveAnchor();
   void TakeChunks();
   void FollowView(double seconds);

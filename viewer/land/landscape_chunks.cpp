@@ -34,6 +34,11 @@ int Landscape::ExpectedChunks(double detail) const {
   return static_cast<int>(1.25 * chunks) + 64;
 }
 
+std::unique_ptr<ChunkSet> Landscape::NewSet() const {
+  return std::make_unique<ChunkSet>(AnchorAt(eye_place_),
+                                    std::min(ExpectedChunks(size_.detail), size_.most_chunks));
+}
+
 // A new set grows beside the old one and takes its place when it has all that is wanted.
 void Landscape::MoveAnchor() {
   if (next_set_) {
@@ -49,8 +54,7 @@ void Landscape::MoveAnchor() {
   GeodeticPosition foot = eye_place_;
   foot.height_m = 0.0;
   const double away = glm::length(set_->anchor().frame.EnuFromGeodetic(foot).xyz);
-  if (away > kAnchorReach_m)
-    next_set_ = std::make_unique<ChunkSet>(AnchorAt(eye_place_), ExpectedChunks(size_.detail));
+  if (away > kAnchorReach_m) next_set_ = NewSet();
 }
 
 void Landscape::TakeChunks() {

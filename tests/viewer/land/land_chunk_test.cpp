@@ -2,13 +2,16 @@
 #include "viewer/land/land_chunk.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "renderer/terrain/mesh.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/land_files.h"
 
 namespace alpenglow {
@@ -44,6 +47,31 @@ glm::dvec3 CoarsePosition(const LandChunk& chunk, int i, int j) {
 glm::dvec3 Normal(const LandChunk& chunk, int i, int j) {
   const auto& n = chunk.vertices[static_cast<std::size_t>(j * kChunkSide + i)].normal;
   return glm::dvec3(n[0], n[1], n[2]) / 32767.0;
+}
+
+// Of all threads, in use.
+std::size_t HeapBytes() {
+  const struct mallinfo2 heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd;
+}
+
+TEST_F(LandChunks, AChunkTakesTheMemoryThatItSays) {
+  if (kSanitized) GTEST_SKIP() << "the sanitizer's heap is not the system's";
+  constexpr std::size_t kCount = 100;
+  for (const int level : {0, 1}) {
+    std::vector<LandChunk> chunks;
+    chunks.reserve(kCount);
+    const std::size_t before = HeapBytes();
+    double said = 0.0;
+    for (int i = 0; std::cmp_less(i, kCount); ++i) {
+      chunks.push_back(Chunk(level, i % 7, i / 7 % 7));
+      static_cast<void>(std::exchange(chunks.back().vertices, {}));  // they are on the card
+      said += static_cast<double>(BytesOf(chunks.back()));
+    }
+    const auto held = static_cast<double>(HeapBytes() - before + kCount * sizeof(LandChunk));
+    EXPECT_NEAR(said, held, 0.02 * held) << "but for heads of blocks";
+    EXPECT_NEAR(said / kCount, 13.1e3, 0.1e3) << "as LandSize has it";
+  }
 }
 
 TEST_F(LandChunks, TheFinestLevelIsTheRenderersMesh) {

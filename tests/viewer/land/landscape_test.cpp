@@ -251,6 +251,59 @@ TEST_F(LandscapePictures, ThroughATelephotoLensFarLandIsFiner) {
   EXPECT_GT(land.Figures().kept_chunks, 2 * usual) << "twice as fine, and the land ends somewhere";
 }
 
+TEST_F(LandscapePictures, NoViewKeepsMoreChunksThanTheLimit) {
+  WriteTiles(3);  // 2,800 chunks in all
+  struct Case {
+    const char* name;
+    double detail, fov_rad;
+    int rays;
+  };
+  for (const Case& wants : {Case{"several rays", 256.0, 1.2, 16},
+                            Case{"a long lens", 256.0, 0.1, 1}, Case{"detail", 1024.0, 1.2, 1}}) {
+    const LookOut eye{PlaceOfSample(360.0, 360.0, 4000.0), 0.0, -0.2, wants.fov_rad};
+    LandView view = eye.View();
+    view.rays = wants.rays;
+    LandSize size;
+    size.detail = wants.detail;
+    const auto kept = [&](int most_chunks) {
+      size.most_chunks = most_chunks;
+      Landscape land(Folder(), size, kWgs84);
+      land.Settle(eye.place, view);
+      EXPECT_GT(land.Figures().chunks, 0);
+      return land.Figures().kept_chunks;
+    };
+    constexpr int kMost = 1500;
+    EXPECT_LE(kept(kMost), kMost) << wants.name;
+    EXPECT_GT(kept(LandSize().most_chunks), kMost) << wants.name << " would take more";
+  }
+}
+
+// Of all buffers that there are; names are small numbers.
+std::size_t BytesOnTheCard() {
+  std::size_t sum = 0;
+  for (GLuint id = 1; id < 1000; ++id) {
+    if (glIsBuffer(id) == GL_FALSE) continue;
+    GLint64 bytes = 0;
+    glBindBuffer(GL_COPY_READ_BUFFER, id);
+    glGetBufferParameteri64v(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &bytes);
+    sum += static_cast<std::size_t>(bytes);
+  }
+  return sum;
+}
+
+TEST_F(LandscapePictures, BuffersTakeWhatTheFiguresSay) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  const std::size_t before = BytesOnTheCard();
+  Landscape land(Folder(), {96.0}, kWgs84);
+  const LookOut eye{PlaceOfSample(120.0, 120.0, 3000.0), 0.0, -0.3};
+  land.Settle(eye.place, eye.View());
+  const auto held = static_cast<double>(BytesOnTheCard() - before);
+  EXPECT_NEAR(static_cast<double>(land.Figures().card_bytes), held, 2e3)
+      << "but for the block of uniforms";
+  const auto bytes = [](int slots) { return static_cast<double>(ChunkBuffers(slots).bytes()); };
+  EXPECT_NEAR((bytes(200) - bytes(100)) / 100.0, 28.5e3, 0.1e3) << "a slot, as LandSize has it";
+}
+
 TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
   WriteTiles(2);
   std::filesystem::resize_file(folder_ / "tile01.tif", 60000);
