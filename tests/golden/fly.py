@@ -73,7 +73,7 @@ class Flight:
         """What a command prints; nothing where it does not end, as when the window has gone."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             return subprocess.run(command, env=self.environment, capture_output=True, text=True,
-                                  timeout=30).stdout
+                                  timeout=120).stdout  # beside busy cores a picture takes 30 s
         return ""
 
     def key(self, name, times=1, wait=0.3):
