@@ -61,12 +61,15 @@ class Flight:
         self.window = self.find_window()
 
     def find_window(self):
+        """The window that lasts: the library that opens it makes another first and takes it away."""
+        before = None
         while self.process.poll() is None and time.monotonic() < self.began + 60:
-            found = self.run("xdotool", "search", "--name", "skyview").split()
-            if found:
-                self.run("xdotool", "windowfocus", found[-1])
-                return found[-1]
-            time.sleep(0.05)
+            found = self.run("xdotool", "search", "--onlyvisible", "--name", "skyview").split()
+            if found and found[-1] == before:
+                self.run("xdotool", "windowfocus", before)
+                return before
+            before = found[-1] if found else None
+            time.sleep(0.2)
         return None
 
     def run(self, *command):
@@ -105,9 +108,10 @@ class Flight:
         time.sleep(wait)
         if self.process.poll() is not None:
             return check(False, f"{name}: skyview has ended with {self.process.returncode}")
-        self.run("import", "-silent", "-window", self.window or "root",
-                 str(self.folder / f"{name}.png"))
-        print(f"  wrote  {name}.png", flush=True)
+        file = self.folder / f"{name}.png"
+        file.unlink(missing_ok=True)
+        self.run("import", "-silent", "-window", self.window or "root", str(file))
+        check(file.exists(), f"wrote {name}.png")
 
     def memory_kib(self):
         status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text()
