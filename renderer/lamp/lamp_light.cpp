@@ -140,14 +140,6 @@ Bands<float> LampLight::InAir(const LampPlan& plan, int x, int y, const LampRayE
   return sum;
 }
 
-bool LampLight::IsShaded(const Lamp& lamp, const LitPoint& at) const {
-  const std::optional<Terrain>& terrain = state_->stage.ground().terrain;
-  const glm::dvec3 way = lamp.position_m - at.smooth_point;
-  const double distance = std::max(glm::length(way), lamp.radius_m);
-  return terrain &&
-         terrain->Occluded(at.smooth_point, at.geometric_normal, way / distance, distance);
-}
-
 Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) const {
   Bands<float> sum(state_->stage.bands());
   for (const std::uint32_t index : lamps) {
@@ -163,7 +155,7 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
     if (cosine <= 0.0) continue;
     const double relative = RelativeIntensity(placed.lamp, -towards);
     if (relative <= 0.0) continue;
-    if (IsShaded(placed.lamp, at)) continue;
+    if (state_->stage.Shades(placed.lamp, at.smooth_point, at.geometric_normal)) continue;
     sum = sum + Scaled(placed.intensity,
                        TransmittanceBetween(placed.air, placed.lamp.position_m, at.point),
                        relative * cosine / (distance * distance));

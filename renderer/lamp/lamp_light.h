@@ -97,7 +97,6 @@ class LampLight {
 
  private:
   struct State;
-  [[nodiscard]] bool IsShaded(const Lamp& lamp, const LitPoint& at) const;
   explicit LampLight(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

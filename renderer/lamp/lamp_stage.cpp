@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <optional>
 
 #include "renderer/ground/scene_geometry.h"
 
 namespace alpenglow {
 namespace {
+
+constexpr double kAbove_m = 20000.0;  // all terrain
 
 Bands<double> InDoubles(const std::vector<double>& values, double scale) {
   Bands<double> bands(values.size());
@@ -74,10 +75,13 @@ glm::dvec3 LampStage::UpAt(const glm::dvec3& point) const {
   return glm::normalize(point + glm::dvec3(0.0, 0.0, planet_radius_m_));
 }
 
+std::optional<TerrainHit> LampStage::TerrainAt(const glm::dvec3& point) const {
+  if (!ground_->terrain) return std::nullopt;
+  return ground_->terrain->Intersect({point.x, point.y, kAbove_m}, {0.0, 0.0, -1.0});
+}
+
 double LampStage::TerrainUnder(const glm::dvec3& point, double otherwise) const {
-  constexpr double kAbove_m = 20000.0;
-  if (!ground_->terrain) return otherwise;
-  const auto hit = ground_->terrain->Intersect({point.x, point.y, kAbove_m}, {0.0, 0.0, -1.0});
+  const std::optional<TerrainHit> hit = TerrainAt(point);
   return hit ? kAbove_m - hit->distance_m : otherwise;
 }
 
@@ -92,6 +96,14 @@ bool LampStage::Sees(const glm::dvec3& from, const glm::dvec3& to) const {
   const double length = glm::length(way);
   if (length < 1e-6) return true;
   return !ground_->terrain->Occluded(from, way / length, way / length, length);
+}
+
+bool LampStage::Shades(const Lamp& lamp, const glm::dvec3& smooth_point,
+                       const glm::dvec3& geometric_normal) const {
+  const glm::dvec3 way = lamp.position_m - smooth_point;
+  const double distance = std::max(glm::length(way), lamp.radius_m);
+  return ground_->terrain &&
+         ground_->terrain->Occluded(smooth_point, geometric_normal, way / distance, distance);
 }
 
 LampAir LampStage::AirAround(const glm::dvec3& middle) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/air/medium.h"
@@ -25,12 +26,19 @@ class LampStage {
 
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
-  /// Of the terrain, below or above a point [m along z], or `otherwise`.
+  /// The terrain below or above a point along z, seen from above.
+  [[nodiscard]] std::optional<TerrainHit> TerrainAt(const glm::dvec3& point) const;
+  /// Its height there [m along z], or `otherwise`.
   [[nodiscard]] double TerrainUnder(const glm::dvec3& point, double otherwise) const;
   /// Over the terrain [m]; a point below it has none.
   [[nodiscard]] double HeightOverGround(const glm::dvec3& point) const;
   /// Whether no terrain stands between two points.
   [[nodiscard]] bool Sees(const glm::dvec3& from, const glm::dvec3& to) const;
+
+  /// Whether terrain keeps a lamp's light from a surface.
+  /// @param smooth_point  TerrainHit's, which shadow rays begin at; geometric_normal: unit.
+  [[nodiscard]] bool Shades(const Lamp& lamp, const glm::dvec3& smooth_point,
+                            const glm::dvec3& geometric_normal) const;
 
   /// The layers over the plane that touches the sphere below a point.
   [[nodiscard]] LampAir AirAround(const glm::dvec3& middle) const;

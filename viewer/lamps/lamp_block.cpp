@@ -42,7 +42,8 @@ class LampPacking {
     gpu.up = {Turned(placed.air.up), z_eye};
     gpu.at_eye = {Densities(placed.air, z_eye), z_lamp};
     gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
-    gpu.glow = {placed.mean_share, chosen.glow, with_core ? CoreOf(placed) : 0.0, chosen.shade};
+    gpu.glow = {placed.mean_share, chosen.glow, with_core ? CoreOf(placed) : 0.0, 0.0};
+    gpu.shade = {chosen.shade, chosen.plan.first, chosen.plan.levels, 0.0};
     return gpu;
   }
 

@@ -23,7 +23,7 @@ inline constexpr std::size_t kMostGpuLamps = 64;
 
 /// `struct Lamp` of lamp_light.glsl.
 struct GpuLamp {
-  glm::vec4 position, intensity, axis, side, profile, up, at_eye, at_lamp, glow;
+  glm::vec4 position, intensity, axis, side, profile, up, at_eye, at_lamp, glow, shade;
 };
 
 /// `block Lamps` of lamp_light.glsl.
@@ -33,7 +33,7 @@ struct LampsBlock {
   std::array<glm::vec4, 3> ground;
   std::array<GpuLamp, kMostGpuLamps> lamps;
 };
-static_assert(sizeof(LampsBlock) == (16 + 9 * kMostGpuLamps) * sizeof(glm::vec4));
+static_assert(sizeof(LampsBlock) == (16 + 10 * kMostGpuLamps) * sizeof(glm::vec4));
 static_assert(sizeof(LampsBlock) <= 16384);  // GL_MAX_UNIFORM_BLOCK_SIZE is at least that
 
 /// From where lamps are seen, and how finely.
@@ -49,12 +49,18 @@ struct LampView {
 [[nodiscard]] LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
                                     double pixel_angle_rad);
 
+/// Layers of the texture of plans that are of a lamp; levels 0: none.
+struct PlanLayers {
+  int first = 0, levels = 0;
+};
+
 /// A lamp of the block, and what its picture needs beside it.
 struct ChosenLamp {
   const PlacedLamp* placed;  // before the eye of the view
   int table = 0;             // layer of its measured profile
   int glow = 0;              // of what its air brings to surfaces
   int shade = -1;            // of the terrain around it; -1: none
+  PlanLayers plan{};         // of where it lights the ground
 };
 
 /// @param layers  of LampStage: molecules, aerosol and perhaps fog, densities as of altitude 0.

@@ -18,7 +18,7 @@
 namespace alpenglow {
 namespace {
 
-enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit };
+enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit, kPlanUnit };
 
 /// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
 /// 1 / angle is straight enough between its points.
@@ -40,6 +40,10 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
         "#define LAMP_SHADE\n#define LAMP_SHADE_NEAREST {:.7f}\n#define LAMP_SHADE_FARTHEST "
         "{:.7f}\n",
         kNearestShade_m, kFarthestShade_m);
+    text += fmt::format(
+        "#define LAMP_PLAN_STEP {:.7f}\n#define LAMP_PLAN_REACH {:.7f}\n"
+        "#define LAMP_PLAN_RANGE {:.7f}\n",
+        kPlanStep_m, kPlanReach_steps * kPlanStep_m, kPlanRange_steps);
   }
   // Clear air brings less than a per cent of a lamp's light to the ground around it.
   const bool is_fine = quality.step == 1;
@@ -90,6 +94,7 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   UploadTables(shape);
   UploadGlows(shape);
   UploadShades(shape);
+  UploadPlans(shape);
   CheckGl("LampPainter");
 }
 
@@ -109,6 +114,7 @@ void LampPainter::Connect(const ShaderProgram& program) const {
   program.BindSampler("lamp_glow_map", units_.first + kGlowUnit);
   program.BindSampler("lamp_mie_table", units_.first + kMieUnit);
   program.BindSampler("lamp_shades", units_.first + kShadeUnit);
+  program.BindSampler("lamp_plans", units_.first + kPlanUnit);
   program.BindSampler("lamp_lattice", units_.first + kLatticeUnit);
 }
 
@@ -165,12 +171,32 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
 }
 
+// Room for all of them, and those that are finished.
+void LampPainter::UploadPlans(const SceneLamps& shape) {
+  if (shape.PlanLayerCount() == 0) return;
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kPlanUnit));
+  glBindTexture(GL_TEXTURE_2D_ARRAY, plans_.id());
+  if (uploaded_plans_ == 0) {
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R8, kPlanSide, kPlanSide, shape.PlanLayerCount(), 0,
+                 GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+  }
+  for (; uploaded_plans_ < shape.plans().size(); ++uploaded_plans_) {
+    const LitPlan& plan = shape.plans()[uploaded_plans_];
+    glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, uploaded_layers_, kPlanSide, kPlanSide,
+                    plan.levels, GL_RED, GL_UNSIGNED_BYTE, plan.texels.data());
+    uploaded_layers_ += plan.levels;
+  }
+}
+
 void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2) {
   std::array<double, 2> core{0.0, 0.0};
   if (quality_.step > 1) {
     const double step_rad = quality_.step * view.pixel_angle_rad;
     core = {kCoreBegin_steps * step_rad, kCoreEnd_steps * step_rad};
   }
+  lamps.FollowPlans();
+  if (uploaded_plans_ < lamps.plans().size()) UploadPlans(lamps);
   const SceneLamps::InView in_view = lamps.Before(view, core, dimmest_cd_per_m2);
   lamps_ = static_cast<int>(in_view.block.count.x);
   disks_ = static_cast<int>(in_view.disks.size());
@@ -199,6 +225,7 @@ void LampPainter::Bind() const {
   bind(kGlowUnit, GL_TEXTURE_2D_ARRAY, glows_);
   bind(kMieUnit, GL_TEXTURE_2D, mie_table_);
   bind(kShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
+  bind(kPlanUnit, GL_TEXTURE_2D_ARRAY, plans_);
   if (lattice_) lattice_->BindTexture(units_.first + kLatticeUnit);
 }
 

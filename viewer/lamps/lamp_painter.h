@@ -9,7 +9,9 @@
 // Errors against LampLight where terrain shades nothing: of the rule with 12 nodes and the float
 // of the card, tests/viewer/lamps/lamp_light_test.cpp. Terrain hides lamps by a horizon around each
 // (ShadeAround), to 2e-3 of the distance, a hundredth of a turn and a twentieth of the distance; of
-// the way between two nodes of the rule the part that is shaded is left out.
+// the way between two nodes of the rule the part that is shaded is left out. Ground that they light
+// is what the renderer's shadow rays have found beside drawing (LitPlan), and until then what that
+// horizon says.
 #pragma once
 
 #include <optional>
@@ -37,7 +39,7 @@ inline constexpr LampQuality kMediumLamps{5, 6};
 inline constexpr LampQuality kHighLamps{12, 1};
 
 /// Texts for a fragment stage, after SharedTexts() and view_block.glsl: LampsOnGround(point_m,
-/// normal), LampGlowRgb(direction, end_m), LampRayEnd(direction, surface_m).
+/// normal, ray_width_m), LampGlowRgb(direction, end_m), LampRayEnd(direction, surface_m).
 /// @param shape  lamps that decide what shaders know of: tables, fog, phase functions.
 [[nodiscard]] std::vector<ShaderPiece> LampTexts(const SceneLamps& shape,
                                                  const LampQuality& quality);
@@ -50,7 +52,7 @@ struct LampUnits {
   GLuint lamps_block = 8;
   GLuint view_block = 1;  // "View" of view_block.glsl
   int surface = 0;        // texture unit of the surface map
-  int first = 8;          // of five texture units
+  int first = 8;          // of six texture units
 };
 
 class LampPainter {
@@ -80,16 +82,19 @@ class LampPainter {
   void UploadTables(const SceneLamps& shape);
   void UploadGlows(const SceneLamps& shape);
   void UploadShades(const SceneLamps& shape);
+  void UploadPlans(const SceneLamps& shape);
 
   LampQuality quality_;
   LampUnits units_;
   std::vector<ShaderPiece> texts_;
   GlBuffer block_, disk_buffer_;
   GlVertexArray no_vertices_, disk_vertices_;
-  GlTexture tables_, glows_, mie_table_, shades_;
+  GlTexture tables_, glows_, mie_table_, shades_, plans_;
   std::optional<ShaderProgram> glow_program_, core_program_, disk_program_;
   std::optional<RenderTarget> lattice_;
   int lamps_ = 0, disks_ = 0;
+  std::size_t uploaded_plans_ = 0;
+  int uploaded_layers_ = 0;
 };
 
 }  // namespace alpenglow

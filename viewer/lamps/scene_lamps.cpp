@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 #include <queue>
 
 #include "atmosphere/lamp/lamp_ray.h"
@@ -72,12 +73,33 @@ SceneLamps::SceneLamps(const Scene& scene, const SceneGround& ground, const Medi
       shades_[i] = ShadeAround(stage_, tree_.Light(static_cast<std::uint32_t>(i)).lamp.position_m);
     });
   }
+  PlanBrightest();
   for (std::uint32_t i = 0; i < tree_.nodes().size(); ++i) {
     const LampGlow* glow = &tree_.GlowOf(i);
     if (number_of_glow_.try_emplace(glow, static_cast<int>(glows_.size())).second) {
       glows_.push_back(glow);
     }
   }
+}
+
+void SceneLamps::PlanBrightest() {
+  std::vector<std::uint32_t> lamps(shades_.size());
+  std::iota(lamps.begin(), lamps.end(), std::uint32_t{0});
+  std::stable_sort(lamps.begin(), lamps.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return tree_.Light(a).candela > tree_.Light(b).candela;
+  });
+  lamps.resize(std::min(lamps.size(), kMostPlans));
+  for (const std::uint32_t node : lamps) {
+    const PlacedLamp& placed = tree_.Light(node);
+    planned_.push_back({node, placed.lamp, PlanLayerCount(), PlanLevelsOf(placed.candela)});
+  }
+  plans_.emplace(planned_.size(), [this](std::size_t i) {
+    return LitPlanAround(stage_, planned_[i].lamp, planned_[i].levels);
+  });
+}
+
+int SceneLamps::PlanLayerCount() const {
+  return planned_.empty() ? 0 : planned_.back().first_layer + planned_.back().levels;
 }
 
 std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place) {
@@ -125,7 +147,11 @@ LampNodes SceneLamps::Cut(std::size_t most) const {
 ChosenLamp SceneLamps::Choose(std::uint32_t node) const {
   const int table = node < table_of_lamp_.size() ? table_of_lamp_[node] : 0;
   const int shade = node < shades_.size() ? static_cast<int>(node) : -1;
-  return {&tree_.Light(node), table, number_of_glow_.at(&tree_.GlowOf(node)), shade};
+  ChosenLamp chosen{&tree_.Light(node), table, number_of_glow_.at(&tree_.GlowOf(node)), shade};
+  for (std::size_t i = 0; i < plans().size(); ++i) {
+    if (planned_[i].node == node) chosen.plan = {planned_[i].first_layer, planned_[i].levels};
+  }
+  return chosen;
 }
 
 PlacedLamp SceneLamps::Landing(const LampView& view) const {

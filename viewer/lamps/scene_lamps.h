@@ -15,6 +15,7 @@
 #include "renderer/lamp/lamp_stage.h"
 #include "renderer/lamp/lamp_tree.h"
 #include "viewer/lamps/lamp_block.h"
+#include "viewer/lamps/lit_plan_follower.h"
 
 namespace alpenglow {
 
@@ -55,6 +56,8 @@ inline constexpr double kNearestShade_m = 1.0;
 inline constexpr double kFarthestShade_m = 2e4;
 /// As many layers as every OpenGL has; lamps beyond are not shaded.
 inline constexpr std::size_t kMostShades = 256;
+/// The brightest so many lamps have a LitPlan, of up to 1.3 MB each.
+inline constexpr std::size_t kMostPlans = 32;
 
 class SceneLamps {
  public:
@@ -76,6 +79,16 @@ class SceneLamps {
   /// Of each lamp, [ring * kShadeTurns + turn]; empty without terrain.
   [[nodiscard]] const std::vector<std::vector<float>>& shades() const { return shades_; }
 
+  /// Ground that lamps light, in an order of its own, as many as are finished. Until then, and of
+  /// lamps that have none, shades() decide.
+  [[nodiscard]] const std::vector<LitPlan>& plans() const { return plans_->plans(); }
+  /// Layers of all of them, finished or not.
+  [[nodiscard]] int PlanLayerCount() const;
+  /// Takes in what is finished and has more made, beside drawing.
+  void FollowPlans() { plans_->Follow(); }
+  /// Waits until all are there.
+  void SettlePlans() { plans_->Settle(); }
+
   /// Everything that depends on the eye.
   struct InView {
     LampsBlock block;
@@ -91,6 +104,7 @@ class SceneLamps {
   [[nodiscard]] LampNodes Cut(std::size_t most) const;
   [[nodiscard]] PlacedLamp Landing(const LampView& view) const;
   [[nodiscard]] ChosenLamp Choose(std::uint32_t node) const;
+  void PlanBrightest();
 
   Medium medium_;
   BandColour colour_;
@@ -102,6 +116,14 @@ class SceneLamps {
   std::vector<const LampGlow*> glows_;
   std::map<const LampGlow*, int> number_of_glow_;
   std::vector<std::vector<float>> shades_;
+  /// A lamp that has a plan, and the first of its layers.
+  struct PlannedLamp {
+    std::uint32_t node;
+    Lamp lamp;
+    int first_layer, levels;
+  };
+  std::vector<PlannedLamp> planned_;
+  std::optional<LitPlanFollower> plans_;  // last: its thread reads what is above
 };
 
 /// What terrain up to a distance leaves of sight from a place: [ring * kShadeTurns + turn], the

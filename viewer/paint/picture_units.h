@@ -31,7 +31,7 @@ enum PictureUnit {
   kAirUnit,
   kGroundUnit = kAirUnit + AirTextures::kUnits,
   kLampUnit = kGroundUnit + 3,
-  kFogUnit = kLampUnit + 5,
+  kFogUnit = kLampUnit + 6,
 };
 
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};

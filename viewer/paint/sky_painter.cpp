@@ -43,6 +43,7 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
   scene_.Settle(view, SunOf(view), samples);
+  lamps_.SettlePlans();
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {

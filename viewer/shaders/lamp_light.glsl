@@ -20,8 +20,9 @@ struct Lamp {
   vec4 up;         // of its air; altitude of the eye
   vec4 at_eye;     // densities of molecules, aerosol, fog; altitude of the lamp
   vec4 at_lamp;    // densities there; its own radius
-  vec4 glow;       // mean of its profile; layer of glow_map; size of its core, 0: none; layer
-                   // of lamp_shades, -1 without
+  vec4 glow;       // mean of its profile; layer of glow_map; size of its core, 0: none
+  vec4 shade;      // layer of lamp_shades, -1 without; first layer of lamp_plans, levels that it
+                   // has there
 };
 
 layout(std140) uniform Lamps {
@@ -52,6 +53,7 @@ uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp ligh
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slopes over which a lamp is seen, by compass and distance
+uniform sampler2DArray lamp_plans;   // of the ground's distance from the edge of shade; see LitPlan
 #endif
 #ifdef LAMP_MIE_TABLE
 uniform sampler2D lamp_mie_table;  // over (a / pi)^(1/3)
@@ -138,20 +140,25 @@ vec3 LampCosines(Lamp lamp, vec3 direction) {
               dot(direction, cross(lamp.side.xyz, lamp.axis.xyz)));
 }
 
+// In the frame of the terrain.
+vec3 LampOfTerrain(vec3 way) {
+  return vec3(dot(way, lamp_ground[0].xyz), dot(way, lamp_ground[1].xyz),
+              dot(way, lamp_ground[2].xyz));
+}
+
 // How high a place, `way` from the lamp, stands over what terrain shades, in two thousandths of its
 // distance. It is compared with terrain up to a ring less far, and may be lower by one of these and
 // be lit: ground does not shade itself.
 float LampClearance(Lamp lamp, vec3 way) {
 #ifdef LAMP_SHADE
-  if (lamp.glow.w < -0.5) return 1.0;
-  vec3 at = vec3(dot(way, lamp_ground[0].xyz), dot(way, lamp_ground[1].xyz),
-                 dot(way, lamp_ground[2].xyz));
+  if (lamp.shade.x < -0.5) return 1.0;
+  vec3 at = LampOfTerrain(way);
   float far = max(length(at.xy), LAMP_SHADE_NEAREST);
   vec2 size = vec2(textureSize(lamp_shades, 0).xy);
   float ring = LampGlowUnit(far, LAMP_SHADE_NEAREST, LAMP_SHADE_FARTHEST) - 1.0 / (size.y - 1.0);
   float turn = atan(at.y, at.x) * 0.159154943 + 0.5 / size.x;
   float slope =
-      textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.glow.w), 0.0).x;
+      textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.shade.x), 0.0).x;
   return 1.0 + (at.z - slope * far) / (2e-3 * max(length(at), 1e-3));
 #else
   return 1.0;
@@ -160,6 +167,23 @@ float LampClearance(Lamp lamp, vec3 way) {
 
 // Share of a lamp's light that terrain lets through.
 float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way), 0.0, 1.0); }
+
+// The same of ground: whether it is on the lit side of the edge of shade, a ray's width across.
+float LampLitGround(Lamp lamp, vec3 way, float ray_width_m) {
+#ifdef LAMP_SHADE
+  vec2 at = LampOfTerrain(way).xy;
+  float far = max(max(abs(at.x), abs(at.y)) / LAMP_PLAN_REACH, 1.0);
+  float level = ceil(log2(far));
+  if (level >= lamp.shade.z) return LampLit(lamp, way);
+  float step_m = LAMP_PLAN_STEP * exp2(level);
+  vec2 place = (at / step_m + 0.5) / vec2(textureSize(lamp_plans, 0).xy) + 0.5;
+  float texel = textureLod(lamp_plans, vec3(place, lamp.shade.y + level), 0.0).x;
+  float over_edge = step_m * LAMP_PLAN_RANGE * (255.0 * texel - 128.0) / 127.0;
+  return clamp(0.5 + over_edge / ray_width_m, 0.0, 1.0);
+#else
+  return 1.0;
+#endif
+}
 
 // The mean of that between two places, the clearance taken to change evenly.
 float LampLitBetween(float here, float there) {
@@ -314,7 +338,7 @@ vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
 #endif
 
 // Irradiance of a surface by one lamp. @param shaped  as above.
-vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, bool shaped) {
+vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool shaped) {
   vec3 way = lamp.position.xyz - point_m;
   float far = max(length(way), lamp.at_lamp.w);
   vec3 towards = way / far;
@@ -325,7 +349,7 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, bool shaped) {
   float facing = max(dot(normal, towards), 0.0) / (far * far);
   if (shaped) facing *= LampShare(lamp, LampCosines(lamp, -towards));
 #ifdef LAMP_SHADE
-  facing *= LampLit(lamp, -way);
+  facing *= LampLitGround(lamp, -way, ray_width_m);
 #endif
   vec4 light = facing * LampLeft(LampDepth(columns));
 #ifdef LAMP_GLOW_MAP
@@ -335,12 +359,13 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, bool shaped) {
 }
 
 // Irradiance of a surface by all lamps [W m^-2 nm^-1].
-// @param point_m  from the eye; normal: unit.
-vec4 LampsOnGround(vec3 point_m, vec3 normal) {
+// @param point_m  from the eye; normal: unit; ray_width_m: of what the surface fills of the picture.
+vec4 LampsOnGround(vec3 point_m, vec3 normal, float ray_width_m) {
   vec4 sum = vec4(0.0);
   int even = int(lamp_count.w + 0.5);
-  for (int i = 0; i < even; ++i) sum += LampOnGround(lamps[i], point_m, normal, false);
+  for (int i = 0; i < even; ++i) sum += LampOnGround(lamps[i], point_m, normal, ray_width_m, false);
   int count = int(lamp_count.x + 0.5);
-  for (int i = even; i < count; ++i) sum += LampOnGround(lamps[i], point_m, normal, true);
+  for (int i = even; i < count; ++i)
+    sum += LampOnGround(lamps[i], point_m, normal, ray_width_m, true);
   return sum;
 }

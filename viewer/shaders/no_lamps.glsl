@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What stands for lamp_light.glsl and lamp_picture.glsl where there are no lamps.
-vec4 LampsOnGround(vec3 point_m, vec3 normal) { return vec4(0.0); }
+vec4 LampsOnGround(vec3 point_m, vec3 normal, float ray_width_m) { return vec4(0.0); }
 
 vec3 LampGlowRgb(vec3 direction, float end_m) { return vec3(0.0); }
 

@@ -54,7 +54,7 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
   GroundPlace at = GroundPlaceAt(point);
   vec3 tilted = DetailedNormal(at.offset, normal, at.footprint);
   vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), at.footprint);
-  return albedo / 3.14159265359 * LampsOnGround(point, tilted);
+  return albedo / 3.14159265359 * LampsOnGround(point, tilted, ray_angle * surface.w);
 }
 
 void main() {

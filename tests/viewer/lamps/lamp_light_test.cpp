@@ -230,7 +230,7 @@ Deviation GroundDeviation(const Both& both, bool with_slopes) {
     point[2] -= static_cast<float>(both.eye_m.z);
   }
   const std::vector<float> gpu =
-      both.OnGpu("LampsOnGround(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], a[5]))[2]", points);
+      both.OnGpu("LampsOnGround(vec3(a[0], a[1], a[2]), vec3(a[3], a[4], a[5]), 0.1)[2]", points);
   std::vector<double> deviations;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     deviations.push_back(std::abs(double{gpu[i]} - truth[i]) / level[i]);
