@@ -13,6 +13,7 @@
 #include "renderer/light/lighting.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/lamp_painter.h"
@@ -248,29 +249,6 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
   EXPECT_LT(slopes.p99, 0.3);
 }
 
-/// Level ground with a ridge 60 m high that runs east, 150 m north of the origin.
-SceneGround Ridge(const Scene& scene) {
-  constexpr int kSide = 121;
-  constexpr float kStep_m = 10.0F;
-  TriangleMesh mesh;
-  for (int j = 0; j < kSide; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const float x = kStep_m * static_cast<float>(i - kSide / 2);
-      const float y = kStep_m * static_cast<float>(j - kSide / 2);
-      mesh.positions.push_back({x, y, std::max(60.0F - 2.0F * std::abs(y - 150.0F), 0.0F)});
-      mesh.normals.push_back({0.0F, 0.0F, 1.0F});
-      if (i == 0 || j == 0) continue;
-      const auto here = static_cast<std::uint32_t>(j * kSide + i);
-      mesh.triangles.push_back({here - kSide - 1, here - kSide, here});
-      mesh.triangles.push_back({here - kSide - 1, here, here - 1});
-    }
-  }
-  SceneGround ground = LoadGround(scene);
-  ground.terrain.emplace(std::move(mesh));
-  ground.is_one_surface = true;
-  return ground;
-}
-
 TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
@@ -320,6 +298,43 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   // where the ray comes out of the shade.
   EXPECT_LT(sum / static_cast<double>(ways.size()), 0.04);
   EXPECT_LT(worst, 0.08) << "12 nodes find the edge of the shade";
+}
+
+/// Points of the surface around the ridge, seen from the eye.
+std::vector<tests::Arguments<float>> OnRidge(const LampStage& stage, const glm::dvec3& eye_m) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<> away(-590.0, 590.0);
+  std::vector<tests::Arguments<float>> points;
+  for (int i = 0; i < 3000; ++i) {
+    const glm::dvec3 at(away(random), away(random), 0.0);
+    points.push_back({static_cast<float>(at.x), static_cast<float>(at.y),
+                      static_cast<float>(stage.TerrainUnder(at, 0.0) - eye_m.z)});
+  }
+  return points;
+}
+
+TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
+  Scene scene = Night(6.0, 0.0, 1.0);
+  scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
+  Both both(scene, Ridge(scene));
+  const LampStage stage(both.scene, both.ground, both.medium);
+  const std::vector<tests::Arguments<float>> points = OnRidge(stage, both.eye_m);
+  const auto wrong = [&] {
+    const std::vector<float> lit = both.OnGpu(
+        "LampLitGround(lamps[0], vec3(a[0], a[1], a[2]) - lamps[0].position.xyz, 0.001)", points);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto hit = stage.TerrainAt({points[i][0], points[i][1], 0.0});
+      const bool is_lit =
+          !stage.Shades(both.light.At(0).lamp, hit->smooth_point, hit->geometric_normal);
+      count += (lit[i] > 0.5F) != is_lit ? 1 : 0;
+    }
+    return static_cast<double>(count) / static_cast<double>(points.size());
+  };
+  EXPECT_GT(wrong(), 4e-3) << "the horizon around the lamp, while plans are made";
+  both.lamps.SettlePlans();
+  both.painter.Prepare(both.lamps, {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kPixel_rad}, 0.0);
+  EXPECT_LT(wrong(), 2e-3) << "corners of shade";
 }
 
 TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
