@@ -359,7 +359,7 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool 
 }
 
 // Irradiance of a surface by all lamps [W m^-2 nm^-1].
-// @param point_m  from the eye; normal: unit; ray_width_m: of what the surface fills of the picture.
+// @param point_m  from the eye; normal: unit; ray_width_m: of the ray that ends there.
 vec4 LampsOnGround(vec3 point_m, vec3 normal, float ray_width_m) {
   vec4 sum = vec4(0.0);
   int even = int(lamp_count.w + 0.5);
