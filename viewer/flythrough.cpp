@@ -223,7 +223,7 @@ void Flythrough::UsePlanet(const std::string& preset) {
 void Flythrough::SetExposure(double ev100) { exposure_ = {true, 0.0, ev100}; }
 
 PaintedQuality Flythrough::Painted() const {
-  return rule_.fixed ? PaintedQuality{*rule_.fixed, 1.0} : auto_.painted();
+  return rule_.fixed ? PaintedAlways(*rule_.fixed) : auto_.painted();
 }
 
 void Flythrough::NoteFrame(double seconds) {
@@ -322,7 +322,11 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   const PaintedView view = ViewOf(size);
   painter_.Update(view, seconds);
   const bool has_reference = reference_ && reference_->samples() > 0 && still_s_ > 0.0;
-  if (!has_reference) painter_.Paint(view);
+  if (!has_reference) {
+    painter_.Paint(view, 1,
+                   Darkroom::Enlarges(view, screen) ? SkyPainter::Disks::kLeftOut
+                                                    : SkyPainter::Disks::kPainted);
+  }
   ShowReference({screen.width, screen.height});
   if (const std::optional<double> metered = meter_.Take()) metered_ev100_ = *metered;
   meter_.Look(painter_.picture());
@@ -331,9 +335,7 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
     exposure_.ev100 =
         AdaptedEv100(exposure_.ev100, metered_ev100_ - exposure_.compensation_ev, seconds);
   }
-  painter_.Time("develop");
-  developer_.Develop(painter_.picture(), *exposure_.ev100, screen);
-  painter_.EndTime();
+  darkroom_.Print(painter_, view, *exposure_.ev100, screen);
 }
 
 void Flythrough::Settle(const ImageSize& size, int samples) {
@@ -391,7 +393,7 @@ void Flythrough::PaintStill(const Developer::Screen& screen) {
   const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
   picture.Write(image);
   exposure_.ev100 = Ev100Of(image);
-  developer_.Develop(picture, *exposure_.ev100, screen);
+  darkroom_.developer().Develop(picture, *exposure_.ev100, screen);
 }
 
 void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
@@ -403,7 +405,7 @@ void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize
   if (file.extension() == ".exr") {
     WriteExr(file, image, metadata);
   } else {
-    WritePng(file, Develop(image, ev100, developer_.curve()), metadata);
+    WritePng(file, Develop(image, ev100, darkroom_.developer().curve()), metadata);
   }
 }
 
@@ -425,7 +427,7 @@ DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, d
   const Image image = Picture(size, kPictureSamples);
   exposure_.ev100 =
       AdaptedEv100(exposure_.ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), seconds);
-  return Develop(image, *exposure_.ev100, developer_.curve());
+  return Develop(image, *exposure_.ev100, darkroom_.developer().curve());
 }
 
 }  // namespace alpenglow

@@ -15,7 +15,7 @@
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/input/cockpit.h"
 #include "viewer/paint/auto_quality.h"
-#include "viewer/paint/developer.h"
+#include "viewer/paint/darkroom.h"
 #include "viewer/paint/exposure_meter.h"
 #include "viewer/paint/reference_picture.h"
 #include "viewer/paint/sky_painter.h"
@@ -77,7 +77,7 @@ class Flythrough {
   [[nodiscard]] std::string JumpTo(SkyEvent event);
 
   void Use(const QualityRule& rule);
-  void Use(ToneCurve curve) { developer_.Use(curve); }
+  void Use(ToneCurve curve) { darkroom_.developer().Use(curve); }
   void Use(const AirChoice& choice);
   /// Another planet by the name of a preset, with the changes that were made to the last one.
   void UsePlanet(const std::string& preset);
@@ -128,7 +128,7 @@ class Flythrough {
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const AirChoice& air_choice() const { return air_; }
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
-  [[nodiscard]] ToneCurve curve() const { return developer_.curve(); }
+  [[nodiscard]] ToneCurve curve() const { return darkroom_.developer().curve(); }
   /// Height of the ground under a place; of the bare planet where there is no land.
   [[nodiscard]] GroundHeight Ground() const;
   /// Whether the eye stands where it was put: over the ground there, or where there is none. Until
@@ -164,7 +164,7 @@ class Flythrough {
   std::optional<int> largest_part_;
   Cockpit cockpit_;
   SkyPainter painter_;
-  Developer developer_{ToneCurve::kAgx};
+  Darkroom darkroom_{ToneCurve::kAgx};
   ExposureMeter meter_;
   SpotMeter spot_;
   FlightExposure exposure_;

@@ -142,7 +142,8 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
 
 // The scripted flight, drawn into a window or, without one, into a picture of its size.
 void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
-  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
+  const RenderTarget picture(size.width, size.height, {PixelFormat::kRgba8},
+                             RenderTarget::Depth::kNone);
   const Developer::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
                                  size.height};
   flight.Settle(size);

@@ -21,6 +21,7 @@ const FormatRow& RowOf(PixelFormat format) {
   static constexpr FormatRow kRows[] = {
       {GL_RGBA32F, GL_RGBA, GL_FLOAT},
       {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT},
+      {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE},
   };
   return kRows[static_cast<std::size_t>(format)];
 }
@@ -70,6 +71,7 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
     Allocate(depth_, width, height, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT});
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.id(), 0);
   }
+  if (formats.empty()) glReadBuffer(GL_NONE);
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   ALPENGLOW_ENSURE(status, ==, static_cast<GLenum>(GL_FRAMEBUFFER_COMPLETE));
 }
@@ -82,6 +84,11 @@ void RenderTarget::Bind() const {
 void RenderTarget::BindTexture(int unit, std::size_t output) const {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, colours_[output].id());
+}
+
+void RenderTarget::BindDepth(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, depth_.id());
 }
 
 void RenderTarget::Write(const Image& image) const {

@@ -15,6 +15,7 @@ namespace alpenglow {
 enum class PixelFormat {
   kRgba32F,  // 16 bytes
   kRgba16F,  // 8 bytes: eleven bits, up to 65504
+  kRgba8,    // 4 bytes, of [0, 1]: what a window has
 };
 
 /// Textures of one size that are drawn into together, on request with a depth buffer.
@@ -27,12 +28,15 @@ class RenderTarget {
   /// Contents are undefined until drawn; what texture units are bound to stays. Throws DisplayError
   /// when the graphics card has no memory for them.
   /// @param width, height >= 1.
-  /// @param formats of the outputs of the fragment stage at locations 0, 1, ...: one to eight.
+  /// @param formats of the outputs of the fragment stage at locations 0, 1, ...: up to eight; none
+  ///     where depth alone is wanted.
   RenderTarget(int width, int height, const std::vector<PixelFormat>& formats, Depth depth);
 
   /// Draws go here from now on, over the whole picture, into all outputs.
   void Bind() const;
   void BindTexture(int unit, std::size_t output = 0) const;
+  /// Of one made with depth.
+  void BindDepth(int unit) const;
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
@@ -67,6 +71,12 @@ template <typename Target>
 void Fit(std::optional<Target>& target, int width, int height) {
   if (target && target->width() == width && target->height() == height) return;
   target.emplace(width, height);
+}
+
+/// Makes a target of one output anew when it is missing or of another size.
+inline void Fit(std::optional<RenderTarget>& target, int width, int height, PixelFormat format) {
+  if (target && target->width() == width && target->height() == height) return;
+  target.emplace(width, height, std::vector{format}, RenderTarget::Depth::kNone);
 }
 
 /// Filtering of a bound texture: linear or none, clamped at the edges.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/land/land_pass.h"
 
+#include <utility>
+
 #include <glm/geometric.hpp>
 
 #include "viewer/shaders/viewer_texts.h"
@@ -21,17 +23,12 @@ bool CanReverseDepth() {
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
 }
 
-ShaderProgram LandProgram(bool reversed_depth) {
+ShaderProgram LandProgram(const char* fragment) {
   std::vector<VertexAttribute> attributes;
   for (const char* const name : LandPass::kAttributes)
     attributes.push_back({static_cast<GLuint>(attributes.size()), name});
-  return ShaderProgram(
-      Vertices(),
-      WithViewerPieces({}, {"viewer/shaders/land_block.glsl", "viewer/shaders/octahedral.glsl",
-                            reversed_depth ? "viewer/shaders/reversed_depth.glsl"
-                                           : "viewer/shaders/logarithmic_depth.glsl",
-                            "viewer/shaders/land.frag.glsl"}),
-      attributes);
+  return ShaderProgram(Vertices(), WithViewerPieces(LandTexts(LandPass::DepthText()), {fragment}),
+                       attributes);
 }
 
 glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
@@ -68,25 +65,44 @@ LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_l
   return block;
 }
 
-LandPass::LandPass() : reversed_depth_(CanReverseDepth()), program_(LandProgram(reversed_depth_)) {}
+LandPass::LandPass()
+    : reversed_depth_(CanReverseDepth()),
+      surface_(LandProgram("viewer/shaders/land.frag.glsl")),
+      outline_(LandProgram("viewer/shaders/land_outline.frag.glsl")) {}
 
-void LandPass::Clear() {
+std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
+  std::vector<ShaderPiece> texts =
+      WithViewerPieces({}, {"viewer/shaders/land_block.glsl", "viewer/shaders/octahedral.glsl",
+                            "viewer/shaders/nearness.glsl"});
+  texts.push_back(depth);
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/land_seen.glsl"});
+}
+
+ShaderPiece LandPass::DepthText() {
+  return ViewerPiece(CanReverseDepth() ? "viewer/shaders/reversed_depth.glsl"
+                                       : "viewer/shaders/logarithmic_depth.glsl");
+}
+
+void LandPass::Clear(LandDrawn drawn) {
   constexpr std::array<float, 4> kNothing{};
   constexpr float kFarthest = 0.0F;
   glDepthMask(GL_TRUE);
-  glClearBufferfv(GL_COLOR, 0, kNothing.data());
-  glClearBufferfv(GL_COLOR, 1, kNothing.data());
+  if (drawn == LandDrawn::kSurface) {
+    glClearBufferfv(GL_COLOR, 0, kNothing.data());
+    glClearBufferfv(GL_COLOR, 1, kNothing.data());
+  }
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
 }
 
-void LandPass::Run(LandBlock block, GLuint view_binding, bool one_side,
+void LandPass::Run(LandDrawn drawn, LandBlock block, GLuint view_binding, bool one_side,
                    const std::function<void()>& draw) const {
+  const ShaderProgram& program = drawn == LandDrawn::kSurface ? surface_ : outline_;
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
   glBindBufferBase(GL_UNIFORM_BUFFER, kLandBinding, block_.id());
   glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
-  program_.Use();
-  program_.BindBlock("Land", kLandBinding);
-  program_.BindBlock("View", view_binding);
+  program.Use();
+  program.BindBlock("Land", kLandBinding);
+  program.BindBlock("View", view_binding);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   if (one_side) glEnable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <vector>
 
 #include "atmosphere/sun/geodesy.h"
 #include "viewer/gl/gl_objects.h"
@@ -19,7 +20,7 @@ struct LandView {
   glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
   glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
   glm::dvec3 forward{0.0, 1.0, 0.0};
-  int rays = 1;  // that a pixel will have: for more, land is finer
+  int rays = 1;                               // that a pixel will have: for more, land is finer
   glm::dvec4 drawn_part{0.0, 0.0, 1.0, 1.0};  // ViewOfTile
 };
 
@@ -53,6 +54,9 @@ struct EyeInAnchor {
 /// @param new_light  share of the new light.
 [[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_light);
 
+/// What is drawn of land: all that SurfaceMap holds, or its depth alone, into a LandOutline.
+enum class LandDrawn { kSurface, kOutline };
+
 class LandPass {
  public:
   LandPass();
@@ -62,18 +66,25 @@ class LandPass {
       "position",   "coarse_position", "sample_place", "normal",         "coarse_normal",    "sky",
       "coarse_sky", "sun_over_edge",   "new_sky",      "new_coarse_sky", "new_sun_over_edge"};
 
-  /// Empties the bound SurfaceMap.
-  static void Clear();
+  /// Empties the bound SurfaceMap or LandOutline.
+  static void Clear(LandDrawn drawn);
   /// Sets program and state and calls `draw`. The uniform block View must be bound to
   /// `view_binding`.
   /// @param one_side  leave out triangles that face away.
-  void Run(LandBlock block, GLuint view_binding, bool one_side,
+  void Run(LandDrawn drawn, LandBlock block, GLuint view_binding, bool one_side,
            const std::function<void()>& draw) const;
+
+  /// The text that says what depth is of the driver's context.
+  [[nodiscard]] static ShaderPiece DepthText();
 
  private:
   bool reversed_depth_;
   GlBuffer block_;
-  ShaderProgram program_;
+  ShaderProgram surface_, outline_;
 };
+
+/// What land.frag.glsl and land_outline.frag.glsl are put together with.
+/// @param depth  LandPass::DepthText, or the other.
+[[nodiscard]] std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth);
 
 }  // namespace alpenglow

@@ -200,13 +200,19 @@ LandBlock Landscape::Block() const {
   return block;
 }
 
-void Landscape::Draw(GLuint view_binding, const glm::dvec4& part) {
-  view_.drawn_part = part;
-  LandPass::Clear();
-  if (mesh_) mesh_->Draw(pass_, eye_place_, view_, view_binding);
+void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
+  LandPass::Clear(what);
+  if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_, view_binding);
   if (!set_ || drawn_.empty()) return;
   // Over the ground no slope that faces away is seen before one that faces the eye.
-  pass_.Run(Block(), view_binding, over_ground_, [&] { set_->Draw(drawn_, fade_.from()); });
+  pass_.Run(what, Block(), view_binding, over_ground_, [&] { set_->Draw(drawn_, fade_.from()); });
 }
+
+void Landscape::Draw(GLuint view_binding, const glm::dvec4& part) {
+  view_.drawn_part = part;
+  DrawAll(LandDrawn::kSurface, view_binding);
+}
+
+void Landscape::DrawOutline(GLuint view_binding) { DrawAll(LandDrawn::kOutline, view_binding); }
 
 }  // namespace alpenglow

@@ -73,6 +73,8 @@ class Landscape {
   /// block View must be bound to `view_binding`.
   /// @param part  of the view that is drawn: ViewOfTile.
   void Draw(GLuint view_binding, const glm::dvec4& part = {0.0, 0.0, 1.0, 1.0});
+  /// The same chunks once more, into the bound LandOutline: the part of the view that was drawn last.
+  void DrawOutline(GLuint view_binding);
 
   /// Lights all vertices anew by this function, beside drawing; the old light fades into the new
   /// when that is complete. Asked again meanwhile, it goes on with the newest after that.
@@ -125,6 +127,7 @@ class Landscape {
   void WaitForWork();
   [[nodiscard]] bool IsAllThere(std::size_t chunks_before) const;
   [[nodiscard]] LandBlock Block() const;
+  void DrawAll(LandDrawn what, GLuint view_binding);
 
   std::shared_ptr<const LandTiles> tiles_;
   LandSize size_;

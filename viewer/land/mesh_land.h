@@ -27,7 +27,7 @@ class MeshLand {
     reader_.Wait();
     lighter_.Wait();
   }
-  void Draw(const LandPass& pass, const GeodeticPosition& eye, const LandView& view,
+  void Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition& eye, const LandView& view,
             GLuint view_binding);
 
   void Relight(LightOfVertices light) { fade_.Ask(std::move(light)); }

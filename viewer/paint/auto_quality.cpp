@@ -19,16 +19,16 @@ struct Step {
   double cost;
 };
 
-// Ends and full resolution as --benchmark has them with llvmpipe over the built-in range at 1280x720;
-// between them by the share of pixels.
-constexpr std::array<Step, 8> kSteps{{{{Quality::kHigh, 1.0}, 1.0},
-                                      {{Quality::kMedium, 1.0}, 0.77},
-                                      {{Quality::kMedium, 0.85}, 0.62},
-                                      {{Quality::kMedium, 0.7}, 0.5},
-                                      {{Quality::kLow, 0.7}, 0.45},
-                                      {{Quality::kLow, 0.58}, 0.36},
-                                      {{Quality::kLow, 0.45}, 0.28},
-                                      {{Quality::kLow, 0.33}, 0.22}}};
+// By frames of --benchmark with llvmpipe over the built-in range at 1280x720.
+constexpr std::array<Step, 9> kSteps{{{{Quality::kHigh, 1.0}, 1.0},
+                                      {{Quality::kMedium, 1.0}, 0.73},
+                                      {{Quality::kMedium, 0.8}, 0.65},
+                                      {{Quality::kMedium, 0.65}, 0.48},
+                                      {{Quality::kMedium, 0.5}, 0.36},
+                                      {{Quality::kLow, 0.5}, 0.31},
+                                      {{Quality::kLow, 0.4}, 0.26},
+                                      {{Quality::kLow, 0.33}, 0.21},
+                                      {{Quality::kLow, 0.25}, 0.19}}};
 constexpr int kFirstStep = 1;
 
 const Step& StepAt(int index) { return kSteps[static_cast<std::size_t>(index)]; }
@@ -60,9 +60,14 @@ QualityRule QualityRuleFromText(const std::string& text) {
   return {static_cast<Quality>(at - kNames.begin())};
 }
 
+PaintedQuality PaintedAlways(Quality quality) {
+  return {quality, quality == Quality::kLow ? 0.5 : 1.0};
+}
+
 std::string TextOf(const PaintedQuality& painted) {
-  return painted.scale < 1.0 ? fmt::format("{} at {:.2g}x", NameOf(painted.quality), painted.scale)
-                             : NameOf(painted.quality);
+  return painted.scale < 1.0
+             ? fmt::format("{}, light at {:.2g}x", NameOf(painted.quality), painted.scale)
+             : NameOf(painted.quality);
 }
 
 AutoQuality::AutoQuality(double wanted_frame_s) : wanted_s_(wanted_frame_s), step_(kFirstStep) {}

@@ -23,17 +23,21 @@ struct QualityRule {
 /// "low", "medium", "high", "reference" or "auto"; throws InputError for another text.
 [[nodiscard]] QualityRule QualityRuleFromText(const std::string& text);
 
-/// A quality, and the share of the window's width and height that is painted; the rest is scaled.
+/// A quality, and the share of the window's width and height at which light is painted; land has its
+/// edges at all of it (darkroom.h).
 struct PaintedQuality {
   Quality quality = Quality::kHigh;
   double scale = 1.0;
 
   bool operator==(const PaintedQuality&) const = default;
 };
-/// "high", or "low at 0.7x".
+/// How a quality that was asked for is painted: kLow has light for every second pixel, across and
+/// down.
+[[nodiscard]] PaintedQuality PaintedAlways(Quality quality);
+/// "high", or "low, light at 0.7x".
 [[nodiscard]] std::string TextOf(const PaintedQuality& painted);
 
-/// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a third of it, so
+/// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a quarter of it, so
 /// that frames take about as long as wanted. What counts is the median of the last nine frames: one
 /// in which a driver finished a program says nothing. It goes down a step after half a second, and
 /// three frames, that take 1.15 times too long, several at once if they take much longer, and up

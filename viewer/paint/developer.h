@@ -2,10 +2,13 @@
 // Linear pictures made to look at, on the graphics card.
 #pragma once
 
+#include <vector>
+
 #include "lut/picture/image.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
+#include "viewer/paint/dither_texture.h"
 
 namespace alpenglow {
 
@@ -25,12 +28,22 @@ class Developer {
   };
   /// Fills the screen; a picture of another size is scaled, bilinearly.
   void Develop(const RenderTarget& picture, double ev100, const Screen& screen) const;
+  /// Codes in [0, 1], not dithered, for an Enlarger: into a target of the picture's size, whose
+  /// fourth component it gets too.
+  void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
  private:
+  void Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
+            const Screen& screen) const;
+
   ToneCurve curve_;
-  ShaderProgram program_;
+  ShaderProgram program_, small_program_;
   GlVertexArray no_vertices_;
-  GlTexture table_, dither_noise_;
+  GlTexture table_;
+  DitherTexture dither_;
 };
+
+/// What develop.frag.glsl is put together with.
+[[nodiscard]] std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers);
 
 }  // namespace alpenglow

@@ -12,8 +12,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.shade = kLowShade;
       sizes.lamps = kLowLamps;
       sizes.fog = kCoarseFog;
-      sizes.dropped_octaves = 2;
-      sizes.relief_pixels = 2.0;
+      sizes.dropped_octaves = 1;
       break;
     case Quality::kMedium:
       sizes.dropped_octaves = 1;

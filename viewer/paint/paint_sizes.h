@@ -19,7 +19,6 @@ struct PaintSizes {
   LampQuality lamps = kMediumLamps;
   FogMapSize fog;
   int dropped_octaves = 0;     // of the ground's detail
-  double relief_pixels = 1.0;  // detail of the ground is left out below so many pixels
 };
 
 /// kReference is drawn as kHigh until the renderer's picture is there.

@@ -10,23 +10,27 @@ double PixelAngle(const PaintedView& view) {
   return 2.0 * std::tan(0.5 * view.eye.fov_rad) / (view.width * view.part.z);
 }
 
+glm::dvec2 HalfViewOf(const PaintedView& view) {
+  const double half_width = std::tan(0.5 * view.eye.fov_rad);
+  return {half_width, half_width * view.height / view.width};
+}
+
 LandView LandViewOf(const PaintedView& view, int samples) {
   const ViewAxes axes = AxesOf(view.eye);
-  const double half_width = std::tan(0.5 * view.eye.fov_rad);
-  const double part = half_width / view.part.z;
-  return {part * axes.right, part * view.height / view.width * axes.up, axes.forward, samples};
+  const glm::dvec2 half = HalfViewOf(view) / view.part.z;
+  return {half.x * axes.right, half.y * axes.up, axes.forward, samples};
 }
 
 // Roberts 2018, "The unreasonable effectiveness of quasirandom sequences".
-glm::dvec2 ShiftOf(int sample, int samples, const PaintedView& view) {
-  if (samples == 1) return glm::dvec2(0.0);
-  const double x = 0.5 + 0.7548776662466927 * sample, y = 0.5 + 0.5698402909980532 * sample;
+glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view) {
+  if (ray.of == 1) return glm::dvec2(0.0);
+  const double x = 0.5 + 0.7548776662466927 * ray.number, y = 0.5 + 0.5698402909980532 * ray.number;
   return {(2.0 * (x - std::floor(x)) - 1.0) / view.width,
           (2.0 * (y - std::floor(y)) - 1.0) / view.height};
 }
 
-std::optional<DiskBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
-                                    const PaintedView& view) {
+std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
+                                     const PaintedView& view) {
   const LandView axes = LandViewOf(view);
   const double along = glm::dot(direction, axes.forward);
   if (along <= 0.0) return std::nullopt;
@@ -41,8 +45,8 @@ std::optional<DiskBox> PixelsOfDisk(const glm::dvec3& direction, double radius_r
   if (x < -reach || y < -reach || x > view.width + reach || y > view.height + reach)
     return std::nullopt;
   const int side = static_cast<int>(std::ceil(2.0 * reach)) + 1;
-  return DiskBox{static_cast<int>(std::floor(x - reach)), static_cast<int>(std::floor(y - reach)),
-                 side, side};
+  return PixelBox{static_cast<int>(std::floor(x - reach)), static_cast<int>(std::floor(y - reach)),
+                  side, side};
 }
 
 glm::dvec3 DirectionToSun(const SunPosition& sun) {

@@ -9,6 +9,7 @@
 
 #include "atmosphere/sun/sun.h"
 #include "viewer/flight/flight.h"
+#include "viewer/gl/scissor.h"
 #include "viewer/land/land_pass.h"
 
 namespace alpenglow {
@@ -24,21 +25,24 @@ struct PaintedView {
 /// Angle between neighbouring pixels in the middle of the view [rad].
 [[nodiscard]] double PixelAngle(const PaintedView& view);
 
+/// Tangents of half the width and half the height of a view that is painted whole.
+[[nodiscard]] glm::dvec2 HalfViewOf(const PaintedView& view);
+
 /// @param samples  rays a pixel.
 [[nodiscard]] LandView LandViewOf(const PaintedView& view, int samples = 1);
 
-/// Where in its pixel a ray is, in half widths and heights of the picture: 0 for the only one, else
-/// spread evenly over the pixel.
-[[nodiscard]] glm::dvec2 ShiftOf(int sample, int samples, const PaintedView& view);
-
-/// Pixels from a lower left one on.
-struct DiskBox {
-  int x, y, width, height;
+/// One of a pixel's rays.
+struct PixelRay {
+  int number = 0, of = 1;
 };
+/// Where in its pixel it is, in half widths and heights of the picture: 0 for the only one, else
+/// spread evenly over the pixel.
+[[nodiscard]] glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view);
+
 /// Pixels that a disk of the sky may reach; nothing where none is in the view.
 /// @param direction  unit, east, north, up at the eye; radius_rad: angular.
-[[nodiscard]] std::optional<DiskBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
-                                                  const PaintedView& view);
+[[nodiscard]] std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
+                                                   const PaintedView& view);
 
 /// Unit vector to the sun: east, north, up where it is seen from.
 [[nodiscard]] glm::dvec3 DirectionToSun(const SunPosition& sun);

@@ -61,8 +61,7 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
                              const SunPosition& sun) {
   if (!scene.ground().lit()) return {};
-  return GroundLightBlockOf(scene.ground().lit()->tilt(), DirectionToSun(sun),
-                            scene.sizes().relief_pixels * PixelAngle(view));
+  return GroundLightBlockOf(scene.ground().lit()->tilt(), DirectionToSun(sun), PixelAngle(view));
 }
 
 GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
@@ -83,16 +82,17 @@ void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
 }
 
 void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
-                               const SunPosition& sun, const glm::dvec2& shift) const {
+                               const SunPosition& sun, const PixelRay& ray) const {
   const Medium& medium = scene.air().air()->medium;
   const LandView axes = LandViewOf(view);
+  const glm::dvec2 shift = ShiftOf(ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   glm::vec4 irradiance = GpuBandsOf(medium.solar_irradiance);
   irradiance /= static_cast<float>(sun.distance_au * sun.distance_au);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   const ViewBlock block{{glm::vec3(axes.right), 0.0F},
                         {glm::vec3(axes.up), 0.0F},
-                        {glm::vec3(axes.forward), 0.0F},
+                        {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)},
                         {glm::vec3(DirectionToSun(sun)), sun.angular_radius_rad},
                         irradiance,
                         {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)}};

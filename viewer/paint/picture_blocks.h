@@ -19,9 +19,9 @@ namespace alpenglow {
 class PictureBlocks {
  public:
   void UploadAir(const PaintedScene& scene, const Eye& eye);
-  /// @param shift  of the rays in their pixels: ShiftOf.
+  /// @param ray  that is painted of each pixel.
   void UploadView(const PaintedScene& scene, const PaintedView& view, const SunPosition& sun,
-                  const glm::dvec2& shift) const;
+                  const PixelRay& ray) const;
   void UploadGround(const PaintedScene& scene, const PaintedView& view,
                     const SunPosition& sun) const;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/picture_programs.h"
 
+#include "viewer/gl/scissor.h"
+
 #include <utility>
 
 #include "viewer/paint/picture_units.h"
@@ -65,10 +67,8 @@ void PicturePrograms::Paint(const PictureStage& stage) {
 
 bool PicturePrograms::MakeReady(const PictureStage& stage) {
   if (ready_.contains(stage) || (stage.has_shade && !shafts_.HasMap())) return false;
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(0, 0, 1, 1);
+  const Scissor one_pixel({0, 0, 1, 1});
   Paint(stage);
-  glDisable(GL_SCISSOR_TEST);
   return true;
 }
 

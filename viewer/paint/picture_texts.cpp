@@ -45,7 +45,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
                      "(TransmittanceToSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
-                            "viewer/shaders/sun_light.glsl"}));
+                            "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));
   add(GroundTexts(kind.material));
   add(ShaftTexts());
   add(stage.has_lamps ? kind.lamps.texts() : NoLampTexts());

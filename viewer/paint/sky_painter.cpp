@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "viewer/gl/gl_context.h"
+#include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
 
 namespace alpenglow {
@@ -15,6 +16,35 @@ ShaftPass ConnectedShafts() {
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
   return pass;
 }
+
+// Draws are tested against depth and leave it: land over land, sky and disks beside it.
+class BesideLand {
+ public:
+  BesideLand() {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+  }
+  ~BesideLand() {
+    glDisable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+  }
+  BesideLand(const BesideLand&) = delete;
+  BesideLand& operator=(const BesideLand&) = delete;
+};
+
+// Draws are added to what is there, times a share.
+class Adding {
+ public:
+  explicit Adding(double share) {
+    const auto weight = static_cast<float>(share);
+    glBlendColor(weight, weight, weight, weight);
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
+    glEnable(GL_BLEND);
+  }
+  ~Adding() { glDisable(GL_BLEND); }
+  Adding(const Adding&) = delete;
+  Adding& operator=(const Adding&) = delete;
+};
 
 }  // namespace
 
@@ -67,6 +97,12 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   surface_->BindTexture(kSkyOnSurfaceUnit, SurfaceMap::kSky);
 }
 
+void SkyPainter::PaintOutline(const LandOutline& outline) {
+  Begin("outline");
+  outline.Bind();
+  scene_.land().DrawOutline(kViewBinding);
+}
+
 void SkyPainter::PaintShafts(const PaintedView& view) {
   if (!scene_.HasShade()) return;
   Begin("shafts");
@@ -81,7 +117,7 @@ void SkyPainter::PaintLamps(const PaintedView& view) {
   lamp_painter_.PaintGlow(view.width, view.height);
 }
 
-void SkyPainter::DescribeDisks(const MoonDisk& moon, double ray_angle_rad) {
+void SkyPainter::DescribeMoon(const MoonDisk& moon) {
   const ShaderProgram& program = programs_.Of({PictureStage::Pass::kDisks});
   program.Use();
   glUniform4f(program.Uniform("moon"), static_cast<float>(moon.to_moon.x),
@@ -90,53 +126,58 @@ void SkyPainter::DescribeDisks(const MoonDisk& moon, double ray_angle_rad) {
   glUniform4f(program.Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
               static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
               static_cast<float>(moon.radiance_per_irradiance));
-  glUniform1f(program.Uniform("ray_angle"), static_cast<float>(ray_angle_rad));
 }
 
 // One stage is made ready a frame: each takes tenths of a second.
 void SkyPainter::PaintLandAndSky(double share) {
   using enum PictureStage::Pass;
   const bool has_shade = scene_.HasShade(), has_lamps = !lamp_painter_.IsDark();
-  if (share == 1.0 && !programs_.MakeReady({kLand, !has_shade, has_lamps}))
-    programs_.MakeReady({kSky, !has_shade, has_lamps});
+  if (share == 1.0 && !programs_.MakeReady({kLand, !has_shade, has_lamps}) &&
+      !programs_.MakeReady({kSky, !has_shade, has_lamps}))
+    programs_.MakeReady({kDisks});
   programs_.Paint({kLand, has_shade, has_lamps});
   programs_.Paint({kSky, has_shade, has_lamps});
 }
 
-void SkyPainter::PaintDisk(const glm::dvec3& direction, double radius_rad,
-                           const PaintedView& view) {
-  const std::optional<DiskBox> box = PixelsOfDisk(direction, radius_rad, view);
-  if (!box) return;
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(box->x, box->y, box->width, box->height);
-  programs_.Paint({PictureStage::Pass::kDisks});
-  glDisable(GL_SCISSOR_TEST);
+std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
+  const Bodies bodies = BodiesOf(view);
+  std::vector<PixelBox> boxes;
+  const auto add = [&](const std::optional<PixelBox>& box) {
+    if (box) boxes.push_back(*box);
+  };
+  add(PixelsOfDisk(DirectionToSun(bodies.sun), bodies.sun.angular_radius_rad, view));
+  add(PixelsOfDisk(bodies.moon.to_moon, bodies.moon.radius_rad, view));
+  return boxes;
 }
 
-void SkyPainter::PaintDisks(const PaintedView& view, const Bodies& bodies, double share) {
-  if (share == 1.0) programs_.MakeReady({PictureStage::Pass::kDisks});
-  PaintDisk(DirectionToSun(bodies.sun), bodies.sun.angular_radius_rad, view);
-  PaintDisk(bodies.moon.to_moon, bodies.moon.radius_rad, view);
+void SkyPainter::PaintDisks(const PaintedView& view, double share) {
+  const BesideLand beside;
+  const Adding adding(share);
+  for (const PixelBox& box : DisksSeen(view)) {
+    const Scissor within(box);
+    programs_.Paint({PictureStage::Pass::kDisks});
+  }
 }
 
-void SkyPainter::PaintPicture(const PaintedView& view, const Bodies& bodies, double share) {
+void SkyPainter::PaintDisksOver(const RenderTarget& target, const LandOutline& outline,
+                                const PaintedView& view) {
+  blocks_.UploadView(scene_, view, SunOf(view), {});
+  target.Bind();
+  target.UseDepthOf(outline);
+  PaintDisks(view, 1.0);
+  CheckGl("SkyPainter::PaintDisksOver");
+}
+
+void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   Begin("picture");
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
-  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, bodies.sun);
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_FALSE);
-  const auto weight = static_cast<float>(share);
-  glBlendColor(weight, weight, weight, weight);
-  glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE);
-  if (share < 1.0) glEnable(GL_BLEND);
+  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, SunOf(view));
+  const BesideLand beside;
+  std::optional<Adding> adding;
+  if (share < 1.0) adding.emplace(share);
   PaintLandAndSky(share);
-  glEnable(GL_BLEND);
-  PaintDisks(view, bodies, share);
-  glDisable(GL_BLEND);
-  glDisable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
@@ -145,11 +186,12 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
   lamp_painter_.PaintOver(PixelAngle(view));
 }
 
-void SkyPainter::PaintSample(const PaintedView& view, const Bodies& bodies, double share) {
+void SkyPainter::PaintSample(const PaintedView& view, Disks disks, double share) {
   PaintLand(view);
   PaintShafts(view);
   PaintLamps(view);
-  PaintPicture(view, bodies, share);
+  PaintPicture(view, share);
+  if (disks == Disks::kPainted) PaintDisks(view, share);
 }
 
 SkyPainter::Bodies SkyPainter::BodiesOf(const PaintedView& view) {
@@ -157,20 +199,20 @@ SkyPainter::Bodies SkyPainter::BodiesOf(const PaintedView& view) {
   return {sun, ApparentMoonDisk(view.eye.place, view.now, sun.distance_au)};
 }
 
-void SkyPainter::Paint(const PaintedView& view, int samples) {
+void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   const Bodies bodies = BodiesOf(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
   blocks_.UploadGround(scene_, view, bodies.sun);
-  DescribeDisks(bodies.moon, PixelAngle(view) / std::sqrt(samples));
+  DescribeMoon(bodies.moon);
   PrepareLamps(view);
   scene_.air().textures().Bind(kAirUnit, kTablesBinding);
   picture_->Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
   for (int sample = 0; sample < samples; ++sample) {
-    blocks_.UploadView(scene_, view, bodies.sun, ShiftOf(sample, samples, view));
-    PaintSample(view, bodies, 1.0 / samples);
+    blocks_.UploadView(scene_, view, bodies.sun, {sample, samples});
+    PaintSample(view, disks, 1.0 / samples);
   }
   PaintLampsOver(view);
   EndTime();

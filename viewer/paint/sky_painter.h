@@ -17,7 +17,9 @@
 #include "renderer/scene/scene.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/gl/scissor.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/land/land_outline.h"
 #include "viewer/land/surface_map.h"
 #include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_scene.h"
@@ -49,13 +51,25 @@ class SkyPainter {
   /// @param samples  that will be painted.
   void Settle(const PaintedView& view, int samples = 1);
 
+  /// Whether a picture has the disks of sun and moon.
+  enum class Disks { kPainted, kLeftOut };
   /// Paints the linear picture of the view that was updated or settled last.
   /// @param samples  rays a pixel, spread over it.
-  void Paint(const PaintedView& view, int samples = 1);
+  void Paint(const PaintedView& view, int samples = 1, Disks disks = Disks::kPainted);
   /// Shows another picture of the view instead: linear, of any size.
   void Show(const Image& image);
 
+  /// Its fourth component is the nearness of land (shaders/nearness.glsl), if one ray a pixel was
+  /// painted.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
+  /// Where the land of that picture stands.
+  void PaintOutline(const LandOutline& outline);
+  /// Pixels that the disks of sun and moon may reach.
+  [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
+  /// Adds the disks to another picture of that view, of one ray a pixel, beside the land of an
+  /// outline of its size.
+  void PaintDisksOver(const RenderTarget& target, const LandOutline& outline,
+                      const PaintedView& view);
   /// A pass of others in the same frame.
   void Time(const char* pass) const { Begin(pass); }
   void EndTime() const {
@@ -79,15 +93,14 @@ class SkyPainter {
   [[nodiscard]] const SunPosition& SunOf(const PaintedView& view);
   [[nodiscard]] Bodies BodiesOf(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
-  void DescribeDisks(const MoonDisk& moon, double ray_angle_rad);
-  void PaintSample(const PaintedView& view, const Bodies& bodies, double share);
+  void DescribeMoon(const MoonDisk& moon);
+  void PaintSample(const PaintedView& view, Disks disks, double share);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
-  void PaintPicture(const PaintedView& view, const Bodies& bodies, double share);
+  void PaintPicture(const PaintedView& view, double share);
   void PaintLandAndSky(double share);
-  void PaintDisks(const PaintedView& view, const Bodies& bodies, double share);
-  void PaintDisk(const glm::dvec3& direction, double radius_rad, const PaintedView& view);
+  void PaintDisks(const PaintedView& view, double share);
   void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);

@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The picture on a display: exposure, gamut, tone curve, dither, as Develop (image.h) does it. CURVE,
-// a ToneCurve, is defined before this text; AgX comes from its table (tone_table.h).
+// The picture on a display: exposure, gamut, tone curve, dither, as Develop (image.h) does it. AgX
+// comes from its table (tone_table.h). Defined before this text: CURVE, a ToneCurve; DITHERS, 0 for
+// codes that enlarge.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
-uniform sampler2D dither_noise;    // [codes]; a tile, row 0 at the top of the picture
 uniform sampler3D tone_table;
 uniform vec2 stops;        // over saturation, at the first and the last node of the table
-uniform vec2 screen_size;  // pixels
 uniform float exposure;
 out vec4 display;
-
-// DitherNoise (lut/picture/dither.h).
-vec3 NoiseAt(ivec2 pixel) {
-  ivec2 tile = textureSize(dither_noise, 0);
-  uvec2 repetition = uvec2(pixel / tile);
-  uint hash = DitherHash(repetition.x, repetition.y);
-  ivec2 shift = ivec2(uvec2(hash, hash >> 8));
-  return texelFetch(dither_noise, (pixel + (shift & (tile - 1))) & (tile - 1), 0).rgb;
-}
 
 #if CURVE == 0
 vec3 CodesOf(vec3 inside) {
@@ -59,17 +49,17 @@ vec3 CodesOf(vec3 inside) {
 #endif
 
 void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec3 noise = NoiseAt(ivec2(pixel.x, int(screen_size.y) - 1 - pixel.y));
-  vec3 rgb = texture(linear_picture, gl_FragCoord.xy / screen_size).rgb;
+  vec4 found = texture(linear_picture, gl_FragCoord.xy / screen_size);
+  vec3 rgb = found.rgb;
   vec3 exposed = vec3(ExposedChannel(rgb.r, exposure), ExposedChannel(rgb.g, exposure),
                       ExposedChannel(rgb.b, exposure));
   float y = Luminance(exposed.r, exposed.g, exposed.b);
   float smallest = min(exposed.r, min(exposed.g, exposed.b));
   vec3 inside = vec3(InnerChannel(exposed.r, smallest, y), InnerChannel(exposed.g, smallest, y),
                      InnerChannel(exposed.b, smallest, y));
-  vec3 srgb = 255.0 * CodesOf(inside);
-  vec3 dithered = vec3(DitheredValue(srgb.r, noise.r), DitheredValue(srgb.g, noise.g),
-                       DitheredValue(srgb.b, noise.b));
-  display = vec4(floor(dithered + 0.5) / 255.0, 1.0);
+#if DITHERS
+  display = vec4(Dithered(CodesOf(inside)), 1.0);
+#else
+  display = vec4(CodesOf(inside), found.a);
+#endif
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The linear picture [cd/m^2, linear sRGB], in passes that the depth of the land tells apart, for
+// The linear picture [cd/m^2, linear sRGB] and the nearness of land (nearness.glsl), in passes that the depth of the land tells apart, for
 // software drivers work through both sides of a branch. Defined before this text:
 //   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; DISK_PASS: what
 //             the disks of sun and moon add
@@ -9,7 +9,6 @@ out vec4 picture;
 
 uniform sampler2D surface_map;     // of land.frag.glsl
 uniform sampler2D sky_on_surface;  // of the same
-uniform float ray_angle;           // between rays, of all that a pixel has [rad]
 
 // Light of the air before a distance as fog lets it through; `all` of the whole way, clear.
 vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
@@ -54,7 +53,7 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
   GroundPlace at = GroundPlaceAt(point);
   vec3 tilted = DetailedNormal(at.offset, normal, at.footprint);
   vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), at.footprint);
-  return albedo / 3.14159265359 * LampsOnGround(point, tilted, ray_angle * surface.w);
+  return albedo / 3.14159265359 * LampsOnGround(point, tilted, RAY_ANGLE * surface.w);
 }
 
 void main() {
@@ -69,7 +68,8 @@ void main() {
   vec4 ground =
       air.transmittance * GroundSeen(direction, surface, texelFetch(sky_on_surface, pixel, 0));
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
-  picture = vec4(LinearSrgb(sun_irradiance * radiance), 1.0);
+  float along_m = surface.w * dot(direction, view_forward.xyz);
+  picture = vec4(LinearSrgb(sun_irradiance * radiance), Nearness(along_m));
 #if HAS_LAMPS
   vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
   picture.rgb += LampRgb(left * LampsReflected(direction, surface)) +
@@ -103,7 +103,7 @@ void main() {
   if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
     radiance = PlanetThroughAir(direction);
 #endif
-  picture = vec4(LinearSrgb(sun_irradiance * radiance), 1.0);
+  picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 #if HAS_LAMPS
   picture.rgb += LampGlowRgb(direction, LampRayEnd(direction, 0.0));
 #endif
@@ -113,7 +113,7 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 disks = vec4(SunDiskRadiance(direction, ray_angle)) + MoonRadiance(direction, ray_angle);
+  vec4 disks = vec4(SunDiskRadiance(direction, RAY_ANGLE)) + MoonRadiance(direction, RAY_ANGLE);
   bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
   vec4 radiance = planet ? vec4(0.0) : disks * TransmittanceToSpace(direction);
 #if HAS_FOG

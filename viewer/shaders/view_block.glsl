@@ -4,7 +4,7 @@
 layout(std140) uniform View {
   vec4 view_right;      // times the tangent of half the width of the view
   vec4 view_up;         // times the tangent of half its height
-  vec4 view_forward;    // unit
+  vec4 view_forward;    // unit; angle between rays, of all that a pixel has [rad]
   vec4 sun;             // unit vector to the apparent sun; angular radius [rad]
   vec4 sun_irradiance;  // above the air, one value a band [W m^-2 nm^-1]
   vec4 eye;  // altitude of the eye [km]; what is added to a pixel's place, in half widths and
@@ -14,6 +14,7 @@ layout(std140) uniform View {
 #define EYE_ALTITUDE eye.x
 #define PICTURE_SHIFT eye.yz
 #define PLANET_RADIUS eye.w
+#define RAY_ANGLE view_forward.w
 
 // Of a place in the picture, from (-1, -1) to (1, 1).
 vec3 ViewDirection(vec2 screen) {

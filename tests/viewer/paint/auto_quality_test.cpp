@@ -49,13 +49,13 @@ TEST(AutoQuality, FramesTakeAsLongAsWantedWhereAnyQualityDoes) {
 }
 
 TEST(AutoQuality, ASlowMachineGetsTheCheapestPicture) {
-  EXPECT_EQ(RunFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.33}));
+  EXPECT_EQ(RunFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.25}));
 }
 
 TEST(AutoQuality, ThreeHugeFramesAreAnsweredAtOnce) {
   AutoQuality quality(1.0 / 30.0);
   for (int frame = 0; frame < 3; ++frame) quality.Note(0.6);
-  EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.33}));
+  EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.25}));
 }
 
 TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
@@ -73,7 +73,7 @@ TEST(QualityRule, IsReadFromItsName) {
   EXPECT_EQ(QualityRuleFromText("reference").fixed, Quality::kReference);
   EXPECT_NE(tests::FaultOf([] { return QualityRuleFromText("best"); }).find("--quality"),
             std::string::npos);
-  EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.7}), "low at 0.7x");
+  EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.7}), "low, light at 0.7x");
 }
 
 }  // namespace

@@ -17,6 +17,9 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/land/land_pass.h"
+#include "viewer/paint/developer.h"
+#include "viewer/paint/enlarger.h"
 #include "viewer/paint/picture_texts.h"
 #include "viewer/shaders/viewer_texts.h"
 
@@ -53,9 +56,8 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   ExpectAccepted({}, "hud.vert.glsl");
   ExpectAccepted({}, "hud.frag.glsl");
   for (int curve = 0; curve < 5; ++curve) {
-    std::vector<ShaderPiece> texts = SharedTexts();
-    texts.push_back({"curve", fmt::format("#define CURVE {}\n", curve)});
-    ExpectAccepted(texts, "develop.frag.glsl");
+    for (const bool dithers : {false, true})
+      ExpectAccepted(DeveloperTexts(static_cast<ToneCurve>(curve), dithers), "develop.frag.glsl");
   }
   const std::vector<ShaderPiece> shafts = {
       view,
@@ -70,10 +72,11 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   land.push_back(ViewerPiece("viewer/shaders/land_block.glsl"));
   ExpectAccepted(land, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
-    ExpectAccepted({ViewerPiece("viewer/shaders/land_block.glsl"),
-                    ViewerPiece("viewer/shaders/octahedral.glsl"),
-                    ViewerPiece(fmt::format("viewer/shaders/{}_depth.glsl", depth))},
-                   "land.frag.glsl");
+    const ShaderPiece depth_text = ViewerPiece(fmt::format("viewer/shaders/{}_depth.glsl", depth));
+    for (const char* drawn : {"land.frag.glsl", "land_outline.frag.glsl"})
+      ExpectAccepted(LandTexts(depth_text), drawn);
+    for (const auto shows : {Enlarger::Shows::kCodes, Enlarger::Shows::kLight})
+      ExpectAccepted(EnlargerTexts(shows, depth_text), "enlarge.frag.glsl");
   }
 }
 

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/darkroom.h"
+
+#include "viewer/gl/scissor.h"
+
+namespace alpenglow {
+
+void Darkroom::PrintEnlarged(SkyPainter& painter, const PaintedView& view, double ev100,
+                             const Developer::Screen& screen) {
+  Fit(outline_, screen.width, screen.height);
+  painter.PaintOutline(*outline_);
+  painter.Time("develop");
+  const RenderTarget& picture = painter.picture();
+  Fit(codes_, picture.width(), picture.height(), PixelFormat::kRgba16F);
+  developer_.DevelopSmall(picture, ev100, *codes_);
+  painter.Time("enlarge");
+  code_enlarger_.Enlarge(*codes_, *outline_, HalfViewOf(view), screen.framebuffer);
+}
+
+// Their edges are not where land has edges: around them light is enlarged before it is developed.
+void Darkroom::PrintDisks(SkyPainter& painter, const PaintedView& view, double ev100,
+                          const Developer::Screen& screen, const std::vector<PixelBox>& boxes) {
+  if (boxes.empty()) return;
+  Fit(light_, screen.width, screen.height, PixelFormat::kRgba32F);
+  for (const PixelBox& box : boxes) {
+    const Scissor within(box);
+    light_enlarger_.Enlarge(painter.picture(), *outline_, HalfViewOf(view), light_->framebuffer());
+  }
+  painter.PaintDisksOver(*light_, *outline_,
+                         {view.eye, view.now, screen.width, screen.height, view.part});
+  for (const PixelBox& box : boxes) {
+    const Scissor within(box);
+    developer_.Develop(*light_, ev100, screen);
+  }
+}
+
+// Drivers finish programs when they are drawn with, which takes tenths of a second: in the first
+// frame, over one pixel that is painted after, not when pictures become small.
+void Darkroom::MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
+                         const Developer::Screen& screen) {
+  {
+    const Scissor one_pixel({0, 0, 1, 1});
+    PrintEnlarged(painter, view, ev100, screen);
+  }
+  PrintDisks(painter, view, ev100, screen, {{0, 0, 1, 1}});
+  is_ready_ = true;
+}
+
+void Darkroom::Print(SkyPainter& painter, const PaintedView& view, double ev100,
+                     const Developer::Screen& screen) {
+  if (!is_ready_) MakeReady(painter, view, ev100, screen);
+  if (Enlarges(view, screen)) {
+    PrintEnlarged(painter, view, ev100, screen);
+    PrintDisks(painter, view, ev100, screen,
+               painter.DisksSeen({view.eye, view.now, screen.width, screen.height, view.part}));
+  } else {
+    painter.Time("develop");
+    developer_.Develop(painter.picture(), ev100, screen);
+  }
+  painter.EndTime();
+}
+
+}  // namespace alpenglow
