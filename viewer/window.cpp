@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 #include "atmosphere/text/error.h"
@@ -342,7 +341,5 @@ void Window::Swap() {
 void Window::AtLostDisplay(std::function<void()> last) {
   state_->at_lost_display = std::move(last);
 }
-
-GLFWwindow* Window::handle() const { return state_->window; }
 
 }  // namespace alpenglow

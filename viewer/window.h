@@ -4,11 +4,8 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 
 #include "viewer/window_events.h"
-
-struct GLFWwindow;
 
 namespace alpenglow {
 
@@ -51,9 +48,6 @@ class Window {
   /// What is done before the program ends with status 5 because the display itself has gone (Xlib
   /// ends programs then): no more than to close files. Exceptions are said.
   void AtLostDisplay(std::function<void()> last);
-
-  /// GLFW's own window.
-  [[nodiscard]] GLFWwindow* handle() const;
 
  private:
   struct State;

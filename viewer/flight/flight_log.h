@@ -22,8 +22,6 @@ class FlightLog {
   /// @param elapsed_s  of flying; grows.
   void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
 
-  /// Whether the eye has been anywhere but where it began.
-  [[nodiscard]] bool HasFlown() const { return has_flown_; }
   /// From the first Note to the last one, from 0 s on. Throws InputError when nothing has been
   /// flown.
   [[nodiscard]] CameraPath Path() const;
@@ -33,7 +31,7 @@ class FlightLog {
   double interval_s_ = FlightRecorder::kInterval_s;
   std::vector<CameraPathPoint> points_;
   std::optional<CameraPathPoint> last_;  // of points_ or after them
-  bool has_flown_ = false;
+  bool has_flown_ = false;               // the eye has been anywhere but where it began
 };
 
 }  // namespace alpenglow

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "renderer/ground/surface.h"
 #include "viewer/ground/ground_block.h"
@@ -47,11 +46,11 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
       scene.air().air()->medium.wavelengths_nm,
       CoverInSeason(scene.place().latitude_rad, view.now.modified_julian_day));
   const glm::dvec2 at = OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz);
-  GroundBlock block = GroundBlockOf(surface, at.x, at.y, true);
+  GroundBlock block = GroundBlockOf(surface, at.x, at.y);
   const auto axis = [&](const glm::dvec3& of_pattern) {
     return glm::vec4(here.EnuFromEcef(pattern.EcefFromEnu(Vector<Enu>{of_pattern})).xyz, 0.0);
   };
-  block.cover_lines.w = static_cast<float>(scene.sizes().dropped_octaves);
+  block.cover_lines.z = static_cast<float>(scene.sizes().dropped_octaves);
   block.mesh_east = axis({1.0, 0.0, 0.0});
   block.mesh_north = axis({0.0, 1.0, 0.0});
   block.mesh_up = axis({0.0, 0.0, 1.0});

@@ -14,8 +14,8 @@ layout(std140) uniform Ground {
   vec4 meadow;
   vec4 rock;
   vec4 snow;
-  vec4 cover_lines;     // tree line, snow line [m]; 1 with relief finer than the mesh, else 0;
-                        // octaves of the finest detail that are left out, to save time
+  vec4 cover_lines;     // tree line, snow line [m]; octaves of the finest detail that are left out,
+                        // to save time
   vec4 noise_cell[3];   // of the eye, east and north: by family
   vec4 noise_place[3];  // fraction of the cell, east and north
   vec4 mesh_east;       // axes of the mesh in the frame of the eye
@@ -52,7 +52,7 @@ NoiseCell OctaveCell(vec2 offset, int family, float wavelength, int cells, uint 
 // How many octaves are summed: from waves of two footprints down OctaveShare is 0.
 int OctavesKept(ivec4 of, float footprint) {
   float kept = ceil(log2(max(float(of.x) / (2.0 * footprint), 1.0)));
-  return min(of.y - int(cover_lines.w), int(kept));
+  return min(of.y - int(cover_lines.z), int(kept));
 }
 
 // The octaves that a footprint keeps.
@@ -114,7 +114,6 @@ vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint)
 
 // The normal with the relief that the mesh does not have.
 vec3 DetailedNormal(vec2 offset, vec3 normal, float footprint) {
-  if (cover_lines.z == 0.0) return normal;
   vec2 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, footprint);
   vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz;
   return normalize(normal + tilt * max(dot(normal, mesh_up.xyz), 0.0));

@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "renderer/ground/ground_cover.h"
 
@@ -66,8 +64,7 @@ AirBlock AirBlockOf(const Medium& medium) {
   return block;
 }
 
-GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double north_m,
-                          bool relief) {
+GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double north_m) {
   const auto bands = [](const Bands<float>& albedo) {
     return GpuBandsOf(
         {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
@@ -79,8 +76,7 @@ GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double 
   block.meadow = bands(surface.materials().meadow);
   block.rock = bands(surface.materials().rock);
   block.snow = bands(surface.materials().snow);
-  block.cover_lines = {surface.cover().tree_line_m, surface.cover().snow_line_m,
-                       relief ? 1.0F : 0.0F, 0.0F};
+  block.cover_lines = {surface.cover().tree_line_m, surface.cover().snow_line_m, 0.0F, 0.0F};
   for (std::size_t family = 0; family < kLongest_m.size(); ++family) {
     const double east = east_m / kLongest_m[family];
     const double north = north_m / kLongest_m[family];

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
 
@@ -50,9 +49,9 @@ static_assert(offsetof(GroundBlock, mesh_up) == 13 * sizeof(glm::vec4));
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
 
 /// Materials and noise around the eye, which stands at (east_m, north_m) on the pattern's plane;
-/// see GroundPoint. The axes of the mesh are left to the caller.
+/// see GroundPoint. The axes of the mesh and the octaves left out are left to the caller.
 [[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m,
-                                        double north_m, bool relief);
+                                        double north_m);
 
 /// One value a band, the rest 0.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);

@@ -65,7 +65,7 @@ class Blocks {
     view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
     const GroundPoint origin = site.geometry().GroundAt({0.0, 0.0, 0.0}, 0.0);
-    GroundBlock ground = GroundBlockOf(light.surface, origin.east_m, origin.north_m, true);
+    GroundBlock ground = GroundBlockOf(light.surface, origin.east_m, origin.north_m);
     ground.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
     ground.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};

@@ -2,11 +2,9 @@
 // C++ and the driver agree on where every member of a uniform block lies.
 #include "viewer/shaders/uniform_blocks.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
@@ -131,7 +129,7 @@ GroundPoint PointOf(const tests::Arguments<float>& a) {
 }
 
 std::vector<float> GroundValues(const MountainSurface& surface, const std::string& expression) {
-  GroundBlock block = GroundBlockOf(surface, kEast_m, kNorth_m, true);
+  GroundBlock block = GroundBlockOf(surface, kEast_m, kNorth_m);
   block.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
   block.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
   block.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
