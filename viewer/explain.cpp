@@ -8,10 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <vector>
 
-#include "atmosphere/text/error.h"
 #include "renderer/picture/render.h"
 #include "viewer/paint/enlarger.h"
 #include "viewer/paint/view_difference.h"

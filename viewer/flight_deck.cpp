@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "atmosphere/air/aerosol_mixture.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"

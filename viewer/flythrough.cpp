@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"

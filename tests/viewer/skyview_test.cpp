@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <cstdlib>
-
 #include "lut/picture/image.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene_folder.h"

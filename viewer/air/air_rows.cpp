@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/air/air_rows.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "atmosphere/air/phase_text.h"
+#include "atmosphere/number/constants.h"
 
 namespace alpenglow {
 namespace {

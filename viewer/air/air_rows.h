@@ -3,13 +3,10 @@
 // bands, and what texels are divided by.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/ray_samples.h"
 #include "viewer/air/air_map.h"
 #include "viewer/air/air_tables.h"

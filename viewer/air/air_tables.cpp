@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/air/phase.h"
-#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/sky/sky_view.h"
 #include "lut/table/transmittance_map.h"

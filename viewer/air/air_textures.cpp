@@ -2,6 +2,7 @@
 #include "viewer/air/air_textures.h"
 
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <tuple>
 #include <utility>
 

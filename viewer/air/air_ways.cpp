@@ -2,7 +2,6 @@
 // Light on the way to a point, for AirTables. A row of texels is one march: every ray of it meets
 // the same air, only the sun stands elsewhere, and what it has gathered up to each distance is kept.
 #include <glm/exponential.hpp>
-#include <span>
 
 #include "atmosphere/number/quadrature.h"
 #include "lut/diffuse/diffuse_fan.h"

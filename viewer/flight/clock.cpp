@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/flight/clock.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <glm/vec4.hpp>
-#include <string>
 #include <vector>
 
 #include "lut/picture/image.h"

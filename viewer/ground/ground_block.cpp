@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "atmosphere/text/error.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/viewer_texts.h"
 

@@ -12,8 +12,8 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/drape_texels.h"
-#include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sea_mirror.h"
+#include "viewer/ground/sky_tilt.h"
 
 namespace alpenglow {
 

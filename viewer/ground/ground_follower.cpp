@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/hud_text.h"

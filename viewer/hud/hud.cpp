@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
-#include <limits>
-
 #include "atmosphere/text/error.h"
 #include "viewer/hud/draw_list_painter.h"
 #include "viewer/hud/hud_font.h"

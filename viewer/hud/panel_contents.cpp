@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/hud/panel_contents.h"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "lut/picture/image.h"

@@ -10,6 +10,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "atmosphere/text/error.h"
 #include "renderer/ground/scene_geometry.h"
+#include "renderer/media/fog_light.h"
 
 namespace alpenglow {
 namespace {

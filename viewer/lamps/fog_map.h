@@ -12,14 +12,13 @@
 // planet or in space. A, B and G are those of open ground: terrain does not shade them.
 #pragma once
 
-#include <array>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "renderer/media/fog_light.h"
+#include "renderer/media/local_media.h"
 
 namespace alpenglow {
 

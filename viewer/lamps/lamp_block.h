@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec4.hpp>
-#include <span>
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/sun/geodesy.h"

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/number/quadrature.h"

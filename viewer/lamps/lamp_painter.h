@@ -15,7 +15,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "viewer/gl/render_target.h"

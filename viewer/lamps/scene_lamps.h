@@ -7,7 +7,6 @@
 #include <array>
 #include <glm/vec3.hpp>
 #include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 

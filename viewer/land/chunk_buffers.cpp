@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/land/chunk_buffers.h"
 
-#include <array>
 #include <cstddef>
 
 namespace alpenglow {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/land/mesh_land.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <glm/gtc/packing.hpp>
 #include <limits>

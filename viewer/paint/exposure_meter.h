@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "lut/picture/image.h"
 #include "viewer/gl/pixel_reader.h"
 #include "viewer/gl/render_target.h"
 

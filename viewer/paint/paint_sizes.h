@@ -2,10 +2,9 @@
 // What a quality means for each part of a picture.
 #pragma once
 
-#include "viewer/air/air_follower.h"
+#include "viewer/air/air_tables.h"
 #include "viewer/lamps/fog_map.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/land/landscape.h"
 #include "viewer/paint/auto_quality.h"
 #include "viewer/shade/shade_quality.h"
 

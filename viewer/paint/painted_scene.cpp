@@ -2,7 +2,6 @@
 #include "viewer/paint/painted_scene.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "renderer/media/local_media.h"
 #include "viewer/paint/picture_units.h"

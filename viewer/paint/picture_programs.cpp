@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/picture_programs.h"
 
-#include "viewer/gl/scissor.h"
-
 #include <utility>
 
+#include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"

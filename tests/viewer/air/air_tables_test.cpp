@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 

@@ -7,7 +7,6 @@
 
 #include <csignal>
 
-#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/temporary_folder.h"
 

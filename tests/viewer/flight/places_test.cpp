@@ -9,7 +9,6 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/time_zone.h"
-#include "atmosphere/text/error.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "atmosphere/number/constants.h"
 #include "renderer/terrain/built_in_range.h"
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/render_target.h"

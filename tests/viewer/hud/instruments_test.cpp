@@ -7,7 +7,6 @@
 
 #include <functional>
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/hud/hud_picture.h"

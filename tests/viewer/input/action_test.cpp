@@ -8,8 +8,6 @@
 
 #include <fstream>
 #include <iterator>
-#include <map>
-#include <tuple>
 
 #include "atmosphere/text/error.h"
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
@@ -12,7 +11,6 @@
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"

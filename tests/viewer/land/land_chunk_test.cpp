@@ -6,7 +6,6 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
-#include <map>
 #include <set>
 #include <utility>
 

@@ -8,14 +8,12 @@
 
 #include <cstdlib>
 
-#include "atmosphere/text/error.h"
 #include "renderer/ground/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/paint/developer.h"

@@ -2,7 +2,6 @@
 // Values of GLSL expressions, for tests.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
