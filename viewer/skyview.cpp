@@ -61,7 +61,9 @@ Scene SceneOf(const SkyviewOptions& options) {
   typed.pitch = options.pitch;
   if (!options.dem.empty()) typed.dem = options.dem.front();
   StandOverTheLand(options, typed);
-  return SceneFromOptions(typed);
+  Scene scene = SceneFromOptions(typed);
+  scene.time.reset();  // noon there (StartOf), not in Greenwich
+  return scene;
 }
 
 // Over the scene of a file, a place and directions that are typed move the eye.

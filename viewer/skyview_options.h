@@ -59,7 +59,7 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
       ->check(CLI::Range(-90.0, 90.0));
   app.add_option("--time", options.time,
                  "2026-06-21T04:00:00Z, or an event of the scene's day: sunrise-10m, noon, "
-                 "civil-dusk (default: the scene's time, else noon of 2026-06-21)");
+                 "civil-dusk (default: the scene's time, else noon there on 2026-06-21)");
   app.add_option("--dem", options.dem,
                  "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, and folders of such; several may "
                  "be named")

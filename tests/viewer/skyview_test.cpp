@@ -69,6 +69,16 @@ TEST_F(Skyview, WithoutADisplayItWritesThePictureAsLinearExr) {
               HasSubstr("10000"));
 }
 
+TEST_F(Skyview, WithoutATimeItBeginsAtNoonOfThePlace) {
+  const Outcome outcome = RunCommand("env -u DISPLAY -u WAYLAND_DISPLAY '" ALPENGLOW_SKYVIEW
+                                     "' --headless --size 32x18 --latitude 35.5 --longitude 138.5 "
+                                     "--screenshot a.png");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(ReadPngMetadata(folder_ / "a.png").at("alpenglow.time").substr(0, 15),
+            "2026-06-21T02:4")
+      << "138.5 degrees before Greenwich, and the equation of time of two minutes";
+}
+
 TEST_F(Skyview, AFlightIsRecordedAndAReplayIsTheSameFlight) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string small = InFolder("s.toml") + " --headless --size 32x18 ";
