@@ -67,7 +67,7 @@ void Benchmark::WaitForTheFrameBefore() {
 
 void Benchmark::EndFrame(Clock::time_point now) {
   const std::vector<PassTime> passes = timer_.Take();
-  if (elapsed_s_ < warm_up_s_) return;
+  if (Seconds(*begin_ - *first_) < warm_up_s_) return;
   const bool is_slowed = times_passes_ && clock_ == PassClock::kFinishes;
   if (!is_slowed) NoteFrame(1e3 * Seconds(now - *begin_));
   if (times_passes_) ++timed_frames_;

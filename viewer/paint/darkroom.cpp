@@ -34,21 +34,22 @@ void Darkroom::PrintDisks(SkyPainter& painter, const PaintedView& view, double e
   }
 }
 
-// Drivers finish programs when they are drawn with, which takes tenths of a second: in the first
-// frame, over one pixel that is painted after, not when pictures become small.
+// Drivers finish programs when they are drawn with, which takes tenths of a second: over one pixel
+// that is painted after, in the frames after the first, not when pictures become small.
 void Darkroom::MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
                          const Developer::Screen& screen) {
-  {
-    const Scissor one_pixel({0, 0, 1, 1});
+  constexpr PixelBox kOnePixel{0, 0, 1, 1};
+  if (prints_ == 2) {
+    const Scissor within(kOnePixel);
     PrintEnlarged(painter, view, ev100, screen);
   }
-  PrintDisks(painter, view, ev100, screen, {{0, 0, 1, 1}});
-  is_ready_ = true;
+  if (prints_ == 3) PrintDisks(painter, view, ev100, screen, {kOnePixel});
 }
 
 void Darkroom::Print(SkyPainter& painter, const PaintedView& view, double ev100,
                      const Developer::Screen& screen) {
-  if (!is_ready_) MakeReady(painter, view, ev100, screen);
+  ++prints_;
+  MakeReady(painter, view, ev100, screen);
   if (Enlarges(view, screen)) {
     PrintEnlarged(painter, view, ev100, screen);
     PrintDisks(painter, view, ev100, screen,

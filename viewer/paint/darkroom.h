@@ -43,7 +43,7 @@ class Darkroom {
   Enlarger code_enlarger_{Enlarger::Shows::kCodes}, light_enlarger_{Enlarger::Shows::kLight};
   std::optional<RenderTarget> codes_, light_;  // of the picture's size; of the screen's
   std::optional<LandOutline> outline_;
-  bool is_ready_ = false;
+  int prints_ = 0;
 };
 
 }  // namespace alpenglow
