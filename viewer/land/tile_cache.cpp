@@ -166,6 +166,7 @@ bool TileCache::CanMake(const ChunkKey& key) const {
 }
 
 bool TileCache::HasRead(const GeodeticPosition& place) const {
+  if (tiles_->tiles().empty()) return true;  // a lattice without steps
   const LatticePlace at = tiles_->lattice().At(place.latitude_rad, place.longitude_rad);
   const int column = static_cast<int>(std::floor(at.column));
   const int row = static_cast<int>(std::floor(at.row));
