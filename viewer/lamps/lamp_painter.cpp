@@ -58,11 +58,14 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
 }  // namespace
 
 std::vector<ShaderPiece> LampTexts(const SceneLamps& shape, const LampQuality& quality) {
-  return WithViewerPieces({{"lamp constants", DefinesOf(shape, quality)}},
-                          {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamp_picture.glsl"});
+  return WithViewerPieces(
+      {{"lamp constants", DefinesOf(shape, quality)}},
+      {"viewer/shaders/lamps/lamp_light.glsl", "viewer/shaders/lamps/lamp_picture.glsl"});
 }
 
-std::vector<ShaderPiece> NoLampTexts() { return {ViewerPiece("viewer/shaders/no_lamps.glsl")}; }
+std::vector<ShaderPiece> NoLampTexts() {
+  return {ViewerPiece("viewer/shaders/lamps/no_lamps.glsl")};
+}
 
 LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
                          const LampUnits& units)
@@ -75,18 +78,18 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   texts.insert(texts.end(), texts_.begin(), texts_.end());
   // The last is of pixels.
   corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
-  corners.push_back(ViewerPiece("viewer/shaders/lamp_corners.glsl"));
+  corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
   if (quality.step > 1) {
     glow_program_.emplace(
-        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamp_glow.frag.glsl"})));
-    core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamp_core.vert.glsl"}),
-                          WithViewerPieces(texts, {"viewer/shaders/lamp_core.frag.glsl"}));
+        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_glow.frag.glsl"})));
+    core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamps/lamp_core.vert.glsl"}),
+                          WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_core.frag.glsl"}));
     Connect(*glow_program_);
     Connect(*core_program_);
   }
   disk_program_.emplace(
-      WithViewerPieces(corners, {"viewer/shaders/lamp_disk.vert.glsl"}),
-      WithViewerPieces(texts, {"viewer/shaders/lamp_disk.frag.glsl"}),
+      WithViewerPieces(corners, {"viewer/shaders/lamps/lamp_disk.vert.glsl"}),
+      WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_disk.frag.glsl"}),
       std::vector<VertexAttribute>{{0, "disk_towards"}, {1, "disk_light"}, {2, "disk_place"}});
   Connect(*disk_program_);
   UploadTables(shape);

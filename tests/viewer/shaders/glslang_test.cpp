@@ -105,11 +105,11 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
     texts.insert(texts.end(), of_lamps.begin(), of_lamps.end());
     corners.insert(corners.end(), of_lamps.begin(),
                    of_lamps.end() - 1);  // the last is of pixels
-    corners.push_back(ViewerPiece("viewer/shaders/lamp_corners.glsl"));
-    ExpectAccepted(corners, "lamp_core.vert.glsl");
-    ExpectAccepted(corners, "lamp_disk.vert.glsl");
+    corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
+    ExpectAccepted(corners, "lamps/lamp_core.vert.glsl");
+    ExpectAccepted(corners, "lamps/lamp_disk.vert.glsl");
     for (const char* stage :
-         {"lamp_glow.frag.glsl", "lamp_core.frag.glsl", "lamp_disk.frag.glsl"}) {
+         {"lamps/lamp_glow.frag.glsl", "lamps/lamp_core.frag.glsl", "lamps/lamp_disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
   }
