@@ -220,7 +220,7 @@ LampTile LampLight::State::TileAt(const MovingCamera& camera, const PixelBox& bo
   for (const std::uint32_t node : CutInAir(tree, rays, eye.at, pixel, settings)) {
     (IsFar(tree.nodes()[node], rays, pixel) ? tile.far_air : tile.near_air).push_back(node);
   }
-  tile.surface = CutOnSurface(tree, rays, settings);
+  tile.surface = CutOnSurface(tree, stage, rays, settings);
   tile.seen = SeenIn(rays);
   if (tile.far_air.empty()) return tile;
   for (int j = 0; j < LampPlan::kLattice; ++j) {

@@ -7,9 +7,11 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <queue>
+#include <unordered_map>
 
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/number/constants.h"
+#include "renderer/lamp/lamp_stage.h"
 
 namespace alpenglow {
 
@@ -43,8 +45,9 @@ void TileRays::Add(const CameraRay& ray, const RayTrace& trace) {
   const double length = rays.back().length_m;
   if (std::isinf(length)) return;
   const glm::dvec3 point = ray.origin + length * ray.direction;
-  if (!surface) surface = point;
-  surface_spread_m = std::max(surface_spread_m, glm::length(point - *surface));
+  constexpr std::size_t kMostEnds = 5;
+  if (ends.size() < kMostEnds) ends.push_back({point, ray.direction});
+  surface_spread_m = std::max(surface_spread_m, glm::length(point - ends[0].point));
 }
 
 double TileRays::longest() const {
@@ -165,18 +168,132 @@ Share WeighInAir(const LampNode& node, std::uint32_t number, const TileRays& til
   return share;
 }
 
-/// What a node is to the surfaces of a tile, if they faced it and reflected everything.
-Share WeighOnSurface(const LampNode& node, std::uint32_t number, const TileRays& tile) {
+/// A place of a surface that lamps may light.
+struct Place {
+  glm::dvec3 smooth_point, geometric_normal;
+};
+
+/// The places where a tile's rays end.
+std::vector<Place> PlacesOf(const TileRays& tile, const LampStage& stage) {
+  constexpr double kBack_m = 0.5;  // to meet the surface again, which an end has no normal of
+  std::vector<Place> places;
+  for (const TileRays::End& end : tile.ends) {
+    const auto& terrain = stage.ground().terrain;
+    const auto hit = terrain
+                         ? terrain->Intersect(end.point - kBack_m * end.direction, end.direction)
+                         : std::nullopt;
+    if (hit && hit->distance_m < 2.0 * kBack_m) {
+      places.push_back({hit->smooth_point, hit->geometric_normal});
+    } else {
+      places.push_back({end.point, stage.UpAt(end.point)});
+    }
+  }
+  return places;
+}
+
+/// What nodes are to the surfaces of a tile, if they faced it and reflected everything: light that
+/// arrives at the places, where terrain may hide a lamp and only its glow is left.
+class SurfaceWeights {
+ public:
+  SurfaceWeights(const LampTree& tree, const LampStage& stage, const TileRays& tile)
+      : tree_(&tree), stage_(&stage), tile_(&tile), places_(PlacesOf(tile, stage)) {}
+
+  [[nodiscard]] Share Of(std::uint32_t number);
+
+ private:
+  /// Place i is bit i.
+  using LitPlaces = std::uint32_t;
+  [[nodiscard]] LitPlaces AllPlaces() const { return (LitPlaces{1} << places_.size()) - 1; }
+
+  /// Places from which a node's own place is seen.
+  [[nodiscard]] LitPlaces LitBy(std::uint32_t number);
+  /// Lamps below a node: all of few, else one of every branch.
+  [[nodiscard]] LampNodes MembersOf(std::uint32_t number) const;
+  /// Whether a node and its lamps light every place, or none. Neither: edges of shades cross the
+  /// tile, at another place for every lamp.
+  struct Shade {
+    bool is_lit, is_dark;
+  };
+  [[nodiscard]] Shade ShadeOf(std::uint32_t number);
+  /// What a node's air brings to the level of the first place [cd/m^2].
+  [[nodiscard]] double GlowOf(std::uint32_t number) const;
+
+  const LampTree* tree_;
+  const LampStage* stage_;
+  const TileRays* tile_;
+  std::vector<Place> places_;
+  std::unordered_map<std::uint32_t, LitPlaces> lit_;
+};
+
+SurfaceWeights::LitPlaces SurfaceWeights::LitBy(std::uint32_t number) {
+  const auto [found, is_new] = lit_.try_emplace(number, 0);
+  if (!is_new) return found->second;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Place& place = places_[i];
+    const bool is_shaded =
+        stage_->Shades(tree_->Light(number).lamp, place.smooth_point, place.geometric_normal);
+    if (!is_shaded) found->second |= LitPlaces{1} << i;
+  }
+  return found->second;
+}
+
+LampNodes SurfaceWeights::MembersOf(std::uint32_t number) const {
+  constexpr std::size_t kBranches = 8;
+  const std::vector<LampNode>& nodes = tree_->nodes();
+  LampNodes members{number};
+  for (std::size_t before = 0; members.size() != before && members.size() < kBranches;) {
+    before = members.size();
+    LampNodes below;
+    for (const std::uint32_t member : members) {
+      if (const auto& children = nodes[member].children) {
+        below.insert(below.end(), children->begin(), children->end());
+      } else {
+        below.push_back(member);
+      }
+    }
+    members = std::move(below);
+  }
+  for (std::uint32_t& member : members) {
+    while (nodes[member].children) member = (*nodes[member].children)[0];
+  }
+  return members;
+}
+
+SurfaceWeights::Shade SurfaceWeights::ShadeOf(std::uint32_t number) {
+  LitPlaces lit_by_any = LitBy(number), lit_by_all = lit_by_any;
+  for (const std::uint32_t member : MembersOf(number)) {
+    lit_by_any |= LitBy(member);
+    lit_by_all &= LitBy(member);
+  }
+  return {lit_by_all == AllPlaces(), lit_by_any == 0};
+}
+
+double SurfaceWeights::GlowOf(std::uint32_t number) const {
+  const PlacedLamp& light = tree_->Light(number);
+  const glm::dvec3& point = tile_->ends[0].point;
+  const glm::dvec3 up = stage_->UpAt(point);
+  const Bands<double> glow = tree_->GlowOf(number).On(light.lamp.position_m - point, up, up);
+  return light.candela * light.mean_share * glow[glow.count / 2] / kPi;
+}
+
+Share SurfaceWeights::Of(std::uint32_t number) {
+  constexpr double kWall = 0.5;  // of a glow, what is left on a steep surface
+  const LampNode& node = tree_->nodes()[number];
   const PlacedLamp& light = node.light;
-  const double middle = glm::length(*tile.surface - light.lamp.position_m);
-  const double d = std::max(middle - tile.surface_spread_m, 0.3);
-  const double far = middle + tile.surface_spread_m + 0.3;
-  const double t = TransmittanceBetween(light.middle_air, light.lamp.position_m, *tile.surface)[0];
+  const glm::dvec3& surface = tile_->ends[0].point;
+  const double middle = glm::length(surface - light.lamp.position_m);
+  const double d = std::max(middle - tile_->surface_spread_m, 0.3);
+  const double far = middle + tile_->surface_spread_m + 0.3;
+  const double t = TransmittanceBetween(light.middle_air, light.lamp.position_m, surface)[0];
   const double luminance = light.candela * t / kPi;
-  Share share{number, 0.1 * light.mean_share * luminance / (far * far), luminance / (d * d), 0.0};
+  const double glow = GlowOf(number);
+  const auto [is_lit, is_dark] = ShadeOf(number);
+  Share share{number, kWall * glow, glow, 0.0};
+  if (is_lit) share.least += 0.1 * light.mean_share * luminance / (far * far);
+  if (!is_dark) share.most += luminance / (d * d);
   if (!node.children) return share;
   const double relative = (node.moments[0][0] + node.moments[1][1] + node.moments[2][2]) / (d * d);
-  share.error = share.most * (d > 2.0 * node.radius_m ? relative : 10.0);
+  share.error = share.most * ((is_lit || is_dark) && d > 2.0 * node.radius_m ? relative : 10.0);
   return share;
 }
 
@@ -189,10 +306,11 @@ LampNodes CutInAir(const LampTree& tree, const TileRays& tile, const glm::dvec3&
   });
 }
 
-LampNodes CutOnSurface(const LampTree& tree, const TileRays& tile, const LampSettings& settings) {
-  if (!tile.surface) return {};
-  return Cut(tree, settings,
-             [&](std::uint32_t node) { return WeighOnSurface(tree.nodes()[node], node, tile); });
+LampNodes CutOnSurface(const LampTree& tree, const LampStage& stage, const TileRays& tile,
+                       const LampSettings& settings) {
+  if (tile.ends.empty()) return {};
+  SurfaceWeights weights(tree, stage, tile);
+  return Cut(tree, settings, [&](std::uint32_t node) { return weights.Of(node); });
 }
 
 bool IsFar(const LampNode& node, const TileRays& tile, double pixel_angle_rad) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <optional>
 #include <vector>
 
 #include "renderer/camera/moving_camera.h"
@@ -23,8 +22,13 @@ struct PixelBox {
 struct TileRays {
   std::vector<LampRayEnd> rays;
   double radius_rad = 0.0;  // of the cone around the middle that holds the tile
-  // Of the ends on surfaces: the middle one (or any), and how far the others lie from it.
-  std::optional<glm::dvec3> surface;
+  /// Where a ray ends on a surface.
+  struct End {
+    glm::dvec3 point, direction;
+  };
+  // On surfaces, at most those of the corners and the middle: the middle one first, or any.
+  std::vector<End> ends;
+  // Of the ends of all rays on surfaces: how far they lie from the first.
   double surface_spread_m = 0.0;
 
   TileRays(const MovingCamera& moving, const PixelBox& box, const RayTrace& trace);
@@ -46,9 +50,11 @@ struct TileRays {
 /// Nodes that light the air before a tile.
 [[nodiscard]] LampNodes CutInAir(const LampTree& tree, const TileRays& tile, const glm::dvec3& eye,
                                  double pixel_angle_rad, const LampSettings& settings);
-/// Nodes that light surfaces in a tile; none without any.
-[[nodiscard]] LampNodes CutOnSurface(const LampTree& tree, const TileRays& tile,
-                                     const LampSettings& settings);
+/// Nodes that light surfaces in a tile; none without any. Terrain may hide lamps from it: a lamp
+/// counts where its light arrives at the ends of the tile's rays, and a group of lamps stands as one
+/// only where it and its lamps (of large groups, eight) light all of these ends or none.
+[[nodiscard]] LampNodes CutOnSurface(const LampTree& tree, const LampStage& stage,
+                                     const TileRays& tile, const LampSettings& settings);
 
 /// Far enough from a tile that light in the air is a parabola between lattice points: across h the
 /// straight line misses 1/D by (h / D)^2 / 4.

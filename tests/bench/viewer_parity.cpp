@@ -103,9 +103,6 @@ int main(int count, char** arguments) {
   settings.samples_per_pixel = count > 4 ? std::atoi(arguments[4]) : 64;
   settings.filter = alpenglow::PixelFilter::Kind::kBox;
   settings.layers = alpenglow::LayersOfEdges();
-  // Every lamp by itself: a tile's plan drops those that are dim beside the nearest one, before
-  // which terrain may stand.
-  settings.lamps = {.nodes = 24, .share_of_error = 0.0};
   const alpenglow::HeadlessContext context;
   alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "1234567");
   return 0;

@@ -306,6 +306,61 @@ TEST_F(LampShadows, AWallShadesTheGroundAndTheAirBehindIt) {
   EXPECT_NEAR(found / lit, 1.0, 0.03) << "edges to 1/768 of the ray's angle, and the clear air";
 }
 
+/// By how much a plan's lamps light surfaces less or more than all lamps do, at the worst of some
+/// pixels.
+double WorstOnSurfaces(const Stage& stage) {
+  constexpr int kWidth = 160, kHeight = 96;
+  const CameraRays camera(stage.scene.camera, kWidth, kHeight,
+                          {.eye = {0.0, 0.0, stage.ground.eye_height_m}});
+  const auto hit = [&](const CameraRay& ray) {
+    return stage.ground.terrain->Intersect(ray.origin, ray.direction);
+  };
+  const LampPlan plan = stage.light.PlanFor(camera, kWidth, kHeight, {}, [&](const CameraRay& ray) {
+    const auto end = hit(ray);
+    return end ? end->distance_m : std::numeric_limits<double>::infinity();
+  });
+  double worst = 0.0;
+  for (int y = 1; y < kHeight; y += 5) {
+    for (int x = 2; x < kWidth; x += 7) {
+      const CameraRay ray = camera.MiddleRay(x + 0.5, y + 0.5);
+      const auto end = hit(ray);
+      if (!end) continue;
+      const LitPoint at{ray.origin + end->distance_m * ray.direction, end->smooth_point,
+                        end->normal, end->geometric_normal};
+      const double all = stage.Luminance(stage.light.OnSurface(stage.light.All(), at));
+      const double found = stage.Luminance(stage.light.OnSurface(plan.At(x, y).surface, at));
+      worst = std::max(worst, std::abs(found / all - 1.0));
+    }
+  }
+  return worst;
+}
+
+/// Air that scatters so little that what is dark is dark.
+void ThinTheAir(Medium& medium) {
+  for (auto* of_band : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                        &medium.mie_extinction_per_m}) {
+    for (double& value : *of_band) value *= 1e-3;
+  }
+}
+
+TEST_F(LampShadows, ABrightLampBehindTheWallTakesNothingFromDimOnesBeforeIt) {
+  Scene scene = WallScene();
+  ThinTheAir(scene.medium);
+  scene.camera.pitch_rad = -0.3;
+  scene.lights = {LightAt(110.0, 0.0, 10.0, 1e4)};
+  for (int i = -10; i <= 10; ++i) scene.lights.push_back(LightAt(-10.0, 6.0 * i, 8.0, 0.03));
+  EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03)
+      << "a share of error of 0.5 per cent where lamps shine, of the glow's where they do not";
+}
+
+TEST_F(LampShadows, ARowOfLampsAcrossTheEndOfTheWallIsNotOneLamp) {
+  Scene scene = WallScene();
+  ThinTheAir(scene.medium);
+  scene.camera.pitch_rad = -0.3;
+  for (int i = -20; i < 40; ++i) scene.lights.push_back(LightAt(130.0, i, 10.0, 100.0));
+  EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03) << "where two of sixty lamps shine, too";
+}
+
 TEST_F(LampShadows, ALampBehindTheWallIsNotSeen) {
   Scene scene = WallScene();
   scene.lights = {LightAt(130.0, 0.0, 10.0, 1000.0), LightAt(130.0, 80.0, 10.0, 1000.0)};
