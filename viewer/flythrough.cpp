@@ -339,6 +339,7 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
 
 void Flythrough::Settle(const ImageSize& size, int samples) {
   painter_.Settle(ViewOf(size), samples);
+  if (knows_ground_) return;
   StandOnGround();
   painter_.Settle(ViewOf(size), samples);
 }

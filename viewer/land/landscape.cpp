@@ -110,11 +110,15 @@ void Landscape::RaiseAbove(double seconds) {
   ceiling_m_ = std::lerp(ceiling_m_.value_or(highest), highest, share);
 }
 
-void Landscape::Choose() {
+void Landscape::FindAround() {
   around_ = DrawnChunks(tree_, eye_, ranges_, [&](const ChunkKey& key) { return set_->Has(key); });
   const std::optional<double> ground = GroundUnder(eye_place_);
   over_ground_ = ground && eye_place_.height_m > *ground;
+}
+
+void Landscape::ChooseDrawn() {
   drawn_.clear();
+  if (!set_) return;
   for (const DrawnChunk& near : around_) {
     const ChunkSet::Kept* const kept = set_->Find(near.key);
     if (kept == nullptr || kept->slot < 0) continue;
@@ -127,6 +131,11 @@ void Landscape::Choose() {
 }
 
 void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
+  Advance(eye, view, seconds);
+  ChooseDrawn();
+}
+
+void Landscape::Advance(const GeodeticPosition& eye, const LandView& view, double seconds) {
   ++frame_;
   eye_place_ = eye;
   view_ = view;
@@ -143,7 +152,7 @@ void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double
   fade_.Advance(seconds, set_->IsLitBy(fade_.number()));
   AskForChunks();
   AskForLight();
-  Choose();
+  FindAround();
   RaiseAbove(seconds);
   set_->Evict(demand_.wanted.size() + demand_.wanted.size() / 4 + 64, frame_);
 }
@@ -172,7 +181,7 @@ void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
     const std::size_t chunks = set_ ? set_->size() : 0;
     ceilings.push_back(ceiling_m_);
     WaitForWork();
-    Update(eye, view, kLong_s);
+    Advance(eye, view, kLong_s);
     const auto round = std::find(ceilings.begin(), ceilings.end(), ceiling_m_);
     if (!IsAllThere(chunks)) {
       still = 0;
@@ -181,6 +190,7 @@ void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
       still += ceilings.back() == *std::min_element(round, ceilings.end()) ? 1 : 0;
     }
   }
+  ChooseDrawn();
 }
 
 LandBlock Landscape::Block() const {

@@ -122,7 +122,10 @@ class Landscape {
   void AskForChunks();
   void AskForLight();
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
-  void Choose();
+  /// All that a frame does but for choosing what of it is in view.
+  void Advance(const GeodeticPosition& eye, const LandView& view, double seconds);
+  void FindAround();
+  void ChooseDrawn();
   void RaiseAbove(double seconds);
   void WaitForWork();
   [[nodiscard]] bool IsAllThere(std::size_t chunks_before) const;

@@ -35,7 +35,7 @@ class Glslang : public TemporaryFolder {
   /// Checks `stage`, a file of the viewer named "....vert.glsl" or "....frag.glsl", after `texts`.
   void ExpectAccepted(std::vector<ShaderPiece> texts, const std::string& stage) const {
     texts.push_back(ViewerPiece("viewer/shaders/" + stage));
-    ExpectTextAccepted(texts, stage);
+    ExpectTextAccepted(texts, std::filesystem::path(stage).filename());
   }
   void ExpectTextAccepted(const std::vector<ShaderPiece>& texts, const std::string& stage) const {
     const std::filesystem::path file =
