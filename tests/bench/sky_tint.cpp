@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Is the sky opposite a low sun too green, and what makes it so: bands, ozone, aerosol or ground?
+//
+//   sky_tint
+//
+// Colours of the clear sky from the ground, all orders of scattering, in the sun's vertical plane
+// away from it. Each line is an air, on so many wavelengths; its columns are views by elevation,
+// each with Duv, the signed distance from the black body's line in the CIE 1960 (u, v) diagram,
+// positive to the green (Ohno 2014, Leukos 10, 47-55). A phase of daylight at the same place of the
+// line has +0.003 (CIE 15:2018).
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/colour/black_body.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "lut/train/sky_spectra.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::array kElevations_deg{2.0, 5.0, 10.0, 20.0, 45.0, 90.0};
+
+struct Chromaticity {
+  double u, v;  // CIE 1960
+};
+
+Chromaticity ChromaticityOf(const std::array<double, 3>& xyz) {
+  const double sum = xyz[0] + 15.0 * xyz[1] + 3.0 * xyz[2];
+  return {4.0 * xyz[0] / sum, 6.0 * xyz[1] / sum};
+}
+
+/// Of a spectrum [W m^-2 sr^-1 nm^-1] on fine wavelengths, by the observer's own functions.
+Chromaticity OfSpectrum(const std::vector<double>& wavelengths_nm,
+                        const std::vector<double>& radiance) {
+  std::array<double, 3> xyz{};
+  for (std::size_t i = 0; i < radiance.size(); ++i) {
+    const std::array<double, 3> matching = ColourMatching(wavelengths_nm[i]);
+    for (std::size_t c = 0; c < 3; ++c) xyz[c] += matching[c] * radiance[i];
+  }
+  return ChromaticityOf(xyz);
+}
+
+/// Distance from the line of black bodies of 1,500 to 1e6 K, positive above it.
+double Duv(const Chromaticity& colour) {
+  const std::vector<double> wavelengths_nm = FineWavelengths();
+  double least = std::numeric_limits<double>::infinity();
+  double sign = 1.0;
+  for (double mired = 1.0; mired < 667.0; mired += 1.0) {
+    std::vector<double> glow;
+    for (const double nm : wavelengths_nm) glow.push_back(BlackBodyRadiance(nm, 1e6 / mired));
+    const Chromaticity body = OfSpectrum(wavelengths_nm, glow);
+    const double away = std::hypot(colour.u - body.u, colour.v - body.v);
+    if (away >= least) continue;
+    least = away;
+    sign = colour.v >= body.v ? 1.0 : -1.0;
+  }
+  return sign * least;
+}
+
+/// What is not as in the preset.
+struct Change {
+  std::string name;
+  double ozone = 1.0;           // times the preset's
+  double aerosol_depth = -1.0;  // at 550 nm; negative: the preset's own
+  double angstrom = 1.3;
+  double ground_albedo = 1.0;  // times the preset's
+};
+
+Medium Changed(const Change& change, const std::vector<double>& wavelengths_nm) {
+  Medium medium = MediumPreset("earth", wavelengths_nm);
+  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
+    medium.ozone_absorption_per_m[i] *= change.ozone;
+    medium.ground_albedo[i] *= change.ground_albedo;
+    if (change.aerosol_depth < 0.0) continue;
+    const double albedo = medium.mie_scattering_per_m[i] / medium.mie_extinction_per_m[i];
+    medium.mie_extinction_per_m[i] = change.aerosol_depth / medium.mie_scale_height_m *
+                                     std::pow(wavelengths_nm[i] / 550.0, -change.angstrom);
+    medium.mie_scattering_per_m[i] = albedo * medium.mie_extinction_per_m[i];
+  }
+  return medium;
+}
+
+/// Skies of all elevations, one vector of bands each; by as many solvers as the bands need.
+std::vector<std::vector<double>> SkiesOf(const Change& change, double sun_deg,
+                                         const std::vector<double>& wavelengths_nm) {
+  std::vector<std::vector<double>> skies(kElevations_deg.size());
+  for (std::size_t first = 0; first < wavelengths_nm.size(); first += kMaxBands) {
+    const std::size_t last = std::min(first + kMaxBands, wavelengths_nm.size());
+    const std::vector<double> some(wavelengths_nm.begin() + static_cast<std::ptrdiff_t>(first),
+                                   wavelengths_nm.begin() + static_cast<std::ptrdiff_t>(last));
+    const Medium medium = Changed(change, some);
+    const AirIntegrator<float> air(medium);
+    const DiffuseLight diffuse(medium);
+    for (std::size_t view = 0; view < skies.size(); ++view) {
+      const ViewRay ray = RayFromAngles(2.0, 90.0 - kElevations_deg[view], 180.0, 90.0 - sun_deg);
+      const RaySamples<float> samples =
+          air.Sample(ray, {.nodes = 24, .split_ozone = true, .dark_samples = true});
+      const Bands<float> once = air.Inscatter(air.Scatter(samples), ray.nu);
+      const Bands<float> more = diffuse.InscatterAlong(samples, ray.nu);
+      for (std::size_t band = 0; band < some.size(); ++band) {
+        skies[view].push_back(static_cast<double>(once[band] + more[band]) *
+                              medium.solar_irradiance[band]);
+      }
+    }
+  }
+  return skies;
+}
+
+void Print(const Change& change, double sun_deg, const std::vector<double>& wavelengths_nm) {
+  const bool is_fine = wavelengths_nm.size() > 40;
+  fmt::print("{:>4} deg  {:<34}{:>3} ", sun_deg, change.name, wavelengths_nm.size());
+  for (const std::vector<double>& sky : SkiesOf(change, sun_deg, wavelengths_nm)) {
+    const Chromaticity colour = is_fine ? OfSpectrum(wavelengths_nm, sky)
+                                        : ChromaticityOf(BandColour(wavelengths_nm).Xyz(sky));
+    fmt::print("  {:+.4f}", Duv(colour));
+  }
+  fmt::print("\n");
+}
+
+void Run() {
+  fmt::print(
+      "sun       air                           bands     at 2      5     10     20     45     "
+      "90\n");
+  for (const double sun_deg : {2.0, 5.0, 10.0, 20.0}) {
+    const Change preset{.name = "preset earth"};
+    for (const int bands : {3, 4, 6, 40}) Print(preset, sun_deg, WavelengthSet(bands));
+    Print(preset, sun_deg, FineWavelengths());
+  }
+  for (const Change& change :
+       {Change{.name = "no ozone", .ozone = 0.0}, Change{.name = "ozone 450 DU", .ozone = 1.5},
+        Change{.name = "no aerosol", .aerosol_depth = 1e-6},
+        Change{.name = "aerosol 0.05, Angstrom 1.3", .aerosol_depth = 0.05},
+        Change{.name = "aerosol 0.1, Angstrom 1.3", .aerosol_depth = 0.1},
+        Change{.name = "aerosol 0.2, Angstrom 1.3", .aerosol_depth = 0.2},
+        Change{.name = "aerosol 0.1, grey", .aerosol_depth = 0.1, .angstrom = 0.0},
+        Change{.name = "black ground", .ground_albedo = 0.0}})
+    for (const double sun_deg : {5.0, 10.0}) Print(change, sun_deg, FineWavelengths());
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main() {
+  alpenglow::Run();
+  return 0;
+}
