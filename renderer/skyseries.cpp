@@ -79,11 +79,16 @@ Metadata MetadataOf(const Scene& scene, const std::optional<CameraPath>& path,
 
 NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
                          const RenderSettings& settings, const SkyseriesOptions& options) {
-  if (!ChoosesEffects(options) && !options.explain) return renderer.Render(shot, settings);
+  if (!ChoosesEffects(options) && !options.explain) {
+    CountedPicture picture = renderer.RenderCounted(shot, settings);
+    return {std::move(picture.image), NotesOn(picture.rays, settings)};
+  }
   ChosenPicture picture = renderer.RenderWithin(shot, settings, BudgetOf(options));
   if (options.explain)
     Print(fmt::format("{}\n{}\n", FormatUtc(shot.instant), ExplainText(picture.choice)));
-  return {std::move(picture.image), NotesOn(picture.choice)};
+  Metadata notes = NotesOn(picture.choice);
+  notes.merge(NotesOn(picture.rays, settings));
+  return {std::move(picture.image), std::move(notes)};
 }
 
 int Run(const SkyseriesOptions& options) {
@@ -108,6 +113,7 @@ int Run(const SkyseriesOptions& options) {
   settings.width = size.width;
   settings.height = size.height;
   settings.samples_per_pixel = options.samples;
+  if (options.noise) settings.noise = RelativeErrorFromText(*options.noise);
   settings.effects = EffectsOf(options);
   settings.filter = PixelFilterFromName(options.filter);
   settings.layers = LayersFromNames(options.layers);

@@ -14,23 +14,14 @@
 namespace alpenglow {
 namespace {
 
-using Rays = std::span<const Shaded>;
-
-BandLight MeanOf(BandLight Shaded::*part, Rays rays) {
-  const auto share = 1.0F / static_cast<float>(rays.size());
-  BandLight mean((rays.front().*part).count);
-  for (const Shaded& ray : rays) mean = mean + share * (ray.*part);
-  return mean;
-}
-
 LayerValues Rgb(const BandColour& colour, const BandLight& light) {
   const auto rgb = colour.LinearSrgb(InDouble(light));
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
 template <BandLight Shaded::*kPart>
-LayerValues LightOf(const BandColour& colour, Rays rays) {
-  return Rgb(colour, MeanOf(kPart, rays));
+LayerValues LightOf(const BandColour& colour, const PixelSum& rays) {
+  return Rgb(colour, rays.Mean(kPart));
 }
 
 // Colour of a factor (albedo, transmittance) as it looks under the sun above the air, within [0,
@@ -38,8 +29,8 @@ LayerValues LightOf(const BandColour& colour, Rays rays) {
 // negative, down to -0.002 beside a red of 0.1. As light that is right (image.h); as a factor it
 // would turn light that it dims into its negative.
 template <BandLight Shaded::*kPart>
-LayerValues FactorOf(const BandColour& colour, Rays rays) {
-  const BandLight factor = MeanOf(kPart, rays);
+LayerValues FactorOf(const BandColour& colour, const PixelSum& rays) {
+  const BandLight factor = rays.Mean(kPart);
   BandLight sun(factor.count);
   for (std::size_t band = 0; band < factor.count; ++band) {
     sun[band] = static_cast<float>(SolarIrradiance(colour.wavelengths_nm()[band]));
@@ -51,15 +42,16 @@ LayerValues FactorOf(const BandColour& colour, Rays rays) {
   return seen;
 }
 
-LayerValues SunVisibility(const BandColour&, Rays rays) {
-  const auto share = 1.0F / static_cast<float>(rays.size());
-  float visible = 0.0F;
-  for (const Shaded& ray : rays) visible += share * ray.sun_visibility;
-  return {visible};
+LayerValues SunVisibility(const BandColour&, const PixelSum& rays) {
+  return {rays.sum.sun_visibility / static_cast<float>(rays.rays)};
 }
 
-LayerValues Scotopic(const BandColour& colour, Rays rays) {
-  return {static_cast<float>(colour.ScotopicLuminance(InDouble(MeanOf(&Shaded::radiance, rays))))};
+LayerValues Scotopic(const BandColour& colour, const PixelSum& rays) {
+  return {static_cast<float>(colour.ScotopicLuminance(InDouble(rays.Mean(&Shaded::radiance))))};
+}
+
+LayerValues RayCount(const BandColour&, const PixelSum& rays) {
+  return {static_cast<float>(rays.rays)};
 }
 
 LayerValues Depth(const Hit& hit) { return {static_cast<float>(hit.distance_m)}; }
@@ -71,7 +63,7 @@ LayerValues Normal(const Hit& hit) {
 }
 
 LayerKind InColour(PictureLayer layer, const std::string& name,
-                   LayerValues (*of_rays)(const BandColour&, Rays)) {
+                   LayerValues (*of_rays)(const BandColour&, const PixelSum&)) {
   return {layer, name, {name + ".R", name + ".G", name + ".B"}, nullptr, of_rays};
 }
 
@@ -87,11 +79,21 @@ const std::vector<LayerKind>& LayerKinds() {
       {kSunVisibility, "sun_visibility", {"sun_visibility.Y"}, nullptr, SunVisibility},
       InColour(kLamps, "lamps", LightOf<&Shaded::lamps>),
       InColour(kVolumes, "volumes", LightOf<&Shaded::volumes>),
-      {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic}};
+      {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic},
+      {kRays, "rays", {"rays.Y"}, nullptr, RayCount}};
   return kKinds;
 }
 
 }  // namespace
+
+void PixelSum::Add(const Shaded& ray) {
+  const bool is_first = rays++ == 0;
+  for (const auto part : {&Shaded::radiance, &Shaded::inscatter, &Shaded::transmittance,
+                          &Shaded::albedo, &Shaded::lamps, &Shaded::volumes}) {
+    sum.*part = is_first ? ray.*part : sum.*part + ray.*part;
+  }
+  sum.sun_visibility += ray.sun_visibility;
+}
 
 const std::vector<std::string>& LayerNames() {
   static const std::vector<std::string> kNames = [] {

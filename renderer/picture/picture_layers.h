@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +24,7 @@ enum class PictureLayer {
   kLamps,          // all that comes from lamps [cd/m^2]
   kVolumes,        // in fog and volumes, and what these emit [cd/m^2]
   kScotopic,       // what rods see [scotopic cd/m^2]
+  kRays,           // how many the pixel took
 };
 
 /// Names of all layers, in their order.
@@ -43,6 +43,17 @@ struct Shaded {
   float sun_visibility = 0.0F;
 };
 
+/// Rays of a pixel, which count alike.
+struct PixelSum {
+  Shaded sum;
+  int rays = 0;
+
+  void Add(const Shaded& ray);
+  [[nodiscard]] BandLight Mean(BandLight Shaded::*part) const {
+    return (1.0F / static_cast<float>(rays)) * (sum.*part);
+  }
+};
+
 /// Values of a layer's channels in one pixel, as many as it has.
 using LayerValues = std::array<float, 3>;
 
@@ -53,7 +64,7 @@ struct LayerKind {
   std::string name;
   std::vector<std::string> channels;
   LayerValues (*of_middle)(const Hit& hit);
-  LayerValues (*of_rays)(const BandColour& colour, std::span<const Shaded> rays);
+  LayerValues (*of_rays)(const BandColour& colour, const PixelSum& rays);
 };
 
 [[nodiscard]] const LayerKind& KindOf(PictureLayer layer);

@@ -29,15 +29,21 @@ void PixelWriter::Set(const Plane& plane, int x, int y, const LayerValues& value
   }
 }
 
-void PixelWriter::Write(int x, int y, std::span<const Shaded> rays) {
-  const auto share = 1.0F / static_cast<float>(rays.size());
-  BandLight radiance(rays.front().radiance.count);
-  for (const Shaded& ray : rays) radiance = radiance + share * ray.radiance;
-  const auto rgb = colour_.LinearSrgb(InDouble(radiance));
+void PixelWriter::Write(int x, int y, const PixelSum& rays) {
+  Count(static_cast<std::uint64_t>(rays.rays));
+  const auto rgb = colour_.LinearSrgb(InDouble(rays.Mean(&Shaded::radiance)));
   image_.at(x, y) = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
                      static_cast<float>(rgb[2])};
   for (const Plane& plane : planes_) {
     if (plane.kind.of_rays != nullptr) Set(plane, x, y, plane.kind.of_rays(colour_, rays));
+  }
+}
+
+void PixelWriter::Count(std::uint64_t rays) {
+  rays_ += rays;
+  for (std::uint64_t seen = least_; rays < seen && !least_.compare_exchange_weak(seen, rays);) {
+  }
+  for (std::uint64_t seen = most_; rays > seen && !most_.compare_exchange_weak(seen, rays);) {
   }
 }
 

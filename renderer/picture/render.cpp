@@ -23,6 +23,11 @@ double SceneRenderer::Illuminance(const Shot& shot) const {
 }
 
 Image SceneRenderer::Render(const Shot& shot, const RenderSettings& settings) const {
+  return RenderCounted(shot, settings).image;
+}
+
+CountedPicture SceneRenderer::RenderCounted(const Shot& shot,
+                                            const RenderSettings& settings) const {
   ValidateSettings(settings);
   const SceneState& state = state_->For(settings.effects);
   return state.Picture(state.FrameAt(shot, settings));

@@ -7,7 +7,7 @@
 // same, apparent direction.
 //
 // Per pixel: rays against the terrain, spread as PixelFilter and PixelSamples say (a single one
-// goes through the middle), then the air along the mean of those that meet the same surface
+// goes through the middle; with RenderSettings::noise, as many as pixel_noise.h says), then the air along the mean of those that meet the same surface
 // (AerialPerspective): single scattering where terrain and planet let the sun in, light of higher
 // orders everywhere. Terrain behind the planet's own horizon is not seen.
 #pragma once
@@ -18,6 +18,7 @@
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/image.h"
 #include "renderer/effect/effect_choice.h"
+#include "renderer/picture/pixel_writer.h"
 #include "renderer/picture/render_settings.h"
 #include "renderer/scene/scene.h"
 
@@ -26,9 +27,16 @@ namespace alpenglow {
 struct SceneGround;
 struct SceneState;
 
+/// A picture, and the rays that it took.
+struct CountedPicture {
+  Image image;
+  RayCount rays;
+};
+
 /// A picture of what a scene needs.
 struct ChosenPicture {
   Image image;
+  RayCount rays;
   EffectChoice choice;
 };
 
@@ -47,6 +55,8 @@ class SceneRenderer {
   /// out of [1, 16384] and an eye that cannot be where it is, RenderingStopped when
   /// settings.stop asks for it; stops early when Interrupted().
   [[nodiscard]] Image Render(const Shot& shot, const RenderSettings& settings) const;
+  [[nodiscard]] CountedPicture RenderCounted(const Shot& shot,
+                                             const RenderSettings& settings) const;
 
   /// Render() with those of settings.effects that the picture needs (effect_choice.h). The choice
   /// is the same for any number of threads; the times in it are this run's.

@@ -17,10 +17,16 @@
 
 namespace alpenglow {
 
+/// Of a pixel, unless it begins with more.
+inline constexpr int kMostRaysForNoise = 256;
+
 struct RenderSettings {
   int width = 1280;
   int height = 720;
   int samples_per_pixel = 4;  // rays, in [1, 1024]; a power of two is spread best
+  /// Of a pixel, relative, in [1e-8, 1]: pixels take more rays as it asks (pixel_noise.h), at most
+  /// kMostRaysForNoise. Nothing: all take samples_per_pixel.
+  std::optional<double> noise = std::nullopt;
   PixelFilter::Kind filter = PixelFilter::Kind::kBlackmanHarris;
   int air_nodes = 12;  // Gauss nodes along a ray to the sky
   EffectSet effects = EffectSet::All();

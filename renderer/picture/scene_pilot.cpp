@@ -90,8 +90,8 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
          [&] { return timed(*more_bands, more_bands->FrameAt(shot, settings, frame.sunlight)); }});
   }
   EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
-  Image image = state_->For(choice.effects).Picture(with(choice.effects));
-  return {std::move(image), std::move(choice)};
+  CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));
+  return {std::move(picture.image), picture.rays, std::move(choice)};
 }
 
 }  // namespace alpenglow

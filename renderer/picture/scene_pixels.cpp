@@ -3,48 +3,43 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 
 #include "atmosphere/sun/sun_disk.h"
 #include "lut/program/program.h"
-#include "renderer/camera/pixel_samples.h"
+#include "renderer/effect/picture_change.h"
+#include "renderer/picture/pixel_light.h"
 #include "renderer/picture/pixel_writer.h"
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow {
 namespace {
 
-/// Lamps that no ray comes near.
-const LampTile& DarkTile() {
-  static const LampTile kDark;
-  return kDark;
-}
+/// A square of pixels that one thread works on, within a picture.
+struct Tile {
+  static constexpr int kSide = 64;
+  int x0, y0, x1, y1;
 
-/// A ray of a pixel and the air it looks through.
-struct PixelRay {
-  CameraRay ray;
-  Hit hit;
-  std::size_t air;
+  [[nodiscard]] bool Has(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  [[nodiscard]] std::size_t Index(int x, int y) const {
+    return static_cast<std::size_t>((y - y0) * (x1 - x0) + x - x0);
+  }
 };
 
-/// Of a ray, from the pixel's upper left corner [pixels].
-glm::dvec2 PlaceInPixel(const PixelSamples& samples, int sample, const PictureFrame& frame) {
-  if (frame.settings.samples_per_pixel == 1) return {0.5, 0.5};
-  const auto [u, v] = samples.Point(sample, SampleOf::kPixel);
-  return {0.5 + frame.filter.Offset(u), 0.5 + frame.filter.Offset(v)};
-}
-
-CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
-                const PictureFrame& frame) {
-  std::array<double, 2> lens{};
-  double time = 0.0;
-  if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
-  if (frame.moving.IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
-  return frame.moving.Ray(at.x, at.y, lens, time);
+/// Mean of the relative variances of the neighbours of a pixel; its own where it has none.
+double VarianceAround(const std::vector<double>& variances, const Tile& tile, int x, int y) {
+  double sum = 0.0;
+  int neighbours = 0;
+  for (int v = y - 1; v <= y + 1; ++v) {
+    for (int u = x - 1; u <= x + 1; ++u) {
+      if ((u == x && v == y) || !tile.Has(u, v)) continue;
+      sum += variances[tile.Index(u, v)];
+      ++neighbours;
+    }
+  }
+  return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
 }
 
 }  // namespace
@@ -98,61 +93,100 @@ Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraR
 
 Image SceneState::Pixels(const PictureFrame& frame, const std::vector<PixelPlace>& places) const {
   const int count = static_cast<int>(places.size());
+  const int rays = frame.settings.samples_per_pixel;
   PixelWriter writer(colour, count, 1, {});
   tbb::parallel_for(0, count, [&](int i) {
     const PixelPlace& at = places[static_cast<std::size_t>(i)];
-    if (!Interrupted()) writer.Write(i, 0, Pixel(frame, at.x, at.y));
+    if (Interrupted()) return;
+    PixelLight pixel(*this, frame, at.x, at.y, rays);
+    pixel.TakeUpTo(rays);
+    writer.Write(i, 0, pixel.sum());
   });
   ThrowIfInterrupted();
   return writer.Take();
 }
 
-Image SceneState::Picture(const PictureFrame& frame) const {
+CountedPicture SceneState::Picture(const PictureFrame& frame) const {
   PixelWriter writer(colour, frame.settings.width, frame.settings.height, frame.settings.layers);
   ThrowIfInterrupted();
+  if (frame.settings.noise) {
+    AddTiles(frame, writer);
+  } else {
+    AddRows(frame, writer);
+  }
+  ThrowIfInterrupted();
+  if (frame.settings.stop.stop_requested()) throw RenderingStopped();
+  return {writer.Take(), writer.rays()};
+}
+
+void SceneState::AddRows(const PictureFrame& frame, PixelWriter& writer) const {
+  const int rays = frame.settings.samples_per_pixel;
   std::atomic<int> rows{0};
   tbb::parallel_for(0, frame.settings.height, [&](int y) {
     for (int x = 0; x < frame.settings.width; ++x) {
       if (Interrupted() || frame.settings.stop.stop_requested()) return;
-      writer.Write(x, y, Pixel(frame, x, y));
-      if (!writer.AsksForMiddle()) continue;
-      writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
+      PixelLight pixel(*this, frame, x, y, rays);
+      pixel.TakeUpTo(rays);
+      Write(frame, x, y, pixel, writer);
     }
     if (frame.settings.progress != nullptr)
       frame.settings.progress->Part(static_cast<double>(++rows) / frame.settings.height);
   });
-  ThrowIfInterrupted();
-  if (frame.settings.stop.stop_requested()) throw RenderingStopped();
-  return writer.Take();
 }
 
-std::vector<Shaded> SceneState::Pixel(const PictureFrame& frame, int x, int y) const {
-  const PixelSamples samples(x, y, frame.settings.samples_per_pixel);
-  std::vector<PixelRay> rays;
-  rays.reserve(static_cast<std::size_t>(frame.settings.samples_per_pixel));
-  std::vector<SharedAir> airs;
-  for (int i = 0; i < frame.settings.samples_per_pixel; ++i) {
-    const glm::dvec2 at = glm::dvec2(x, y) + PlaceInPixel(samples, i, frame);
-    const CameraRay ray = RayOf(samples, i, at, frame);
-    const Hit hit = Trace(ray, frame);
-    rays.push_back({ray, hit, AirFor(hit, ray.through, frame, airs)});
+double SceneState::NoiseFloor(const PictureFrame& frame) const {
+  constexpr int kPixels = 400;
+  return ChangeFloor(
+      Pixels(frame, PilotGrid(frame.settings.width, frame.settings.height, kPixels)));
+}
+
+void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const {
+  const RenderSettings& settings = frame.settings;
+  const int columns = (settings.width + Tile::kSide - 1) / Tile::kSide;
+  const int tiles = columns * ((settings.height + Tile::kSide - 1) / Tile::kSide);
+  const double floor = NoiseFloor(frame);
+  std::atomic<int> done{0};
+  tbb::parallel_for(0, tiles, [&](int i) {
+    const int x0 = i % columns * Tile::kSide, y0 = i / columns * Tile::kSide;
+    AddTile(frame, floor, x0, y0, writer);
+    if (settings.progress != nullptr) settings.progress->Part(static_cast<double>(++done) / tiles);
+  });
+}
+
+// First rays of the tile and of the pixels around it, which
+// belong to others and are only asked about noise.
+void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0,
+                         PixelWriter& writer) const {
+  const RenderSettings& settings = frame.settings;
+  const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
+  const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0),
+                   std::min(x0 + Tile::kSide + 1, settings.width),
+                   std::min(y0 + Tile::kSide + 1, settings.height)};
+  std::vector<PixelLight> pixels;
+  std::vector<double> variances;
+  for (int y = asked.y0; y < asked.y1; ++y) {
+    for (int x = asked.x0; x < asked.x1; ++x) {
+      if (Interrupted() || settings.stop.stop_requested()) return;
+      pixels.emplace_back(*this, frame, x, y, most).TakeUpTo(first);
+      variances.push_back(pixels.back().spread().RelativeVariance(floor));
+    }
   }
-  // The filter is symmetric: the mean of all its rays is known better than the mean of some.
-  if (airs.size() == 1 && !frame.moving.IsMoving()) {
-    airs.front().direction_sum = frame.camera().Direction(x + 0.5, y + 0.5);
+  for (int y = y0; y < std::min(y0 + Tile::kSide, settings.height); ++y) {
+    for (int x = x0; x < std::min(x0 + Tile::kSide, settings.width); ++x) {
+      if (Interrupted() || settings.stop.stop_requested()) return;
+      PixelLight& pixel = pixels[asked.Index(x, y)];
+      pixel.TakeUpTo(
+          RaysForNoise(VarianceAround(variances, asked, x, y), *settings.noise, first, most));
+      Write(frame, x, y, pixel, writer);
+    }
   }
-  const LampTile& near = frame.plan->tiles.empty() ? DarkTile() : frame.plan->At(x, y);
-  for (SharedAir& shared : airs) {
-    AddAir(frame, geometry, medium, shared);
-    AddLamps(frame, x, y, shared);
-  }
-  std::vector<Shaded> shaded;
-  shaded.reserve(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    shaded.push_back(Shade(rays[i].hit, airs[rays[i].air], rays[i].ray, frame, near,
-                           samples.Point(static_cast<int>(i), SampleOf::kSunDisk)));
-  }
-  return shaded;
+}
+
+void SceneState::Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
+                       PixelWriter& writer) const {
+  writer.Write(x, y, pixel.sum());
+  if (!writer.AsksForMiddle()) return;
+  writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
 }
 
 }  // namespace alpenglow

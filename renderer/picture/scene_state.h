@@ -17,6 +17,9 @@
 #include "renderer/picture/air_model.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/picture/picture_layers.h"
+#include "renderer/picture/pixel_light.h"
+#include "renderer/picture/pixel_writer.h"
+#include "renderer/picture/render.h"
 #include "renderer/picture/render_settings.h"
 #include "renderer/picture/shared_air.h"
 
@@ -51,8 +54,16 @@ struct SceneState {
   [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
   [[nodiscard]] Image Pixels(const PictureFrame& frame,
                              const std::vector<PixelPlace>& places) const;
-  [[nodiscard]] Image Picture(const PictureFrame& frame) const;
-  [[nodiscard]] std::vector<Shaded> Pixel(const PictureFrame& frame, int x, int y) const;
+  [[nodiscard]] CountedPicture Picture(const PictureFrame& frame) const;
+  /// Rows of a picture whose pixels take equally many rays.
+  void AddRows(const PictureFrame& frame, PixelWriter& writer) const;
+  /// Tiles of one whose pixels take what their noise asks for.
+  void AddTiles(const PictureFrame& frame, PixelWriter& writer) const;
+  void AddTile(const PictureFrame& frame, double floor, int x0, int y0, PixelWriter& writer) const;
+  void Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
+             PixelWriter& writer) const;
+  /// Of what is darker, noise counts as if it were so bright (picture_change.h) [cd/m^2].
+  [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
   [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
     return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
         .Trace(ray.origin, ray.direction, frame.camera().PixelAngle());

@@ -134,6 +134,7 @@ Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
   Metadata metadata = SceneMetadata(scene);
   metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
   metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
+  if (settings.noise) metadata["alpenglow.noise"] = fmt::format("{}", *settings.noise);
   metadata["alpenglow.filter"] = NameOf(settings.filter);
   metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
   metadata["alpenglow.effects"] = NameOf(settings.effects);
@@ -141,6 +142,13 @@ Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
   for (const PictureLayer layer : settings.layers) layers.push_back(NameOf(layer));
   metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
   return metadata;
+}
+
+Metadata NotesOn(const RayCount& rays, const RenderSettings& settings) {
+  const double pixels = static_cast<double>(settings.width) * settings.height;
+  return {{"alpenglow.note.rays",
+           fmt::format("{:.3f} a pixel, {} to {}", static_cast<double>(rays.rays) / pixels,
+                       rays.least, rays.most)}};
 }
 
 std::string Fingerprint(const Metadata& metadata) {

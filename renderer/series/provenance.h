@@ -24,6 +24,9 @@ namespace alpenglow {
 /// SceneMetadata, and the settings that the pixels depend on.
 [[nodiscard]] Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings);
 
+/// What a file says of the rays that its picture took.
+[[nodiscard]] Metadata NotesOn(const RayCount& rays, const RenderSettings& settings);
+
 /// 16 hexadecimal digits, FNV-1a over names and values: equal for equal metadata.
 [[nodiscard]] std::string Fingerprint(const Metadata& metadata);
 

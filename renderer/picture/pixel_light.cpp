@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/picture/pixel_light.h"
+
+#include <array>
+#include <glm/vec2.hpp>
+
+#include "renderer/picture/scene_state.h"
+
+namespace alpenglow {
+namespace {
+
+/// Lamps that no ray comes near.
+const LampTile& DarkTile() {
+  static const LampTile kDark;
+  return kDark;
+}
+
+CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
+                const PictureFrame& frame) {
+  std::array<double, 2> lens{};
+  double time = 0.0;
+  if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
+  if (frame.moving.IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
+  return frame.moving.Ray(at.x, at.y, lens, time);
+}
+
+}  // namespace
+
+PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y,
+                       int most_rays)
+    : scene_(&scene),
+      frame_(&frame),
+      x_(x),
+      y_(y),
+      through_middle_(most_rays == 1),
+      samples_(x, y, most_rays) {}
+
+PixelLight::Ray PixelLight::Traced(int sample) {
+  glm::dvec2 at(x_ + 0.5, y_ + 0.5);
+  if (!through_middle_) {
+    const auto [u, v] = samples_.Point(sample, SampleOf::kPixel);
+    at += glm::dvec2(frame_->filter.Offset(u), frame_->filter.Offset(v));
+  }
+  const CameraRay ray = RayOf(samples_, sample, at, *frame_);
+  const Hit hit = scene_->Trace(ray, *frame_);
+  return {ray, hit, AirFor(hit, ray.through, *frame_, airs_)};
+}
+
+void PixelLight::AddNewAir(std::size_t known) {
+  // The filter is symmetric: the mean of all its rays is known better than the mean of some.
+  if (airs_.size() == 1 && known == 0 && !frame_->moving.IsMoving()) {
+    airs_.front().direction_sum = frame_->camera().Direction(x_ + 0.5, y_ + 0.5);
+  }
+  for (std::size_t i = known; i < airs_.size(); ++i) {
+    AddAir(*frame_, scene_->geometry, scene_->medium, airs_[i]);
+    AddLamps(*frame_, x_, y_, airs_[i]);
+  }
+}
+
+void PixelLight::TakeUpTo(int rays) {
+  const std::size_t known = airs_.size();
+  std::vector<Ray> more;
+  for (int sample = sum_.rays; sample < rays; ++sample) more.push_back(Traced(sample));
+  AddNewAir(known);
+  const LampTile& near = frame_->plan->tiles.empty() ? DarkTile() : frame_->plan->At(x_, y_);
+  for (const Ray& seen : more) {
+    const Shaded shaded = scene_->Shade(seen.hit, airs_[seen.air], seen.ray, *frame_, near,
+                                        samples_.Point(sum_.rays, SampleOf::kSunDisk));
+    spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
+    sum_.Add(shaded);
+  }
+}
+
+}  // namespace alpenglow

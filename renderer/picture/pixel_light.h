@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The light of one pixel: its rays, what they meet, and the air they look through.
+#pragma once
+
+#include <vector>
+
+#include "renderer/camera/pixel_samples.h"
+#include "renderer/picture/picture_layers.h"
+#include "renderer/picture/pixel_noise.h"
+#include "renderer/picture/shared_air.h"
+
+namespace alpenglow {
+
+struct SceneState;
+
+/// Takes rays until it has as many as it is asked for; all count alike. Refers to scene and frame.
+class PixelLight {
+ public:
+  /// @param most_rays  that it will ever be asked for. A pixel of a single one looks through its
+  ///     middle.
+  PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y, int most_rays);
+
+  /// More rays until there are so many. Air that earlier rays look through is not asked for again.
+  void TakeUpTo(int rays);
+
+  [[nodiscard]] const PixelSum& sum() const { return sum_; }
+  [[nodiscard]] const RaySpread& spread() const { return spread_; }
+
+ private:
+  struct Ray {
+    CameraRay ray;
+    Hit hit;
+    std::size_t air;  // of airs_
+  };
+  [[nodiscard]] Ray Traced(int sample);
+  void AddNewAir(std::size_t known);
+
+  const SceneState* scene_;
+  const PictureFrame* frame_;
+  int x_, y_;
+  bool through_middle_;
+  PixelSamples samples_;
+  std::vector<SharedAir> airs_;
+  PixelSum sum_;
+  RaySpread spread_;
+};
+
+}  // namespace alpenglow

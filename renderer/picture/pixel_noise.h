@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// How many rays a pixel takes so that its noise is what was asked for.
+//
+// Every pixel takes a few rays first. What they say of noise decides how many follow, once:
+//
+//   s^2 = sum |c_i - m|^2 / (n - 1) / max(|m|, floor)^2     of the first n rays of a pixel, c in
+//                                                           linear R, G and B, m their mean
+//   e   = S n^-p,  S^2 the mean of s^2 of the neighbours    of a pixel that takes n rays
+//
+// p is 1/2 for rays by chance; stratified ones do better, 3/4 at an edge of terrain. The exponent
+// here is what pictures of terrain show from 4 to 64 rays.
+//
+// A pixel does not ask its own rays but its eight neighbours'. Whoever stops where the own rays
+// happen to agree keeps those that have missed what is thin: the mean comes out biased (Kirk and
+// Arvo 1991, "Unbiased sampling techniques for image synthesis", SIGGRAPH). With the number known
+// before, the mean of any number of scrambled points is that of the pixel; and as the filter
+// reaches over the neighbours, so do their rays over the pixel. All rays count.
+#pragma once
+
+#include <array>
+
+namespace alpenglow {
+
+/// Mean and variance of the colours of a pixel's rays.
+class RaySpread {
+ public:
+  /// @param rgb  linear [cd/m^2].
+  void Add(const std::array<double, 3>& rgb);
+
+  /// s^2 as above [1]; 0 of fewer than two rays and where there is no light.
+  [[nodiscard]] double RelativeVariance(double floor_cd_per_m2) const;
+
+ private:
+  int rays_ = 0;
+  std::array<double, 3> mean_{};
+  double squares_ = 0.0;  // of distances from the mean
+};
+
+/// Rays that bring the error of a pixel to `noise`: a power of two times `first`, as such are
+/// spread best, in [first, most].
+/// @param relative_variance  S^2. @param noise  e, > 0. @param most  at least first.
+[[nodiscard]] int RaysForNoise(double relative_variance, double noise, int first, int most);
+
+}  // namespace alpenglow
