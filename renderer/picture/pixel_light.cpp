@@ -27,12 +27,13 @@ CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
 }  // namespace
 
 PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y,
-                       int most_rays)
+                       int most_rays, AirLattice* around)
     : scene_(&scene),
       frame_(&frame),
       x_(x),
       y_(y),
       through_middle_(most_rays == 1),
+      around_(around),
       samples_(x, y, most_rays) {}
 
 PixelLight::Ray PixelLight::Traced(int sample) {
@@ -52,7 +53,13 @@ void PixelLight::AddNewAir(std::size_t known) {
     airs_.front().direction_sum = frame_->camera().Direction(x_ + 0.5, y_ + 0.5);
   }
   for (std::size_t i = known; i < airs_.size(); ++i) {
-    AddAir(*frame_, scene_->geometry, scene_->medium, airs_[i]);
+    const auto shared = around_ != nullptr ? around_->Before(airs_[i]) : std::nullopt;
+    if (shared) {
+      airs_[i].air = *shared;
+      airs_[i].media = BandLight(shared->inscatter.count);
+    } else {
+      AddAir(*frame_, scene_->geometry, scene_->medium, airs_[i]);
+    }
     AddLamps(*frame_, x_, y_, airs_[i]);
   }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/camera/pixel_samples.h"
+#include "renderer/picture/air_lattice.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_noise.h"
 #include "renderer/picture/shared_air.h"
@@ -13,12 +14,14 @@ namespace alpenglow {
 
 struct SceneState;
 
-/// Takes rays until it has as many as it is asked for; all count alike. Refers to scene and frame.
+/// Takes rays until it has as many as it is asked for; all count alike. Refers to scene, frame and lattice.
 class PixelLight {
  public:
   /// @param most_rays  that it will ever be asked for. A pixel of a single one looks through its
   ///     middle.
-  PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y, int most_rays);
+  /// @param around  air that is shared with other pixels; null: none is.
+  PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y, int most_rays,
+             AirLattice* around = nullptr);
 
   /// More rays until there are so many. Air that earlier rays look through is not asked for again.
   void TakeUpTo(int rays);
@@ -39,6 +42,7 @@ class PixelLight {
   const PictureFrame* frame_;
   int x_, y_;
   bool through_middle_;
+  AirLattice* around_;
   PixelSamples samples_;
   std::vector<SharedAir> airs_;
   PixelSum sum_;

@@ -162,12 +162,15 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
   const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0),
                    std::min(x0 + Tile::kSide + 1, settings.width),
                    std::min(y0 + Tile::kSide + 1, settings.height)};
+  AirLattice air(*this, frame, x0, y0, std::min(x0 + Tile::kSide, settings.width),
+                 std::min(y0 + Tile::kSide, settings.height));
   std::vector<PixelLight> pixels;
   std::vector<double> variances;
   for (int y = asked.y0; y < asked.y1; ++y) {
     for (int x = asked.x0; x < asked.x1; ++x) {
       if (Interrupted() || settings.stop.stop_requested()) return;
-      pixels.emplace_back(*this, frame, x, y, most).TakeUpTo(first);
+      pixels.emplace_back(*this, frame, x, y, most, settings.share_air ? &air : nullptr)
+          .TakeUpTo(first);
       variances.push_back(pixels.back().spread().RelativeVariance(floor));
     }
   }
