@@ -30,4 +30,22 @@ double DiskSolidAngle(double radius_rad) {
 
 double LimbDarkening(double rho) { return shared::SunLimbDarkening(rho); }
 
+double LimbDarkening(double rho, double wavelength_nm) {
+  return shared::SunLimbDarkeningAt(rho, wavelength_nm / 1000.0);
+}
+
+// With u = 0.6 the light outside of the circle is mu^2 (1 + mu) / 2 of all: a cubic, by Newton from
+// above, where it is convex. Where mu is small it halves with each step, but then the root is lost
+// in 1 - mu^2.
+double CircleOfLight(double share) {
+  const double twice = 2.0 * std::clamp(1.0 - share, 0.0, 1.0);
+  double mu = 1.0;
+  for (int i = 0; i < 12; ++i) {
+    const double above = mu * mu * (1.0 + mu) - twice;
+    if (above <= 1e-12) break;
+    mu -= above / (mu * (2.0 + 3.0 * mu));
+  }
+  return std::sqrt(std::max(1.0 - mu * mu, 0.0));
+}
+
 }  // namespace alpenglow

@@ -24,4 +24,13 @@ struct VisibleDisk {
 /// visible. Cox (2000), Allen's Astrophysical Quantities, 14.7.
 [[nodiscard]] double LimbDarkening(double rho);
 
+/// The same in one wavelength [nm]: Neckel (2005), Solar Physics 229, 13. Within 0.011 of the
+/// centre's brightness of what Neckel and Labs (1994) measured from 390 to 1050 nm, rho up to 0.995.
+/// Beyond [300, 1100] nm as at the ends.
+[[nodiscard]] double LimbDarkening(double rho, double wavelength_nm);
+
+/// The circle within which lies a share of the disk's light, by LimbDarkening(rho): its radius.
+/// @param share  in [0, 1].
+[[nodiscard]] double CircleOfLight(double share);
+
 }  // namespace alpenglow

@@ -7,14 +7,15 @@
 #include <limits>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun_disk.h"
 
 namespace alpenglow {
 namespace {
 
-/// A direction to the sun's disk, uniform in its area.
+/// A direction to the sun's disk, as its light is distributed over it.
 glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
   const glm::dvec3 side = glm::normalize(glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
-  const double rho = light.sun_radius_rad * std::sqrt(sample[0]);
+  const double rho = light.sun_radius_rad * CircleOfLight(sample[0]);
   const double angle = 2.0 * kPi * sample[1];
   return glm::normalize(light.to_sun + rho * (std::cos(angle) * side +
                                               std::sin(angle) * glm::cross(light.to_sun, side)));

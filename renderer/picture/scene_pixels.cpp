@@ -50,8 +50,12 @@ BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& th
   const double chord = glm::length(direction - light.to_sun);
   const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
   if (rho >= 1.0) return BandLight(light.irradiance.count);
-  const auto scale = static_cast<float>(LimbDarkening(rho) / DiskSolidAngle(light.sun_radius_rad));
-  return scale * (light.irradiance * through.transmittance);
+  BandLight disk = (1.0F / static_cast<float>(DiskSolidAngle(light.sun_radius_rad))) *
+                   (light.irradiance * through.transmittance);
+  for (std::size_t band = 0; band < disk.count; ++band) {
+    disk[band] *= static_cast<float>(LimbDarkening(rho, medium.wavelengths_nm[band]));
+  }
+  return disk;
 }
 
 BandLight SceneState::Moonlight(const glm::dvec3& direction, const AirAlongRay& through,
@@ -166,6 +170,7 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
                  std::min(y0 + Tile::kSide, settings.height));
   std::vector<PixelLight> pixels;
   std::vector<double> variances;
+  pixels.reserve(static_cast<std::size_t>((asked.x1 - asked.x0) * (asked.y1 - asked.y0)));
   for (int y = asked.y0; y < asked.y1; ++y) {
     for (int x = asked.x0; x < asked.x1; ++x) {
       if (Interrupted() || settings.stop.stop_requested()) return;
