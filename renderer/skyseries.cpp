@@ -112,8 +112,7 @@ int Run(const SkyseriesOptions& options) {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
-  settings.samples_per_pixel = options.samples;
-  if (options.noise) settings.noise = RelativeErrorFromText(*options.noise);
+  SetRays(options, settings);
   settings.effects = EffectsOf(options);
   settings.filter = PixelFilterFromName(options.filter);
   settings.layers = LayersFromNames(options.layers);

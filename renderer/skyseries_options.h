@@ -40,7 +40,7 @@ struct SkyseriesOptions {
   std::optional<std::string> date, zone, frames, contact_sheet;
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx",
                    filter = "blackman-harris";
-  int samples = 4;
+  std::optional<int> samples;
   std::optional<std::string> path;
   double frames_per_second = 25.0, shutter = 0.0;
   std::vector<std::string> layers;
@@ -126,14 +126,15 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
       ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();
-  app.add_option("--samples", options.samples,
-                 "Rays per pixel, 1 to 1024; powers of two are spread best, 1 is not smoothed")
-      ->check(CLI::Range(1, PixelSamples::kMostSamples))
-      ->capture_default_str();
+  app.add_option(
+         "--samples", options.samples,
+         "Rays per pixel, 1 to 1024; powers of two are spread best, 1 is not smoothed. With "
+         "--noise the first rays, 2 at least (default: 4, and --noise)")
+      ->check(CLI::Range(1, PixelSamples::kMostSamples));
   app.add_option("--noise", options.noise,
-                 "More rays, up to 256, where a pixel's noise is more than this part of its "
-                 "brightness, 1e-8 to 1 or in percent: 2% takes about half as long again as 4 rays "
-                 "everywhere. --samples are the first, 2 at least (default: equally many rays)")
+                 "More rays, up to 256, where the noise of a pixel is more than this part of its "
+                 "brightness, 1e-8 to 1 or in percent (default: 2%; with --samples alone all "
+                 "pixels have equally many)")
       ->check(FaultOfRelativeError);
   app.add_option("--filter", options.filter,
                  "How rays are spread about a pixel: box is sharpest and has the most stair steps, "
@@ -186,9 +187,18 @@ inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
                "Leave the air in the sun where terrain shades it, for comparison")
       ->excludes(effects);
   app.callback([&options] {
+    if (options.noise && options.samples == 1)
+      throw CLI::ValidationError("--noise", "needs --samples of 2 at least");
     if (options.max_error && options.effects.value_or("auto") != "auto")
       throw CLI::ValidationError("--max-error", "goes with --effects auto");
   });
+}
+
+/// How many rays the pixels of a picture take.
+inline void SetRays(const SkyseriesOptions& options, RenderSettings& settings) {
+  if (options.samples) settings.samples_per_pixel = *options.samples;
+  if (options.noise || !options.samples)
+    settings.noise = RelativeErrorFromText(options.noise.value_or("2%"));
 }
 
 /// Whether each picture is to have only what it needs.

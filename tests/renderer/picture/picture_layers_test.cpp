@@ -17,7 +17,7 @@ namespace alpenglow {
 namespace {
 
 TEST(PictureLayers, EveryLayerHasItsNameChannelsAndOneWayToItsValues) {
-  ASSERT_EQ(LayerNames().size(), 9U);
+  ASSERT_EQ(LayerNames().size(), 10U);
   for (const std::string& name : LayerNames()) {
     const PictureLayer layer = LayerFromName(name);
     const LayerKind& kind = KindOf(layer);
@@ -38,14 +38,16 @@ TEST(PictureLayers, FactorsOfTheReddestLightAreNotNegative) {
   ray.radiance = ray.transmittance = ray.albedo = BandLight(colour.wavelengths_nm().size());
   ray.transmittance[ray.transmittance.count - 1] = 0.9F;  // as if through a red filter
   ray.albedo[1] = 0.9F;                                   // or a green one
+  PixelSum pixel;
+  pixel.Add(ray);
   for (const PictureLayer layer : {PictureLayer::kTransmittance, PictureLayer::kAlbedo}) {
-    const LayerValues factor = KindOf(layer).of_rays(colour, {&ray, 1});
+    const LayerValues factor = KindOf(layer).of_rays(colour, pixel);
     for (const float value : factor) {
       EXPECT_GE(value, 0.0F) << NameOf(layer);
       EXPECT_LE(value, 1.0F) << NameOf(layer);
     }
   }
-  EXPECT_GT(KindOf(PictureLayer::kTransmittance).of_rays(colour, {&ray, 1})[0], 0.3F)
+  EXPECT_GT(KindOf(PictureLayer::kTransmittance).of_rays(colour, pixel)[0], 0.3F)
       << "red stays what it is";
 }
 

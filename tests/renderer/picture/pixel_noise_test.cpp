@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/picture/pixel_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/effect/picture_change.h"
+#include "renderer/picture/render.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/effect_scenes.h"
+#include "tests/fixtures/luminance.h"
+#include "tests/fixtures/temporary_folder.h"
+#include "tests/fixtures/thread_counts.h"
+
+namespace alpenglow {
+namespace {
+
+TEST(RaySpread, IsTheVarianceOfColoursRelativeToTheirMean) {
+  RaySpread spread;
+  EXPECT_EQ(spread.RelativeVariance(0.0), 0.0) << "of nothing";
+  spread.Add({3.0, 0.0, 4.0});
+  EXPECT_EQ(spread.RelativeVariance(0.0), 0.0) << "of one ray";
+  spread.Add({3.0, 0.0, 4.0});
+  spread.Add({6.0, 0.0, 8.0});
+  // Lengths 5, 5, 10, all in one direction: mean 20 / 3, variance 25 / 3.
+  EXPECT_NEAR(spread.RelativeVariance(0.0), 25.0 / 3.0 / (400.0 / 9.0), 1e-12);
+  EXPECT_NEAR(spread.RelativeVariance(20.0), 25.0 / 3.0 / 400.0, 1e-12) << "darker than the floor";
+  RaySpread dark;
+  for (int i = 0; i < 4; ++i) dark.Add({0.0, 0.0, 0.0});
+  EXPECT_EQ(dark.RelativeVariance(0.0), 0.0);
+}
+
+TEST(RaysForNoise, GrowInPowersOfTwoUntilTheNoiseIsWhatIsAskedFor) {
+  EXPECT_EQ(RaysForNoise(0.0, 0.01, 4, 256), 4);
+  EXPECT_EQ(RaysForNoise(1e9, 0.01, 4, 256), 256);
+  EXPECT_EQ(RaysForNoise(1e9, 0.01, 3, 256), 192) << "not more than the most";
+  EXPECT_EQ(RaysForNoise(1e9, 0.01, 512, 512), 512);
+  for (const double variance : {1e-4, 1e-3, 1e-2, 1e-1}) {
+    const int rays = RaysForNoise(variance, 0.02, 4, 1024);
+    EXPECT_LE(std::sqrt(variance) * std::pow(rays, -0.7), 0.02) << variance;
+    if (rays == 4) continue;
+    EXPECT_GT(std::sqrt(variance) * std::pow(0.5 * rays, -0.7), 0.02) << variance;
+  }
+}
+
+class NoisyPicture : public TemporaryFolder {
+ protected:
+  /// Ridges before an evening sky, seen along shade and light.
+  const SceneRenderer& Ridges() {
+    static const SceneRenderer kRenderer([&] {
+      const std::string file = (folder_ / "ridges.tif").string();
+      WriteRidges(file);
+      return RidgeScene(file, {400.0, true}, 300.0, 0.0, 40.0);
+    }());
+    return kRenderer;
+  }
+
+  static RenderSettings Small(int rays) {
+    return {.width = 48, .height = 27, .samples_per_pixel = rays, .air_nodes = 8, .layers = {}};
+  }
+  static RenderSettings Held(double noise) {
+    RenderSettings settings = Small(4);
+    settings.noise = noise;
+    return settings;
+  }
+};
+
+const UtcInstant kEvening = ParseInstant("2026-06-21T17:40:00Z");
+
+TEST_F(NoisyPicture, IsNoNoisierThanAskedForWhereFourRaysAreAndTakesFewerThanSixteen) {
+  const Image truth = Ridges().Render(kEvening, Small(256));
+  const double four = ChangeOf(truth, Ridges().Render(kEvening, Small(4))).rms;
+  const CountedPicture held = Ridges().RenderCounted(kEvening, Held(0.02));
+  EXPECT_GT(four, 0.02);
+  EXPECT_LT(ChangeOf(truth, held.image).rms, 0.02);
+  EXPECT_LT(ChangeOf(truth, held.image).rms, four / 3.0);
+  EXPECT_LT(held.rays.rays, 16U * 48U * 27U);
+}
+
+TEST_F(NoisyPicture, SaysHowManyRaysItTook) {
+  RenderSettings settings = Held(0.02);
+  settings.layers = {PictureLayer::kRays};
+  const CountedPicture held = Ridges().RenderCounted(kEvening, settings);
+  const std::vector<float>& rays = held.image.layers.front().values;
+  double sum = 0.0;
+  for (const float count : rays) sum += static_cast<double>(count);
+  EXPECT_EQ(static_cast<double>(held.rays.rays), sum);
+  EXPECT_EQ(held.rays.least, 4U);
+  EXPECT_EQ(static_cast<float>(held.rays.most), *std::max_element(rays.begin(), rays.end()));
+  EXPECT_EQ(rays.front(), 4.0F) << "a clear sky";
+  const RayCount even = Ridges().RenderCounted(kEvening, Small(3)).rays;
+  EXPECT_EQ(even.rays, 3U * 48U * 27U);
+  EXPECT_EQ(even.least, even.most);
+}
+
+TEST_F(NoisyPicture, IsTheSameBytesForAnyNumberOfThreads) {
+  RenderSettings settings = Held(0.05);
+  settings.width = 80;  // more than one tile
+  static_cast<void>(
+      tests::SameForAnyNumberOfThreads([&] { return Ridges().Render(kEvening, settings); }));
+}
+
+TEST_F(NoisyPicture, IsNeitherBrighterNorDarkerThanOneOfManyRays) {
+  const Image truth = Ridges().Render(kEvening, Small(256));
+  const Image held = Ridges().Render(kEvening, Held(0.05));
+  double difference = 0.0, light = 0.0;
+  for (std::size_t i = 0; i < truth.rgb.size(); ++i) {
+    difference += tests::Luminance(held.rgb[i]) - tests::Luminance(truth.rgb[i]);
+    light += tests::Luminance(truth.rgb[i]);
+  }
+  EXPECT_LT(std::abs(difference / light), 1e-3) << "5 % in a tenth of 1300 pixels: 5e-4 by chance";
+}
+
+TEST_F(NoisyPicture, SharesAirThatIsThatOfEachPixel) {
+  RenderSettings settings = Held(0.05);
+  settings.layers = {PictureLayer::kInscatter};
+  const Image shared = Ridges().Render(kEvening, settings);
+  settings.share_air = false;
+  const Image alone = Ridges().Render(kEvening, settings);
+  double square = 0.0, mean = 0.0;
+  for (std::size_t i = 0; i < alone.rgb.size(); ++i) {
+    const double truth = static_cast<double>(alone.layers[1].values[i]);
+    square += std::pow(static_cast<double>(shared.layers[1].values[i]) - truth, 2);
+    mean += truth;
+  }
+  const auto pixels = static_cast<double>(alone.rgb.size());
+  EXPECT_GT(square, 0.0) << "some cells are smooth";
+  EXPECT_LT(std::sqrt(square / pixels) / (mean / pixels), 1e-3)
+      << "cells are held to 2e-3 in their middle, where they are wrong most";
+}
+
+TEST_F(NoisyPicture, HasASunCutOutOfTheSkyByTheShareOfEachPixelThatItCovers) {
+  Scene scene = BareScene(1000.0, 0.0, 0.0, 3.0);
+  const SunPosition sun = SceneRenderer(scene).ApparentSun(kEvening);
+  scene.camera = CameraFromDegrees({1000.0, false}, sun.azimuth_rad / kRadiansPerDegree + 0.1,
+                                   sun.elevation_rad / kRadiansPerDegree, 0.0, 3.0);
+  const SceneRenderer renderer(scene);
+  const Image truth = renderer.Render(kEvening, Small(1024));
+  double brightest = 0.0;
+  for (const auto& pixel : truth.rgb) brightest = std::max(brightest, tests::Luminance(pixel));
+  EXPECT_GT(brightest, 1e6) << "it is there";
+  const auto worst = [&](const Image& image) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+      most =
+          std::max(most, std::abs(tests::Luminance(image.rgb[i]) - tests::Luminance(truth.rgb[i])));
+    }
+    return most / brightest;
+  };
+  EXPECT_GT(worst(renderer.Render(kEvening, Small(4))), 0.1) << "in steps of a quarter";
+  EXPECT_LT(worst(renderer.Render(kEvening, Held(0.02))), 0.015) << "256 rays across the limb";
+}
+
+TEST_F(NoisyPicture, RefusesNoiseOfNothingAndASingleFirstRay) {
+  EXPECT_THROW((void)Ridges().Render(kEvening, Held(0.0)), InputError);
+  RenderSettings settings = Held(0.01);
+  settings.samples_per_pixel = 1;
+  EXPECT_THROW((void)Ridges().Render(kEvening, settings), InputError)
+      << "one ray says nothing of noise";
+}
+
+}  // namespace
+}  // namespace alpenglow
