@@ -11,17 +11,21 @@
 namespace alpenglow {
 namespace {
 
-constexpr float kSameLight = 2e-3F;  // of S, and of transmittance
-constexpr double kSameReach = 0.01;  // |r - 1| (1 - T)
+constexpr float kSameLight = 2e-3F;  // of all that is seen there, and of transmittance
+constexpr double kSameReach = 4e-3;  // |r - 1| (1 - T)
 
-/// What air scatters, before it hides itself: I / (1 - T).
-float Source(const AirAlongRay& air, std::size_t band) {
-  return air.inscatter[band] / std::max(1.0F - air.transmittance[band], 1e-6F);
+/// What one sees at least through the air: itself, and of ground a part of what air without an end
+/// would send.
+float SeenThrough(const AirAlongRay& air, HitKind kind, std::size_t band) {
+  const float light = air.inscatter[band];
+  if (kind == HitKind::kSky) return light;
+  return std::min(light / std::max(1.0F - air.transmittance[band], 1e-6F), 4.0F * light);
 }
 
-bool Agree(const AirAlongRay& a, const AirAlongRay& b) {
+bool Agree(const AirAlongRay& a, const AirAlongRay& b, HitKind kind) {
   for (std::size_t band = 0; band < a.inscatter.count; ++band) {
-    if (!(std::abs(a.inscatter[band] - b.inscatter[band]) <= kSameLight * Source(a, band)) ||
+    if (!(std::abs(a.inscatter[band] - b.inscatter[band]) <=
+          kSameLight * SeenThrough(a, kind, band)) ||
         !(std::abs(a.transmittance[band] - b.transmittance[band]) <= kSameLight)) {
       return false;
     }
@@ -100,7 +104,7 @@ bool AirLattice::IsShared(int column, int row) {
   const Corner middle = Computed(x, y);
   if (middle.kind != kind) return false;
   const auto told = Between(column, row, x, y, kind, middle.distance_m);
-  if (told && Agree(middle.air, *told)) cell = Cell::kShared;
+  if (told && Agree(middle.air, *told, kind)) cell = Cell::kShared;
   return cell == Cell::kShared;
 }
 

@@ -10,10 +10,11 @@
 // A cell is shared when all its corners and its middle see the sky, or all see terrain, and what is
 // computed for its middle agrees with the corners in every band:
 //
-//   |dI| <= 2e-3 S,   |dT| <= 2e-3,      S = I / (1 - T), the brightness of air without an end;
+//   |dI| <= 2e-3 I before the sky, 2e-3 min(I / (1 - T), 4 I) before ground,      |dT| <= 2e-3,
 //
-// and ground in it where |r - 1| (1 - T) <= 0.01, so that what the last stretch of air has more or
-// less than the rest of it is less than 1e-2 S. Everything else is computed for each pixel, as
+// where I / (1 - T) is the brightness of air without an end; and ground in it where
+// |r - 1| (1 - T) <= 4e-3, so that what the last stretch of air has more or less than the rest of
+// it is less than 4e-3 of that. Everything else is computed for each pixel, as
 // everything is in a picture of equally many rays, and in fog and volumes.
 #pragma once
 
