@@ -76,7 +76,7 @@ TEST_F(NoisyPicture, IsNoNoisierThanAskedForAndThanOneOfEqualRaysThatTakesMore) 
   const Image truth = Ridges().Render(kEvening, Small(256));
   const CountedPicture held = Ridges().RenderCounted(kEvening, Held(0.03));
   const double noise = ChangeOf(truth, held.image).rms;
-  const CountedPicture even = Ridges().RenderCounted(kEvening, Small(16));
+  const CountedPicture even = Ridges().RenderCounted(kEvening, Small(32));
   EXPECT_LT(noise, 0.03);
   EXPECT_LT(noise, ChangeOf(truth, even.image).rms);
   EXPECT_LT(held.rays.rays, even.rays.rays);
