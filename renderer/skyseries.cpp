@@ -103,6 +103,7 @@ int Run(const SkyseriesOptions& options) {
   output.exposure = ExposureRuleFromText(options.exposure);
   output.look = LookFromName(options.tone_curve);
   output.look.night_vision = options.night_vision;
+  output.glare = options.glare == "eye";
   output.resume = options.resume;
   output.inputs = InputsOf(options, scene);
   if (options.contact_sheet) output.contact_sheet = *options.contact_sheet;
@@ -137,7 +138,8 @@ int Run(const SkyseriesOptions& options) {
       scene.place,
       scene.zone,
       path,
-      scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera};
+      scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera,
+      scene.camera.fov_rad};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     if (summary.removed > 0) {

@@ -39,7 +39,7 @@ struct SkyseriesOptions {
   TimesText times;
   std::optional<std::string> date, zone, frames, contact_sheet;
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx",
-                   filter = "blackman-harris";
+                   filter = "blackman-harris", glare = "none";
   std::optional<int> samples;
   std::optional<std::string> path;
   double frames_per_second = 25.0, shutter = 0.0;
@@ -157,6 +157,11 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_flag("--night-vision", options.night_vision,
                "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
                "grows brighter");
+  app.add_option("--glare", options.glare,
+                 "eye: PNG with the light that the eye scatters around sun and lamps; not in the "
+                 "EXR, not of panoramas")
+      ->check(CLI::IsMember({"none", "eye"}))
+      ->capture_default_str();
   app.add_flag("--resume", options.resume,
                "Keep intact frames that were made with these settings; remove unfinished files of "
                "runs that were killed on this machine");

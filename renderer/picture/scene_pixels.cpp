@@ -19,7 +19,7 @@ namespace {
 
 /// A square of pixels that one thread works on, within a picture.
 struct Tile {
-  static constexpr int kSide = 64;
+  static constexpr int kSide = 48;
   int x0, y0, x1, y1;
 
   [[nodiscard]] bool Has(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }

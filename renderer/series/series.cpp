@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <system_error>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
+#include "lut/picture/glare.h"
 #include "lut/picture/picture_text.h"
 #include "lut/program/program.h"
 #include "renderer/picture/render.h"
@@ -99,6 +101,7 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
   metadata[kEv100] = fmt::format("{:.4f}", ev100);
   metadata["alpenglow.exposure"] = NameOf(output.exposure.kind);
   metadata["alpenglow.tone_curve"] = NameOf(output.look);
+  if (output.glare) metadata["alpenglow.glare"] = "eye, in the developed picture only";
   if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
   return metadata;
@@ -119,7 +122,7 @@ class Series {
     if (rendered) picture = source_.render(frame, progress);
     const double ev100 = Ev100Of(frame, picture->image);
     Write(frame, *picture, ev100, rendered);
-    if (output_.contact_sheet) AddThumbnail(frame, picture->image, ev100);
+    if (output_.contact_sheet) AddThumbnail(frame, AsLookedAt(frame, picture->image), ev100);
     return rendered;
   }
 
@@ -153,6 +156,11 @@ class Series {
                       source_.ProjectionOf(frame));
   }
 
+  [[nodiscard]] Image AsLookedAt(const Frame& frame, const Image& image) const {
+    if (!output_.glare) return image;
+    return WithGlareOfEye(image, 2.0 * std::tan(0.5 * source_.FovOf(frame)) / image.width);
+  }
+
   void Write(const Frame& frame, const NotedPicture& picture, double ev100, bool rendered) {
     const Image& image = picture.image;
     Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
@@ -162,7 +170,9 @@ class Series {
     const bool keep_exr = !rendered && ExrValue(exr, kFingerprint) == metadata.at(kFingerprint);
     const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
     if (!keep_exr) WriteExr(exr, image, metadata);
-    if (!keep_png) WritePng(png, Develop(Seen(image, output_.look), ev100, output_.look), metadata);
+    if (!keep_png)
+      WritePng(png, Develop(Seen(AsLookedAt(frame, image), output_.look), ev100, output_.look),
+               metadata);
     (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
     ev100_of_[frame.number] = metadata.at(kEv100);
   }
@@ -255,6 +265,10 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   if (frames.size() > 1 && !output.name.HasNumber()) {
     throw InputError(
         fmt::format("--out has no frame number (%04d), but there are {} frames", frames.size()));
+  }
+  for (const Frame& frame : frames) {
+    if (output.glare && source.ProjectionOf(frame) != Projection::kCamera)
+      throw InputError("--glare is of an eye that looks one way, not of a panorama");
   }
   RequireNoInputAmongTheOutputs(frames, output);
   CreateFolder(output.name.Folder());

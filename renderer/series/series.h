@@ -44,12 +44,16 @@ struct SeriesSource {
   std::optional<std::string> zone;
   std::optional<CameraPath> path;               // that Frame::path_s is on
   Projection projection = Projection::kCamera;  // without a path
+  double fov_rad = 0.0;                         // without a path
 
   /// Of the eye of a frame.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : place;
   }
   [[nodiscard]] Projection ProjectionOf(const Frame& frame) const;
+  [[nodiscard]] double FovOf(const Frame& frame) const {
+    return path ? path->PoseAt(frame.path_s).fov_rad : fov_rad;
+  }
 };
 
 /// How the pictures are exposed and where they go.
@@ -62,6 +66,7 @@ struct SeriesOutput {
   std::vector<NamedFile> inputs = {};  // that no file of the series may replace
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;
   ProgressStyle progress = ProgressStyle::kAuto;
+  bool glare = false;  // developed pictures have that of the eye (glare.h); the EXR never
 };
 
 /// What was done for the selected frames.
