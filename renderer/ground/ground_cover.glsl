@@ -36,7 +36,7 @@ SHARED Number WaveringLevel(Number normal_up, Number broad, Number fine) {
 }
 
 // Rises of 0 to 1 with the wavering altitude: no trees left; bare of grass; cold enough for snow,
-// which gentle ground keeps 200 m below its line.
+// which gentle ground keeps 150 m below its line.
 SHARED Number TreelessRise(Length altitude, Length tree_line) {
   return SmoothRise(tree_line - Length(250.0), tree_line - Length(50.0), altitude);
 }
@@ -46,7 +46,7 @@ SHARED Number BareRise(Length altitude, Length tree_line) {
 }
 
 SHARED Number ColdRise(Length altitude, Length snow_line) {
-  return SmoothRise(snow_line - Length(200.0), snow_line + Length(350.0), altitude);
+  return SmoothRise(snow_line - Length(150.0), snow_line + Length(250.0), altitude);
 }
 
 // With the wavering level: not too steep for soil; flat, a meadow rather than a wood; and not so
@@ -72,6 +72,12 @@ SHARED Number GroundTone(Number broad, Number fine) {
 
 SHARED Number PartlyCovered(Number below, Number cover, Number share) {
   return below + share * (cover - below);
+}
+
+// What is seen of the snow on the ground: a closed wood of conifers hides most of it (Betts, Ball
+// 1997, J. Geophys. Res. 102, 28901: albedo 0.13 of such a wood over snow, 0.75 of grass under it).
+SHARED Number SnowSeen(Number snow_share, Number forest, Number rock_share) {
+  return snow_share * (Number(1.0) - Number(0.88) * forest * (Number(1.0) - rock_share));
 }
 
 // Albedo in a band, from those of the materials. Fresh snow is even, ground is not.

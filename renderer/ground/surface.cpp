@@ -72,8 +72,9 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up)
                                            rise(shared::FlatRise(level)));
   const float rock = shared::RockShare(rise(shared::BareRise(altitude, cover_.tree_line_m)),
                                        rise(shared::SoilRise(level)));
-  const float snow =
+  const float lying =
       rise(shared::ColdRise(altitude, cover_.snow_line_m)) * rise(shared::SnowHoldRise(level));
+  const float snow = shared::SnowSeen(lying, forest, rock);
   const auto tone = static_cast<float>(shared::GroundTone(broad, fine));
   Bands<float> albedo(materials_.rock.count);
   for (std::size_t band = 0; band < albedo.count; ++band) {
@@ -94,17 +95,6 @@ glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::
         shared::kReliefHeight_m * amplitude / wavelength * glm::dvec3(noise.by_x, noise.by_y, 0.0);
   });
   return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
-}
-
-MountainCover CoverInSeason(double latitude_rad, int modified_julian_day) {
-  const double latitude = std::abs(latitude_rad) / kRadiansPerDegree;
-  const double beyond = std::max(latitude - 30.0, 0.0);
-  const double tree_line = std::max(4000.0 - 115.0 * beyond, 0.0);
-  // Coldest ground in mid February (north) or mid August (south); day 59000 is 2020-05-31.
-  const double year = (modified_julian_day - 59000 + 105.0) / 365.2425;
-  const double winter = std::cos(2.0 * kPi * year) * (latitude_rad < 0.0 ? -1.0 : 1.0);
-  const double seasonal = 1300.0 * std::clamp(latitude / 35.0, 0.0, 1.0) * winter;
-  return {tree_line, tree_line + 800.0 + 4.0 * beyond - seasonal};
 }
 
 }  // namespace alpenglow

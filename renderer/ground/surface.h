@@ -8,14 +8,9 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/ground/mountain_cover.h"
 
 namespace alpenglow {
-
-/// Where the materials of a mountain give way to one another.
-struct MountainCover {
-  double tree_line_m = 1900.0;
-  double snow_line_m = 2700.0;
-};
 
 /// A point of the ground as its material sees it.
 struct GroundPoint {
@@ -51,11 +46,5 @@ class MountainSurface {
   MountainCover cover_;
   Materials materials_;
 };
-
-/// Tree line and snow line at a latitude and season: the tree line highest in the subtropics and at
-/// sea level near the poles, a smooth fit to Korner (1998), Oecologia 115, 445; the snow line 800 m
-/// over it in the mean, 1300 m lower in late winter and as much higher in late summer beyond the
-/// tropics. +-400 m, for looks.
-[[nodiscard]] MountainCover CoverInSeason(double latitude_rad, int modified_julian_day);
 
 }  // namespace alpenglow

@@ -9,9 +9,9 @@
 
 namespace alpenglow {
 
-Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant, double latitude_rad,
-                    const Medium& medium) {
-  const MountainCover cover = CoverInSeason(latitude_rad, instant.modified_julian_day);
+Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
+                    const GeodeticPosition& place, const Medium& medium) {
+  const MountainCover cover = CoverInSeason(place, instant.modified_julian_day);
   Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
                  sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
                  MountainSurface(medium.wavelengths_nm, cover)};

@@ -31,9 +31,9 @@ struct Lighting {
   std::shared_ptr<const TerrainLight> on_terrain = nullptr;
 };
 
-/// The sun as it stands, the ground as the season covers it at that latitude.
+/// The sun as it stands, the ground as the season covers it at that place.
 [[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
-                                  double latitude_rad, const Medium& medium);
+                                  const GeodeticPosition& place, const Medium& medium);
 
 /// The sun over a point, terrain aside.
 struct LocalSun {

@@ -34,8 +34,7 @@ Lighting SunAt(double elevation_deg) {
   sun.azimuth_rad = 2.0;
   sun.angular_radius_rad = 0.00465;
   sun.distance_au = 1.0;
-  return LightingOf(sun, ParseInstant("2026-03-21T12:00:00Z"), kPlace.latitude_rad,
-                    TheSite()->medium());
+  return LightingOf(sun, ParseInstant("2026-03-21T12:00:00Z"), kPlace, TheSite()->medium());
 }
 
 void ASitePrepared(benchmark::State& state) {

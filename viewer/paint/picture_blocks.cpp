@@ -42,9 +42,8 @@ glm::dvec2 OnPattern(const PaintedScene& scene, const glm::dvec3& eye) {
 
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
   const LocalFrame pattern = PatternOf(scene), here(scene.ellipsoid(), view.eye.place);
-  const MountainSurface surface(
-      scene.air().air()->medium.wavelengths_nm,
-      CoverInSeason(scene.place().latitude_rad, view.now.modified_julian_day));
+  const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
+                                CoverInSeason(view.eye.place, view.now.modified_julian_day));
   const glm::dvec2 at = OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz);
   GroundBlock block = GroundBlockOf(surface, at.x, at.y);
   const auto axis = [&](const glm::dvec3& of_pattern) {

@@ -102,7 +102,8 @@ vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint)
   float level = WaveringLevel(normal_up, broad, fine);
   float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(level));
   float stone = RockShare(BareRise(wavering, cover_lines.x), SoilRise(level));
-  float white = ColdRise(wavering, cover_lines.y) * SnowHoldRise(level);
+  float lying = ColdRise(wavering, cover_lines.y) * SnowHoldRise(level);
+  float white = SnowSeen(lying, wood, stone);
   float tone = GroundTone(broad, fine);
   vec4 albedo;
   for (int band = 0; band < 4; ++band) {

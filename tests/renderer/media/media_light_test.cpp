@@ -48,7 +48,7 @@ struct Stage {
   Lighting light = [&] {
     SunPosition sun;
     sun.distance_au = 1.0;
-    Lighting at = LightingOf(sun, UtcInstant{}, 0.8, medium);
+    Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, medium);
     at.to_sun = kToSun;
     at.sun_radius_rad = 0.00465;
     return at;

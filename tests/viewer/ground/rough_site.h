@@ -49,8 +49,7 @@ inline Lighting RoughSun(const GroundSite& site, double elevation_deg) {
   sun.azimuth_rad = 220.0 * kRadiansPerDegree;
   sun.angular_radius_rad = 0.00465;
   sun.distance_au = 1.0;
-  return LightingOf(sun, ParseInstant("2026-06-21T12:00:00Z"), kRoughPlace.latitude_rad,
-                    site.medium());
+  return LightingOf(sun, ParseInstant("2026-06-21T12:00:00Z"), kRoughPlace, site.medium());
 }
 
 }  // namespace alpenglow::tests

@@ -42,7 +42,7 @@ struct Stage {
   [[nodiscard]] Lighting Under(const glm::dvec3& to_sun) const {
     SunPosition sun;
     sun.distance_au = 1.0;
-    Lighting at = LightingOf(sun, UtcInstant{}, 0.8, scene.medium);
+    Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, scene.medium);
     at.to_sun = to_sun;
     at.sun_radius_rad = kSunRadius_rad;
     return at;

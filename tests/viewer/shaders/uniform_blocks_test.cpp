@@ -145,7 +145,8 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
 
 TEST_F(GroundCover, AlbedoIsThatOfTheRenderer) {
   const std::vector<double> wavelengths = WavelengthSet(4);
-  const MountainSurface surface(wavelengths, CoverInSeason(46.5 * kRadiansPerDegree, 61212));
+  const MountainSurface surface(wavelengths,
+                                CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
   const std::vector<float> on_gpu =
       GroundValues(surface, "GroundAlbedo(vec2(a[0], a[1]), a[2], a[3], a[4]).y");
   const auto points = GroundPoints();
@@ -158,7 +159,8 @@ TEST_F(GroundCover, AlbedoIsThatOfTheRenderer) {
 }
 
 TEST_F(GroundCover, ReliefIsThatOfTheRenderer) {
-  const MountainSurface surface(WavelengthSet(4), CoverInSeason(0.8, 61212));
+  const MountainSurface surface(WavelengthSet(4),
+                                CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
   const std::vector<float> east = GroundValues(
       surface,
       "DetailedNormal(vec2(a[0], a[1]), vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).x");

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Altitudes at which forest, rock and snow give way to one another, by place and season.
+//
+//   snow line = ice line - w(day) (ice line - winter line),   w from 0 at the end of the melt to 1
+//
+// The ice line is where snow outlasts the summer: on glaciers the equilibrium line. Ice, winter and
+// tree line are those of a curve over latitude, moved to what is observed in some thirty massifs as
+// far as these are near: the sea and dry air shift them by a kilometre at one latitude.
+//
+// Altitudes of massifs are rounded, of: tree lines, Hermes (1955), Koelner geographische Arbeiten
+// 5, and Koerner (1998), Oecologia 115, 445; equilibrium lines, Hermes (1955) and Ohmura, Kasser,
+// Funk (1992), J. Glaciology 38, 397; winter in the Alps, 641 m, Hantel, Maurer (2011), Meteorol.
+// Z. 20, 267. In other massifs the winter line is an estimate.
+#pragma once
+
+#include "atmosphere/sun/geodesy.h"
+
+namespace alpenglow {
+
+/// Where the materials of a mountain give way to one another.
+struct MountainCover {
+  double tree_line_m = 1900.0;  // no trees above; below sea level where none grow
+  double snow_line_m = 2700.0;  // about half of level ground is white there; below sea level where
+                                // all of it is
+};
+
+/// What does not change with the season.
+struct MountainClimate {
+  double tree_line_m;
+  double ice_line_m;     // lowest snow line of a late summer; above the summits where no snow lasts
+  double winter_line_m;  // of the snow in late winter
+};
+
+/// In a massif that was observed to 60 m of it, elsewhere to about 400 m: slopes to the sun and to
+/// the wind differ as much.
+[[nodiscard]] MountainClimate MountainClimateAt(const GeodeticPosition& place);
+
+/// The share w of the way from the ice line down to the winter line: that of the Alps, half a year
+/// later south of the equator.
+[[nodiscard]] double WinterShare(double latitude_rad, int modified_julian_day);
+
+[[nodiscard]] MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_day);
+
+}  // namespace alpenglow
