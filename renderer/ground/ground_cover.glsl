@@ -1,23 +1,38 @@
 // What mountain ground is made of, and relief finer than the mesh (surface.h). Lengths in metres:
 // details of the ground are as fine as that.
 
-// Three families of noise: two make the lines between materials waver, one is relief. Each is a sum
-// of octaves, half as long and half as high from one to the next.
+// Four families of noise: two make the lines between materials waver, one is relief, one the grain
+// of crowns, tussocks and stones. Each is a sum of octaves, half as long from one to the next and
+// lower by the factor of its fall: that of the grain is 1, for ground looks as rough from a hand's
+// height as from a tower's.
 SHARED_CONSTANT int kBroadWave_m = 900;  // of the longest octave
 SHARED_CONSTANT int kBroadOctaves = 5;
+SHARED_CONSTANT int kBroadFall = 2;
 SHARED_CONSTANT Bits kBroadSeed = 11u;
 SHARED_CONSTANT int kFineWave_m = 70;
 SHARED_CONSTANT int kFineOctaves = 4;
+SHARED_CONSTANT int kFineFall = 2;
 SHARED_CONSTANT Bits kFineSeed = 29u;
 SHARED_CONSTANT int kReliefWave_m = 220;
-SHARED_CONSTANT int kReliefOctaves = 5;
+SHARED_CONSTANT int kReliefOctaves = 10;
+SHARED_CONSTANT int kReliefFall = 2;
 SHARED_CONSTANT Bits kReliefSeed = 47u;
 SHARED_CONSTANT int kReliefHeight_m = 14;
+SHARED_CONSTANT int kGrainWave_m = 12;  // of crowns
+SHARED_CONSTANT int kGrainOctaves = 9;
+SHARED_CONSTANT int kGrainFall = 1;
+SHARED_CONSTANT Bits kGrainSeed = 83u;
 
 // What is kept of an octave where one ray of the picture is `footprint` wide: octaves shorter than
 // two footprints fade out, so that distant ground does not glitter.
 SHARED Number OctaveShare(Length wavelength, Length footprint) {
   return min(max(wavelength / (Number(2.0) * footprint) - Number(1.0), Number(0.0)), Number(1.0));
+}
+
+// What a ray of a width covers of ground that it meets at a cosine with the normal: the geometric
+// mean of its width and depth there.
+SHARED Length SeenFootprint(Length across, Number cosine) {
+  return across / sqrt(max(cosine, Number(0.04)));
 }
 
 // 0 up to `low`, 1 from `high` on, smooth between.
@@ -28,11 +43,11 @@ SHARED Number SmoothRise(Number low, Number high, Number x) {
 
 // Altitude and vertical component of the normal, as the lines between materials take them.
 SHARED Length WaveringAltitude(Length altitude, Number broad, Number fine) {
-  return altitude + Length(260.0) * broad + Length(60.0) * fine;
+  return altitude + Length(260.0) * broad + Length(120.0) * fine;
 }
 
 SHARED Number WaveringLevel(Number normal_up, Number broad, Number fine) {
-  return normal_up + Number(0.05) * broad + Number(0.05) * fine;
+  return normal_up + Number(0.03) * broad + Number(0.08) * fine;
 }
 
 // Rises of 0 to 1 with the wavering altitude: no trees left; bare of grass; cold enough for snow,
@@ -49,25 +64,42 @@ SHARED Number ColdRise(Length altitude, Length snow_line) {
   return SmoothRise(snow_line - Length(150.0), snow_line + Length(250.0), altitude);
 }
 
-// With the wavering level: not too steep for soil; flat, a meadow rather than a wood; and not so
-// steep, over about 45 degrees, that it sheds its snow.
-SHARED Number SoilRise(Number level) { return SmoothRise(Number(0.66), Number(0.78), level); }
-
-SHARED Number FlatRise(Number level) { return SmoothRise(Number(0.95), Number(0.985), level); }
+// With the wavering level: not too steep for soil, which woods hold up to about 50 degrees; and not
+// so steep, over about 45 degrees, that it sheds its snow.
+SHARED Number SoilRise(Number level) { return SmoothRise(Number(0.56), Number(0.74), level); }
 
 SHARED Number SnowHoldRise(Number level) { return SmoothRise(Number(0.60), Number(0.76), level); }
 
-// Share of wood in what is green.
-SHARED Number ForestShare(Number treeless, Number flat_ground) {
-  return (Number(1.0) - treeless) * (Number(0.35) + Number(0.65) * (Number(1.0) - flat_ground));
+// Land that is flat to 4 degrees, a meadow rather than a wood; up to 15 degrees some of it is.
+SHARED Number FlatRise(Number normal_up) {
+  return SmoothRise(Number(0.965), Number(0.998), normal_up);
 }
 
-// Share of rock and scree in ground without snow.
-SHARED Number RockShare(Number bare, Number soil) { return max(bare, Number(1.0) - soil); }
+// Share of wood in what is green. Groves stand on flat ground and glades open in woods, with edges
+// as ragged as the fine noise.
+SHARED Number ForestShare(Number treeless, Number flat_ground, Number broad, Number fine) {
+  Number density =
+      Number(1.0) - Number(0.7) * flat_ground + Number(0.5) * broad + Number(0.6) * fine;
+  return (Number(1.0) - treeless) * SmoothRise(Number(0.05), Number(0.75), density);
+}
 
-// Lightness of patches of the ground, as a share of its albedo.
-SHARED Number GroundTone(Number broad, Number fine) {
-  return min(max(Number(0.3) * fine + Number(0.15) * broad, Number(-0.5)), Number(0.5));
+// Share of rock and scree in ground without snow: where it is bare, in half of what is too steep
+// under the tree line, for trees stand in its cracks, and as earth and stones between tussocks.
+SHARED Number RockShare(Number bare, Number soil, Number forest, Number grain) {
+  Number steep = (Number(1.0) - soil) * (Number(0.5) + Number(0.5) * bare);
+  Number stones =
+      Number(0.5) * (Number(1.0) - forest) * SmoothRise(Number(0.3), Number(1.0), -grain);
+  return max(max(bare, steep), stones);
+}
+
+// Lightness of patches and of the grain, as a share of the albedo: crowns and the gaps between them
+// differ most, blades of grass least.
+SHARED Number GroundTone(Number broad, Number fine, Number grain, Number forest,
+                         Number rock_share) {
+  Number green = Number(0.3) + Number(0.3) * forest;
+  Number contrast = green + rock_share * (Number(0.6) - green);
+  Number tone = Number(0.2) * fine + Number(0.12) * broad + contrast * grain;
+  return min(max(tone, Number(-0.6)), Number(0.8));
 }
 
 SHARED Number PartlyCovered(Number below, Number cover, Number share) {

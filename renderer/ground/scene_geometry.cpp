@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/ray/ray.h"
+#include "renderer/ground/ground_cover.h"
 
 namespace alpenglow {
 
@@ -58,10 +59,15 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   if (ground_.terrain) {
     const auto hit = ground_.terrain->Intersect(origin, direction);
     if (hit && !HiddenByPlanet(origin, direction, hit->distance_m)) {
-      Hit found{HitKind::kTerrain,     hit->distance_m,
-                hit->normal,           hit->normal,
-                hit->geometric_normal, origin + hit->distance_m * direction,
-                hit->smooth_point,     hit->distance_m * pixel_angle_rad};
+      Hit found{HitKind::kTerrain,
+                hit->distance_m,
+                hit->normal,
+                hit->normal,
+                hit->geometric_normal,
+                origin + hit->distance_m * direction,
+                hit->smooth_point,
+                shared::SeenFootprint(hit->distance_m * pixel_angle_rad,
+                                      -glm::dot(hit->normal, direction))};
       if (with_relief_) {
         found.normal =
             MountainSurface::DetailedNormal(GroundAt(found.point, found.footprint_m), found.normal);

@@ -28,7 +28,7 @@ struct Hit {
   glm::dvec3 geometric_normal{0.0, 0.0, 1.0};
   glm::dvec3 point{0.0};         // where the ray ends: of what is there
   glm::dvec3 smooth_point{0.0};  // where light falls on it: TerrainHit::smooth_point
-  double footprint_m = 0.0;      // width of a pixel there
+  double footprint_m = 0.0;      // what a pixel covers there, see SeenFootprint
 };
 
 /// Immutable, safe to share between threads. Refers to the ground and the medium.

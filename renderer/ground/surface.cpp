@@ -26,16 +26,23 @@ Bands<float> AlbedoBands(const std::array<double, 3>& rgb, std::span<const doubl
 struct Noise {
   int longest_m, octaves;
   std::uint32_t seed;
+  int fall;
 };
-constexpr Noise kBroad{shared::kBroadWave_m, shared::kBroadOctaves, shared::kBroadSeed};
-constexpr Noise kFine{shared::kFineWave_m, shared::kFineOctaves, shared::kFineSeed};
-constexpr Noise kRelief{shared::kReliefWave_m, shared::kReliefOctaves, shared::kReliefSeed};
+constexpr Noise kBroad{shared::kBroadWave_m, shared::kBroadOctaves, shared::kBroadSeed,
+                       shared::kBroadFall};
+constexpr Noise kFine{shared::kFineWave_m, shared::kFineOctaves, shared::kFineSeed,
+                      shared::kFineFall};
+constexpr Noise kRelief{shared::kReliefWave_m, shared::kReliefOctaves, shared::kReliefSeed,
+                        shared::kReliefFall};
+constexpr Noise kGrain{shared::kGrainWave_m, shared::kGrainOctaves, shared::kGrainSeed,
+                       shared::kGrainFall};
 
 // Calls visit(seed, amplitude, wavelength) for the octaves that a footprint keeps.
 template <typename Visit>
 void VisitOctaves(const GroundPoint& point, const Noise& noise, const Visit& visit) {
   double amplitude = 1.0, wavelength = noise.longest_m;
-  for (int octave = 0; octave < noise.octaves; ++octave, amplitude *= 0.5, wavelength *= 0.5) {
+  for (int octave = 0; octave < noise.octaves;
+       ++octave, amplitude /= noise.fall, wavelength *= 0.5) {
     const double kept = shared::OctaveShare(wavelength, point.footprint_m);
     if (kept == 0.0) break;
     visit(noise.seed + static_cast<std::uint32_t>(octave), kept * amplitude, wavelength);
@@ -65,17 +72,19 @@ MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const M
 Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up) const {
   const double broad = DetailNoise(point, kBroad);
   const double fine = DetailNoise(point, kFine);
+  const double grain = DetailNoise(point, kGrain);
   const double altitude = shared::WaveringAltitude(point.altitude_m, broad, fine);
   const double level = shared::WaveringLevel(normal_up, broad, fine);
   const auto rise = [](double value) { return static_cast<float>(value); };
-  const float forest = shared::ForestShare(rise(shared::TreelessRise(altitude, cover_.tree_line_m)),
-                                           rise(shared::FlatRise(level)));
+  const float forest =
+      shared::ForestShare(rise(shared::TreelessRise(altitude, cover_.tree_line_m)),
+                          rise(shared::FlatRise(normal_up)), rise(broad), rise(fine));
   const float rock = shared::RockShare(rise(shared::BareRise(altitude, cover_.tree_line_m)),
-                                       rise(shared::SoilRise(level)));
+                                       rise(shared::SoilRise(level)), forest, rise(grain));
   const float lying =
       rise(shared::ColdRise(altitude, cover_.snow_line_m)) * rise(shared::SnowHoldRise(level));
   const float snow = shared::SnowSeen(lying, forest, rock);
-  const auto tone = static_cast<float>(shared::GroundTone(broad, fine));
+  const auto tone = shared::GroundTone(rise(broad), rise(fine), rise(grain), forest, rock);
   Bands<float> albedo(materials_.rock.count);
   for (std::size_t band = 0; band < albedo.count; ++band) {
     const float green =

@@ -21,7 +21,8 @@ struct GroundPoint {
 
 /// Lambertian albedo of mountain ground: forest and meadow below the tree line, rock and scree
 /// above it and on steep slopes, snow above the snow line where the slope holds it. Lines and
-/// slopes waver by fractal noise from 10 m to 1 km, as on real mountains.
+/// slopes waver by fractal noise from 10 m to 1 km, as on real mountains; crowns, tussocks and stones
+/// are lighter and darker spots from 12 m down to 5 cm.
 class MountainSurface {
  public:
   /// Albedos of pure materials.
@@ -38,7 +39,7 @@ class MountainSurface {
   [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up) const;
 
   /// The normal with the relief that a mesh of 30 to 100 m spacing does not have: unit, tilted by
-  /// about 7 degrees rms where the footprint is small, unchanged where it is over 100 m.
+  /// about 8 degrees rms where the footprint is small, unchanged where it is over 110 m.
   [[nodiscard]] static glm::dvec3 DetailedNormal(const GroundPoint& point,
                                                  const glm::dvec3& normal);
 

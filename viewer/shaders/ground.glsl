@@ -8,6 +8,7 @@
 #define BROAD 0
 #define FINE 1
 #define RELIEF 2
+#define GRAIN 3
 
 layout(std140) uniform Ground {
   vec4 forest;
@@ -16,17 +17,18 @@ layout(std140) uniform Ground {
   vec4 snow;
   vec4 cover_lines;     // tree line, snow line [m]; octaves of the finest detail that are left out,
                         // to save time
-  vec4 noise_cell[3];   // of the eye, east and north: by family
-  vec4 noise_place[3];  // fraction of the cell, east and north
+  vec4 noise_cell[4];   // of the eye, east and north: by family
+  vec4 noise_place[4];  // fraction of the cell, east and north
   vec4 mesh_east;       // axes of the mesh in the frame of the eye
   vec4 mesh_north;
   vec4 mesh_up;
 };
 
-ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed
-  if (family == BROAD) return ivec4(kBroadWave_m, kBroadOctaves, kBroadSeed, 0);
-  if (family == FINE) return ivec4(kFineWave_m, kFineOctaves, kFineSeed, 0);
-  return ivec4(kReliefWave_m, kReliefOctaves, kReliefSeed, 0);
+ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed, fall
+  if (family == BROAD) return ivec4(kBroadWave_m, kBroadOctaves, kBroadSeed, kBroadFall);
+  if (family == FINE) return ivec4(kFineWave_m, kFineOctaves, kFineSeed, kFineFall);
+  if (family == GRAIN) return ivec4(kGrainWave_m, kGrainOctaves, kGrainSeed, kGrainFall);
+  return ivec4(kReliefWave_m, kReliefOctaves, kReliefSeed, kReliefFall);
 }
 
 // A place in its cell of the lattice, and the hashes of the cell's corners.
@@ -52,8 +54,11 @@ NoiseCell OctaveCell(vec2 offset, int family, float wavelength, int cells, uint 
 // How many octaves are summed: from waves of two footprints down OctaveShare is 0.
 int OctavesKept(ivec4 of, float footprint) {
   float kept = ceil(log2(max(float(of.x) / (2.0 * footprint), 1.0)));
-  return min(of.y - int(cover_lines.z), int(kept));
+  return min(of.y, int(kept));
 }
+
+// What the finest detail is held to, with octaves left out.
+float DetailFootprint(float footprint) { return footprint * exp2(cover_lines.z); }
 
 // The octaves that a footprint keeps.
 float DetailNoise(vec2 offset, int family, float footprint) {
@@ -67,7 +72,7 @@ float DetailNoise(vec2 offset, int family, float footprint) {
     NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
     sum += OctaveShare(wavelength, footprint) * amplitude *
            NoiseOfHashes(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y);
-    amplitude *= 0.5;
+    amplitude /= float(of.w);
     wavelength *= 0.5;
     cells *= 2;
   }
@@ -87,7 +92,7 @@ vec2 DetailSlope(vec2 offset, int family, float footprint) {
     sum += OctaveShare(wavelength, footprint) * (amplitude / wavelength) *
            vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),
                 SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
-    amplitude *= 0.5;
+    amplitude /= float(of.w);
     wavelength *= 0.5;
     cells *= 2;
   }
@@ -96,15 +101,17 @@ vec2 DetailSlope(vec2 offset, int family, float footprint) {
 
 // @param altitude [m]; normal_up of the mesh's normal.
 vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
-  float broad = DetailNoise(offset, BROAD, footprint);
-  float fine = DetailNoise(offset, FINE, footprint);
+  float width = DetailFootprint(footprint);
+  float broad = DetailNoise(offset, BROAD, width);
+  float fine = DetailNoise(offset, FINE, width);
+  float grain = DetailNoise(offset, GRAIN, width);
   float wavering = WaveringAltitude(altitude, broad, fine);
   float level = WaveringLevel(normal_up, broad, fine);
-  float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(level));
-  float stone = RockShare(BareRise(wavering, cover_lines.x), SoilRise(level));
+  float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(normal_up), broad, fine);
+  float stone = RockShare(BareRise(wavering, cover_lines.x), SoilRise(level), wood, grain);
   float lying = ColdRise(wavering, cover_lines.y) * SnowHoldRise(level);
   float white = SnowSeen(lying, wood, stone);
-  float tone = GroundTone(broad, fine);
+  float tone = GroundTone(broad, fine, grain, wood, stone);
   vec4 albedo;
   for (int band = 0; band < 4; ++band) {
     float green = PartlyCovered(meadow[band], forest[band], wood);
@@ -115,7 +122,7 @@ vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint)
 
 // The normal with the relief that the mesh does not have.
 vec3 DetailedNormal(vec2 offset, vec3 normal, float footprint) {
-  vec2 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, footprint);
+  vec2 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, DetailFootprint(footprint));
   vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz;
   return normalize(normal + tilt * max(dot(normal, mesh_up.xyz), 0.0));
 }

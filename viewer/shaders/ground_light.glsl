@@ -16,7 +16,7 @@ layout(std140) uniform GroundLight {
 struct GroundPlace {
   vec3 up;
   float altitude;   // km
-  float footprint;  // m
+  float footprint;  // across the ray [m]
   vec2 offset;      // from the eye, east and north in the plane of the pattern [m]
 };
 
@@ -60,8 +60,9 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
   return WaterRadiance(at.up, SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
 #else
   float altitude = 1e3 * at.altitude;
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, at.footprint);
-  vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), at.footprint);
+  float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
+  vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
+  vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), footprint);
   vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),
                                 SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
 #if HAS_SEA

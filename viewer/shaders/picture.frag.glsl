@@ -51,8 +51,9 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
   vec3 point = surface.w * direction;
   vec3 normal = UnitFromOctahedral(surface.xy);
   GroundPlace at = GroundPlaceAt(point);
-  vec3 tilted = DetailedNormal(at.offset, normal, at.footprint);
-  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), at.footprint);
+  float footprint = SeenFootprint(at.footprint, -dot(normal, direction));
+  vec3 tilted = DetailedNormal(at.offset, normal, footprint);
+  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), footprint);
   return albedo / 3.14159265359 * LampsOnGround(point, tilted, RAY_ANGLE * surface.w);
 }
 

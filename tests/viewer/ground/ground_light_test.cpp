@@ -12,6 +12,7 @@
 
 #include "atmosphere/number/halton.h"
 #include "lut/picture/image.h"
+#include "renderer/ground/ground_cover.h"
 #include "tests/viewer/ground/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
@@ -109,10 +110,11 @@ std::vector<Case> LandCases(const LitGround& lit) {
     c.hit.smooth_point = found->smooth_point;
     c.hit.mesh_normal = found->normal;
     c.hit.geometric_normal = found->geometric_normal;
-    c.hit.footprint_m = kPixel_rad * glm::length(c.hit.point - kEye);
+    c.to_eye = glm::normalize(kEye - c.hit.point);
+    c.hit.footprint_m = shared::SeenFootprint(kPixel_rad * glm::length(c.hit.point - kEye),
+                                              glm::dot(c.hit.mesh_normal, c.to_eye));
     c.hit.normal = MountainSurface::DetailedNormal(
         lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m), c.hit.mesh_normal);
-    c.to_eye = glm::normalize(kEye - c.hit.point);
     c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
     const double over_plane =
         glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// What mountain ground looks like from near and far.
+#include "renderer/ground/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+struct Spread {
+  double mean, share;  // rms difference from the mean, over it
+};
+
+/// Of the albedo in the green, over places of one altitude and slope in a square.
+Spread AlbedoSpread(double altitude_m, double slope_deg, double footprint_m, double side_m = 8e3) {
+  const MountainSurface surface(WavelengthSet(4), MountainCover{2100.0, 2900.0});
+  const double normal_up = std::cos(slope_deg * kRadiansPerDegree);
+  double sum = 0.0, sum2 = 0.0;
+  constexpr int kPlaces = 2000;
+  for (int i = 0; i < kPlaces; ++i) {
+    const GroundPoint at{7e5 + side_m * std::fmod(0.7548776662 * i, 1.0),
+                         5e6 + side_m * std::fmod(0.5698402910 * i, 1.0), altitude_m, footprint_m};
+    const auto albedo = static_cast<double>(surface.Albedo(at, normal_up)[1]);
+    sum += albedo / kPlaces;
+    sum2 += albedo * albedo / kPlaces;
+  }
+  return {sum, std::sqrt(sum2 - sum * sum) / sum};
+}
+
+TEST(MountainSurface, NearGroundHasGrainThatDistantGroundHasNot) {
+  for (const double altitude_m : {1000.0, 2650.0}) {
+    const double near = AlbedoSpread(altitude_m, 20.0, 0.02, 5.0).share;
+    EXPECT_GT(near, 0.1) << altitude_m << ": within five metres";
+    EXPECT_LT(AlbedoSpread(altitude_m, 20.0, 8.0, 5.0).share, 0.3 * near) << altitude_m;
+  }
+}
+
+TEST(MountainSurface, GrainDoesNotChangeWhatIsSeenFromAfar) {
+  for (const double slope_deg : {2.0, 20.0, 35.0}) {
+    for (const double altitude_m : {1000.0, 2650.0}) {
+      EXPECT_NEAR(AlbedoSpread(altitude_m, slope_deg, 0.02).mean /
+                      AlbedoSpread(altitude_m, slope_deg, 8.0).mean,
+                  1.0, 0.1)
+          << slope_deg << " " << altitude_m << ": earth between tussocks adds some per cent";
+    }
+  }
+}
+
+TEST(MountainSurface, SlopesUnderTheTreeLineAreWoodWithoutPatchesOfCamouflage) {
+  for (const double slope_deg : {15.0, 25.0, 35.0}) {
+    const Spread seen = AlbedoSpread(1000.0, slope_deg, 20.0);
+    EXPECT_LT(seen.mean, 0.07) << slope_deg << ": a wood is 0.05";
+    EXPECT_LT(seen.share, 0.25) << slope_deg;
+  }
+}
+
+TEST(MountainSurface, SteepGroundInTheWoodIsNotAPaleBlob) {
+  EXPECT_LT(AlbedoSpread(1000.0, 45.0, 20.0).mean, 1.6 * AlbedoSpread(1000.0, 30.0, 20.0).mean);
+  EXPECT_LT(AlbedoSpread(1000.0, 60.0, 20.0).mean, 2.6 * AlbedoSpread(1000.0, 30.0, 20.0).mean)
+      << "rock is 0.17, over three times as light as a wood";
+}
+
+TEST(MountainSurface, FlatLandHasMeadowsAndGroves) {
+  const Spread seen = AlbedoSpread(600.0, 1.0, 10.0);
+  EXPECT_GT(seen.mean, 0.075);
+  EXPECT_GT(seen.share, 0.08);
+}
+
+TEST(MountainSurface, ReliefTiltsTheGroundByEightDegreesNearAndNotAtAllFarAway) {
+  double near2 = 0.0;
+  constexpr int kPlaces = 2000;
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  for (int i = 0; i < kPlaces; ++i) {
+    const double east_m = 7e5 + 37.7 * i, north_m = 5e6 - 91.3 * i;
+    const glm::dvec3 near = MountainSurface::DetailedNormal({east_m, north_m, 0.0, 0.01}, up);
+    near2 += std::pow(std::acos(near.z) / kRadiansPerDegree, 2) / kPlaces;
+    EXPECT_EQ(MountainSurface::DetailedNormal({east_m, north_m, 0.0, 110.0}, up).z, 1.0);
+  }
+  EXPECT_NEAR(std::sqrt(near2), 8.0, 0.5) << "the header's figure, to its rounding";
+}
+
+}  // namespace
+}  // namespace alpenglow
