@@ -61,7 +61,7 @@ GroundMaterial::GroundMaterial(const GroundCover& cover, std::shared_ptr<const C
     : cover_(cover),
       drape_(std::move(drape)),
       bands_of_colour_(wavelengths_nm),
-      albedo_(bands_of_colour_.Albedo(cover.albedo)),
+      albedo_(Wetted(bands_of_colour_.Albedo(cover.albedo), cover.wetness)),
       rough_(cover.kind == Kind::kOrenNayar ? cover.roughness : 0.0),
       glossy_(cover.kind == Kind::kBlinnPhong ? cover.roughness : 1.0, cover.reflectance),
       water_(cover.wind_m_per_s, wavelengths_nm),
@@ -80,7 +80,7 @@ BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, const glm::dvec3& poin
                                    const MountainSurface& season) const {
   if (drape_) {
     if (const auto rgb = drape_->At(point, at.altitude_m, at.footprint_m))
-      return bands_of_colour_.Albedo(*rgb);
+      return Wetted(bands_of_colour_.Albedo(*rgb), cover_.wetness);
   }
   return cover_.kind == Kind::kMountain ? season.Albedo(at, normal_up) : albedo_;
 }

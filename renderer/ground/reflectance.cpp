@@ -49,6 +49,12 @@ double FresnelReflectance(double cosine, double refractive_index) {
   return shared::FresnelReflectance(cosine, refractive_index);
 }
 
+Bands<float> Wetted(Bands<float> albedo, double wetness) {
+  for (std::size_t band = 0; band < albedo.count; ++band)
+    albedo[band] = shared::WetAlbedo(albedo[band], static_cast<float>(wetness));
+  return albedo;
+}
+
 double SchlickReflectance(double cosine, double f0) {
   return shared::SchlickReflectance(cosine, f0);
 }

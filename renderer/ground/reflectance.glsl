@@ -113,6 +113,19 @@ SHARED Number WaterLetsIn(Number index, Number mu_eye) {
   return Number(0.934) / Number(0.9789) * WaterTransmitted(mu_eye, index);
 }
 
+// A wet rough surface: Lekner, Dorf (1988), Appl. Opt. 27, 1278. A film of water over facets that
+// absorb a share `a` of light sends 0.472 of what they reflect back to them: 1 - (1 - r) / n^2,
+// with r = 0.0659 the reflectance of water, n = 1.33, for even light. Facets of index 1.5 absorb more
+// under water by (1 - 0.0308) / (1 - 0.0918), the less so the darker they are. The sheen of the film
+// is not part of it.
+// @param wetness  share of the surface that is wet.
+SHARED Number WetAlbedo(Number dry, Number wetness) {
+  Number absorbed = (Number(1.0) - dry) * (Number(1.0) + Number(0.06711) * dry);
+  Number sent = Number(1.0) - absorbed;
+  Number wet = Number(0.93407) * Number(0.52805) * sent / (Number(1.0) - Number(0.47195) * sent);
+  return dry + wetness * (wet - dry);
+}
+
 // Snow.
 SHARED Number SnowEscape(Number mu) {
   return Number(0.42857142857142855) * (Number(1.0) + Number(2.0) * mu);

@@ -62,6 +62,10 @@ struct MirroredRays {
 /// f0 + (1 - f0) (1 - cosine)^5: Schlick (1994), Computer Graphics Forum 13, 233.
 [[nodiscard]] double SchlickReflectance(double cosine, double f0);
 
+/// What a surface of an albedo has where it is wet: WetAlbedo of reflectance.glsl in all bands.
+/// @param wetness  share of it that is wet, in [0, 1].
+[[nodiscard]] Bands<float> Wetted(Bands<float> albedo, double wetness);
+
 /// A diffuse surface of facets that shade each other (Oren, Nayar 1994), in the form of Portsmouth,
 /// Kutz, Hill (2025), JCGT 14(1), which keeps what is reflected several times between them: a
 /// surface of albedo 1 sends on all light.

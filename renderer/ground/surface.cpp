@@ -9,6 +9,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "renderer/ground/ground_cover.h"
+#include "renderer/ground/reflectance.h"
 #include "renderer/terrain/lattice_noise.h"
 
 namespace alpenglow {
@@ -62,11 +63,12 @@ double DetailNoise(const GroundPoint& point, const Noise& noise) {
 // Linear sRGB of broad classes of ground, chosen within the ranges of visible albedo that Oke
 // (1987), Boundary Layer Climates, table 1.1 gives: forest 0.05-0.15, grass 0.1-0.25, rock and soil
 // 0.1-0.3, snow 0.7-0.95.
-MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover)
+MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover,
+                                 double wetness)
     : cover_(cover),
       materials_{AlbedoBands({0.038, 0.054, 0.027}, wavelengths_nm),
-                 AlbedoBands({0.098, 0.115, 0.055}, wavelengths_nm),
-                 AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm),
+                 Wetted(AlbedoBands({0.098, 0.115, 0.055}, wavelengths_nm), wetness),
+                 Wetted(AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm), wetness),
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
 Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up) const {

@@ -30,7 +30,9 @@ class MountainSurface {
     Bands<float> forest, meadow, rock, snow;
   };
 
-  MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover);
+  /// @param wetness  of rock and meadow, in [0, 1]; leaves of a wood shed water.
+  MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover,
+                  double wetness = 0.0);
 
   [[nodiscard]] const MountainCover& cover() const { return cover_; }
   [[nodiscard]] const Materials& materials() const { return materials_; }

@@ -32,8 +32,10 @@ struct Lighting {
 };
 
 /// The sun as it stands, the ground as the season covers it at that place.
+/// @param wetness  see MountainSurface.
 [[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
-                                  const GeodeticPosition& place, const Medium& medium);
+                                  const GeodeticPosition& place, const Medium& medium,
+                                  double wetness = 0.0);
 
 /// The sun over a point, terrain aside.
 struct LocalSun {

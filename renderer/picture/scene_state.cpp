@@ -50,7 +50,7 @@ CameraStand SceneState::StandOf(const Shot& shot) const {
 
 Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) const {
   const SunPosition sun = ApparentSun(shot);
-  Lighting light = LightingOf(sun, shot.instant, scene.place, medium);
+  Lighting light = LightingOf(sun, shot.instant, scene.place, medium, scene.ground.wetness);
   light.to_sun = stand.frame_from_enu * light.to_sun;
   if (!medium.follows_wgs84) return light;  // no other planet has this moon
   light.moon = ApparentMoonDisk(EyeOf(shot), shot.instant, sun.distance_au);

@@ -234,7 +234,7 @@ GroundCover GroundOf(const TomlTable& document) {
   const std::optional<TomlTable> table = document.Table("ground");
   if (!table) return {};
   table->AllowOnly({"cover", "albedo", "roughness", "reflectance", "wind_m_per_s",
-                    "grain_diameter_mm", "sea_level_m"});
+                    "grain_diameter_mm", "sea_level_m", "wetness"});
   GroundCover ground;
   ground.kind = CoverOf(*table);
   ground.sea_level_m = table->Number("sea_level_m", kDeepestPlace_m, 9000.0);
@@ -245,6 +245,10 @@ GroundCover GroundOf(const TomlTable& document) {
   RequireCover(*table, "roughness", is_rough, "oren-nayar and blinn-phong");
   RequireCover(*table, "reflectance", ground.kind == Kind::kBlinnPhong, "blinn-phong");
   RequireCover(*table, "wind_m_per_s", has_water, "water, or ground with a sea_level_m");
+  RequireCover(*table, "wetness",
+               ground.kind == Kind::kMountain || ground.kind == Kind::kLambert ||
+                   ground.kind == Kind::kOrenNayar,
+               "mountain, lambert and oren-nayar");
   RequireCover(*table, "grain_diameter_mm", ground.kind == Kind::kSnow, "snow");
   if (const auto albedo = table->Numbers("albedo", 0.0, 1.0)) {
     if (albedo->size() != 1 && albedo->size() != 3)
@@ -255,6 +259,7 @@ GroundCover GroundOf(const TomlTable& document) {
   ground.roughness = table->Number("roughness", smoothest, 1.0).value_or(ground.roughness);
   ground.reflectance = table->Number("reflectance", 0.0, 1.0).value_or(ground.reflectance);
   ground.wind_m_per_s = table->Number("wind_m_per_s", 0.0, 20.0).value_or(ground.wind_m_per_s);
+  ground.wetness = table->Number("wetness", 0.0, 1.0).value_or(ground.wetness);
   if (const auto grain = table->Number("grain_diameter_mm", 0.05, 5.0))
     ground.grain_diameter_m = 1e-3 * *grain;
   return ground;

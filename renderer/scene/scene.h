@@ -79,6 +79,7 @@ struct GroundCover {
   double reflectance = 0.04;                    // of the coat at normal incidence
   double wind_m_per_s = 5.0;                    // over water
   double grain_diameter_m = 5e-4;               // of snow
+  double wetness = 0.0;                         // of kMountain to kOrenNayar, see WetAlbedo
   std::optional<double> sea_level_m;            // ground that is not higher is water
 };
 

@@ -60,8 +60,8 @@ GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
   block.cover_albedo = FourOf(material.albedo());
   block.rough = {rough.roughness(), rough.scale(), rough.mean_single(), 0.0};
   block.coat = {glossy.exponent(), glossy.f0(), glossy.normalisation(), 0.0};
-  block.water = {material.water().slope_variance(), material.WaterLine_m().value_or(kNoSea_m), 0.0,
-                 0.0};
+  block.water = {material.water().slope_variance(), material.WaterLine_m().value_or(kNoSea_m),
+                 material.cover().wetness, 0.0};
   block.under_water = FourOf(material.water().under_surface());
   block.snow_y = FourOf(material.snow().y());
   block.drape_red = FourOf(colours.OfPrimary(0));

@@ -58,7 +58,8 @@ class GroundFollower::Maker {
     if (!site) return nullptr;
     const View& view = request.view;
     const LocalFrame here(site->ground().frame.ellipsoid(), view.eye);
-    Lighting light = LightingOf(view.sun, view.now, view.eye, site->medium());
+    Lighting light =
+        LightingOf(view.sun, view.now, view.eye, site->medium(), site->material().cover().wetness);
     light.to_sun = site->ground()
                        .frame
                        .EnuFromEcef(here.EcefFromEnu(

@@ -43,7 +43,8 @@ glm::dvec2 OnPattern(const PaintedScene& scene, const glm::dvec3& eye) {
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
   const LocalFrame pattern = PatternOf(scene), here(scene.ellipsoid(), view.eye.place);
   const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
-                                CoverInSeason(view.eye.place, view.now.modified_julian_day));
+                                CoverInSeason(view.eye.place, view.now.modified_julian_day),
+                                scene.material().cover().wetness);
   const glm::dvec2 at = OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz);
   GroundBlock block = GroundBlockOf(surface, at.x, at.y);
   const auto axis = [&](const glm::dvec3& of_pattern) {

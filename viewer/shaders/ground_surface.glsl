@@ -14,7 +14,7 @@ layout(std140) uniform GroundSurface {
   vec4 cover_albedo;  // of a cover of one colour
   vec4 rough;         // RoughDiffuse: roughness, scale, mean albedo
   vec4 coat;          // Glossy: exponent, reflectance at normal incidence, normalisation
-  vec4 water;         // variance of slopes; the highest ground that is sea [m]
+  vec4 water;         // variance of slopes; the highest ground that is sea [m]; wetness of land
   vec4 under_water;   // by band
   vec4 snow_y;        // by band
   vec4 drape_red;     // albedo of colours by band
@@ -168,6 +168,7 @@ vec4 LandAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
   vec4 rgb = textureLod(drape, clamp(at, 0.0, 1.0), level);
   rgb.xyz /= max(rgb.w, 1e-3);  // means over a picture's rim
   vec4 draped = clamp(rgb.x * drape_red + rgb.y * drape_green + rgb.z * drape_blue, 0.0, 1.0);
+  for (int band = 0; band < 4; ++band) draped[band] = WetAlbedo(draped[band], water.z);
   bool within = all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
   albedo = within && rgb.w > 0.5 ? draped : albedo;
 #endif

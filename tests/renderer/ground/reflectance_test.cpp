@@ -272,6 +272,54 @@ TEST(Snow, IsAsBrightAsMeasured) {
   EXPECT_LT(old[4], 0.92F) << "coarse grains absorb red";
 }
 
+// Diffuse light meets the surface at a cosine as often as the cosine says.
+double MeanFresnel(double index) {
+  constexpr int kSteps = 2000;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps;
+    sum += 2.0 * mu * FresnelReflectance(mu, index) / kSteps;
+  }
+  return sum;
+}
+
+float WetGrey(double dry, double wetness) {
+  Bands<float> albedo(1);
+  albedo[0] = static_cast<float>(dry);
+  return Wetted(albedo, wetness)[0];
+}
+
+// Light followed through the film from facet to surface and back.
+TEST(WetGround, IsWhatReflectionsBetweenFacetsAndFilmSumTo) {
+  constexpr double kWater = 1.33, kStone = 1.5;
+  const double back = 1.0 - (1.0 - MeanFresnel(kWater)) / (kWater * kWater);
+  const double more = (1.0 - MeanFresnel(kStone / kWater)) / (1.0 - MeanFresnel(kStone));
+  for (const double dry : {0.0, 0.02, 0.1, 0.2, 0.5, 0.9, 1.0}) {
+    const double a = (1.0 - dry) * (dry * more + 1.0 - dry);
+    double inside = 1.0 - MeanFresnel(kWater), out = 0.0;
+    for (int times = 0; times < 60; ++times) {
+      out += inside * (1.0 - a) * (1.0 - back);
+      inside *= (1.0 - a) * back;
+    }
+    EXPECT_NEAR(static_cast<double>(WetGrey(dry, 1.0)), out, 1e-4) << dry << ": constants' digits";
+  }
+}
+
+TEST(WetGround, IsAsDarkAsMeasured) {
+  // Angstrom (1925), Geografiska Annaler 7, 323, as Lekner, Dorf (1988) have it: grey sand 0.18 dry
+  // and 0.09 wet, black mould 0.14 and 0.08.
+  EXPECT_NEAR(WetGrey(0.18, 1.0), 0.09, 0.02) << "0.02 is the sheen of the film";
+  EXPECT_NEAR(WetGrey(0.14, 1.0), 0.08, 0.02);
+}
+
+TEST(WetGround, DriesEvenlyAndIsNeverLighter) {
+  for (const double dry : {0.02, 0.1, 0.3, 0.7}) {
+    EXPECT_EQ(WetGrey(dry, 0.0), static_cast<float>(dry));
+    EXPECT_NEAR(WetGrey(dry, 0.5), 0.5 * (dry + static_cast<double>(WetGrey(dry, 1.0))), 1e-6);
+    EXPECT_LT(WetGrey(dry, 1.0), dry);
+  }
+}
+
 TEST(Reflectance, RefusesWhatNoSurfaceIs) {
   EXPECT_THROW(RoughDiffuse(1.5), InputError);
   EXPECT_THROW(Glossy(0.05, 0.04), InputError);

@@ -265,6 +265,7 @@ TEST(Scene, GroundIsWhatTheFileSays) {
   EXPECT_EQ(gloss.ground.roughness, 0.3);
   EXPECT_EQ(gloss.ground.reflectance, 0.05);
   EXPECT_EQ(Read(kPlace + "[ground]\ncover = \"lambert\"\nalbedo = 0.4\n").ground.albedo[2], 0.4);
+  EXPECT_EQ(Read(kPlace + "[ground]\nwetness = 0.7\n").ground.wetness, 0.7);
   const Scene snow = Read(kPlace + "[ground]\ncover = \"snow\"\ngrain_diameter_mm = 0.2\n");
   EXPECT_NEAR(snow.ground.grain_diameter_m, 2e-4, 1e-18);
   const Scene draped = Read(kPlace + "[terrain]\ncolour = \"photo.tif\"\n");
@@ -286,6 +287,8 @@ TEST(Scene, GroundThatCannotBeIsRefused) {
               HasSubstr("ground.roughness is for"));
   EXPECT_THAT(fault("cover = \"blinn-phong\"\nroughness = 0.05\n"), HasSubstr("[0.1, 1]"));
   EXPECT_THAT(fault("cover = \"snow\"\ngrain_diameter_mm = 50\n"), HasSubstr("[0.05, 5]"));
+  EXPECT_THAT(fault("wetness = 1.1\n"), HasSubstr("[0, 1]"));
+  EXPECT_THAT(fault("cover = \"snow\"\nwetness = 1\n"), HasSubstr("ground.wetness is for"));
   EXPECT_THAT(FaultOf(kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n"),
               HasSubstr("terrain.colour"));
 }
