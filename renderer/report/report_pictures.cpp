@@ -107,10 +107,8 @@ class PicturesTopic {
     topic_.what =
         "The built-in range at noon, a quarter of an hour before sunset and ten minutes before the "
         "end of civil twilight from the same place, the middle of a picture 1280 pixels wide; and "
-        "a "
-        "runway with forty lamps and an "
-        "aeroplane's landing lights in height fog; sky, air, shafts, shadows and lamps are "
-        "rendered as skyseries renders them.";
+        "a runway with forty lamps and an aeroplane's landing lights in height fog; sky, air, "
+        "shafts, shadows and lamps are rendered as skyseries renders them.";
     topic_.error_unit =
         "parts of the pixel, as a distance of linear red, green and blue; what is darker than a "
         "sixteenth of middle grey counts as if it were that bright, and 2 is the most (light in "

@@ -99,6 +99,18 @@ TEST_F(Skyseries, AStillIsASeriesOfOne) {
   EXPECT_EQ(outcome.out, "") << "standard output is for results only";
 }
 
+TEST_F(Skyseries, APictureIsHeldToANoiseUnlessEqualRaysAreAskedForAndSaysWhatItTook) {
+  const std::string scene = InFolder("s.toml") + " --size 16x9 --quiet --out ";
+  ASSERT_EQ(Run(scene + InFolder("held.exr")).status, 0);
+  ASSERT_EQ(Run(scene + InFolder("even.exr") + " --samples 3").status, 0);
+  const Metadata held = ReadExrMetadata(folder_ / "held.exr");
+  EXPECT_EQ(held.at("alpenglow.noise"), "0.02");
+  EXPECT_THAT(held.at("alpenglow.note.rays"), HasSubstr(" a pixel, 4 to "));
+  const Metadata even = ReadExrMetadata(folder_ / "even.exr");
+  EXPECT_EQ(even.count("alpenglow.noise"), 0U);
+  EXPECT_EQ(even.at("alpenglow.note.rays"), "3.000 a pixel, 3 to 3");
+}
+
 TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
   const std::string still = SmallStill();
   for (const std::string& arguments : {std::string("--nonsense"),
@@ -112,6 +124,9 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
                                        still + " --aov smell",
                                        still + " --samples 0",
                                        still + " --samples 1025",
+                                       still + " --noise 0",
+                                       still + " --noise 2%",  // of a single ray
+                                       still + " --glare lens",
                                        still + " --filter lanczos",
                                        still + " --threads -1",
                                        still + " --effects bloom",

@@ -141,6 +141,30 @@ TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
   EXPECT_GT(seen.rgb[2], seen.rgb[0]) << "red light has turned a bluish grey";
 }
 
+TEST_F(SeriesRun, GlareIsInTheDevelopedPictureAndNotInTheLight) {
+  SeriesSource source = Source();
+  source.fov_rad = 0.5;
+  source.render = [](const Frame&, Progress&) {
+    Image image(16, 9);
+    image.rgb.assign(image.rgb.size(), {100.0F, 100.0F, 100.0F});
+    image.at(8, 4).fill(1e7F);
+    return image;
+  };
+  SeriesOutput output = Output();
+  output.png = true;
+  output.exposure = {ExposureRule::Kind::kFixed, 10.0};
+  Run(source, output, 1);
+  const DisplayImage without = ReadPng(folder_ / "frame.0001.png");
+  output.glare = true;
+  Run(source, output, 1);
+  EXPECT_EQ(ReadExr(folder_ / "frame.0001.exr").at(9, 4)[0], 100.0F);
+  EXPECT_EQ(ReadExrMetadata(folder_ / "frame.0001.exr").count("alpenglow.glare"), 1U);
+  const std::size_t beside = 3 * (4 * 16 + 9);
+  EXPECT_GT(ReadPng(folder_ / "frame.0001.png").rgb[beside], without.rgb[beside] + 20);
+  source.projection = Projection::kLatitudeLongitude;
+  EXPECT_THROW((void)Run(source, output, 1), InputError);
+}
+
 TEST_F(SeriesRun, AFixedExposureIsNotMetered) {
   SeriesOutput output = Output();
   Run(Source(), output);
