@@ -13,6 +13,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/land_cover.h"
 #include "renderer/terrain/elevation_raster.h"
 
 namespace alpenglow {
@@ -30,7 +31,7 @@ struct CloseDataset {
 };
 using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 
-Dataset Open(const std::filesystem::path& file) {
+Dataset Open(const std::filesystem::path& file, bool is_land_cover) {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALRegister_GTiff();
@@ -44,7 +45,10 @@ Dataset Open(const std::filesystem::path& file) {
   if (!dataset)
     Refuse(file, fmt::format("not a readable GeoTIFF or PNG ({})", CPLGetLastErrorMsg()));
   const int bands = dataset->GetRasterCount();
-  if (bands < 1 || (bands < 3 && dataset->GetRasterBand(1)->GetColorTable() != nullptr))
+  if (is_land_cover) {
+    if (bands != 1 || dataset->GetRasterBand(1)->GetRasterDataType() != GDT_Byte)
+      Refuse(file, "is no map of land cover, which has one band of 8 bits");
+  } else if (bands < 1 || (bands < 3 && dataset->GetRasterBand(1)->GetColorTable() != nullptr))
     Refuse(file, "has a palette; colours are read from red, green and blue bands");
   if (std::int64_t{dataset->GetRasterXSize()} * dataset->GetRasterYSize() > kMostPixels) {
     Refuse(file, fmt::format("has {} x {} pixels; at most {} can be held",
@@ -108,6 +112,27 @@ std::vector<std::array<std::uint16_t, 3>> ReadPixels(const std::filesystem::path
     }
   }
   return rgb;
+}
+
+std::vector<std::array<std::uint16_t, 3>> ReadClasses(const std::filesystem::path& file,
+                                                      GDALDataset& dataset) {
+  const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
+  std::vector<std::array<std::uint16_t, 3>> shares;
+  shares.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(columns));
+  for (int y = 0; y < rows; ++y) {
+    if (dataset.GetRasterBand(1)->RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1,
+                                           GDT_Byte, 0, 0) != CE_None)
+      Refuse(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
+    for (const std::uint8_t number : row) {
+      const auto cover = CoverOfClass(number);
+      if (!cover) Refuse(file, fmt::format("has {}, which is no class of land cover", number));
+      std::array<std::uint16_t, 3>& stored = shares.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        stored[k] = static_cast<std::uint16_t>(std::lround(65535.0 * (*cover)[k]));
+    }
+  }
+  return shares;
 }
 
 /// From longitude and latitude to pixels, by the file's own coordinate system.
@@ -190,10 +215,12 @@ BandLight BandsOfColour::Albedo(const std::array<double, 3>& rgb) const {
 }
 
 std::shared_ptr<const ColourDrape> ColourDrape::Of(const Scene& scene, const SceneGround& ground) {
-  if (scene.terrain.colour.empty()) return nullptr;
-  if (!ground.terrain) Refuse(scene.terrain.colour, "there is no terrain under it");
+  const std::filesystem::path& file = scene.terrain.Drape();
+  if (file.empty()) return nullptr;
+  if (!ground.terrain) Refuse(file, "there is no terrain under it");
   const QuietGdal quiet;
-  return std::shared_ptr<const ColourDrape>(new ColourDrape(scene.terrain.colour, ground));
+  return std::shared_ptr<const ColourDrape>(
+      new ColourDrape(file, scene.terrain.colour.empty(), ground));
 }
 
 std::shared_ptr<const ColourDrape> ColourDrape::In(const LocalFrame& frame) const {
@@ -206,12 +233,15 @@ std::shared_ptr<const ColourDrape> ColourDrape::In(const LocalFrame& frame) cons
   return moved;
 }
 
-ColourDrape::ColourDrape(const std::filesystem::path& file, const SceneGround& ground)
-    : frame_(ground.frame), radius_m_(ground.frame.ellipsoid().equatorial_radius_m) {
-  const Dataset dataset = Open(file);
+ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
+                         const SceneGround& ground)
+    : frame_(ground.frame),
+      radius_m_(ground.frame.ellipsoid().equatorial_radius_m),
+      is_land_cover_(is_land_cover) {
+  const Dataset dataset = Open(file, is_land_cover);
   std::vector<Level> levels;
-  levels.push_back(
-      {dataset->GetRasterXSize(), dataset->GetRasterYSize(), ReadPixels(file, *dataset)});
+  levels.push_back({dataset->GetRasterXSize(), dataset->GetRasterYSize(),
+                    is_land_cover ? ReadClasses(file, *dataset) : ReadPixels(file, *dataset)});
   while (levels.back().columns > 1 && levels.back().rows > 1) {
     const Level& fine = levels.back();
     Level coarse{fine.columns / 2, fine.rows / 2, {}};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A picture of colours laid over the terrain: an orthophoto, a map.
+// A picture laid over the terrain: colours of an orthophoto, or a map of land cover.
 //
 // Read by GDAL: GeoTIFF and PNG, 8 or 16 bits (sRGB-encoded) or floating point (linear), three
 // bands or more (the first three are red, green, blue), or one (grey). With a coordinate system it
 // lies where it says; without, it covers the terrain from rim to rim, its upper edge in the north.
-// Averages over 2 x 2, 4 x 4, ... pixels serve distant ground.
+// A map of land cover is one band of 8 bits, of the classes of land_cover.h. Averages over 2 x 2, 4 x 4, ... pixels serve distant ground.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ class BandsOfColour {
   std::array<BandLight, 3> of_primary_;
 };
 
-/// Colours on the terrain. Immutable; safe to ask from many threads.
+/// Colours or land cover on the terrain. Immutable; safe to ask from many threads.
 class ColourDrape {
  public:
   /// The picture that a scene names, over its ground; null if it names
@@ -52,10 +52,14 @@ class ColourDrape {
   /// The same colours for points of another frame.
   [[nodiscard]] std::shared_ptr<const ColourDrape> In(const LocalFrame& frame) const;
 
+  /// Shares of land cover, where else are colours.
+  [[nodiscard]] bool IsLandCover() const { return is_land_cover_; }
+
   /// About the width of a pixel [m].
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
 
-  /// Linear sRGB, averaged over about a footprint; nothing outside the picture.
+  /// Linear sRGB, or shares of land cover as CoverOfClass has them, averaged over about a footprint;
+  /// nothing outside the picture.
   /// @param point  in the ground's frame, at that altitude.
   [[nodiscard]] std::optional<std::array<double, 3>> At(const glm::dvec3& point, double altitude_m,
                                                         double footprint_m) const;
@@ -71,7 +75,7 @@ class ColourDrape {
     double x, y;
   };
 
-  ColourDrape(const std::filesystem::path& file, const SceneGround& ground);
+  ColourDrape(const std::filesystem::path& file, bool is_land_cover, const SceneGround& ground);
   [[nodiscard]] std::array<double, 3> Bilinear(std::size_t level, const Place& at) const;
 
   std::shared_ptr<const std::vector<Level>> levels_;  // each half as fine as the one before
@@ -83,6 +87,7 @@ class ColourDrape {
   std::vector<Place> places_;
   double radius_m_ = 0.0;
   double pixel_m_ = 1.0;
+  bool is_land_cover_;
 };
 
 }  // namespace alpenglow

@@ -83,6 +83,18 @@ SHARED Number ForestShare(Number treeless, Number flat_ground, Number broad, Num
   return (Number(1.0) - treeless) * SmoothRise(Number(0.05), Number(0.75), density);
 }
 
+// Land cover of a map: shares of wood, stone and lasting snow; the rest is grass. Two corners that
+// no mixture of these comes near stand for water, all wood and all stone, and for what the map does
+// not know, all stone and all snow.
+// 1 for yes, 0 for no.
+SHARED Number IsMappedWater(Number wood, Number stone) {
+  return select(wood + stone > Number(1.5), Number(1.0), Number(0.0));
+}
+
+SHARED Number IsMapped(Number stone, Number snow) {
+  return select(stone + snow < Number(1.5), Number(1.0), Number(0.0));
+}
+
 // Share of rock and scree in ground without snow: where it is bare, in half of what is too steep
 // under the tree line, for trees stand in its cracks, and as earth and stones between tussocks.
 SHARED Number RockShare(Number bare, Number soil, Number forest, Number grain) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "atmosphere/number/constants.h"
+#include "renderer/ground/ground_cover.h"
 
 namespace alpenglow {
 namespace {
@@ -68,7 +69,8 @@ GroundMaterial::GroundMaterial(const GroundCover& cover, std::shared_ptr<const C
       snow_(cover.grain_diameter_m, wavelengths_nm) {}
 
 bool GroundMaterial::HasGloss() const {
-  return cover_.kind == Kind::kWater || cover_.kind == Kind::kBlinnPhong || cover_.sea_level_m;
+  return cover_.kind == Kind::kWater || cover_.kind == Kind::kBlinnPhong || cover_.sea_level_m ||
+         HasLandCover();
 }
 
 std::optional<double> GroundMaterial::WaterLine_m() const {
@@ -76,23 +78,31 @@ std::optional<double> GroundMaterial::WaterLine_m() const {
   return *cover_.sea_level_m + kWaterLine_m;
 }
 
-BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, const glm::dvec3& point, double normal_up,
-                                   const MountainSurface& season) const {
-  if (drape_) {
-    if (const auto rgb = drape_->At(point, at.altitude_m, at.footprint_m))
-      return Wetted(bands_of_colour_.Albedo(*rgb), cover_.wetness);
-  }
-  return cover_.kind == Kind::kMountain ? season.Albedo(at, normal_up) : albedo_;
+BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, double normal_up,
+                                   const MountainSurface& season,
+                                   const std::optional<std::array<double, 3>>& draped) const {
+  if (draped && !HasLandCover()) return Wetted(bands_of_colour_.Albedo(*draped), cover_.wetness);
+  if (cover_.kind != Kind::kMountain) return albedo_;
+  if (!draped || shared::IsMapped((*draped)[1], (*draped)[2]) == 0.0)
+    return season.Albedo(at, normal_up);
+  return season.Albedo(
+      at, normal_up,
+      MappedCover{static_cast<float>((*draped)[0]), static_cast<float>((*draped)[1]),
+                  static_cast<float>((*draped)[2])});
 }
 
 GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& point,
                                       double normal_up, const MountainSurface& season) const {
+  const GroundPatch water{*this, Kind::kWater, BandLight(albedo_.count)};
   const auto water_line_m = WaterLine_m();
-  if (water_line_m && at.altitude_m <= *water_line_m)
-    return {*this, Kind::kWater, BandLight(albedo_.count)};
+  if (water_line_m && at.altitude_m <= *water_line_m) return water;
   if (cover_.kind == Kind::kWater || cover_.kind == Kind::kSnow)
     return {*this, cover_.kind, BandLight(albedo_.count)};
-  return {*this, cover_.kind, AlbedoAt(at, point, normal_up, season)};
+  std::optional<std::array<double, 3>> draped;
+  if (drape_) draped = drape_->At(point, at.altitude_m, at.across_m);
+  if (draped && HasLandCover() && shared::IsMappedWater((*draped)[0], (*draped)[1]) > 0.0)
+    return water;
+  return {*this, cover_.kind, AlbedoAt(at, normal_up, season, draped)};
 }
 
 GroundPatch GroundMaterial::OfPlanet(const BandLight& planet_albedo) const {

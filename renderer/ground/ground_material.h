@@ -46,7 +46,7 @@ class GroundPatch {
 /// Immutable; safe to ask from many threads.
 class GroundMaterial {
  public:
-  /// @param drape  colours over the terrain, or nothing.
+  /// @param drape  colours or land cover over the terrain, or nothing.
   GroundMaterial(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
                  std::span<const double> wavelengths_nm);
 
@@ -77,8 +77,11 @@ class GroundMaterial {
 
  private:
   friend class GroundPatch;
-  [[nodiscard]] BandLight AlbedoAt(const GroundPoint& at, const glm::dvec3& point, double normal_up,
-                                   const MountainSurface& season) const;
+  /// @param draped  what the drape shows there.
+  [[nodiscard]] BandLight AlbedoAt(const GroundPoint& at, double normal_up,
+                                   const MountainSurface& season,
+                                   const std::optional<std::array<double, 3>>& draped) const;
+  [[nodiscard]] bool HasLandCover() const { return drape_ && drape_->IsLandCover(); }
 
   GroundCover cover_;
   std::shared_ptr<const ColourDrape> drape_;

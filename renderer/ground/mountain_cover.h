@@ -24,6 +24,11 @@ struct MountainCover {
                                 // all of it is
 };
 
+/// What a map says of a place, in shares; see ground_cover.glsl.
+struct MappedCover {
+  float wood, stone, snow;
+};
+
 /// What does not change with the season.
 struct MountainClimate {
   double tree_line_m;

@@ -28,11 +28,12 @@ glm::dvec3 SceneGeometry::UpAt(const glm::dvec3& point) const {
   return glm::normalize(point + glm::dvec3(0.0, 0.0, radius_m()));
 }
 
-GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m) const {
+GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m,
+                                    double cosine) const {
   const GeodeticPosition& origin = ground_.frame.origin();
   return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius_m() + point.x,
           origin.latitude_rad * radius_m() + point.y, std::max(AltitudeOf(point), 0.0),
-          footprint_m};
+          shared::SeenFootprint(footprint_m, cosine), footprint_m};
 }
 
 // Whether the bare planet stands between the eye and terrain behind its horizon: the ray goes
@@ -59,18 +60,14 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   if (ground_.terrain) {
     const auto hit = ground_.terrain->Intersect(origin, direction);
     if (hit && !HiddenByPlanet(origin, direction, hit->distance_m)) {
-      Hit found{HitKind::kTerrain,
-                hit->distance_m,
-                hit->normal,
-                hit->normal,
-                hit->geometric_normal,
-                origin + hit->distance_m * direction,
-                hit->smooth_point,
-                shared::SeenFootprint(hit->distance_m * pixel_angle_rad,
-                                      -glm::dot(hit->normal, direction))};
+      Hit found{HitKind::kTerrain,     hit->distance_m,
+                hit->normal,           hit->normal,
+                hit->geometric_normal, origin + hit->distance_m * direction,
+                hit->smooth_point,     hit->distance_m * pixel_angle_rad};
       if (with_relief_) {
-        found.normal =
-            MountainSurface::DetailedNormal(GroundAt(found.point, found.footprint_m), found.normal);
+        found.normal = MountainSurface::DetailedNormal(
+            GroundAt(found.point, found.footprint_m, -glm::dot(found.normal, direction)),
+            found.normal);
       }
       return found;
     }

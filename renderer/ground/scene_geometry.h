@@ -28,7 +28,7 @@ struct Hit {
   glm::dvec3 geometric_normal{0.0, 0.0, 1.0};
   glm::dvec3 point{0.0};         // where the ray ends: of what is there
   glm::dvec3 smooth_point{0.0};  // where light falls on it: TerrainHit::smooth_point
-  double footprint_m = 0.0;      // what a pixel covers there, see SeenFootprint
+  double footprint_m = 0.0;      // width of a pixel there
 };
 
 /// Immutable, safe to share between threads. Refers to the ground and the medium.
@@ -42,7 +42,9 @@ class SceneGeometry {
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   /// Unit.
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
-  [[nodiscard]] GroundPoint GroundAt(const glm::dvec3& point, double footprint_m) const;
+  /// @param cosine  of the ray and the normal of the mesh.
+  [[nodiscard]] GroundPoint GroundAt(const glm::dvec3& point, double footprint_m,
+                                     double cosine = 1.0) const;
 
   /// @param direction  unit; pixel_angle_rad: between neighbouring pixels.
   [[nodiscard]] Hit Trace(const glm::dvec3& origin, const glm::dvec3& direction,

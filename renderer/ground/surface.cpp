@@ -71,7 +71,8 @@ MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const M
                  Wetted(AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm), wetness),
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
-Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up) const {
+Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
+                                     const std::optional<MappedCover>& mapped) const {
   const double broad = DetailNoise(point, kBroad);
   const double fine = DetailNoise(point, kFine);
   const double grain = DetailNoise(point, kGrain);
@@ -79,13 +80,15 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up)
   const double level = shared::WaveringLevel(normal_up, broad, fine);
   const auto rise = [](double value) { return static_cast<float>(value); };
   const float forest =
-      shared::ForestShare(rise(shared::TreelessRise(altitude, cover_.tree_line_m)),
-                          rise(shared::FlatRise(normal_up)), rise(broad), rise(fine));
-  const float rock = shared::RockShare(rise(shared::BareRise(altitude, cover_.tree_line_m)),
-                                       rise(shared::SoilRise(level)), forest, rise(grain));
+      mapped ? mapped->wood
+             : shared::ForestShare(rise(shared::TreelessRise(altitude, cover_.tree_line_m)),
+                                   rise(shared::FlatRise(normal_up)), rise(broad), rise(fine));
+  const float rock = shared::RockShare(
+      mapped ? mapped->stone : rise(shared::BareRise(altitude, cover_.tree_line_m)),
+      mapped ? 1.0F : rise(shared::SoilRise(level)), forest, rise(grain));
   const float lying =
       rise(shared::ColdRise(altitude, cover_.snow_line_m)) * rise(shared::SnowHoldRise(level));
-  const float snow = shared::SnowSeen(lying, forest, rock);
+  const float snow = std::max(shared::SnowSeen(lying, forest, rock), mapped ? mapped->snow : 0.0F);
   const auto tone = shared::GroundTone(rise(broad), rise(fine), rise(grain), forest, rock);
   Bands<float> albedo(materials_.rock.count);
   for (std::size_t band = 0; band < albedo.count; ++band) {

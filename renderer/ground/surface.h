@@ -4,6 +4,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace alpenglow {
 struct GroundPoint {
   double east_m, north_m;  // anchored to the planet, so that the pattern does not follow the eye
   double altitude_m;
-  double footprint_m;  // width that one ray of the picture covers: finer detail is left out
+  double footprint_m;             // what one ray of the picture covers: finer detail is left out
+  double across_m = footprint_m;  // its width across the ray
 };
 
 /// Lambertian albedo of mountain ground: forest and meadow below the tree line, rock and scree
@@ -38,7 +40,9 @@ class MountainSurface {
   [[nodiscard]] const Materials& materials() const { return materials_; }
 
   /// @param normal_up  vertical component of the unit normal, 1 on level ground.
-  [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up) const;
+  /// @param mapped  instead of what altitude and slope make of it; the snow of the season lies on it.
+  [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up,
+                                    const std::optional<MappedCover>& mapped = std::nullopt) const;
 
   /// The normal with the relief that a mesh of 30 to 100 m spacing does not have: unit, tilted by
   /// about 8 degrees rms where the footprint is small, unchanged where it is over 110 m.

@@ -63,7 +63,8 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
   if (const auto direct = SunIrradiance(hit, from, sun, {0.0, 0.0}))
     irradiance = irradiance + *direct;
   // Seen at 60 degrees, which stands for the mean over directions.
-  return static_cast<float>(1.0 / kPi) * (PatchAt(hit, light, sun.up).BodyAlbedo(0.5) * irradiance);
+  return static_cast<float>(1.0 / kPi) *
+         (PatchAt(hit, light, sun.up, 1.0).BodyAlbedo(0.5) * irradiance);
 }
 
 LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
@@ -104,10 +105,10 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
   return fog.left * clear + fog.added;
 }
 
-GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light,
-                                 const glm::dvec3& up) const {
+GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
+                                 double cosine) const {
   if (hit.kind == HitKind::kTerrain) {
-    return parts_.material.OfTerrain(parts_.geometry.GroundAt(hit.point, hit.footprint_m),
+    return parts_.material.OfTerrain(parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine),
                                      hit.point, glm::dot(hit.mesh_normal, up), light.surface);
   }
   BandLight albedo(air_.bands());
@@ -147,7 +148,7 @@ GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
                                     std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
   const LocalSun sun = LocalSunAt(seen.point, light);
-  const GroundPatch patch = PatchAt(seen, light, sun.up);
+  const GroundPatch patch = PatchAt(seen, light, sun.up, glm::dot(seen.mesh_normal, to_eye));
   Hit hit = seen;
   if (patch.IsWater()) hit.normal = hit.mesh_normal = sun.up;  // waves are its own
   const double mu_eye = AnglesBetween(hit.normal, hit.normal, to_eye).mu_eye;

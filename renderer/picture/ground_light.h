@@ -76,8 +76,9 @@ class GroundLight {
   /// What a slope sends to others, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const GroundSources& from,
                                        const TerrainLight& sky) const;
-  [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light,
-                                    const glm::dvec3& up) const;
+  /// @param cosine  of eye and normal of the mesh.
+  [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
+                                    double cosine) const;
   /// Of the sky, and of slopes before it, in a glossy surface, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight Mirrored(const GroundPatch& patch, const Hit& hit,
                                    const glm::dvec3& to_eye, const Lighting& light,

@@ -169,7 +169,7 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder) {
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   const std::optional<TomlTable> table = document.Table("terrain");
   if (!table) return {};
-  table->AllowOnly({"dem", "mesh", "none", "range", "voids", "colour"});
+  table->AllowOnly({"dem", "mesh", "none", "range", "voids", "colour", "land_cover"});
   const std::optional<std::string> dem = table->Text("dem");
   const std::optional<std::string> mesh = table->Text("mesh");
   const bool none = table->Truth("none").value_or(false);
@@ -189,9 +189,15 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   const std::optional<std::string> colour = table->Text("colour");
   if (colour && none)
     table->Fail("colour", "terrain.colour lies over terrain; terrain.none is set");
+  const std::optional<std::string> land_cover = table->Text("land_cover");
+  if (land_cover && (none || colour)) {
+    table->Fail("land_cover", none ? "terrain.land_cover lies over terrain; terrain.none is set"
+                                   : "give one of terrain.colour and terrain.land_cover");
+  }
   TerrainSource source;
   source.is_default = !dem && !mesh && !none && !range;
   if (colour) source.colour = folder / *colour;
+  if (land_cover) source.land_cover = folder / *land_cover;
   source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
   if (none) source.kind = TerrainSource::Kind::kNone;
   if (dem) {
@@ -479,6 +485,10 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   scene.medium = MediumOf(document, folder);
   scene.terrain = TerrainOf(document, folder);
   scene.ground = GroundOf(document);
+  if (!scene.terrain.land_cover.empty() && scene.ground.kind != GroundCover::Kind::kMountain) {
+    document.Table("terrain")->Fail(
+        "land_cover", "terrain.land_cover is for the cover mountain; ground.cover is another");
+  }
   for (const TomlTable& light : document.Tables("light")) {
     scene.lights.push_back(LightOf(light, folder));
   }

@@ -60,7 +60,13 @@ struct TerrainSource {
   VoidPolicy voids = VoidPolicy::kFill;
   std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
   bool is_default = true;  // nothing was said about the terrain: the range stands in for it
-  std::filesystem::path colour = {};  // over it, see ColourDrape; empty: none
+  std::filesystem::path colour = {};      // over it, see ColourDrape; empty: none
+  std::filesystem::path land_cover = {};  // as colour, and not both
+
+  /// What of both is given.
+  [[nodiscard]] const std::filesystem::path& Drape() const {
+    return colour.empty() ? land_cover : colour;
+  }
 };
 
 /// What the ground is made of, and how it sends light on (reflectance.h).

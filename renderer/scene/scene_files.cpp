@@ -10,6 +10,7 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
   };
   add("the terrain", scene.terrain.file);
   add("terrain.colour", scene.terrain.colour);
+  add("terrain.land_cover", scene.terrain.land_cover);
   for (const Light& light : scene.lights) {
     if (light.ies) add("light.ies", *light.ies);
   }

@@ -9,7 +9,7 @@
 namespace alpenglow {
 
 SceneDrape DrapeOf(const Scene& scene, const SceneGround& ground) {
-  if (scene.terrain.colour.empty()) return {};
+  if (scene.terrain.Drape().empty()) return {};
   std::optional<SceneGround> loaded;
   if (!ground.terrain) loaded.emplace(LoadGround(scene));
   const SceneGround& draped = loaded ? *loaded : ground;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The picture of colours that a scene lays over its terrain, and where it lies.
+// The picture, of colours or land cover, that a scene lays over its terrain, and where it lies.
 #pragma once
 
 #include <memory>

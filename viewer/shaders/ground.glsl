@@ -99,8 +99,9 @@ vec2 DetailSlope(vec2 offset, int family, float footprint) {
   return sum;
 }
 
-// @param altitude [m]; normal_up of the mesh's normal.
-vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
+// @param altitude [m]; normal_up of the mesh's normal; mapped: shares of a map of land cover, and
+//     whether there are any, 1 or 0.
+vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint, vec4 mapped) {
   float width = DetailFootprint(footprint);
   float broad = DetailNoise(offset, BROAD, width);
   float fine = DetailNoise(offset, FINE, width);
@@ -108,9 +109,11 @@ vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint)
   float wavering = WaveringAltitude(altitude, broad, fine);
   float level = WaveringLevel(normal_up, broad, fine);
   float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(normal_up), broad, fine);
-  float stone = RockShare(BareRise(wavering, cover_lines.x), SoilRise(level), wood, grain);
+  wood = PartlyCovered(wood, mapped.x, mapped.w);
+  float bare = PartlyCovered(BareRise(wavering, cover_lines.x), mapped.y, mapped.w);
+  float stone = RockShare(bare, PartlyCovered(SoilRise(level), 1.0, mapped.w), wood, grain);
   float lying = ColdRise(wavering, cover_lines.y) * SnowHoldRise(level);
-  float white = SnowSeen(lying, wood, stone);
+  float white = max(SnowSeen(lying, wood, stone), mapped.z * mapped.w);
   float tone = GroundTone(broad, fine, grain, wood, stone);
   vec4 albedo;
   for (int band = 0; band < 4; ++band) {

@@ -62,11 +62,12 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
   float altitude = 1e3 * at.altitude;
   float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
   vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
-  vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), footprint);
+  vec4 draped = DrapeAt(at.offset, altitude, at.footprint);
+  vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), footprint, draped);
   vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),
                                 SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
-#if HAS_SEA
-  if (altitude <= water.y)
+#if HAS_SEA || HAS_LAND_COVER
+  if (IsWater(altitude, draped))
     radiance = WaterRadiance(at.up, SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
 #endif
   return radiance;

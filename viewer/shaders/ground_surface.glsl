@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How surfaces of the ground send light on: reflectance.glsl with the values of one scene,
-// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind, HAS_SEA and HAS_DRAPE are 1
-// or 0: software drivers walk through both sides of every branch.
+// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind, HAS_SEA, HAS_DRAPE and
+// HAS_LAND_COVER (of the drape) are 1 or 0: software drivers walk through both sides of every branch.
 #define MOUNTAIN_COVER 0
 #define LAMBERT_COVER 1
 #define OREN_NAYAR_COVER 2
@@ -30,7 +30,7 @@ layout(std140) uniform GroundSurface {
 uniform sampler2D sea_mirror;  // SeaMirror of sea_mirror.h
 uniform sampler2D level_sky;   // LevelSky of sea_mirror.h
 #if HAS_DRAPE
-uniform sampler2D drape;  // linear sRGB; 1 where there is a picture
+uniform sampler2D drape;  // linear sRGB, or shares of land cover; 1 where there is a picture
 #endif
 
 // Cosines of normal and light, normal and eye, light and eye: AnglesBetween of reflectance.h.
@@ -153,24 +153,49 @@ vec4 CoverRadiance(vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance, v
          SkyInCoat(angles.y, sky_irradiance);
 }
 
-// Albedo of the land's body there.
-// @param offset  from the eye in the plane of the pattern [m]; altitude [m].
-vec4 LandAlbedo(vec2 offset, float altitude, float normal_up, float footprint) {
-#if GROUND_COVER == MOUNTAIN_COVER
-  vec4 albedo = GroundAlbedo(offset, altitude, normal_up, footprint);
-#else
-  vec4 albedo = cover_albedo;
-#endif
 #if HAS_DRAPE
+// What the drape shows there, and 1; 0 where it shows nothing.
+// @param offset  from the eye in the plane of the pattern [m]; altitude [m].
+vec4 DrapeAt(vec2 offset, float altitude, float footprint) {
   vec2 foot = (offset + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
   vec2 at = (foot - drape_place.xy) * drape_place.zw;
   float level = log2(max(footprint * drape_place.z * float(textureSize(drape, 0).x), 1.0));
-  vec4 rgb = textureLod(drape, clamp(at, 0.0, 1.0), level);
-  rgb.xyz /= max(rgb.w, 1e-3);  // means over a picture's rim
-  vec4 draped = clamp(rgb.x * drape_red + rgb.y * drape_green + rgb.z * drape_blue, 0.0, 1.0);
-  for (int band = 0; band < 4; ++band) draped[band] = WetAlbedo(draped[band], water.z);
+  vec4 shown = textureLod(drape, clamp(at, 0.0, 1.0), level);
+  shown.xyz /= max(shown.w, 1e-3);  // means over a picture's rim
   bool within = all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
-  albedo = within && rgb.w > 0.5 ? draped : albedo;
+  shown.w = within && shown.w > 0.5 ? 1.0 : 0.0;
+#if HAS_LAND_COVER
+  shown.w *= IsMapped(shown.y, shown.z);
+#endif
+  return shown;
+}
+#else
+vec4 DrapeAt(vec2 offset, float altitude, float footprint) { return vec4(0.0); }
+#endif
+
+// Whether it is water there.
+bool IsWater(float altitude, vec4 drape_shown) {
+#if HAS_LAND_COVER
+  if (drape_shown.w * IsMappedWater(drape_shown.x, drape_shown.y) > 0.5) return true;
+#endif
+  return altitude <= water.y;
+}
+
+// Albedo of the land's body there.
+// @param drape_shown  of DrapeAt.
+vec4 LandAlbedo(vec2 offset, float altitude, float normal_up, float footprint, vec4 drape_shown) {
+#if GROUND_COVER == MOUNTAIN_COVER
+  vec4 mapped = HAS_LAND_COVER == 1 ? drape_shown : vec4(0.0);
+  vec4 albedo = GroundAlbedo(offset, altitude, normal_up, footprint, mapped);
+#else
+  vec4 albedo = cover_albedo;
+#endif
+#if HAS_DRAPE && !HAS_LAND_COVER
+  vec4 draped =
+      clamp(drape_shown.x * drape_red + drape_shown.y * drape_green + drape_shown.z * drape_blue,
+            0.0, 1.0);
+  for (int band = 0; band < 4; ++band) draped[band] = WetAlbedo(draped[band], water.z);
+  albedo = drape_shown.w > 0.5 ? draped : albedo;
 #endif
   return albedo;
 }

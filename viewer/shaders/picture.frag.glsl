@@ -53,7 +53,8 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
   GroundPlace at = GroundPlaceAt(point);
   float footprint = SeenFootprint(at.footprint, -dot(normal, direction));
   vec3 tilted = DetailedNormal(at.offset, normal, footprint);
-  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), footprint);
+  vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
+  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), footprint, draped);
   return albedo / 3.14159265359 * LampsOnGround(point, tilted, RAY_ANGLE * surface.w);
 }
 

@@ -271,6 +271,8 @@ TEST(Scene, GroundIsWhatTheFileSays) {
   const Scene draped = Read(kPlace + "[terrain]\ncolour = \"photo.tif\"\n");
   EXPECT_EQ(draped.terrain.colour, std::filesystem::path("folder") / "photo.tif");
   EXPECT_TRUE(Read(kPlace).terrain.colour.empty());
+  EXPECT_EQ(Read(kPlace + "[terrain]\nland_cover = \"map.tif\"\n").terrain.Drape(),
+            std::filesystem::path("folder") / "map.tif");
 }
 
 TEST(Scene, GroundThatCannotBeIsRefused) {
@@ -289,6 +291,12 @@ TEST(Scene, GroundThatCannotBeIsRefused) {
   EXPECT_THAT(fault("cover = \"snow\"\ngrain_diameter_mm = 50\n"), HasSubstr("[0.05, 5]"));
   EXPECT_THAT(fault("wetness = 1.1\n"), HasSubstr("[0, 1]"));
   EXPECT_THAT(fault("cover = \"snow\"\nwetness = 1\n"), HasSubstr("ground.wetness is for"));
+  const auto map_fault = [](const std::string& more) {
+    return FaultOf(kPlace + "[terrain]\nland_cover = \"m.tif\"\n" + more);
+  };
+  EXPECT_THAT(map_fault("colour = \"a.tif\"\n"), HasSubstr("give one of terrain.colour"));
+  EXPECT_THAT(map_fault("none = true\n"), HasSubstr("terrain.land_cover lies over"));
+  EXPECT_THAT(map_fault("[ground]\ncover = \"snow\"\n"), HasSubstr("terrain.land_cover is for"));
   EXPECT_THAT(FaultOf(kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n"),
               HasSubstr("terrain.colour"));
 }

@@ -12,7 +12,7 @@
 
 #include "atmosphere/number/halton.h"
 #include "lut/picture/image.h"
-#include "renderer/ground/ground_cover.h"
+#include "tests/fixtures/class_map.h"
 #include "tests/viewer/ground/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
@@ -111,10 +111,11 @@ std::vector<Case> LandCases(const LitGround& lit) {
     c.hit.mesh_normal = found->normal;
     c.hit.geometric_normal = found->geometric_normal;
     c.to_eye = glm::normalize(kEye - c.hit.point);
-    c.hit.footprint_m = shared::SeenFootprint(kPixel_rad * glm::length(c.hit.point - kEye),
-                                              glm::dot(c.hit.mesh_normal, c.to_eye));
+    c.hit.footprint_m = kPixel_rad * glm::length(c.hit.point - kEye);
     c.hit.normal = MountainSurface::DetailedNormal(
-        lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m), c.hit.mesh_normal);
+        lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m,
+                                       glm::dot(c.hit.mesh_normal, c.to_eye)),
+        c.hit.mesh_normal);
     c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
     const double over_plane =
         glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;
@@ -280,6 +281,25 @@ TEST_F(GroundOnGpu, DrapedColoursAreTheRenderers) {
       LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
   EXPECT_LT(Quantile(differences, 0.5), 5e-3);
   EXPECT_LT(Quantile(differences, 0.98), 0.02) << "a picture resampled at its own width of a pixel";
+}
+
+TEST_F(GroundOnGpu, MappedLandCoverIsTheRenderers) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("alpenglow-cover-{}.tif", getpid());
+  std::vector<std::uint8_t> classes;
+  for (int i = 0; i < 16 * 16; ++i) {
+    constexpr std::array<std::uint8_t, 6> kClasses{10, 30, 60, 70, 80, 0};
+    classes.push_back(kClasses[static_cast<std::size_t>(i / 48 + i % 16 / 5) % 6]);
+  }
+  tests::WriteClassMap(file, 16, classes);
+  const auto site = tests::RoughSite({}, {}, file);
+  std::filesystem::remove(file);
+  const std::vector<double> differences =
+      LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
+  EXPECT_LT(Quantile(differences, 0.5), 5e-3);
+  EXPECT_LT(Quantile(differences, 0.9), 0.03)
+      << "shores, and steep edges of snow, are elsewhere by "
+         "a texel of the map resampled";
 }
 
 TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {

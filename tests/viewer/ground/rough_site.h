@@ -17,9 +17,10 @@ inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kR
                                               0.0};
 
 /// 7.7 km of RoughLand.
-/// @param colours  a picture over it, or nothing.
+/// @param colours, land_cover  a picture over it, or nothing.
 inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {},
-                                                   const std::filesystem::path& colours = {}) {
+                                                   const std::filesystem::path& colours = {},
+                                                   const std::filesystem::path& land_cover = {}) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
   SiteAir air;
   air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
@@ -28,6 +29,7 @@ inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}
                      "", true};
   Scene scene;
   scene.terrain.colour = colours;
+  scene.terrain.land_cover = land_cover;
   auto drape = ColourDrape::Of(scene, ground);
   return std::make_shared<const GroundSite>(std::move(ground), cover, std::move(drape),
                                             std::move(air));

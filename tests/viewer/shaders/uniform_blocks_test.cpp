@@ -148,7 +148,7 @@ TEST_F(GroundCover, AlbedoIsThatOfTheRenderer) {
   const MountainSurface surface(wavelengths,
                                 CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
   const std::vector<float> on_gpu =
-      GroundValues(surface, "GroundAlbedo(vec2(a[0], a[1]), a[2], a[3], a[4]).y");
+      GroundValues(surface, "GroundAlbedo(vec2(a[0], a[1]), a[2], a[3], a[4], vec4(0.0)).y");
   const auto points = GroundPoints();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Bands<float> albedo =
