@@ -1,8 +1,8 @@
 // What mountain ground is made of, and relief finer than the mesh (surface.h). Lengths in metres:
 // details of the ground are as fine as that.
 
-// Four families of noise: two make the lines between materials waver, one is relief, one the grain
-// of crowns, tussocks and stones. Each is a sum of octaves, half as long from one to the next and
+// Families of noise: two make the lines between materials waver, one is relief, one the grain
+// of crowns, tussocks and stones, one the waves of water. Each is a sum of octaves, half as long from one to the next and
 // lower by the factor of its fall: that of the grain is 1, for ground looks as rough from a hand's
 // height as from a tower's.
 SHARED_CONSTANT int kBroadWave_m = 900;  // of the longest octave
@@ -22,6 +22,11 @@ SHARED_CONSTANT int kGrainWave_m = 12;  // of crowns
 SHARED_CONSTANT int kGrainOctaves = 9;
 SHARED_CONSTANT int kGrainFall = 1;
 SHARED_CONSTANT Bits kGrainSeed = 83u;
+
+SHARED_CONSTANT int kWaveWave_m = 128;  // of a gale
+SHARED_CONSTANT int kWaveOctaves = 14;
+SHARED_CONSTANT int kWaveFall = 2;
+SHARED_CONSTANT Bits kWaveSeed = 131u;
 
 // What is kept of an octave where one ray of the picture is `footprint` wide: octaves shorter than
 // two footprints fade out, so that distant ground does not glitter.
@@ -130,3 +135,32 @@ SHARED Number CoverAlbedo(Number green, Number rock, Number snow, Number rock_sh
   Number albedo = PartlyCovered(PartlyCovered(green, rock, rock_share), snow, snow_share);
   return min(albedo * (Number(1.0) + (Number(1.0) - snow_share) * tone), Number(1.0));
 }
+
+// Waves, of the slope variance of Cox and Munk (reflectance.h). The longest that the wind raises, of
+// 0.83 s^2/m of the square of its speed: Pierson, Moskowitz (1964), J. Geophys. Res. 69, 5181, whose
+// spectrum peaks there.
+SHARED Length LongestWave(Number variance) {
+  Number wind = max(variance - Number(0.003), Number(0.0)) / Number(0.00512);
+  return Length(0.83) * wind * wind;
+}
+
+// Slope variance of an octave: as much of each from there to 1 mm, as behind the peak of a saturated
+// sea (Phillips 1958, J. Fluid Mech. 4, 426).
+SHARED Number WaveOctaveVariance(Number variance, Length longest) {
+  return variance * Number(0.6931471805599453) /
+         max(log(max(longest, Length(0.002)) / Length(0.001)), Number(0.6931471805599453));
+}
+
+// Share of an octave that the wind raises.
+SHARED Number WaveRaised(Length wavelength, Length longest) {
+  return min(max(Number(2.0) - wavelength / max(longest, Length(1e-6)), Number(0.0)), Number(1.0));
+}
+
+// Share of the slopes that is shown to an eye at a cosine with the vertical: where crests hide what
+// is behind them, waves are left to the statistics of the glitter, which know of hiding.
+SHARED Number WaveShown(Number cosine, Number variance) {
+  return SmoothRise(Number(0.0), Number(0.7) * sqrt(variance), cosine);
+}
+
+// Slope of one octave of the noise, per cell, is 0.72 rms.
+SHARED Number WaveSlope(Number octave_variance) { return sqrt(octave_variance) / Number(0.72); }

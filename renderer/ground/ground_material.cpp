@@ -17,6 +17,12 @@ constexpr double kWaterLine_m = 0.5;
 
 }  // namespace
 
+GroundPatch::GroundPatch(const GroundMaterial& material, const GroundPoint& at)
+    : material_(material),
+      kind_(Kind::kWater),
+      albedo_(material.albedo().count),
+      waves_(WavesAt(at, material.water().slope_variance())) {}
+
 BandLight GroundPatch::Brdf(const ReflectionAngles& at) const {
   switch (kind_) {
     case Kind::kOrenNayar:
@@ -24,7 +30,7 @@ BandLight GroundPatch::Brdf(const ReflectionAngles& at) const {
     case Kind::kBlinnPhong:
       return material_.glossy_.Brdf(albedo_, at);
     case Kind::kWater:
-      return material_.water_.Brdf(at);
+      return material_.water_.Brdf(at, waves_.slope_variance);
     case Kind::kSnow:
       return material_.snow_.Brdf(at);
     case Kind::kMountain:
@@ -93,21 +99,20 @@ BandLight GroundMaterial::AlbedoAt(const GroundPoint& at, double normal_up,
 
 GroundPatch GroundMaterial::OfTerrain(const GroundPoint& at, const glm::dvec3& point,
                                       double normal_up, const MountainSurface& season) const {
-  const GroundPatch water{*this, Kind::kWater, BandLight(albedo_.count)};
   const auto water_line_m = WaterLine_m();
-  if (water_line_m && at.altitude_m <= *water_line_m) return water;
-  if (cover_.kind == Kind::kWater || cover_.kind == Kind::kSnow)
-    return {*this, cover_.kind, BandLight(albedo_.count)};
+  if (cover_.kind == Kind::kWater || (water_line_m && at.altitude_m <= *water_line_m))
+    return {*this, at};
+  if (cover_.kind == Kind::kSnow) return {*this, cover_.kind, BandLight(albedo_.count)};
   std::optional<std::array<double, 3>> draped;
   if (drape_) draped = drape_->At(point, at.altitude_m, at.across_m);
   if (draped && HasLandCover() && shared::IsMappedWater((*draped)[0], (*draped)[1]) > 0.0)
-    return water;
+    return {*this, at};
   return {*this, cover_.kind, AlbedoAt(at, normal_up, season, draped)};
 }
 
-GroundPatch GroundMaterial::OfPlanet(const BandLight& planet_albedo) const {
+GroundPatch GroundMaterial::OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const {
   const auto water_line_m = WaterLine_m();
-  if (water_line_m && *water_line_m >= 0.0) return {*this, Kind::kWater, planet_albedo};
+  if (cover_.kind == Kind::kWater || (water_line_m && *water_line_m >= 0.0)) return {*this, at};
   if (cover_.kind == Kind::kMountain) return {*this, cover_.kind, planet_albedo};
   return {*this, cover_.kind, albedo_};
 }

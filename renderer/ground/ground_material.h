@@ -23,8 +23,12 @@ class GroundPatch {
   /// @param albedo  of the diffuse body; not used by water and snow.
   GroundPatch(const GroundMaterial& material, GroundCover::Kind kind, BandLight albedo)
       : material_(material), kind_(kind), albedo_(std::move(albedo)) {}
+  /// Water.
+  GroundPatch(const GroundMaterial& material, const GroundPoint& at);
 
   [[nodiscard]] bool IsWater() const { return kind_ == GroundCover::Kind::kWater; }
+  /// Of water, with the waves that are resolved there.
+  [[nodiscard]] glm::dvec3 WaterNormal(const glm::dvec3& up) const { return waves_.Normal(up); }
   /// Whether it mirrors the sky.
   [[nodiscard]] bool IsGlossy() const {
     return IsWater() || kind_ == GroundCover::Kind::kBlinnPhong;
@@ -41,6 +45,7 @@ class GroundPatch {
   const GroundMaterial& material_;
   GroundCover::Kind kind_;
   BandLight albedo_;
+  WavySurface waves_{0.0, 0.0, 0.0};
 };
 
 /// Immutable; safe to ask from many threads.
@@ -58,7 +63,7 @@ class GroundMaterial {
                                       double normal_up, const MountainSurface& season) const;
   /// The bare planet.
   /// @param planet_albedo  the medium's, for a cover that says nothing of it.
-  [[nodiscard]] GroundPatch OfPlanet(const BandLight& planet_albedo) const;
+  [[nodiscard]] GroundPatch OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const;
 
   /// Whether any of it mirrors the sky.
   [[nodiscard]] bool HasGloss() const;

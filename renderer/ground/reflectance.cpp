@@ -181,12 +181,12 @@ Water::Water(double wind_m_per_s, std::span<const double> wavelengths_nm)
     : variance_(0.003 + 0.00512 * RequireInRange(wind_m_per_s, 0.0, 20.0, "wind")),
       under_surface_(LightFromUnderWater(wavelengths_nm)) {}
 
-double Water::Glitter(const ReflectionAngles& at) const {
-  return shared::WaveGlitter(at.mu_light, at.mu_eye, at.cos_between, variance_, kRefractiveIndex);
+double Water::Glitter(const ReflectionAngles& at, double variance) {
+  return shared::WaveGlitter(at.mu_light, at.mu_eye, at.cos_between, variance, kRefractiveIndex);
 }
 
-Bands<float> Water::Brdf(const ReflectionAngles& at) const {
-  const auto glitter = static_cast<float>(Glitter(at));
+Bands<float> Water::Brdf(const ReflectionAngles& at, double variance) const {
+  const auto glitter = static_cast<float>(Glitter(at, variance));
   const auto through = static_cast<float>(Transmitted(at.mu_light) * Transmitted(at.mu_eye) / kPi);
   Bands<float> f(under_surface_.count);
   for (std::size_t band = 0; band < f.count; ++band)

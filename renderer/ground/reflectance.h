@@ -139,9 +139,11 @@ class Water {
   /// Of light from under the surface: pi times radiance over irradiance, sun and eye at the zenith.
   [[nodiscard]] const Bands<float>& under_surface() const { return under_surface_; }
   /// Distribution of the glitter [1/sr].
-  [[nodiscard]] double Glitter(const ReflectionAngles& at) const;
+  /// @param variance  of the slopes that the normal does not show.
+  [[nodiscard]] static double Glitter(const ReflectionAngles& at, double variance);
   /// Of glitter and light from under the surface.
-  [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at) const;
+  [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at) const { return Brdf(at, variance_); }
+  [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at, double variance) const;
   /// Share of an even sky that comes from under the surface.
   [[nodiscard]] Bands<float> BodyAlbedo(double mu) const;
   /// What the waves show of the sky; light that meets a second wave

@@ -32,8 +32,11 @@ GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m,
                                     double cosine) const {
   const GeodeticPosition& origin = ground_.frame.origin();
   return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius_m() + point.x,
-          origin.latitude_rad * radius_m() + point.y, std::max(AltitudeOf(point), 0.0),
-          shared::SeenFootprint(footprint_m, cosine), footprint_m};
+          origin.latitude_rad * radius_m() + point.y,
+          std::max(AltitudeOf(point), 0.0),
+          shared::SeenFootprint(footprint_m, cosine),
+          footprint_m,
+          cosine};
 }
 
 // Whether the bare planet stands between the eye and terrain behind its horizon: the ray goes

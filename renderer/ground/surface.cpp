@@ -38,6 +38,9 @@ constexpr Noise kRelief{shared::kReliefWave_m, shared::kReliefOctaves, shared::k
 constexpr Noise kGrain{shared::kGrainWave_m, shared::kGrainOctaves, shared::kGrainSeed,
                        shared::kGrainFall};
 
+constexpr Noise kWaves{shared::kWaveWave_m, shared::kWaveOctaves, shared::kWaveSeed,
+                       shared::kWaveFall};
+
 // Calls visit(seed, amplitude, wavelength) for the octaves that a footprint keeps.
 template <typename Visit>
 void VisitOctaves(const GroundPoint& point, const Noise& noise, const Visit& visit) {
@@ -109,6 +112,28 @@ glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::
         shared::kReliefHeight_m * amplitude / wavelength * glm::dvec3(noise.by_x, noise.by_y, 0.0);
   });
   return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
+}
+
+glm::dvec3 WavySurface::Normal(const glm::dvec3& up) const {
+  return glm::normalize(up - glm::dvec3(slope_east, slope_north, 0.0));
+}
+
+WavySurface WavesAt(const GroundPoint& point, double slope_variance) {
+  const double longest_m = shared::LongestWave(slope_variance);
+  const double each = shared::WaveOctaveVariance(slope_variance, longest_m);
+  const double shown = shared::WaveShown(std::max(point.cosine, 0.0), slope_variance);
+  WavySurface waves{0.0, 0.0, slope_variance};
+  VisitOctaves(point, kWaves, [&](std::uint32_t seed, double height, double wavelength) {
+    const double kept = shown * height * shared::kWaveWave_m / wavelength *
+                        shared::WaveRaised(wavelength, longest_m);
+    if (kept == 0.0) return;
+    const NoiseSlope noise =
+        GradientNoiseSlope(point.east_m / wavelength, point.north_m / wavelength, seed);
+    waves.slope_east += kept * shared::WaveSlope(each) * noise.by_x;
+    waves.slope_north += kept * shared::WaveSlope(each) * noise.by_y;
+    waves.slope_variance -= kept * kept * each;
+  });
+  return waves;
 }
 
 }  // namespace alpenglow

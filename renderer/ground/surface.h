@@ -19,7 +19,19 @@ struct GroundPoint {
   double altitude_m;
   double footprint_m;             // what one ray of the picture covers: finer detail is left out
   double across_m = footprint_m;  // its width across the ray
+  double cosine = 1.0;            // of the ray and the normal of the mesh
 };
+
+/// Water at a point: the slopes of the waves that a footprint resolves, and what is left.
+struct WavySurface {
+  double slope_east = 0.0, slope_north = 0.0;
+  double slope_variance;  // of the waves that are not resolved
+
+  [[nodiscard]] glm::dvec3 Normal(const glm::dvec3& up) const;
+};
+
+/// @param slope_variance  of all waves.
+[[nodiscard]] WavySurface WavesAt(const GroundPoint& point, double slope_variance);
 
 /// Lambertian albedo of mountain ground: forest and meadow below the tree line, rock and scree
 /// above it and on steep slopes, snow above the snow line where the slope holds it. Lines and

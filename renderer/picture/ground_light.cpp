@@ -114,7 +114,8 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const gl
   BandLight albedo(air_.bands());
   for (std::size_t band = 0; band < albedo.count; ++band)
     albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);
-  return parts_.material.OfPlanet(albedo);
+  return parts_.material.OfPlanet(parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine),
+                                  albedo);
 }
 
 BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
@@ -150,7 +151,10 @@ GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
   const LocalSun sun = LocalSunAt(seen.point, light);
   const GroundPatch patch = PatchAt(seen, light, sun.up, glm::dot(seen.mesh_normal, to_eye));
   Hit hit = seen;
-  if (patch.IsWater()) hit.normal = hit.mesh_normal = sun.up;  // waves are its own
+  if (patch.IsWater()) {
+    hit.mesh_normal = sun.up;
+    hit.normal = patch.WaterNormal(sun.up);
+  }
   const double mu_eye = AnglesBetween(hit.normal, hit.normal, to_eye).mu_eye;
   const BandLight body = patch.BodyAlbedo(mu_eye);
   BandLight radiance(air_.bands());

@@ -9,6 +9,7 @@
 #define FINE 1
 #define RELIEF 2
 #define GRAIN 3
+#define WAVES 4
 
 layout(std140) uniform Ground {
   vec4 forest;
@@ -17,8 +18,8 @@ layout(std140) uniform Ground {
   vec4 snow;
   vec4 cover_lines;     // tree line, snow line [m]; octaves of the finest detail that are left out,
                         // to save time
-  vec4 noise_cell[4];   // of the eye, east and north: by family
-  vec4 noise_place[4];  // fraction of the cell, east and north
+  vec4 noise_cell[5];   // of the eye, east and north: by family
+  vec4 noise_place[5];  // fraction of the cell, east and north
   vec4 mesh_east;       // axes of the mesh in the frame of the eye
   vec4 mesh_north;
   vec4 mesh_up;
@@ -28,6 +29,7 @@ ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed, fall
   if (family == BROAD) return ivec4(kBroadWave_m, kBroadOctaves, kBroadSeed, kBroadFall);
   if (family == FINE) return ivec4(kFineWave_m, kFineOctaves, kFineSeed, kFineFall);
   if (family == GRAIN) return ivec4(kGrainWave_m, kGrainOctaves, kGrainSeed, kGrainFall);
+  if (family == WAVES) return ivec4(kWaveWave_m, kWaveOctaves, kWaveSeed, kWaveFall);
   return ivec4(kReliefWave_m, kReliefOctaves, kReliefSeed, kReliefFall);
 }
 
@@ -128,4 +130,32 @@ vec3 DetailedNormal(vec2 offset, vec3 normal, float footprint) {
   vec2 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, DetailFootprint(footprint));
   vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz;
   return normalize(normal + tilt * max(dot(normal, mesh_up.xyz), 0.0));
+}
+
+// Slopes to the east and north of the waves that a footprint resolves, and the slope variance of
+// the others: WavesAt of surface.h.
+// @param variance  of all waves; cosine: of the vertical and the eye.
+vec3 WavesAt(vec2 offset, float footprint, float variance, float cosine) {
+  float width = DetailFootprint(footprint);
+  ivec4 of = NoiseOf(WAVES);
+  int octaves = OctavesKept(of, width);
+  float longest = LongestWave(variance);
+  float each = WaveOctaveVariance(variance, longest);
+  float shown = WaveShown(max(cosine, 0.0), variance);
+  vec3 waves = vec3(0.0, 0.0, variance);
+  float wavelength = float(of.x);
+  int cells = 1;
+  for (int octave = 0; octave < octaves; ++octave) {
+    float kept = shown * OctaveShare(wavelength, width) * WaveRaised(wavelength, longest);
+    if (kept > 0.0) {
+      NoiseCell c = OctaveCell(offset, WAVES, wavelength, cells, uint(of.z + octave));
+      waves.xy += kept * WaveSlope(each) *
+                  vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),
+                       SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
+      waves.z -= kept * kept * each;
+    }
+    wavelength *= 0.5;
+    cells *= 2;
+  }
+  return waves;
 }

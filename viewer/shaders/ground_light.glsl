@@ -57,7 +57,8 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
   GroundPlace at = GroundPlaceAt(point_m);
   vec4 sky_on_level = SkyOn(at.up, mesh_normal, at.up, sky_irradiance);
 #if GROUND_COVER == WATER_COVER
-  return WaterRadiance(at.up, SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
+  return WaterRadiance(at.up, at.offset, at.footprint, dot(mesh_normal, to_eye),
+                       SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
 #else
   float altitude = 1e3 * at.altitude;
   float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
@@ -68,7 +69,8 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
                                 SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
 #if HAS_SEA || HAS_LAND_COVER
   if (IsWater(altitude, draped))
-    radiance = WaterRadiance(at.up, SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
+    radiance = WaterRadiance(at.up, at.offset, at.footprint, dot(mesh_normal, to_eye),
+                             SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
 #endif
   return radiance;
 #endif
@@ -81,7 +83,8 @@ vec4 EvenPlanetRadiance(GroundPlace at, vec4 across, vec4 sky_irradiance) {
 
 vec4 PlanetAt(GroundPlace at, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
 #if PLANET_IS_WATER
-  return WaterRadiance(at.up, across, sky_irradiance, to_eye);
+  return WaterRadiance(at.up, at.offset, at.footprint, dot(at.up, to_eye), across, sky_irradiance,
+                       to_eye);
 #elif GROUND_COVER == MOUNTAIN_COVER
   return EvenPlanetRadiance(at, across, sky_irradiance);
 #else

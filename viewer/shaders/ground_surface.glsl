@@ -45,8 +45,9 @@ vec4 LevelSky(float mu_s) {
   return texture(level_sky, vec2(TexelFromUnit(clamp(x, 0.0, 1.0), LEVEL_SKY_NODES), 0.5));
 }
 
-vec4 WaterBrdf(vec3 angles) {
-  float glitter = WaveGlitter(angles.x, angles.y, angles.z, water.x, WATER_INDEX);
+// @param variance  of the slopes that the normal does not show.
+vec4 WaterBrdf(vec3 angles, float variance) {
+  float glitter = WaveGlitter(angles.x, angles.y, angles.z, variance, WATER_INDEX);
   float through = WaterTransmitted(angles.x, WATER_INDEX) * WaterTransmitted(angles.y, WATER_INDEX);
   return vec4(glitter) + through / 3.14159265359 * under_water;
 }
@@ -65,11 +66,16 @@ vec4 SkyInWater(vec3 up, vec3 to_eye) {
 }
 
 // Radiance of water under a sun across whose beams the irradiance is `across`, and a sky.
-vec4 WaterRadiance(vec3 up, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
-  vec3 angles = ReflectionAngles(up, sun.xyz, to_eye);
+// @param offset  from the eye in the plane of the pattern [m]; footprint  across the ray [m];
+//     cosine  of eye and normal of the mesh.
+vec4 WaterRadiance(vec3 up, vec2 offset, float footprint, float cosine, vec4 across,
+                   vec4 sky_irradiance, vec3 to_eye) {
+  vec3 waves = WavesAt(offset, SeenFootprint(footprint, cosine), water.x, cosine);
+  vec3 normal = normalize(up - waves.x * mesh_east.xyz - waves.y * mesh_north.xyz);
+  vec3 angles = ReflectionAngles(normal, sun.xyz, to_eye);
   vec4 body = WaterLetsIn(WATER_INDEX, angles.y) * under_water;
-  return max(dot(up, sun.xyz), 0.0) * across * WaterBrdf(angles) +
-         body / 3.14159265359 * sky_irradiance + SkyInWater(up, to_eye);
+  return max(dot(normal, sun.xyz), 0.0) * across * WaterBrdf(angles, waves.z) +
+         body / 3.14159265359 * sky_irradiance + SkyInWater(normal, to_eye);
 }
 
 float ByRootOf(float mu) {

@@ -69,8 +69,9 @@ GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double 
     return GpuBandsOf(
         {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
   };
-  constexpr std::array<double, 4> kLongest_m{shared::kBroadWave_m, shared::kFineWave_m,
-                                             shared::kReliefWave_m, shared::kGrainWave_m};
+  constexpr std::array<double, 5> kLongest_m{shared::kBroadWave_m, shared::kFineWave_m,
+                                             shared::kReliefWave_m, shared::kGrainWave_m,
+                                             shared::kWaveWave_m};
   GroundBlock block{};
   block.forest = bands(surface.materials().forest);
   block.meadow = bands(surface.materials().meadow);

@@ -38,12 +38,12 @@ static_assert(offsetof(ViewBlock, eye) == 5 * sizeof(glm::vec4));
 struct GroundBlock {
   glm::vec4 forest, meadow, rock, snow;
   glm::vec4 cover_lines;
-  std::array<glm::vec4, 4> noise_cell, noise_place;
+  std::array<glm::vec4, 5> noise_cell, noise_place;
   glm::vec4 mesh_east, mesh_north, mesh_up;
 };
-static_assert(sizeof(GroundBlock) == 16 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, noise_place) == 9 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, mesh_up) == 15 * sizeof(glm::vec4));
+static_assert(sizeof(GroundBlock) == 18 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, noise_place) == 10 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, mesh_up) == 17 * sizeof(glm::vec4));
 
 /// Throws InputError when the medium has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);

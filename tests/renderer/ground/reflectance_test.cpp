@@ -194,7 +194,9 @@ TEST(Water, GlitterFromStraightAboveIsFresnelReflectance) {
   for (const double wind : {0.0, 5.0, 15.0}) {
     const Water water(wind, kWavelengths_nm);
     EXPECT_NEAR(
-        AlbedoByQuadrature([&](const ReflectionAngles& at) { return water.Glitter(at); }, 1.0),
+        AlbedoByQuadrature(
+            [&](const ReflectionAngles& at) { return Water::Glitter(at, water.slope_variance()); },
+            1.0),
         0.0211, 2e-4)
         << "waves turn, they do not absorb";
   }

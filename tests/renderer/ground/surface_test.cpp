@@ -85,5 +85,49 @@ TEST(MountainSurface, ReliefTiltsTheGroundByEightDegreesNearAndNotAtAllFarAway) 
   EXPECT_NEAR(std::sqrt(near2), 8.0, 0.5) << "the header's figure, to its rounding";
 }
 
+// --- waves ---
+
+constexpr double kBreeze = 0.003 + 0.00512 * 5.0;  // Cox, Munk: 5 m/s
+
+struct MeanWaves {
+  double resolved, left;  // slope variance
+};
+
+MeanWaves WavesSeen(double variance, double footprint_m, double cosine) {
+  MeanWaves mean{0.0, 0.0};
+  constexpr int kPlaces = 4000;
+  for (int i = 0; i < kPlaces; ++i) {
+    const GroundPoint at{7e5 + 317.3137515 * i, 5e6 - 211.7218281 * i, 0.0,
+                         footprint_m,           footprint_m,           cosine};
+    const WavySurface waves = WavesAt(at, variance);
+    mean.resolved +=
+        (waves.slope_east * waves.slope_east + waves.slope_north * waves.slope_north) / kPlaces;
+    mean.left += waves.slope_variance / kPlaces;
+  }
+  return mean;
+}
+
+TEST(Waves, ResolvedOrNotTheirSlopesAreThoseOfTheWind) {
+  for (const double footprint_m : {0.005, 0.1, 1.0, 5.0}) {
+    const MeanWaves seen = WavesSeen(kBreeze, footprint_m, 1.0);
+    EXPECT_NEAR(seen.resolved + seen.left, kBreeze, 0.05 * kBreeze)
+        << footprint_m << ": 4000 places, and a rounded slope of the noise";
+    EXPECT_GT(seen.left, 0.2 * kBreeze) << "ripples under 2 cm are never resolved";
+  }
+}
+
+TEST(Waves, AreResolvedNearAndGlitterFarAway) {
+  EXPECT_GT(WavesSeen(kBreeze, 0.01, 1.0).resolved, 0.5 * kBreeze);
+  EXPECT_EQ(WavesSeen(kBreeze, 100.0, 1.0).resolved, 0.0) << "the longest are of 21 m";
+  EXPECT_NEAR(WavesSeen(kBreeze, 100.0, 1.0).left, kBreeze, 1e-12);
+}
+
+TEST(Waves, ThatHideEachOtherAreLeftToTheGlitter) {
+  EXPECT_EQ(WavesSeen(kBreeze, 0.01, 0.0).resolved, 0.0);
+  EXPECT_EQ(WavesSeen(kBreeze, 0.01, -0.1).resolved, 0.0) << "a normal turned away from the eye";
+}
+
+TEST(Waves, ACalmSeaHasNone) { EXPECT_EQ(WavesSeen(0.003, 0.01, 1.0).resolved, 0.0); }
+
 }  // namespace
 }  // namespace alpenglow
