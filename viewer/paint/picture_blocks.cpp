@@ -59,7 +59,11 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
                              const SunPosition& sun) {
-  if (!scene.ground().lit()) return {};
+  if (!scene.ground().lit()) {
+    GroundLightBlock bare{};
+    bare.ground_view.x = static_cast<float>(PixelAngle(view));  // waves of the planet's sea
+    return bare;
+  }
   return GroundLightBlockOf(scene.ground().lit()->tilt(), DirectionToSun(sun), PixelAngle(view));
 }
 
