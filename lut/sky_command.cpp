@@ -19,7 +19,8 @@ namespace {
 
 struct SkyOptions {
   std::optional<std::string> atmosphere, png, time, zone;
-  std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx";
+  std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx",
+                   look = "photo";
   std::optional<double> sun_elevation, latitude, longitude;
   double sun_azimuth = 180.0, altitude = 2.0;
   bool sun_disk = false, night_vision = false, compass = false;
@@ -131,6 +132,7 @@ void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   RequireOutputs(options);
   const ExposureRule rule = ExposureRuleFromText(options.exposure);
   Look look = LookFromName(options.curve);
+  look.agx = AgxLookFromName(options.look);
   look.night_vision = options.night_vision;
   SkyJob job = JobFrom(options);
   const RenderedSky sky = Rendered(job, common.progress_style());
@@ -199,6 +201,11 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
   sky.add_option("--tone-map", options.curve,
                  "Curve of the PNG; local: an exposure of its own for every part, and agx")
       ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
+      ->needs(png)
+      ->capture_default_str();
+  sky.add_option("--look", options.look,
+                 "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
+      ->check(CLI::IsMember(AgxLookNames()))
       ->needs(png)
       ->capture_default_str();
   sky.add_flag("--night-vision", options.night_vision,

@@ -102,6 +102,7 @@ int Run(const SkyseriesOptions& options) {
   output.png = options.png;
   output.exposure = ExposureRuleFromText(options.exposure);
   output.look = LookFromName(options.tone_curve);
+  output.look.agx = AgxLookFromName(options.look);
   output.look.night_vision = options.night_vision;
   output.glare = options.glare == "eye";
   output.resume = options.resume;

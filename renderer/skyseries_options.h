@@ -38,7 +38,7 @@ struct SkyseriesOptions {
   SceneOptions scene;
   TimesText times;
   std::optional<std::string> date, zone, frames, contact_sheet;
-  std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx",
+  std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
                    filter = "blackman-harris", glare = "none";
   std::optional<int> samples;
   std::optional<std::string> path;
@@ -153,6 +153,10 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
   app.add_option("--tone-map", options.tone_curve,
                  "Curve of the PNG; local: an exposure of its own for every part, and agx")
       ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
+      ->capture_default_str();
+  app.add_option("--look", options.look,
+                 "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
+      ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
   app.add_flag("--night-vision", options.night_vision,
                "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "

@@ -6,7 +6,8 @@
 
 #include "atmosphere/text/error.h"
 #include "lut/picture/dither.h"
-#include "lut/picture/image.h"
+#include "lut/picture/local_exposure.h"
+#include "lut/picture/look.h"
 #include "lut/picture/tone_curve.h"
 
 namespace alpenglow {
@@ -18,11 +19,11 @@ void RequireFinite(const std::array<float, 3>& pixel, int x, int y) {
                                   pixel[0], pixel[1], pixel[2]));
 }
 
-void DevelopRow(const Image& image, int y, float scale, ToneCurve curve, DisplayImage& display) {
+void DevelopRow(const Image& image, int y, float scale, const Look& look, DisplayImage& display) {
   for (int x = 0; x < image.width; ++x) {
     const std::array<float, 3>& pixel = image.at(x, y);
     RequireFinite(pixel, x, y);
-    const Rgb<float> light = DisplayLight(curve, pixel, scale);
+    const Rgb<float> light = DisplayLight(look.curve, pixel, scale, look.agx);
     const auto index = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                             static_cast<std::size_t>(x));
     for (std::size_t c = 0; c < 3; ++c) {
@@ -35,9 +36,18 @@ void DevelopRow(const Image& image, int y, float scale, ToneCurve curve, Display
 }  // namespace
 
 DisplayImage Develop(const Image& image, double ev100, ToneCurve curve) {
+  return Develop(image, ev100, Look{.curve = curve});
+}
+
+DisplayImage Develop(const Image& seen, double ev100, const Look& look) {
+  if (look.local_exposure) {
+    Look rest = look;
+    rest.local_exposure = false;
+    return Develop(LocallyExposed(seen, ev100), ev100, rest);
+  }
   const auto scale = static_cast<float>(ExposureScale(ev100));
-  DisplayImage display{image.width, image.height, std::vector<std::uint8_t>(3 * image.rgb.size())};
-  tbb::parallel_for(0, image.height, [&](int y) { DevelopRow(image, y, scale, curve, display); });
+  DisplayImage display{seen.width, seen.height, std::vector<std::uint8_t>(3 * seen.rgb.size())};
+  tbb::parallel_for(0, seen.height, [&](int y) { DevelopRow(seen, y, scale, look, display); });
   return display;
 }
 

@@ -5,29 +5,24 @@
 #include <cmath>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/local_exposure.h"
 #include "lut/picture/night_vision.h"
 #include "lut/picture/picture_text.h"
 
 namespace alpenglow {
 
 Look LookFromName(const std::string& name) {
-  if (name == "local") return {ToneCurve::kAgx, true, false};
-  return {ToneCurveFromName(name), false, false};
+  if (name == "local") return {.curve = ToneCurve::kAgx, .local_exposure = true};
+  return {.curve = ToneCurveFromName(name)};
 }
 
 std::string NameOf(const Look& look) {
   return (look.local_exposure ? "local " : "") + NameOf(look.curve) +
+         (look.curve == ToneCurve::kAgx ? ", " + NameOf(look.agx) : "") +
          (look.night_vision ? ", night vision" : "");
 }
 
 Image Seen(const Image& image, const Look& look) {
   return look.night_vision ? SeenByNight(image) : image;
-}
-
-DisplayImage Develop(const Image& seen, double ev100, const Look& look) {
-  return look.local_exposure ? Develop(LocallyExposed(seen, ev100), ev100, look.curve)
-                             : Develop(seen, ev100, look.curve);
 }
 
 ExposureRule ExposureRuleFromText(const std::string& text) {

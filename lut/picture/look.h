@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "lut/picture/agx_look.h"
 #include "lut/picture/image.h"
 
 namespace alpenglow {
@@ -13,6 +14,7 @@ struct Look {
   ToneCurve curve = ToneCurve::kAgx;
   bool local_exposure = false;  // lut/picture/local_exposure.h
   bool night_vision = false;    // lut/picture/night_vision.h
+  AgxLook agx = AgxLook::kPhoto;
 
   bool operator==(const Look&) const = default;
 };

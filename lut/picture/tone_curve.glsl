@@ -63,6 +63,12 @@ SHARED Number AgxLogCode(Number value) {
   return min(max(code, Number(0.0)), Number(1.0));
 }
 
+// Stops from middle grey, at code 20/33, times a contrast.
+SHARED Number AgxContrast(Number code, Number contrast) {
+  Number grey = Number(0.6060606060606061);
+  return min(max(grey + (code - grey) * contrast, Number(0.0)), Number(1.0));
+}
+
 // The exact sigmoid of AgX: 0.5 + s x / (1 + a |x|^b)^(1/b), x = code - 20/33, slope s = 2 at
 // middle grey, b = 3 below and 13/4 above; a makes it end in (0, 0) and (1, 1):
 //   below: a = 4^3 - (33/20)^3 = 59.507875,  above: a = 4^(13/4) - (33/13)^(13/4) = 69.8628.
@@ -76,11 +82,6 @@ SHARED Number AgxSigmoid(Number code) {
       Number(-0.3076923076923077));
   Number display = Number(0.5) + Number(2.0) * x * select(x < Number(0.0), below, above);
   return min(max(display, Number(0.0)), Number(1.0));
-}
-
-// Code value of the curve for one channel; white_share is AgxWhiteShare of the printed colour.
-SHARED Number AgxCode(Number value, Number white_share) {
-  return AgxSigmoid(AgxLogCode(AgxInset(value, white_share)));
 }
 
 // Display light from the codes, which are made for a display of exponent 2.2; code_share is

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "atmosphere/dialect/shared_math.h"
+#include "lut/picture/agx_look.h"
 #include "lut/picture/image.h"
+#include "lut/picture/oklab.h"
 
 namespace alpenglow::shared {
 // clang-format off
@@ -31,14 +34,101 @@ template <typename Real>
           shared::InnerChannel(exposed[2], smallest, y)};
 }
 
+/// Display light in [0, 1]: a colour outside is mixed with the grey of its luminance.
 template <typename Real>
-[[nodiscard]] Rgb<Real> AgxLight(const Rgb<Real>& printed) {
+[[nodiscard]] Rgb<Real> InsideDisplay(const Rgb<Real>& light) {
+  const Real y = std::clamp(shared::Luminance(light[0], light[1], light[2]), Real(0), Real(1));
+  Real share = Real(1);
+  for (const Real channel : light) {
+    if (channel < Real(0)) share = std::min(share, y / (y - channel));
+    if (channel > Real(1)) share = std::min(share, (Real(1) - y) / (channel - y));
+  }
+  Rgb<Real> inside;
+  for (std::size_t c = 0; c < 3; ++c)
+    inside[c] = std::clamp(y + (light[c] - y) * share, Real(0), Real(1));
+  return inside;
+}
+
+/// How far a colour in [0, 1] is on the way from its grey to the border of the cube, in [0, 1]: never
+/// less than in truth, and without edges (the fourth-power norm over the channels, not the largest).
+template <typename Real>
+[[nodiscard]] Real WayToBorder(const Rgb<Real>& colour, Real grey) {
+  Real sum = Real(0);
+  for (const Real channel : colour) {
+    const Real room = std::max(channel < grey ? grey : Real(1) - grey, Real(1e-6));
+    const Real part = (channel - grey) / room;
+    sum += part * part * part * part;
+  }
+  return std::min(std::sqrt(std::sqrt(sum)), Real(1));
+}
+
+/// Display light with the hue of a printed colour, as far as that is blue (agx_look.h).
+[[nodiscard]] inline Rgb<double> WithBlueHueOf(const Rgb<double>& printed,
+                                               const Rgb<double>& light) {
+  const Oklab<double> scene = OklabOf(printed), shown = OklabOf(light);
+  const double scene_chroma = std::hypot(scene.a, scene.b), chroma = std::hypot(shown.a, shown.b);
+  if (!(scene_chroma > 1e-6) || !(chroma > 1e-6)) return light;
+  const double y = shared::Luminance(light[0], light[1], light[2]);
+  const double inside = 1.0 - WayToBorder(light, y);
+  const double weight = inside * (2.0 - inside) * 0.5 * (1.0 - scene.b / scene_chroma);
+  const double a = shown.a / chroma + weight * (scene.a / scene_chroma - shown.a / chroma);
+  const double b = shown.b / chroma + weight * (scene.b / scene_chroma - shown.b / chroma);
+  const double length = std::max(std::hypot(a, b), 1e-6);
+  return InsideDisplay(
+      RgbOf(Oklab<double>{shown.lightness, chroma * a / length, chroma * b / length}));
+}
+
+/// Codes with the saturation of a color decision list (ASC CDL).
+template <typename Real>
+[[nodiscard]] Rgb<Real> Saturated(const Rgb<Real>& code, Real saturation) {
+  const Real y = shared::Luminance(code[0], code[1], code[2]);
+  Rgb<Real> saturated;
+  for (std::size_t c = 0; c < 3; ++c)
+    saturated[c] = std::max(y + (code[c] - y) * saturation, Real(0));
+  return saturated;
+}
+
+/// Codes that the outset spreads as far as agx_look.h has it, and over no border.
+template <typename Real>
+[[nodiscard]] Rgb<Real> Vibrant(const Rgb<Real>& code, Real vibrance) {
+  constexpr Real kOutset = Real(1.25);
+  const Real grey = shared::AgxWhiteShare(code[0], code[1], code[2]);
+  const Real way = WayToBorder(code, grey);
+  const Real spread = Real(1) + (kOutset * (Real(1) + vibrance) - Real(1)) * (Real(1) - way);
+  Rgb<Real> vibrant;
+  for (std::size_t c = 0; c < 3; ++c) vibrant[c] = grey + (code[c] - grey) * spread / kOutset;
+  return vibrant;
+}
+
+/// Codes of the curve, graded.
+template <typename Real>
+[[nodiscard]] Rgb<Real> AgxCodes(const Rgb<Real>& printed, const AgxGrade& grade) {
   const Real share = shared::AgxWhiteShare(printed[0], printed[1], printed[2]);
-  const Rgb<Real> code = {shared::AgxCode(printed[0], share), shared::AgxCode(printed[1], share),
-                          shared::AgxCode(printed[2], share)};
+  Rgb<Real> code;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Real log_code = shared::AgxLogCode(shared::AgxInset(printed[c], share));
+    code[c] = shared::AgxSigmoid(shared::AgxContrast(log_code, static_cast<Real>(grade.contrast)));
+    if (grade.power != 1.0) code[c] = std::pow(code[c], static_cast<Real>(grade.power));
+  }
+  if (grade.vibrance > 0.0) return Vibrant(code, static_cast<Real>(grade.vibrance));
+  return grade.saturation == 1.0 ? code : Saturated(code, static_cast<Real>(grade.saturation));
+}
+
+template <typename Real>
+[[nodiscard]] Rgb<Real> AgxLight(const Rgb<Real>& printed, AgxLook look) {
+  const AgxGrade grade = GradeOf(look);
+  const auto opening = static_cast<Real>(std::exp2(grade.opening_stops));
+  const Rgb<Real> code =
+      AgxCodes<Real>({printed[0] * opening, printed[1] * opening, printed[2] * opening}, grade);
   const Real code_share = shared::AgxWhiteShare(code[0], code[1], code[2]);
-  return {shared::AgxLight(code[0], code_share), shared::AgxLight(code[1], code_share),
-          shared::AgxLight(code[2], code_share)};
+  const Rgb<Real> light = {shared::AgxLight(code[0], code_share),
+                           shared::AgxLight(code[1], code_share),
+                           shared::AgxLight(code[2], code_share)};
+  if (!grade.keeps_blue) return light;
+  // Cube roots and their way back lose four bits, which float does not have to spare.
+  const auto [red, green, blue] =
+      WithBlueHueOf({printed[0], printed[1], printed[2]}, {light[0], light[1], light[2]});
+  return {static_cast<Real>(red), static_cast<Real>(green), static_cast<Real>(blue)};
 }
 
 template <typename Real>
@@ -71,8 +161,10 @@ template <typename Real>
 }
 
 /// Linear display light in [0, 1] of a finite linear sRGB colour times `scale` (ExposureScale).
+/// @param look  of ToneCurve::kAgx; the other curves have none.
 template <typename Real>
-[[nodiscard]] Rgb<Real> DisplayLight(ToneCurve curve, const Rgb<Real>& rgb, Real scale) {
+[[nodiscard]] Rgb<Real> DisplayLight(ToneCurve curve, const Rgb<Real>& rgb, Real scale,
+                                     AgxLook look = AgxLook::kPhoto) {
   const Rgb<Real> exposed = InsideGamut<Real>({shared::ExposedChannel(rgb[0], scale),
                                                shared::ExposedChannel(rgb[1], scale),
                                                shared::ExposedChannel(rgb[2], scale)});
@@ -93,7 +185,7 @@ template <typename Real>
     case ToneCurve::kPbrNeutral:
       return NeutralLight(printed);
   }
-  return AgxLight(printed);
+  return AgxLight(printed, look);
 }
 
 }  // namespace alpenglow

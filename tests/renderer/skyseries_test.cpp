@@ -67,16 +67,12 @@ TEST_F(Skyseries, TellsWhatItPreparesAndHowMuchOfAFrameIsDone) {
 TEST_F(Skyseries, HelpIsTheManual) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0);
-  for (const char* option : {"--at",       "--from",   "--to",
-                             "--every",    "--count",  "--date",
-                             "--zone",     "--frames", "--out",
-                             "--png",      "--size",   "--samples",
-                             "--aov",      "--filter", "--path",
-                             "--shutter",  "--fps",    "--exposure",
-                             "--tone-map", "--resume", "--contact-sheet",
-                             "--latitude", "--dem",    "--atmosphere",
-                             "--threads",  "--quiet",  "--progress",
-                             "--version",  "Example"}) {
+  for (const char* option :
+       {"--at",         "--from",    "--to",     "--every",         "--count",    "--date",
+        "--zone",       "--frames",  "--out",    "--png",           "--size",     "--samples",
+        "--aov",        "--filter",  "--path",   "--shutter",       "--fps",      "--exposure",
+        "--tone-map",   "--look",    "--resume", "--contact-sheet", "--latitude", "--dem",
+        "--atmosphere", "--threads", "--quiet",  "--progress",      "--version",  "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
@@ -121,6 +117,7 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
                                        still + " --exposure bright",
                                        still + " --exposure nan",
                                        still + " --tone-map filmic",
+                                       still + " --look golden",
                                        still + " --aov smell",
                                        still + " --samples 0",
                                        still + " --samples 1025",

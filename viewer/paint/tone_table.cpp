@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/tone_table.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <cmath>
+#include <cstddef>
 
 #include "lut/picture/tone_curve.h"
 
@@ -22,16 +25,18 @@ std::array<float, ToneTable::kSide> Nodes() {
 
 ToneTable::ToneTable() {
   const auto nodes = Nodes();
-  codes_.reserve(std::size_t{kSide} * kSide * kSide);
-  for (const float blue : nodes) {
+  codes_.resize(std::size_t{kSide} * kSide * kSide);
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t blue) {
+    auto code = codes_.begin() + static_cast<std::ptrdiff_t>(blue * nodes.size() * nodes.size());
     for (const float green : nodes) {
       for (const float red : nodes) {
-        const Rgb<float> light = DisplayLight<float>(ToneCurve::kAgx, {red, green, blue}, 1.0F);
-        codes_.push_back(
-            {shared::SrgbCode(light[0]), shared::SrgbCode(light[1]), shared::SrgbCode(light[2])});
+        const Rgb<float> light =
+            DisplayLight<float>(ToneCurve::kAgx, {red, green, nodes[blue]}, 1.0F);
+        *code++ = {shared::SrgbCode(light[0]), shared::SrgbCode(light[1]),
+                   shared::SrgbCode(light[2])};
       }
     }
-  }
+  });
 }
 
 }  // namespace alpenglow

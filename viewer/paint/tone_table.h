@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// AgX as a table that a graphics card interpolates: nine powers and logarithms a pixel are one fetch.
+// AgX in its default look as a table that a graphics card interpolates: nine powers and logarithms a
+// pixel, and its hue, are one fetch.
 //
 // Codes of sRGB over the exposed colour (tone_curve.glsl), which is inside the gamut by then: kSide
 // nodes a channel at even steps of its logarithm, from kLowestStop to kHighestStop over saturation.
@@ -15,9 +16,9 @@ namespace alpenglow {
 /// half below 0.06 codes of 8 bits, all but one in a hundred below 0.25, all below 0.7.
 class ToneTable {
  public:
-  static constexpr int kSide = 64;
-  static constexpr double kLowestStop = -13.0;
-  static constexpr double kHighestStop = 9.0;
+  static constexpr int kSide = 88;
+  static constexpr double kLowestStop = -13.5;
+  static constexpr double kHighestStop = 3.5;
 
   ToneTable();
 

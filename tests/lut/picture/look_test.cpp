@@ -14,8 +14,8 @@ namespace alpenglow {
 namespace {
 
 TEST(Look, NamesAreCurvesOrLocal) {
-  EXPECT_EQ(LookFromName("aces"), (Look{ToneCurve::kAces, false, false}));
-  EXPECT_EQ(LookFromName("local"), (Look{ToneCurve::kAgx, true, false}));
+  EXPECT_EQ(LookFromName("aces"), (Look{.curve = ToneCurve::kAces}));
+  EXPECT_EQ(LookFromName("local"), (Look{.local_exposure = true}));
   EXPECT_THROW((void)LookFromName("dusk"), InputError);
   EXPECT_NE(NameOf(Look{}), NameOf(LookFromName("local")));
 }
@@ -63,8 +63,9 @@ TEST(Look, PicturesOfOnePixelOneColumnAndOneLongRowAreDeveloped) {
     Image image(width, height);
     for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
     image.layers.push_back({kScotopicChannel, std::vector<float>(image.rgb.size(), 1.0F)});
-    for (const Look& look : {Look{}, LookFromName("local"), Look{.night_vision = true},
-                             Look{ToneCurve::kAgx, true, true}}) {
+    for (Look look : {Look{}, LookFromName("local"), Look{.night_vision = true},
+                      Look{.local_exposure = true, .night_vision = true}}) {
+      look.agx = AgxLook::kNone;
       const Image seen = Seen(image, look);
       EXPECT_EQ(look.night_vision, seen.rgb != image.rgb);
       const DisplayImage display = Develop(seen, MeterEv100(seen, 1e9), look);

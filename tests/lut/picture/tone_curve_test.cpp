@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/picture_text.h"
 
@@ -38,7 +39,10 @@ TEST(Agx, MiddleGreyIsHalfTheCodeRange) {
   EXPECT_NEAR(share, 0.18, 1e-9) << "the shares of the primaries are given to 11 digits";
   EXPECT_NEAR(shared::AgxLogCode(0.18), 20.0 / 33.0, 1e-6)
       << "the published bounds of the encoding have 6 decimals";
-  EXPECT_NEAR(shared::AgxCode(0.18, share), 0.5, 2e-6);
+  for (const AgxLook look : {AgxLook::kNone, AgxLook::kMedium, AgxLook::kHigh}) {
+    EXPECT_NEAR(AgxCodes<double>({0.18, 0.18, 0.18}, GradeOf(look))[1], 0.5, 3e-6)
+        << "contrast turns about middle grey";
+  }
 }
 
 TEST(Agx, SigmoidEndsAtBlackAndWhiteWithSlopeTwoAtItsPivot) {
@@ -95,6 +99,79 @@ TEST(Agx, BrightColoursGoToWhite) {
   for (const double channel : light) EXPECT_GT(channel, 0.95);
 }
 
+double Hue(const Color& colour) {
+  const Oklab<double> lab = OklabOf(colour);
+  return std::atan2(lab.b, lab.a) / kRadiansPerDegree;
+}
+
+double Chroma(const Color& colour) {
+  const Oklab<double> lab = OklabOf(colour);
+  return std::hypot(lab.a, lab.b);
+}
+
+// Linear light of a clear sky at noon over a range that is metered at EV 15.3 [cd/m^2], 10 and 20
+// degrees over the horizon.
+const std::vector<Color> kClearSky = {{3203, 5118, 9254}, {2229, 3694, 7288}};
+
+TEST(AgxLooks, ABlueSkyKeepsItsHueAndItsChromaInAPhoto) {
+  for (const Color& sky : kClearSky) {
+    for (const double ev100 : {15.3, 16.0}) {
+      const Color photo = DisplayLight(ToneCurve::kAgx, sky, ExposureScale(ev100));
+      const Color none = DisplayLight(ToneCurve::kAgx, sky, ExposureScale(ev100), AgxLook::kNone);
+      EXPECT_NEAR(Hue(photo), Hue(sky), 1.5) << "what is left of its weight at the border";
+      EXPECT_LT(std::abs(Hue(photo) - Hue(sky)), std::abs(Hue(none) - Hue(sky)));
+      const double y = shared::Luminance(photo[0], photo[1], photo[2]) /
+                       shared::Luminance(sky[0], sky[1], sky[2]);
+      const double scene = Chroma({y * sky[0], y * sky[1], y * sky[2]});
+      EXPECT_GT(Chroma(photo), scene) << "the scene's chroma at the same luminance";
+    }
+  }
+}
+
+TEST(AgxLooks, WarmLightTurnsToYellowAsTheCurveHasIt) {
+  const Color lamp = {3.0, 1.2, 0.3};
+  const double turned = Hue(DisplayLight(ToneCurve::kAgx, lamp, 1.0));
+  EXPECT_GT(turned, Hue(lamp)) << "90 degrees is OKLab's yellow";
+}
+
+TEST(AgxLooks, RunFromFlatToContrasty) {
+  const auto range = [](AgxLook look) {
+    const auto code = [&](double stop) {
+      const double y = 0.104 * std::exp2(stop);
+      return shared::SrgbCode(DisplayLight<double>(ToneCurve::kAgx, {y, y, y}, 1.0, look)[1]);
+    };
+    return code(1.5) - code(-1.5);
+  };
+  EXPECT_LT(range(AgxLook::kNone), range(AgxLook::kMedium));
+  EXPECT_LT(range(AgxLook::kMedium), range(AgxLook::kHigh));
+  EXPECT_GT(range(AgxLook::kPhoto), range(AgxLook::kMedium));
+}
+
+TEST(AgxLooks, APhotoHasDeepShadeAndWhiteSnow) {
+  const auto code = [](double stop) {
+    const double y = 0.125 / 1.2 * std::exp2(stop);
+    return 255.0 * shared::SrgbCode(DisplayLight<double>(ToneCurve::kAgx, {y, y, y}, 1.0)[1]);
+  };
+  EXPECT_LT(code(-3.5), 40.0) << "under what the meter took for grey";
+  EXPECT_GT(code(2.0), 215.0) << "snow has 0.9, a grey card 0.18";
+}
+
+TEST(AgxLooks, NamesAreKnownAndOthersRefused) {
+  for (const std::string& name : AgxLookNames()) EXPECT_EQ(NameOf(AgxLookFromName(name)), name);
+  EXPECT_EQ(AgxLookNames().size(), 5U);
+  EXPECT_THROW((void)AgxLookFromName("golden"), InputError);
+}
+
+TEST(Oklab, IsItsOwnInverseAndWhiteHasNoColour) {
+  for (const Color& colour : {Color{0.3, 0.9, 0.05}, Color{1e-4, 0.0, 2.0}}) {
+    const Color back = RgbOf(OklabOf(colour));
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(back[c], colour[c], 2e-6) << "matrices are published to ten digits";
+  }
+  EXPECT_NEAR(OklabOf(Color{1.0, 1.0, 1.0}).lightness, 1.0, 1e-6);
+  EXPECT_NEAR(Chroma({1.0, 1.0, 1.0}), 0.0, 1e-6);
+}
+
 TEST(PbrNeutral, KeepsColoursBelowItsKneeButForTheReflection) {
   const Color light = NeutralLight<double>({0.7, 0.4, 0.2});
   EXPECT_NEAR(light[0], 0.66, 1e-12);
@@ -126,6 +203,13 @@ TEST(Reinhard, KeepsTheMappedLuminanceOfSaturatedColours) {
   EXPECT_NEAR(shared::Luminance(light[0], light[1], light[2]), shared::ReinhardLuminance(y), 1e-12);
 }
 
+void ExpectInRange(const Color& light, const Color& colour) {
+  for (const double channel : light) {
+    EXPECT_TRUE(channel >= 0.0 && channel <= 1.0)
+        << colour[0] << " " << colour[1] << " " << colour[2] << " gave " << channel;
+  }
+}
+
 // Hard case 34.
 TEST(ToneCurves, EveryColourIsFiniteAndInRange) {
   std::vector<Color> colours = Colours();
@@ -134,12 +218,11 @@ TEST(ToneCurves, EveryColourIsFiniteAndInRange) {
   colours.push_back({-huge, huge, 1.0});
   colours.push_back({-huge, -huge, -huge});
   for (const ToneCurve curve : kCurves) {
-    for (const Color& colour : colours) {
-      for (const double channel : DisplayLight<double>(curve, colour, 1.0)) {
-        EXPECT_TRUE(channel >= 0.0 && channel <= 1.0)
-            << colour[0] << " " << colour[1] << " " << colour[2] << " gave " << channel;
-      }
-    }
+    for (const Color& colour : colours) ExpectInRange(DisplayLight(curve, colour, 1.0), colour);
+  }
+  for (const std::string& look : AgxLookNames()) {
+    for (const Color& colour : colours)
+      ExpectInRange(DisplayLight(ToneCurve::kAgx, colour, 1.0, AgxLookFromName(look)), colour);
   }
 }
 
@@ -192,8 +275,14 @@ TEST(ToneCurves, WhatTheMeterTakesForGreyIsPrintedGrey) {
   const double metered = 0.125 * std::exp2(ev100);
   const Color grey = {metered, metered, metered};
   const double scale = ExposureScale(ev100);
-  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale)[1], std::pow(0.5, 2.2), 1e-5)
+  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale, AgxLook::kNone)[1], std::pow(0.5, 2.2),
+              1e-5)
       << "half the code range of AgX, shown at exponent 2.2";
+  const double opened = metered * std::exp2(0.9);
+  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale, AgxLook::kPhoto)[1],
+              DisplayLight(ToneCurve::kAgx, {opened, opened, opened}, scale, AgxLook::kHigh)[1],
+              1e-6)
+      << "a photo is opened by 0.9 stops";
   EXPECT_NEAR(DisplayLight(ToneCurve::kPbrNeutral, grey, scale)[1], 0.18 - 0.04, 1e-9)
       << "0.18 but for the reflection";
   EXPECT_NEAR(DisplayLight(ToneCurve::kLinear, grey, scale)[1], 0.125 / 1.2, 1e-9)
