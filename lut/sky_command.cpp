@@ -112,10 +112,12 @@ double Ev100Of(const RenderedSky& sky, const ExposureRule& rule, const Look& loo
     case ExposureRule::Kind::kIncident:
       return IncidentEv100(sky.illuminance_lux);
     case ExposureRule::Kind::kMetered:
+    case ExposureRule::Kind::kEye:
       break;
   }
-  return MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2,
-                    Projection::kLatitudeLongitude);
+  const double metered = MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2,
+                                    Projection::kLatitudeLongitude);
+  return rule.kind == ExposureRule::Kind::kEye ? EyeEv100(metered, look) : metered;
 }
 
 /// Whatever would keep the picture from its files, before the picture is made.
@@ -194,7 +196,8 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
   sky.add_flag("--compass", options.compass,
                "Paint N, E, S and W on the horizon, to see how a program turns the picture");
   sky.add_option("--exposure", options.exposure,
-                 "auto (the picture is metered), incident (the light on a horizontal plane is "
+                 "auto (the picture is metered), eye (dusk is darker than day, night darker), "
+                 "incident (the light on a horizontal plane is "
                  "metered) or EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();

@@ -7,6 +7,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/night_vision.h"
 #include "lut/picture/picture_text.h"
+#include "lut/picture/tone_curve.h"
 
 namespace alpenglow {
 
@@ -27,6 +28,7 @@ Image Seen(const Image& image, const Look& look) {
 
 ExposureRule ExposureRuleFromText(const std::string& text) {
   if (text == "incident") return {ExposureRule::Kind::kIncident};
+  if (text == "eye") return {ExposureRule::Kind::kEye};
   if (const std::optional<double> ev100 = Ev100FromText(text))
     return {ExposureRule::Kind::kFixed, *ev100};
   return {};
@@ -40,8 +42,28 @@ std::string NameOf(ExposureRule::Kind kind) {
       return "incident";
     case ExposureRule::Kind::kFixed:
       return "fixed";
+    case ExposureRule::Kind::kEye:
+      return "eye";
   }
   throw InternalError("unknown rule of exposure");
+}
+
+double EyeEv100(double metered_ev100, const Look& look) {
+  constexpr double kDayEv100 = 15.0, kBrightnessPower = 1.0 / 3.0, kDarkest_stops = -6.0;
+  if (metered_ev100 >= kDayEv100) return metered_ev100;
+  const auto shown = [&](double stops_darker) {
+    const double grey = kMeterConstant / 100.0 * std::exp2(-stops_darker);
+    return DisplayLight<double>(look.curve, {grey, grey, grey}, ExposureScale(0.0), look.agx)[1];
+  };
+  const double stops = std::max(kBrightnessPower * (metered_ev100 - kDayEv100), kDarkest_stops);
+  const double wanted = shown(0.0) * std::exp2(stops);
+  double low = 0.0;
+  double high = kDayEv100 - metered_ev100;  // as dark as it is: no adaptation
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (shown(middle) > wanted ? low : high) = middle;
+  }
+  return metered_ev100 + low;
 }
 
 double IncidentEv100(double illuminance_lux) {

@@ -35,6 +35,7 @@ struct ExposureRule {
     kMetered,   // MeterEv100 of the picture
     kIncident,  // IncidentEv100 of the light on the place: smooth in time, whatever is in view
     kFixed,
+    kEye,  // EyeEv100 of what MeterEv100 says of the picture
   };
   Kind kind = Kind::kMetered;
   double ev100 = 0.0;  // kFixed
@@ -42,11 +43,19 @@ struct ExposureRule {
   bool operator==(const ExposureRule&) const = default;
 };
 
-/// "auto", "incident", or a number in [-30, 30]; throws InputError for another text.
+/// "auto", "eye", "incident", or a number in [-30, 30]; throws InputError for another text.
 [[nodiscard]] ExposureRule ExposureRuleFromText(const std::string& text);
 
-/// "metered", "incident" or "fixed".
+/// "metered", "eye", "incident" or "fixed".
 [[nodiscard]] std::string NameOf(ExposureRule::Kind kind);
+
+/// The exposure that lets a dusk be dark: the eye adapts in part. Brightness grows as the cube root of
+/// luminance (Stevens 1961, "To honor Fechner and repeal his law", Science 133, 80-86), so what the
+/// meter took for middle grey is shown with (L / 4096 cd/m^2)^(1/3) of the light that it has on the
+/// display by day, which is L = 4096, EV 15, and more; but with no less than 2^-6, where displays lose
+/// what there is (sun at -11 degrees): from there on the picture stays as dark.
+/// @param metered_ev100  MeterEv100 of the picture.
+[[nodiscard]] double EyeEv100(double metered_ev100, const Look& look);
 
 /// What an incident-light meter reads: E S / C = 2^EV with C = 250 for a flat receptor (ISO 2720).
 /// @param illuminance_lux  on a horizontal plane, >= 0. Within [kDarkestEv100, kBrightestEv100].

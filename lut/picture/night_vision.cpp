@@ -54,9 +54,11 @@ std::array<float, 3> NightColour(const std::array<float, 3>& rgb, float scotopic
   const double cones =
       photopic > 0.0 ? light.cone_share * light.luminance_cd_per_m2 / photopic : 0.0;
   const double rods = (1.0 - light.cone_share) * light.luminance_cd_per_m2;
+  const double gain = std::min(1.0, photopic / light.luminance_cd_per_m2);
   std::array<float, 3> seen;
   for (std::size_t c = 0; c < 3; ++c) {
-    seen[c] = static_cast<float>(cones * static_cast<double>(rgb[c]) + rods * kRodWhite[c]);
+    seen[c] =
+        static_cast<float>(gain * (cones * static_cast<double>(rgb[c]) + rods * kRodWhite[c]));
   }
   return seen;
 }

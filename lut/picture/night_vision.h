@@ -10,7 +10,9 @@
 // cd/m^2 up and 0 below 0.005 cd/m^2. Every pixel is taken as its own field of
 // adaptation. Rods see no colour: their share of the luminance appears as the
 // bluish white of chromaticity (0.25, 0.25) that Jensen et al. (2000), "Night
-// rendering", took from paintings of the night; the cones' share keeps its colour.
+// rendering", took from paintings of the night; the cones' share keeps its colour. Scotopic and
+// photopic luminance have units that agree at 555 nm only; where rods would make a pixel brighter than
+// its photopic luminance (two and a half times, of a blue night sky), it has the latter.
 #pragma once
 
 #include "lut/picture/image.h"

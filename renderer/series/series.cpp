@@ -150,10 +150,13 @@ class Series {
       case ExposureRule::Kind::kIncident:
         return IncidentEv100(source_.illuminance(frame));
       case ExposureRule::Kind::kMetered:
+      case ExposureRule::Kind::kEye:
         break;
     }
-    return MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2,
-                      source_.ProjectionOf(frame));
+    const double metered = MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2,
+                                      source_.ProjectionOf(frame));
+    return output_.exposure.kind == ExposureRule::Kind::kEye ? EyeEv100(metered, output_.look)
+                                                             : metered;
   }
 
   [[nodiscard]] Image AsLookedAt(const Frame& frame, const Image& image) const {

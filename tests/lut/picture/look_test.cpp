@@ -9,6 +9,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/night_vision.h"
+#include "lut/picture/tone_curve.h"
 
 namespace alpenglow {
 namespace {
@@ -27,8 +28,41 @@ TEST(Look, IncidentMeterReadsTheSunnySixteenRule) {
   EXPECT_EQ(IncidentEv100(1e12), kBrightestEv100);
 }
 
+double GreyOnTheDisplay(double metered_ev100, const Look& look) {
+  const double grey = kMeterConstant / 100.0 * std::exp2(metered_ev100);
+  return DisplayLight(look.curve, {grey, grey, grey}, ExposureScale(EyeEv100(metered_ev100, look)),
+                      look.agx)[1];
+}
+
+TEST(Look, ToTheEyeDuskLooksLikeDuskAndNightLikeNight) {
+  for (const Look& look :
+       {Look{}, Look{.agx = AgxLook::kNone}, Look{.curve = ToneCurve::kLinear}}) {
+    EXPECT_EQ(EyeEv100(15.0, look), 15.0);
+    EXPECT_EQ(EyeEv100(17.0, look), 17.0) << "by day the eye adapts as a camera does";
+    const double day = GreyOnTheDisplay(15.0, look);
+    for (const double ev100 : {12.0, 8.0, 2.0, -1.0}) {
+      EXPECT_NEAR(std::log2(GreyOnTheDisplay(ev100, look) / day), (ev100 - 15.0) / 3.0, 1e-6)
+          << "the cube root of luminance";
+    }
+    // Sun at -4, -10 and -18 degrees.
+    EXPECT_LT(std::log2(GreyOnTheDisplay(7.9, look) / day), -2.0);
+    EXPECT_LT(std::log2(GreyOnTheDisplay(-1.0, look) / day), -5.0);
+    EXPECT_GT(255.0 * shared::SrgbCode(GreyOnTheDisplay(-8.0, look)), 4.0) << "not black";
+  }
+}
+
+TEST(Look, ToTheEyeLessLightIsNeverBrighter) {
+  double before = 1.0;
+  for (double ev100 = 16.0; ev100 > -10.0; ev100 -= 0.05) {
+    const double now = GreyOnTheDisplay(ev100, {});
+    EXPECT_LE(now, before * (1.0 + 1e-9)) << ev100;
+    before = now;
+  }
+}
+
 TEST(Look, ExposureIsMeteredIncidentOrANumber) {
   EXPECT_EQ(ExposureRuleFromText("auto").kind, ExposureRule::Kind::kMetered);
+  EXPECT_EQ(ExposureRuleFromText("eye").kind, ExposureRule::Kind::kEye);
   EXPECT_EQ(ExposureRuleFromText("incident").kind, ExposureRule::Kind::kIncident);
   EXPECT_EQ(ExposureRuleFromText("12.5"), (ExposureRule{ExposureRule::Kind::kFixed, 12.5}));
   for (const char* bad : {"", "bright", "31", "1e9", "12 EV"})

@@ -99,6 +99,17 @@ TEST(NightVision, TakesColourAwayAndTurnsTheRestBlue) {
   EXPECT_LT(dusk[0] / dusk[2], 40.0F) << "less red than by day";
 }
 
+TEST(NightVision, IsNeverBrighterThanWhatConesWouldSee) {
+  for (double stop = -14.0; stop < 4.0; stop += 0.25) {
+    const auto light = static_cast<float>(std::exp2(stop));
+    const auto rgb =
+        SeenByNight(Uniform({0.5F * light, light, 2.0F * light}, 2.5F * light)).at(0, 0);
+    const float photopic = shared::Luminance(0.5F * light, light, 2.0F * light);
+    EXPECT_LE(shared::Luminance(rgb[0], rgb[1], rgb[2]), photopic * (1.0F + 2e-4F))
+        << "the colour of the rods' white is given to four digits";
+  }
+}
+
 TEST(NightVision, NeedsTheLightThatRodsSee) {
   EXPECT_THROW((void)SeenByNight(Image(2, 2)), InputError);
 }
