@@ -2,6 +2,7 @@
 #include "atmosphere/air/lorenz_mie.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
@@ -51,21 +52,25 @@ Coefficients CoefficientsOf(Complex index, double x) {
   return coefficients;
 }
 
-// (|S1|^2 + |S2|^2) / 2.
-double Intensity(const Coefficients& c, double cosine) {
+/// Of the field across the plane of scattering, and in it.
+struct Amplitudes {
+  Complex s1{0.0}, s2{0.0};
+};
+
+Amplitudes AmplitudesAt(const Coefficients& c, double cosine) {
   double pi_before = 0.0, pi = 1.0;
-  Complex s1(0.0), s2(0.0);
+  Amplitudes sum;
   for (std::size_t k = 0; k < c.a.size(); ++k) {
     const double n = static_cast<double>(k + 1);
     const double tau = n * cosine * pi - (n + 1.0) * pi_before;
     const double weight = (2.0 * n + 1.0) / (n * (n + 1.0));
-    s1 += weight * (c.a[k] * pi + c.b[k] * tau);
-    s2 += weight * (c.a[k] * tau + c.b[k] * pi);
+    sum.s1 += weight * (c.a[k] * pi + c.b[k] * tau);
+    sum.s2 += weight * (c.a[k] * tau + c.b[k] * pi);
     const double pi_next = ((2.0 * n + 1.0) * cosine * pi - (n + 1.0) * pi_before) / n;
     pi_before = pi;
     pi = pi_next;
   }
-  return 0.5 * (std::norm(s1) + std::norm(s2));
+  return sum;
 }
 
 // Sum over n of 4/x^2 times what mean_cosine * scattering_efficiency consists of.
@@ -99,11 +104,23 @@ SphereScattering ScatterBySphere(std::complex<double> index, double size_paramet
   }
   sphere.mean_cosine = 4.0 / x2 * ForwardSum(c) / sphere.scattering_efficiency;
   for (const double angle : angle_rad) {
-    sphere.per_sr.push_back(Intensity(c, std::cos(angle)) /
-                            (kPi * x2 * sphere.scattering_efficiency));
+    const auto [s1, s2] = AmplitudesAt(c, std::cos(angle));
+    const double intensity = 0.5 * (std::norm(s1) + std::norm(s2));
+    const Complex both = s2 * std::conj(s1);
+    sphere.per_sr.push_back(intensity / (kPi * x2 * sphere.scattering_efficiency));
+    sphere.polarised.a3.push_back(both.real() / intensity);
+    sphere.polarised.b1.push_back(0.5 * (std::norm(s2) - std::norm(s1)) / intensity);
+    sphere.polarised.b2.push_back(both.imag() / intensity);
   }
   return sphere;
 }
+
+namespace {
+
+using Ratio = std::vector<double> SphereRatios::*;
+constexpr std::array<Ratio, 3> kRatios{&SphereRatios::a3, &SphereRatios::b1, &SphereRatios::b2};
+
+}  // namespace
 
 SphereScattering ScatterBySpheres(std::complex<double> index, const SizeDistribution& sizes,
                                   double wavelength_nm, const std::vector<double>& angle_rad) {
@@ -115,6 +132,7 @@ SphereScattering ScatterBySpheres(std::complex<double> index, const SizeDistribu
   const double smallest = std::max(1.0 - 12.0 * std::sqrt(v), 1.0 / 200.0);
   SphereScattering all;
   all.per_sr.assign(angle_rad.size(), 0.0);
+  for (const Ratio ratio : kRatios) (all.polarised.*ratio).assign(angle_rad.size(), 0.0);
   double area = 0.0;
   // Uniform in log r: n(r) r^2 dr = n(r) r^3 d(log r).
   for (int i = 0; i < kRadii; ++i) {
@@ -129,10 +147,18 @@ SphereScattering ScatterBySpheres(std::complex<double> index, const SizeDistribu
     all.extinction_efficiency += shadow * one.extinction_efficiency;
     all.scattering_efficiency += scattered;
     all.mean_cosine += scattered * one.mean_cosine;
-    for (std::size_t k = 0; k < angle_rad.size(); ++k) all.per_sr[k] += scattered * one.per_sr[k];
+    for (std::size_t k = 0; k < angle_rad.size(); ++k) {
+      const double light = scattered * one.per_sr[k];
+      all.per_sr[k] += light;
+      for (const Ratio ratio : kRatios)
+        (all.polarised.*ratio)[k] += light * (one.polarised.*ratio)[k];
+    }
   }
   all.mean_cosine /= all.scattering_efficiency;
-  for (double& value : all.per_sr) value /= all.scattering_efficiency;
+  for (std::size_t k = 0; k < angle_rad.size(); ++k) {
+    for (const Ratio ratio : kRatios) (all.polarised.*ratio)[k] /= all.per_sr[k];
+    all.per_sr[k] /= all.scattering_efficiency;
+  }
   all.extinction_efficiency /= area;
   all.scattering_efficiency /= area;
   return all;

@@ -9,6 +9,8 @@
 #include <complex>
 #include <vector>
 
+#include "atmosphere/air/scattering_matrix.h"
+
 namespace alpenglow {
 
 /// One sphere, or many: efficiencies are cross sections over the (mean) area of the shadow.
@@ -17,6 +19,7 @@ struct SphereScattering {
   double scattering_efficiency = 0.0;
   double mean_cosine = 0.0;
   std::vector<double> per_sr;  // phase function at the angles asked for; integral over the sphere 1
+  SphereRatios polarised;      // of the scattering matrix to it, at the same angles
 };
 
 /// @param index   refractive index n + i k of the sphere relative to the air; n > 0, k >= 0.

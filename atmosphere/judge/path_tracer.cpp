@@ -12,6 +12,7 @@
 #include <numeric>
 #include <span>
 
+#include "atmosphere/judge/analyser.h"
 #include "atmosphere/judge/path_columns.h"
 #include "atmosphere/judge/path_line.h"
 #include "atmosphere/judge/path_random.h"
@@ -270,15 +271,22 @@ class Glow {
   double horizon_;
 };
 
-/// Light gathered by one path, at every wavelength.
+/// Light gathered by one path, at every wavelength; of polarised light first I, then Q, then U.
 struct Gathered {
   std::vector<double> total, single;
+};
+
+/// What the sun's light scattered into a piece is worth [1/sr], in the order of Gathered.
+struct Responses {
+  std::vector<double> molecules, aerosol;
 };
 
 /// Follows paths, one at a time.
 class Tracer {
  public:
-  Tracer(const Scene& scene, int max_order) : scene_(scene), max_order_(max_order) {
+  /// @param polarised  null: scalar light.
+  Tracer(const Scene& scene, const PolarisedScattering* polarised, int max_order)
+      : scene_(scene), polarised_(polarised), max_order_(max_order) {
     weight_.resize(scene.bands());
   }
 
@@ -297,6 +305,8 @@ class Tracer {
     Piece piece;
     int order;
     std::vector<double> weight;
+    std::vector<Analyser> analyser;
+    Vector reference{};
   };
   struct Copies {
     int count;
@@ -306,8 +316,8 @@ class Tracer {
 
   void Spread(const Piece& piece, int strata, double jitter);
   void Gather(const Piece& piece, std::vector<double>& light);
-  void GatherFromAir(const Piece& piece, const Point& point, double rayleigh_phase,
-                     const std::vector<double>& mie_phase, std::vector<double>& light) const;
+  void GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
+                     std::vector<double>& light) const;
   void GatherFromGround(const Piece& piece, std::vector<double>& light);
   [[nodiscard]] double ExpectedLight(const Piece& piece, double distance_m) const;
   [[nodiscard]] double SumOfShares() const;
@@ -317,11 +327,21 @@ class Tracer {
   [[nodiscard]] Vector TurnInAir(const Piece& piece, const Point& point, const Vector& from,
                                  double choice, double u, double v);
   [[nodiscard]] Vector TurnAtGround(const Vector& from, double choice, double u, double v);
+  [[nodiscard]] Branch FirstBranch(const Piece& first, double factor) const;
+  [[nodiscard]] Responses ResponsesToSun(const Piece& piece) const;
+  [[nodiscard]] ScatteringMatrix AerosolMatrix(std::size_t band, double mie_phase,
+                                               double cosine) const;
+  [[nodiscard]] double TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
+                                    double aerosol, double mie_phase, double cosine);
 
   const Scene& scene_;
+  const PolarisedScattering* polarised_;
   int max_order_;
   int order_ = 1;               // of the piece at hand
-  std::vector<double> weight_;  // of the path so far
+  std::vector<double> weight_;  // of the path so far, for unpolarised light
+  // Of polarised light, by band; the first entry of the first row is 1, the rest is in the weight.
+  std::vector<Analyser> analyser_;
+  Vector reference_{};
   std::vector<Branch> branches_;
   std::vector<Point> points_;
   AirColumns ground_view_;
@@ -330,12 +350,14 @@ class Tracer {
 };
 
 void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathered& light) {
-  branches_.push_back({first, 1, std::vector<double>(scene_.bands(), factor)});
+  branches_.push_back(FirstBranch(first, factor));
   while (!branches_.empty()) {
     const Branch branch = std::move(branches_.back());
     branches_.pop_back();
     order_ = branch.order;
     weight_ = branch.weight;
+    analyser_ = branch.analyser;
+    reference_ = branch.reference;
     Spread(branch.piece, order_ == 1 ? kFirstStrata : kLaterStrata, random.Next());
     Gather(branch.piece, order_ == 1 ? light.single : light.total);
     if (order_ == 1) first_shares_ = SumOfShares();
@@ -344,10 +366,29 @@ void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathe
     for (int copy = 0; copy < copies.count; ++copy) {
       for (std::size_t band = 0; band < weight_.size(); ++band)
         weight_[band] = branch.weight[band] * copies.factor;
+      analyser_ = branch.analyser;
+      reference_ = branch.reference;
       const Piece next = Continue(branch.piece, random);
-      branches_.push_back({next, branch.order + 1, weight_});
+      branches_.push_back({next, branch.order + 1, weight_, analyser_, reference_});
     }
   }
+}
+
+// Up is upwards in the vertical plane of the view; with the view along +z or -z, as if it were
+// tilted towards +x a little. U counts with the opposite sign: see ViewDirection.
+Tracer::Branch Tracer::FirstBranch(const Piece& first, double factor) const {
+  Branch branch{first, 1, std::vector<double>(scene_.bands(), factor), {}};
+  if (polarised_ == nullptr) return branch;
+  const Vector& view = first.direction;
+  const double across = std::hypot(view.x, view.y);
+  const Vector ahead = across > 0.0 ? Vector(view.x, view.y, 0.0) / across : Vector(1.0, 0.0, 0.0);
+  branch.reference = glm::normalize(Vector(0.0, 0.0, across) - view.z * ahead);
+  Analyser analyser;
+  analyser.row[0][0] = 1.0;
+  analyser.row[1][1] = 1.0;
+  analyser.row[2][2] = -1.0;
+  branch.analyser.assign(scene_.bands(), analyser);
+  return branch;
 }
 
 double Tracer::ExpectedLight(const Piece& piece, double distance_m) const {
@@ -382,9 +423,7 @@ void Tracer::Spread(const Piece& piece, int strata, double jitter) {
 
 void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
   const Medium& medium = scene_.medium();
-  const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
-  const double rayleigh_phase = Phase(kMolecules, nu);
-  const std::vector<double> mie_phase = MiePhaseValues(medium, nu);
+  const Responses responses = ResponsesToSun(piece);
   for (Point& point : points_) {
     for (std::size_t band = 0; band < weight_.size(); ++band) {
       point.share += weight_[band] * point.length_m *
@@ -393,15 +432,43 @@ void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
                      std::exp(-scene_.OpticalDepth(band, point.view));
     }
     point.share *= ExpectedLight(piece, point.distance_m);
-    GatherFromAir(piece, point, rayleigh_phase, mie_phase, light);
+    GatherFromAir(piece, point, responses, light);
   }
   ground_share_ = 0.0;
   if (piece.ends_on_ground) GatherFromGround(piece, light);
 }
 
+Responses Tracer::ResponsesToSun(const Piece& piece) const {
+  const std::size_t bands = weight_.size();
+  const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
+  const std::vector<double> mie_phase = MiePhaseValues(scene_.medium(), nu);
+  if (polarised_ == nullptr) {
+    return {std::vector<double>(bands, Phase(kMolecules, nu)), mie_phase};
+  }
+  const PlaneTurn turn = TurnOf(piece.direction, reference_, scene_.sun());
+  Responses responses{std::vector<double>(kStokes * bands), std::vector<double>(kStokes * bands)};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const Analyser& after = analyser_[band];
+    const Analyser molecules =
+        Scattered(after, turn, RayleighMatrix(polarised_->depolarisation[band], nu));
+    const Analyser aerosol = Scattered(after, turn, AerosolMatrix(band, mie_phase[band], nu));
+    for (std::size_t k = 0; k < kStokes; ++k) {
+      responses.molecules[k * bands + band] = molecules.row[k][0];
+      responses.aerosol[k * bands + band] = aerosol.row[k][0];
+    }
+  }
+  return responses;
+}
+
+ScatteringMatrix Tracer::AerosolMatrix(std::size_t band, double mie_phase, double cosine) const {
+  const std::vector<SphereRatios>& spheres = polarised_->aerosol;
+  if (spheres.empty()) return {.a1 = mie_phase};
+  return SphereMatrix(spheres.size() == 1 ? spheres.front() : spheres[band], mie_phase, cosine);
+}
+
 // Sunlight scattered at one point.
-void Tracer::GatherFromAir(const Piece& piece, const Point& point, double rayleigh_phase,
-                           const std::vector<double>& mie_phase, std::vector<double>& light) const {
+void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
+                           std::vector<double>& light) const {
   const Medium& medium = scene_.medium();
   const double radius = piece.Radius(point.distance_m);
   const double towards_sun =
@@ -410,12 +477,15 @@ void Tracer::GatherFromAir(const Piece& piece, const Point& point, double raylei
   const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
   const AirColumns both{point.view.rayleigh + sun.rayleigh, point.view.mie + sun.mie,
                         point.view.ozone + sun.ozone};
-  for (std::size_t band = 0; band < weight_.size(); ++band) {
-    const double scattered =
-        medium.rayleigh_scattering_per_m[band] * point.rayleigh * rayleigh_phase +
-        medium.mie_scattering_per_m[band] * point.mie * mie_phase[band];
-    light[band] +=
-        weight_[band] * point.length_m * scattered * std::exp(-scene_.OpticalDepth(band, both));
+  const std::size_t bands = weight_.size();
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double transmittance = std::exp(-scene_.OpticalDepth(band, both));
+    for (std::size_t k = band; k < light.size(); k += bands) {
+      const double scattered =
+          medium.rayleigh_scattering_per_m[band] * point.rayleigh * responses.molecules[k] +
+          medium.mie_scattering_per_m[band] * point.mie * responses.aerosol[k];
+      light[k] += weight_[band] * point.length_m * scattered * transmittance;
+    }
   }
 }
 
@@ -432,7 +502,11 @@ void Tracer::GatherFromGround(const Piece& piece, std::vector<double>& light) {
     const double reflected = weight_[band] * medium.ground_albedo[band] *
                              std::exp(-scene_.OpticalDepth(band, ground_view_));
     ground_share_ += reflected * expected;
-    if (lit) light[band] += reflected * mu_s / kPi * std::exp(-scene_.OpticalDepth(band, sun));
+    if (!lit) continue;
+    const double radiance = reflected * mu_s / kPi * std::exp(-scene_.OpticalDepth(band, sun));
+    light[band] += radiance;
+    for (std::size_t k = 1; k * weight_.size() < light.size(); ++k)
+      light[k * weight_.size() + band] += radiance * analyser_[band].row[k][0];
   }
 }
 
@@ -562,12 +636,39 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
     const double to_sun = std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0);
     density += guidance.aureole * MeanBy(share, MiePhaseValues(medium, to_sun));
   }
+  PlaneTurn turn;
+  if (polarised_ != nullptr) turn = TurnOf(piece.direction, reference_, direction);
   for (std::size_t band = 0; band < weight_.size(); ++band) {
-    weight_[band] *= (medium.rayleigh_scattering_per_m[band] * point.rayleigh * rayleigh_phase +
-                      medium.mie_scattering_per_m[band] * point.mie * mie_phase[band]) /
+    const double by_air = medium.rayleigh_scattering_per_m[band] * point.rayleigh;
+    const double by_mie = medium.mie_scattering_per_m[band] * point.mie;
+    weight_[band] *= (polarised_ == nullptr
+                          ? by_air * rayleigh_phase + by_mie * mie_phase[band]
+                          : TurnAnalyser(band, turn, by_air, by_mie, mie_phase[band], cosine)) /
                      density;
   }
+  reference_ = turn.reference;
   return direction;
+}
+
+// Of the analyser of one band; what it becomes for unpolarised light [1/(m sr)].
+// @param molecules, aerosol  scattering coefficients [1/m].
+double Tracer::TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
+                            double aerosol, double mie_phase, double cosine) {
+  const Analyser by_molecules =
+      Scattered(analyser_[band], turn, RayleighMatrix(polarised_->depolarisation[band], cosine));
+  const Analyser by_aerosol =
+      Scattered(analyser_[band], turn, AerosolMatrix(band, mie_phase, cosine));
+  Analyser& sum = analyser_[band];
+  for (std::size_t k = 0; k < kStokes; ++k) {
+    for (std::size_t i = 0; i < 4; ++i)
+      sum.row[k][i] = molecules * by_molecules.row[k][i] + aerosol * by_aerosol.row[k][i];
+  }
+  const double worth = sum.row[0][0];
+  if (!(worth > 0.0)) return 0.0;
+  for (auto& row : sum.row) {
+    for (double& entry : row) entry /= worth;
+  }
+  return worth;
 }
 
 /// A direction drawn to see what falls on a plane, and cosine over density.
@@ -594,11 +695,15 @@ Vector Tracer::TurnAtGround(const Vector& from, double choice, double u, double 
   const PlaneDirection drawn =
       DirectionAbove(scene_, from, glm::normalize(from), order_, choice, u, v);
   for (double& weight : weight_) weight *= drawn.weight / kPi;
+  for (Analyser& analyser : analyser_) {
+    for (auto& row : analyser.row) row = {row[0]};  // the ground depolarises
+  }
+  reference_ = FrameAround(drawn.direction).x;
   return drawn.direction;
 }
 
 /// Means over batches and their standard errors.
-struct Estimate {
+struct Estimate {  // in the order of Gathered
   std::vector<double> total, single, total_error, single_error;
   std::size_t paths = 0;
   bool converged = false;
@@ -609,34 +714,34 @@ struct Statistics {
 };
 
 Statistics StatisticsOf(const std::vector<Gathered>& batches,
-                        std::vector<double> Gathered::*quantity, std::size_t bands) {
+                        std::vector<double> Gathered::*quantity) {
   const double count = static_cast<double>(batches.size());
-  Statistics result{std::vector<double>(bands, 0.0), std::vector<double>(bands, 0.0)};
+  const std::size_t values = (batches.front().*quantity).size();
+  Statistics result{std::vector<double>(values, 0.0), std::vector<double>(values, 0.0)};
   for (const Gathered& batch : batches) {
-    for (std::size_t band = 0; band < bands; ++band)
-      result.mean[band] += (batch.*quantity)[band] / count;
+    for (std::size_t k = 0; k < values; ++k) result.mean[k] += (batch.*quantity)[k] / count;
   }
   for (const Gathered& batch : batches) {
-    for (std::size_t band = 0; band < bands; ++band) {
-      const double difference = (batch.*quantity)[band] - result.mean[band];
-      result.error[band] += difference * difference / (count * (count - 1.0));
+    for (std::size_t k = 0; k < values; ++k) {
+      const double difference = (batch.*quantity)[k] - result.mean[k];
+      result.error[k] += difference * difference / (count * (count - 1.0));
     }
   }
   for (double& error : result.error) error = std::sqrt(error);
   return result;
 }
 
-Estimate EstimateOf(const std::vector<Gathered>& batches, std::size_t bands) {
-  Statistics total = StatisticsOf(batches, &Gathered::total, bands);
-  Statistics single = StatisticsOf(batches, &Gathered::single, bands);
+Estimate EstimateOf(const std::vector<Gathered>& batches) {
+  Statistics total = StatisticsOf(batches, &Gathered::total);
+  Statistics single = StatisticsOf(batches, &Gathered::single);
   return {std::move(total.mean), std::move(single.mean), std::move(total.error),
           std::move(single.error), batches.size() * kPathsPerBatch};
 }
 
-// Largest relative error of a wavelength that has light.
-double WorstError(const Estimate& estimate) {
+// Largest relative error of the radiance at a wavelength that has light.
+double WorstError(const Estimate& estimate, std::size_t bands) {
   double worst = 0.0;
-  for (std::size_t band = 0; band < estimate.total.size(); ++band) {
+  for (std::size_t band = 0; band < bands; ++band) {
     if (estimate.total[band] > 0.0)
       worst = std::max(worst, estimate.total_error[band] / estimate.total[band]);
   }
@@ -645,33 +750,33 @@ double WorstError(const Estimate& estimate) {
 
 // Follows batches of paths until the error is small enough. `follow` follows one path.
 template <typename FollowPath>
-Estimate Run(const Scene& scene, const PathOptions& options, const FollowPath& follow) {
+Estimate Run(const Scene& scene, const PolarisedScattering* polarised, const PathOptions& options,
+             const FollowPath& follow) {
   constexpr std::size_t kFirstBatches = 32;
-  const std::size_t bands = scene.bands();
   const std::size_t most =
       std::max((options.max_paths + kPathsPerBatch - 1) / kPathsPerBatch, kFirstBatches);
-  const std::vector<double> zeros(bands, 0.0);
+  const std::vector<double> zeros((polarised == nullptr ? 1 : kStokes) * scene.bands(), 0.0);
   std::vector<Gathered> batches;
   for (std::size_t wanted = kFirstBatches;;) {
     const std::size_t done = batches.size();
     batches.resize(wanted);
     tbb::parallel_for(done, wanted, [&](std::size_t batch) {
       if (options.stopped()) return;
-      Tracer tracer(scene, options.max_order);
+      Tracer tracer(scene, polarised, options.max_order);
       Gathered sum{zeros, zeros};
       for (std::size_t path = 0; path < kPathsPerBatch; ++path) {
         PathRandom random(options.seed, batch, path);
         follow(tracer, random, sum);
       }
-      for (std::size_t band = 0; band < bands; ++band) {
-        sum.single[band] /= kPathsPerBatch;
-        sum.total[band] = sum.total[band] / kPathsPerBatch + sum.single[band];
+      for (std::size_t k = 0; k < zeros.size(); ++k) {
+        sum.single[k] /= kPathsPerBatch;
+        sum.total[k] = sum.total[k] / kPathsPerBatch + sum.single[k];
       }
       batches[batch] = std::move(sum);
     });
     if (options.stopped()) return {zeros, zeros, zeros, zeros, 0, false};
-    Estimate estimate = EstimateOf(batches, bands);
-    const double worst = WorstError(estimate);
+    Estimate estimate = EstimateOf(batches);
+    const double worst = WorstError(estimate, scene.bands());
     estimate.converged = worst <= options.relative_error;
     if (estimate.converged || wanted == most) return estimate;
     const double ratio = worst / std::max(options.relative_error, 1e-9);
@@ -691,11 +796,30 @@ void RequireValid(const PathOptions& options) {
   }
 }
 
+void RequireValid(const PolarisedScattering& scattering, std::size_t bands) {
+  if (scattering.depolarisation.size() != bands) {
+    throw InputError(fmt::format("depolarisation has {} values; {} wavelengths need one each",
+                                 scattering.depolarisation.size(), bands));
+  }
+  for (const double value : scattering.depolarisation)
+    RequireInRange(value, 0.0, kLargestDepolarisation, "depolarisation");
+  const std::size_t aerosols = scattering.aerosol.size();
+  if (aerosols > 1 && aerosols != bands) {
+    throw InputError(
+        fmt::format("aerosol has {} matrices; it must have none, one or {}", aerosols, bands));
+  }
+  for (const SphereRatios& ratios : scattering.aerosol) {
+    const std::size_t angles = ratios.a3.size();
+    if (angles < 2 || ratios.b1.size() != angles || ratios.b2.size() != angles)
+      throw InputError("aerosol has a matrix with fewer than 2 angles, or not the same for all");
+  }
+}
+
 Vector SunDirection(double mu_s) {
   return {std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0)), 0.0, mu_s};
 }
 
-// The view direction with its zenith and scattering angles.
+// The view direction with its zenith and scattering angles; the sun at x is not to the left of it.
 Vector ViewDirection(const ViewRay& ray) {
   const double sine = std::sqrt(std::max((1.0 - ray.mu) * (1.0 + ray.mu), 0.0));
   const double sun_sine = std::sqrt(std::max((1.0 - ray.mu_s) * (1.0 + ray.mu_s), 0.0));
@@ -728,15 +852,40 @@ PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const Scene scene(medium, SunDirection(ray.mu_s));
   const Piece piece = ViewPiece(medium, ray, extent);
-  Estimate estimate = Run(scene, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
-    tracer.Follow(piece, 1.0, random, light);
-  });
+  Estimate estimate =
+      Run(scene, nullptr, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        tracer.Follow(piece, 1.0, random, light);
+      });
   return {std::move(estimate.total),
           std::move(estimate.single),
           std::move(estimate.total_error),
           std::move(estimate.single_error),
           estimate.paths,
           estimate.converged};
+}
+
+PathTracedStokes TraceStokes(const Medium& medium, const PolarisedScattering& scattering,
+                             const ViewRay& ray, const PathOptions& options) {
+  Validate(medium);
+  RequireValid(options);
+  RequireValid(scattering, medium.wavelengths_nm.size());
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  const Scene scene(medium, SunDirection(ray.mu_s));
+  const Piece piece = ViewPiece(medium, ray, extent);
+  const Estimate estimate =
+      Run(scene, &scattering, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        tracer.Follow(piece, 1.0, random, light);
+      });
+  const auto part = [&](std::size_t k) {
+    const auto of = [&](const std::vector<double>& values) {
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * scene.bands());
+      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(scene.bands()));
+    };
+    return PathTracedRadiance{of(estimate.total),       of(estimate.single),
+                              of(estimate.total_error), of(estimate.single_error),
+                              estimate.paths,           estimate.converged};
+  };
+  return {part(0), part(1), part(2)};
 }
 
 PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, double mu_s,
@@ -748,14 +897,15 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
   const Scene scene(medium, SunDirection(mu_s));
   const Vector from(0.0, 0.0, medium.planet_radius_m + altitude_m);
   const Vector normal(0.0, 0.0, side == PlaneSide::kFromAbove ? 1.0 : -1.0);
-  Estimate estimate = Run(scene, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
-    const double choice = random.Next();
-    const double u = random.Next();
-    const double v = random.Next();
-    const PlaneDirection drawn = DirectionAbove(scene, from, normal, 0, choice, u, v);
-    if (drawn.weight <= 0.0) return;
-    tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
-  });
+  Estimate estimate =
+      Run(scene, nullptr, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        const double choice = random.Next();
+        const double u = random.Next();
+        const double v = random.Next();
+        const PlaneDirection drawn = DirectionAbove(scene, from, normal, 0, choice, u, v);
+        if (drawn.weight <= 0.0) return;
+        tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
+      });
   return {std::move(estimate.total), std::move(estimate.total_error), estimate.paths,
           estimate.converged};
 }

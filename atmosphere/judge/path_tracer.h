@@ -12,7 +12,9 @@
 //
 // Unbiased but for the tables of columns (1e-6, path_columns.h). Nothing here uses the shared
 // texts, the closed forms or the tables of lut/, but for the phase functions' values.
-// Scalar light, a point sun, no refraction, a Lambertian ground lit where mu_s >= 0.
+// A point sun, no refraction, a Lambertian ground lit where mu_s >= 0. Light is scalar, or polarised
+// (TraceStokes): then the path carries weights over Stokes parameters instead of a number
+// (analyser.h), on the same points and in directions drawn in the same way.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +23,7 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/air/scattering_matrix.h"
 #include "atmosphere/ray/ray.h"
 
 namespace alpenglow::judge {
@@ -52,6 +55,26 @@ struct PathTracedRadiance {
 /// for a ray or a medium that is not valid, max_order < 1 or relative_error < 0.
 [[nodiscard]] PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
                                                const PathOptions& options = {});
+
+/// How the air polarises. The ground depolarises.
+struct PolarisedScattering {
+  std::vector<double> depolarisation;  // of molecules, by wavelength: see RayleighMatrix
+  /// Of the aerosol: none where it depolarises, one for all wavelengths, or one per wavelength.
+  std::vector<SphereRatios> aerosol = {};
+};
+
+/// Stokes parameters for unit solar irradiance [1/sr]. Q > 0 vibrates in the vertical plane of the
+/// view; U > 0 from the upper right to the lower left as the eye sees it where the sun is to the
+/// left of the view (on its right, U has the opposite sign). Straight up and down the view counts
+/// as tilted towards the sun's azimuth.
+struct PathTracedStokes {
+  PathTracedRadiance i, q, u;  // `converged` speaks of I
+};
+
+/// As TraceRadiance, of polarised light: the molecules' phase function is that of the matrix.
+[[nodiscard]] PathTracedStokes TraceStokes(const Medium& medium,
+                                           const PolarisedScattering& scattering,
+                                           const ViewRay& ray, const PathOptions& options = {});
 
 /// Which side of a horizontal plane light falls on.
 enum class PlaneSide { kFromAbove, kFromBelow };

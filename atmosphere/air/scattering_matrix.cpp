@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/air/scattering_matrix.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+
+ScatteringMatrix RayleighMatrix(double depolarisation, double cos_scattering) {
+  const double c = cos_scattering;
+  const double round = (1.0 - depolarisation) / (1.0 + 0.5 * depolarisation);
+  const double circular = (1.0 - 2.0 * depolarisation) / (1.0 - depolarisation);
+  const double polarising = 3.0 / (16.0 * kPi) * round;
+  ScatteringMatrix matrix;
+  matrix.a2 = polarising * (1.0 + c * c);
+  matrix.a1 = matrix.a2 + (1.0 - round) / (4.0 * kPi);
+  matrix.a3 = 2.0 * polarising * c;
+  matrix.a4 = circular * matrix.a3;
+  matrix.b1 = -polarising * (1.0 - c) * (1.0 + c);
+  return matrix;
+}
+
+ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
+                              double cos_scattering) {
+  const std::size_t intervals = ratios.a3.size() - 1;
+  const double position =
+      std::acos(std::clamp(cos_scattering, -1.0, 1.0)) / kPi * static_cast<double>(intervals);
+  const std::size_t i = std::min(static_cast<std::size_t>(position), intervals - 1);
+  const auto at = [&](const std::vector<double>& ratio) {
+    return phase_per_sr * std::lerp(ratio[i], ratio[i + 1], position - static_cast<double>(i));
+  };
+  ScatteringMatrix matrix{.a1 = phase_per_sr, .a2 = phase_per_sr};
+  matrix.a3 = matrix.a4 = at(ratios.a3);
+  matrix.b1 = at(ratios.b1);
+  matrix.b2 = at(ratios.b2);
+  return matrix;
+}
+
+}  // namespace alpenglow
