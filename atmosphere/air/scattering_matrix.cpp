@@ -23,6 +23,24 @@ ScatteringMatrix RayleighMatrix(double depolarisation, double cos_scattering) {
   return matrix;
 }
 
+double AirDepolarisation(double wavelength_nm) {
+  const double x = std::pow(1000.0 / wavelength_nm, 2);  // 1/um^2
+  struct Gas {
+    double percent, king_factor;
+  };
+  const Gas gases[] = {{78.084, 1.034 + 3.17e-4 * x},                      // nitrogen
+                       {20.946, 1.096 + 1.385e-3 * x + 1.448e-4 * x * x},  // oxygen
+                       {0.934, 1.0},                                       // argon
+                       {0.036, 1.15}};                                     // carbon dioxide
+  double all = 0.0, sum = 0.0;
+  for (const Gas& gas : gases) {
+    all += gas.percent;
+    sum += gas.percent * gas.king_factor;
+  }
+  const double king_factor = sum / all;
+  return 6.0 * (king_factor - 1.0) / (7.0 * king_factor + 3.0);
+}
+
 ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
                               double cos_scattering) {
   const std::size_t intervals = ratios.a3.size() - 1;

@@ -34,6 +34,13 @@ inline constexpr double kLargestDepolarisation = 0.5;
 ///   [-1, 1].
 [[nodiscard]] ScatteringMatrix RayleighMatrix(double depolarisation, double cos_scattering);
 
+/// Depolarisation of dry air with 360 ppm of carbon dioxide. Its King factor F, by which it scatters
+/// more than round molecules of its refractivity would, is the mean of its gases' by volume: Bates
+/// (1984), Planet. Space Sci. 32, 785, as Bodhaine et al. (1999), J. Atmos. Oceanic Technol. 16,
+/// 1854, have it (equations 5, 6 and 23); d = 6 (F - 1) / (7 F + 3). About 0.028 in the visible.
+/// @param wavelength_nm  in [200, 4000]: beyond what was measured to the red F hardly changes.
+[[nodiscard]] double AirDepolarisation(double wavelength_nm);
+
 /// What spheres do to polarised light, beside their phase function: ratios to a1 at the same number
 /// of scattering angles, uniform from 0 to 180 degrees, linear between. a2 = a1 and a4 = a3.
 struct SphereRatios {

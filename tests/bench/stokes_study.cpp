@@ -170,11 +170,11 @@ SphereAir AirWith(const char* preset, const Spheres& spheres) {
     angle_rad.push_back(kPi * i / kAngles);
   }
   SphereAir air{MediumPreset(preset), {}};
-  air.scattering = Molecules(air.medium, 0.0279);
   air.medium.mie_phase.clear();
   for (const double wavelength_nm : air.medium.wavelengths_nm) {
     const SphereScattering light =
         ScatterBySpheres(spheres.index, spheres.sizes, wavelength_nm, angle_rad);
+    air.scattering.depolarisation.push_back(AirDepolarisation(wavelength_nm));
     air.scattering.aerosol.push_back(light.polarised);
     air.medium.mie_phase.push_back(
         {.kind = PhaseKind::kTable,

@@ -9,6 +9,7 @@
 #include "atmosphere/air/phase.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
+#include "atmosphere/text/embedded_table.h"
 
 namespace alpenglow {
 namespace {
@@ -36,6 +37,15 @@ TEST(ScatteringMatrix, DepolarisationIsWhatVibratesInThePlaneOfScatteringAcrossT
   for (const double depolarisation : {0.0, 0.0279, 0.2, kLargestDepolarisation}) {
     const ScatteringMatrix across = RayleighMatrix(depolarisation, 0.0);
     EXPECT_NEAR((across.a1 + across.b1) / (across.a1 - across.b1), depolarisation, 1e-15);
+  }
+}
+
+TEST(ScatteringMatrix, AirDepolarisesAsItsTableSays) {
+  const auto columns = atmosphere::ReadColumns("atmosphere/data/rayleigh_10nm.csv", {0, 3});
+  ASSERT_GT(columns[0].size(), 40U);
+  for (std::size_t row = 0; row < columns[0].size(); ++row) {
+    EXPECT_NEAR(AirDepolarisation(columns[0][row]), columns[1][row], 6e-6)
+        << columns[0][row] << " nm: five digits";
   }
 }
 
