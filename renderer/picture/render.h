@@ -7,9 +7,10 @@
 // same, apparent direction.
 //
 // Per pixel: rays against the terrain, spread as PixelFilter and PixelSamples say (a single one
-// goes through the middle; with RenderSettings::noise, as many as pixel_noise.h says), then the air along the mean of those that meet the same surface
-// (AerialPerspective): single scattering where terrain and planet let the sun in, light of higher
-// orders everywhere. Terrain behind the planet's own horizon is not seen.
+// goes through the middle; with RenderSettings::noise, as many as pixel_noise.h says), then the air
+// along the mean of those that meet the same surface (AerialPerspective): single scattering where
+// terrain and planet let the sun in, light of higher orders everywhere. Terrain behind the planet's
+// own horizon is not seen.
 #pragma once
 
 #include <memory>
