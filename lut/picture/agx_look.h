@@ -10,17 +10,18 @@
 // logarithm about middle grey, and saturation 0.95 of the last. Punchy is the look in Sobotka's own
 // (2022, https://github.com/sobotka/AgX): power 1.3, saturation 1.2.
 //
-// Photo, the default, is high contrast opened by 0.9 stops, with the vibrance that gives a clear sky
-// at least the chroma which it has in the scene. Vibrance and outset are one spread s of the codes
-// about their grey, s = 1 + (1.25 (1 + vibrance) - 1) (1 - d), for a colour that is d of the way from
-// its grey to the border of the cube of codes: pale colours gain, and none is pushed over the border.
-// The hue of blue light is kept: channels that pass a curve one by one turn bright blue skies towards
-// violet, by 3 to 11 degrees of OKLab hue. Warm light keeps the curve's turn towards yellow, which eyes know from bright lights (Bezold
-// and Bruecke): the hue of the scene has the weight m (2 - m) (1 - sin hue) / 2, where the sine is 1
-// at OKLab's yellow and -1 at its blue, and 1 - m is the light's d: 0 at the border.
+// Photo, the default, is high contrast opened by 0.9 stops, with the vibrance that gives a clear
+// sky at least the chroma which it has in the scene. Vibrance and outset are one spread s of the
+// codes about their grey, s = 1 + (1.25 (1 + vibrance) - 1) (1 - d), for a colour that is d of the
+// way from its grey to the border of the cube of codes: pale colours gain, and none is pushed over
+// the border. The hue of blue light is kept: channels that pass a curve one by one turn bright blue
+// skies towards violet, by 3 to 11 degrees of OKLab hue. Warm light keeps the curve's turn towards
+// yellow, which eyes know from bright lights (Bezold and Bruecke): the hue of the scene has the
+// weight m (2 - m) (1 - sin hue) / 2, where the sine is 1 at OKLab's yellow and -1 at its blue, and
+// 1 - m is the light's d: 0 at the border.
 //
-// A colour that then lies outside the display's gamut keeps its luminance and is mixed with the grey
-// of that luminance until it is inside.
+// A colour that then lies outside the display's gamut keeps its luminance and is mixed with the
+// grey of that luminance until it is inside.
 #pragma once
 
 #include <array>

@@ -40,7 +40,8 @@ ImageSize ImageSizeFromText(const std::string& text, int largest) {
 std::optional<double> Ev100FromText(const std::string& text) {
   if (text == "auto") return std::nullopt;
   const double ev100 = NumberFromText<double>(text, [&] {
-    throw InputError(fmt::format("exposure is \"{}\"; it must be auto, eye, incident or a number (EV)", text));
+    throw InputError(
+        fmt::format("exposure is \"{}\"; it must be auto, eye, incident or a number (EV)", text));
   });
   return RequireInRange(ev100, -30.0, 30.0, "exposure");
 }

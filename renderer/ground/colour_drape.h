@@ -4,7 +4,8 @@
 // Read by GDAL: GeoTIFF and PNG, 8 or 16 bits (sRGB-encoded) or floating point (linear), three
 // bands or more (the first three are red, green, blue), or one (grey). With a coordinate system it
 // lies where it says; without, it covers the terrain from rim to rim, its upper edge in the north.
-// A map of land cover is one band of 8 bits, of the classes of land_cover.h. Averages over 2 x 2, 4 x 4, ... pixels serve distant ground.
+// A map of land cover is one band of 8 bits, of the classes of land_cover.h. Averages over 2 x 2,
+// 4 x 4, ... pixels serve distant ground.
 #pragma once
 
 #include <array>

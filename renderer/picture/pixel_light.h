@@ -14,7 +14,8 @@ namespace alpenglow {
 
 struct SceneState;
 
-/// Takes rays until it has as many as it is asked for; all count alike. Refers to scene, frame and lattice.
+/// Takes rays until it has as many as it is asked for; all count alike. Refers to scene, frame and
+/// lattice.
 class PixelLight {
  public:
   /// @param most_rays  that it will ever be asked for. A pixel of a single one looks through its

@@ -11,9 +11,9 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sea_mirror.h"
+#include "viewer/job/latest_job.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shade_follower.h"
-#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <optional>
 
-#include "viewer/lamps/fog_map.h"
 #include "viewer/job/latest_job.h"
+#include "viewer/lamps/fog_map.h"
 
 namespace alpenglow {
 

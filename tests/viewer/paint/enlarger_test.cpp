@@ -156,8 +156,7 @@ TEST_F(DarkroomTest, LowQualityShowsWhatMediumDoes) {
   // The same light is further apart on the display by the contrast of the look, 1.4.
   const double contrast = GradeOf(AgxLook::kPhoto).contrast;
   EXPECT_LE(off[off.size() * 99 / 100], 6 * contrast) << "relief is as fine as the pixels of light";
-  EXPECT_LE(off[off.size() * 995 / 1000], 9 * contrast)
-      << "crests of coarser land lie a pixel off";
+  EXPECT_LE(off[off.size() * 995 / 1000], 9 * contrast) << "crests of coarser land lie a pixel off";
   EXPECT_GT(white, 30) << "the sun";
   EXPECT_GT(white_too, white * 9 / 10) << "its disk is as sharp as the screen";
 }
