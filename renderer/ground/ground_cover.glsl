@@ -1,10 +1,10 @@
 // What mountain ground is made of, and relief finer than the mesh (surface.h). Lengths in metres:
 // details of the ground are as fine as that.
 
-// Families of noise: two make the lines between materials waver, one is relief, one the grain
-// of crowns, tussocks and stones, one the waves of water. Each is a sum of octaves, half as long from one to the next and
-// lower by the factor of its fall: that of the grain is 1, for ground looks as rough from a hand's
-// height as from a tower's.
+// Families of noise: two make the lines between materials waver, one is relief, one the grain of
+// crowns, tussocks and stones, one the waves of water. Each is a sum of octaves, half as long from
+// one to the next and lower by the factor of its fall: that of the grain is 1, for ground looks as
+// rough from a hand's height as from a tower's.
 SHARED_CONSTANT int kBroadWave_m = 900;  // of the longest octave
 SHARED_CONSTANT int kBroadOctaves = 5;
 SHARED_CONSTANT int kBroadFall = 2;
