@@ -29,7 +29,9 @@ constexpr std::array<Step, 9> kSteps{{{{Quality::kHigh, 1.0}, 1.0},
                                       {{Quality::kLow, 0.4}, 0.26},
                                       {{Quality::kLow, 0.33}, 0.21},
                                       {{Quality::kLow, 0.25}, 0.19}}};
-constexpr int kFirstStep = 1;
+// The first frames are the slowest already, for land arrives and programs are finished in them: it
+// begins with what nearly every machine draws in time, and has time for more at once.
+constexpr int kFirstStep = 5;
 
 const Step& StepAt(int index) { return kSteps[static_cast<std::size_t>(index)]; }
 
@@ -81,17 +83,16 @@ void AutoQuality::Note(double frame_s) {
   if (frames_s_.size() < kLeastFrames) return;
   const double usual_s = MedianOf(frames_s_);
   const int last = static_cast<int>(kSteps.size()) - 1;
+  const auto expected_s = [&](int step) {
+    return usual_s * StepAt(step).cost / StepAt(step_).cost;
+  };
   int next = step_;
   if (usual_s > kTooLong * wanted_s_ && since_change_s_ >= kDown_s) {
-    const auto expected_s = [&](int step) {
-      return usual_s * StepAt(step).cost / StepAt(step_).cost;
-    };
     while (next < last && expected_s(next) > wanted_s_) ++next;
     // A step up that was a mistake is not soon tried again.
     if (since_change_s_ < wait_up_s_) wait_up_s_ = std::min(2.0 * wait_up_s_, kLongestWait_s);
-  } else if (step_ > 0 && since_change_s_ >= wait_up_s_ &&
-             usual_s * StepAt(step_ - 1).cost / StepAt(step_).cost < kRoom * wanted_s_) {
-    next = step_ - 1;
+  } else if (since_change_s_ >= wait_up_s_) {
+    while (next > 0 && expected_s(next - 1) < kRoom * wanted_s_) --next;
   }
   if (since_change_s_ > 2.0 * kLongestWait_s) wait_up_s_ = kUp_s;
   if (next == step_) return;

@@ -38,11 +38,12 @@ struct PaintedQuality {
 [[nodiscard]] std::string TextOf(const PaintedQuality& painted);
 
 /// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a quarter of it, so
-/// that frames take about as long as wanted. What counts is the median of the last nine frames: one
-/// in which a driver finished a program says nothing. It goes down a step after half a second, and
-/// three frames, that take 1.15 times too long, several at once if they take much longer, and up
-/// after two seconds of frames of which the next step would still take less than 0.85 of the time; a
-/// step that was too slow is not tried again before a time that doubles with each failure.
+/// that frames take about as long as wanted; it begins with kLow at half the resolution. What counts
+/// is the median of the last nine frames: one in which a driver finished a program says nothing. It
+/// goes down a step after half a second, and three frames, that take 1.15 times too long, several at
+/// once if they take much longer, and up after two seconds to the best step that would still take
+/// less than 0.85 of the time; a step that was too slow is not tried again before a time that
+/// doubles with each failure.
 class AutoQuality {
  public:
   /// @param wanted_frame_s  > 0

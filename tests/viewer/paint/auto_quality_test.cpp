@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "tests/fixtures/fault_of.h"
@@ -21,6 +22,7 @@ double FrameOf(const PaintedQuality& painted, double full_s) {
 struct Outcome {
   PaintedQuality last;
   double frame_s;
+  double longest_s;
   int changes;  // in the second half of the run
 };
 Outcome RunFor(double full_s, int frames) {
@@ -29,6 +31,7 @@ Outcome RunFor(double full_s, int frames) {
   for (int frame = 0; frame < frames; ++frame) {
     const PaintedQuality before = quality.painted();
     run.frame_s = FrameOf(before, full_s);
+    run.longest_s = std::max(run.longest_s, run.frame_s);
     quality.Note(run.frame_s);
     if (frame > frames / 2 && !(quality.painted() == before)) ++run.changes;
   }
@@ -38,6 +41,18 @@ Outcome RunFor(double full_s, int frames) {
 
 TEST(AutoQuality, AFastMachineDrawsAtHighQuality) {
   EXPECT_EQ(RunFor(0.005, 2000).last, (PaintedQuality{Quality::kHigh, 1.0}));
+}
+
+TEST(AutoQuality, AFastMachineWaitsTwoSecondsForHighQuality) {
+  EXPECT_EQ(RunFor(0.005, 70).last, (PaintedQuality{Quality::kHigh, 1.0}));  // 70 frames: 2.3 s
+}
+
+// A flight's worst frame may take three times its median: half of that is left to land that arrives.
+TEST(AutoQuality, TheFirstFramesOfASlowMachineAreLittleLongerThanItsUsualOnes) {
+  for (const double full_s : {0.05, 0.1, 0.2, 0.3, 2.0}) {
+    const Outcome run = RunFor(full_s, 600);
+    EXPECT_LT(run.longest_s, 2.0 * run.frame_s) << full_s;
+  }
 }
 
 TEST(AutoQuality, FramesTakeAsLongAsWantedWhereAnyQualityDoes) {
