@@ -13,6 +13,7 @@
 #include "renderer/series/provenance.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
+#include "viewer/gl/texture_side.h"
 #include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
 
@@ -314,7 +315,8 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   if (wanted.quality != used_.quality) painter_.Use(SizesOf(wanted.quality));
   used_ = wanted;
   const auto scaled = [&](int side) {
-    return std::max(static_cast<int>(std::lround(wanted.scale * side)), 1);
+    const int part = std::max(static_cast<int>(std::lround(wanted.scale * side)), 1);
+    return wanted.scale < 1.0 ? OffPowersOfTwo(part) : part;
   };
   const ImageSize size{scaled(screen.width), scaled(screen.height)};
   AimLandingLight();

@@ -132,15 +132,15 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   };
   switch (quality) {
     case AirQuality::kFirst:
-      return with(64, 1.0, 12, 12, 8);
+      return with(66, 1.0, 12, 12, 9);
     case AirQuality::kLow:
-      return with(128, 1.0, 24, 32, 12);
+      return with(136, 1.0, 24, 33, 12);
     case AirQuality::kMedium:
-      return with(192, 1.25, 32, 48, 16);
+      return with(192, 1.25, 33, 48, 17);
     case AirQuality::kHigh:
       break;
   }
-  return with(192, 1.5, 32, 64, 24);
+  return with(192, 1.5, 33, 65, 24);
 }
 
 AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,

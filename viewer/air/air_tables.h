@@ -42,7 +42,8 @@ struct AirTablesSize {
 enum class AirQuality { kFirst, kLow, kMedium, kHigh };
 
 /// From high up rows are longer, because the terminator crosses them, and ways through the air
-/// below short. kFirst is for a first frame that must not wait.
+/// below short. kFirst is for a first frame that must not wait. No side of a texture is a power of
+/// two (texture_side.h): qualities change while one flies.
 [[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m);
 
 /// Texels of four floats, x fastest.

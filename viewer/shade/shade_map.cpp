@@ -9,6 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "viewer/gl/texture_side.h"
 
 namespace alpenglow {
 namespace {
@@ -86,8 +87,8 @@ ShadeMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int mos
   map.cell_m = std::max(heights.cell_m, extent / (most_side - 1));
   map.first_u_m = low.x;
   map.first_v_m = low.y;
-  map.columns = static_cast<int>(std::ceil((high.x - low.x) / map.cell_m)) + 1;
-  map.lines = static_cast<int>(std::ceil((high.y - low.y) / map.cell_m)) + 1;
+  map.columns = OffPowersOfTwo(static_cast<int>(std::ceil((high.x - low.x) / map.cell_m)) + 1);
+  map.lines = OffPowersOfTwo(static_cast<int>(std::ceil((high.y - low.y) / map.cell_m)) + 1);
   map.low_u_m = map.low_v_m = infinity;
   map.high_u_m = map.high_v_m = map.ceiling_m = -infinity;
   return map;

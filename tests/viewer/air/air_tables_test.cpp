@@ -10,6 +10,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
 #include "tests/viewer/air/air_judge.h"
+#include "viewer/gl/texture_side.h"
 
 namespace alpenglow {
 namespace {
@@ -205,6 +206,22 @@ TEST(AirMap, RaysEndAtSeaLevelOrWhereTheyLeaveTheCeiling) {
     const double end = shared::AirEndUp<double>(h, up, 9.0, radius);
     EXPECT_NEAR(shared::AltitudeAlongRay<double>(h, up, end, radius), 9.0, 1e-6);
     EXPECT_GT(shared::AltitudeAlongRay<double>(h, up, end + 1.0, radius), 9.0) << "for good";
+  }
+}
+
+TEST(AirTablesSize, NoSideOfATextureIsAPowerOfTwo) {
+  for (const AirQuality quality :
+       {AirQuality::kFirst, AirQuality::kLow, AirQuality::kMedium, AirQuality::kHigh}) {
+    for (const double altitude_m : {100.0, 400e3}) {
+      const AirTablesSize size = AirTablesSizeOf(quality, altitude_m);
+      for (const int side :
+           {size.sky_columns, size.sky_rows + size.sky_ground_rows, size.columns,
+            size.rows + size.ground_rows, size.distances, size.extinction_distances,
+            size.extinction_rows + size.extinction_ground_rows,
+            size.through_rows + size.through_ground_rows}) {
+        EXPECT_EQ(side, OffPowersOfTwo(side)) << static_cast<int>(quality) << ' ' << altitude_m;
+      }
+    }
   }
 }
 

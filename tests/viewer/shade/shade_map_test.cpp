@@ -10,6 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/terrain/mesh.h"
 #include "tests/fixtures/rough_land.h"
+#include "viewer/gl/texture_side.h"
 #include "viewer/shade/heights_around.h"
 
 namespace alpenglow {
@@ -42,6 +43,16 @@ HeightRaster Raster(const Height& height, int side, double cell_m) {
 glm::dvec3 PlaceOf(const ShadeMap& map, int column, int line) {
   return (map.first_u_m + map.cell_m * column) * map.sunwards +
          (map.first_v_m + map.cell_m * line) * map.across;
+}
+
+TEST(ShadeMap, HasNoSideThatIsAPowerOfTwoWhileTheSunTurns) {
+  const auto wall = [](double x, double) { return std::abs(x) < 60.0 ? 800.0 : 0.0; };
+  const HeightRaster heights = Raster(wall, 65, 50.0);
+  for (double azimuth_deg = 0.0; azimuth_deg < 90.0; azimuth_deg += 1.0) {
+    const ShadeMap map = ShadeMapOf(heights, SunAtDegrees(10.0, azimuth_deg), kSunRadius_rad, 64);
+    EXPECT_EQ(map.columns, OffPowersOfTwo(map.columns)) << azimuth_deg;
+    EXPECT_EQ(map.lines, OffPowersOfTwo(map.lines)) << azimuth_deg;
+  }
 }
 
 TEST(ShadeMap, OfAWallFallsByTheTangentOfTheSun) {
