@@ -134,7 +134,7 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
     case AirQuality::kFirst:
       return with(66, 1.0, 12, 12, 9);
     case AirQuality::kLow:
-      return with(136, 1.0, 24, 33, 12);
+      return with(144, 1.0, 24, 33, 12);
     case AirQuality::kMedium:
       return with(192, 1.25, 33, 48, 17);
     case AirQuality::kHigh:
