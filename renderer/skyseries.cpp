@@ -6,10 +6,12 @@
 
 #include "renderer/report_command.h"
 #include "renderer/scene/scene_files.h"
+#include "renderer/series/frame_list.h"
 #include "renderer/series/path_frames.h"
 #include "renderer/series/provenance.h"
 #include "renderer/series/series.h"
 #include "renderer/skyseries_options.h"
+#include "renderer/times_command.h"
 
 namespace alpenglow {
 namespace {
@@ -35,7 +37,7 @@ PathRate RateOf(const SkyseriesOptions& options) {
 std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene,
                             const std::optional<CameraPath>& path) {
   EventDay day{scene.place, scene.zone, scene.time};
-  if (options.date) day.around = DayFromText(*options.date, scene.place, scene.zone);
+  if (options.date) day.around = DayFromText(*options.date, day);
   if (path) {
     const auto start =
         options.times.at.empty() ? scene.time : InstantFromText(options.times.at.front(), day);
@@ -89,6 +91,19 @@ NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
   Metadata notes = NotesOn(picture.choice);
   notes.merge(NotesOn(picture.rays, settings));
   return {std::move(picture.image), std::move(notes)};
+}
+
+void List(const SkyseriesOptions& options) {
+  const Scene scene = SceneOf(options);
+  const std::optional<CameraPath> path = PathOf(options, scene);
+  const std::vector<Frame> frames = FramesOf(options, scene, path);
+  FrameListing listing;
+  listing.place_of = [&](const Frame& frame) {
+    return path ? path->PoseAt(frame.path_s).place : scene.place;
+  };
+  listing.zone = scene.zone;
+  if (!options.out.empty()) listing.name.emplace(options.out);
+  Print(ListOf(options.frames ? SelectFrames(frames, *options.frames) : frames, listing));
 }
 
 int Run(const SkyseriesOptions& options) {
@@ -159,9 +174,17 @@ int Main(int argc, char** argv) {
   SkyseriesOptions options;
   AddSkyseriesOptions(app, options);
   const std::function<void()> report = AddPictureReportCommand(app);
+  const std::function<void()> times = AddTimesCommand(app);
   if (const std::optional<int> status = ParseCommandLine(app, argc, argv)) return *status;
-  if (!app.got_subcommand("report")) return Run(options);
-  report();
+  if (app.got_subcommand("report")) {
+    report();
+  } else if (app.got_subcommand("times")) {
+    times();
+  } else if (options.list) {
+    List(options);
+  } else {
+    return Run(options);
+  }
   return 0;
 }
 

@@ -19,9 +19,11 @@
 namespace alpenglow {
 
 inline constexpr char kSkyseriesFooter[] =
-    "A time is an instant (2026-06-21T04:00:00Z, with an offset, or local with --zone) or an event "
-    "with an offset: sunrise-1h, sunset+20m, noon, civil-dawn, civil-dusk, nautical-..., "
-    "astronomical-...\n\n"
+    "A time is an instant (2026-06-21T04:00:00Z, with an offset, or local with --zone), a clock "
+    "time of the --date (18:30), an event with an offset (sunrise-1h, sunset+20m, noon, "
+    "civil-dawn, "
+    "civil-dusk, nautical-..., astronomical-..., moonrise, moonset, moon-transit), either of them "
+    "after a day of its own (\"tomorrow sunrise\", \"2026-06-22 18:30\"), or now, now+2h\n\n"
     "Example: a day over the built-in range\n"
     "  skyseries --out 'out/frame.%04d.exr' --png --date 2026-06-21 --from sunrise-1h "
     "--to sunset+1h --every 10m\n"
@@ -45,7 +47,8 @@ struct SkyseriesOptions {
   double frames_per_second = 25.0, shutter = 0.0;
   std::vector<std::string> layers;
   std::optional<std::string> effects, max_error, noise;
-  bool png = false, night_vision = false, no_shafts = false, explain = false, resume = false;
+  bool png = false, night_vision = false, no_shafts = false, explain = false, resume = false,
+       list = false;
 };
 
 inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
@@ -81,7 +84,10 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
                         ->allow_extra_args(false);
   CLI::Option* from = app.add_option("--from", times.from, "First time of the series");
   CLI::Option* to = app.add_option("--to", times.to, "Last time of the series");
-  CLI::Option* every = app.add_option("--every", times.every, "Time between frames: 10m, 90s, 1h");
+  CLI::Option* every = app.add_option(
+      "--every", times.every,
+      "Time between frames: 10m, 90s, 1h. With whole days (1d) and an event in --from each "
+      "frame is the event of its own day, and --to may be a day");
   CLI::Option* count = app.add_option("--count", times.count,
                                       "Number of frames, first and last "
                                       "included");
@@ -113,11 +119,19 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
       }
     }
   });
-  app.add_option(
-      "--date", options.date,
-      "Day of the events, as 2026-06-21 (default: the scene's; without a file 2026-06-21)");
+  app.add_option("--date", options.date,
+                 "Day of events and clock times: 2026-06-21, today, tomorrow, yesterday (default: "
+                 "the scene's; "
+                 "without a file 2026-06-21)");
   app.add_option("--zone", options.zone, "IANA zone of local times (default: the scene's)");
   app.add_option("--frames", options.frames, "Render only these frames: A-B,C, counted from 0");
+  app.add_flag_callback(
+      "--list",
+      [&app, &options] {
+        options.list = true;
+        app.get_option("--out")->required(false);
+      },
+      "Print the frames as CSV, with sun and moon, and render nothing; needs no --out");
 }
 
 inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {

@@ -33,8 +33,8 @@ Eye EyeOfScene(const Scene& scene) {
   return Zoomed(eye, 1.0);
 }
 
-std::optional<UtcInstant> MoonEvent(SkyEvent event, const GeodeticPosition& place,
-                                    const UtcInstant& after) {
+std::optional<UtcInstant> MoonEventAfterwards(SkyEvent event, const GeodeticPosition& place,
+                                              const UtcInstant& after) {
   return event == SkyEvent::kMoonset ? NextMoonset(place, after) : NextMoonrise(place, after);
 }
 
@@ -127,7 +127,7 @@ void Flythrough::GoTo(const std::string& name) {
 void Flythrough::Follow(const CameraPath& path) {
   AwaitGround();
   cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
-  static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEvent));
+  static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEventAfterwards));
 }
 
 void Flythrough::Replay(const CameraPath& flight) {
@@ -153,10 +153,12 @@ void Flythrough::Advance(const PilotControls& controls, double seconds) {
   still_eye_ = eye();
 }
 
-std::string Flythrough::JumpTo(SkyEvent event) { return cockpit_.JumpTo(event, MoonEvent); }
+std::string Flythrough::JumpTo(SkyEvent event) {
+  return cockpit_.JumpTo(event, MoonEventAfterwards);
+}
 
 std::optional<std::string> Flythrough::Do(Action action) {
-  if (auto said = cockpit_.Do(action, Ground(), MoonEvent)) return said;
+  if (auto said = cockpit_.Do(action, Ground(), MoonEventAfterwards)) return said;
   constexpr double kStep_ev = 1.0 / 3.0;
   constexpr double kHazeStep = 1.25;
   switch (action) {

@@ -11,6 +11,7 @@
 #include "atmosphere/number/root.h"
 #include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/sun/refraction.h"
+#include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
@@ -39,6 +40,7 @@ double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 
 constexpr double kDay_s = 86400.0;
 constexpr double kStep_s = 1200.0;
+constexpr double kTolerance_s = 0.01;
 constexpr int kSteps = static_cast<int>(30.0 * kDay_s / kStep_s);
 
 /// How far the upper limb stands over the sea horizon [rad], some seconds after an instant.
@@ -88,7 +90,6 @@ std::vector<Sample> SamplesOfStep(const LimbOverHorizon& limb, const Sample& bef
 
 std::optional<UtcInstant> NextChange(const GeodeticPosition& place, const UtcInstant& after,
                                      bool rising) {
-  constexpr double kTolerance_s = 0.01;
   const LimbOverHorizon limb(place, after);
   Sample before{-kStep_s, limb(-kStep_s)}, here{0.0, limb(0.0)};
   for (int step = 0; step < kSteps; ++step) {
@@ -146,6 +147,43 @@ std::optional<UtcInstant> NextMoonrise(const GeodeticPosition& place, const UtcI
 
 std::optional<UtcInstant> NextMoonset(const GeodeticPosition& place, const UtcInstant& after) {
   return NextChange(place, after, false);
+}
+
+UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& after) {
+  const auto hour_angle = [&](double after_s) {
+    const glm::dvec3 moon = MoonAt(place, AddSeconds(after, after_s)).direction.xyz;
+    return WrappedLongitude(place.longitude_rad - std::atan2(moon.y, moon.x));
+  };
+  // It grows but where it jumps, at the lower transit, from half a turn to minus that.
+  double low_s = 0.0, low = hour_angle(low_s);
+  while (true) {
+    const double high_s = low_s + kStep_s, high = hour_angle(high_s);
+    if (low < 0.0 && high >= 0.0) {
+      return AddSeconds(after, BracketedRoot(hour_angle, low_s, high_s, kTolerance_s));
+    }
+    low_s = high_s;
+    low = high;
+  }
+}
+
+std::optional<MoonEvent> MoonEventFromName(std::string_view name) {
+  if (name == "moonrise") return MoonEvent::kMoonrise;
+  if (name == "moonset") return MoonEvent::kMoonset;
+  if (name == "moon-transit") return MoonEvent::kMoonTransit;
+  return std::nullopt;
+}
+
+std::optional<UtcInstant> NextMoonEvent(MoonEvent event, const GeodeticPosition& place,
+                                        const UtcInstant& after) {
+  switch (event) {
+    case MoonEvent::kMoonrise:
+      return NextMoonrise(place, after);
+    case MoonEvent::kMoonset:
+      return NextMoonset(place, after);
+    case MoonEvent::kMoonTransit:
+      return NextMoonTransit(place, after);
+  }
+  throw InternalError("unknown event of the moon");
 }
 
 }  // namespace alpenglow

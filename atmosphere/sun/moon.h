@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
@@ -50,5 +51,19 @@ struct MoonPosition {
                                                      const UtcInstant& after);
 [[nodiscard]] std::optional<UtcInstant> NextMoonset(const GeodeticPosition& place,
                                                     const UtcInstant& after);
+/// The next instant after `after` at which the centre passes the meridian on the upper side. Error of
+/// the search below 0.1 s.
+[[nodiscard]] UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& after);
+
+/// What the moon does.
+enum class MoonEvent { kMoonrise, kMoonset, kMoonTransit };
+
+/// "moonrise", "moonset", "moon-transit"; nothing for another name.
+[[nodiscard]] std::optional<MoonEvent> MoonEventFromName(std::string_view name);
+
+/// The next instant after `after`, as the three functions above.
+[[nodiscard]] std::optional<UtcInstant> NextMoonEvent(MoonEvent event,
+                                                      const GeodeticPosition& place,
+                                                      const UtcInstant& after);
 
 }  // namespace alpenglow

@@ -66,14 +66,6 @@ Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
           event == SunEvent::kSunrise};
 }
 
-/// Mean solar midnight at the longitude, at or before `around`.
-UtcInstant StartOfSolarDay(double longitude_rad, const UtcInstant& around) {
-  const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // of Greenwich, in (-12 h, 12 h]
-  const double local_day = std::floor((around.second_of_day + ahead_s) / kDay_s);
-  const int day = around.modified_julian_day + static_cast<int>(local_day);
-  return AddSeconds(UtcInstant{day, 0.0}, -ahead_s);
-}
-
 struct Sample {
   double time_s, value;
   [[nodiscard]] bool IsAbove() const { return value >= 0.0; }
@@ -162,7 +154,7 @@ std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& p
                                        const UtcInstant& around) {
   const GeodeticPosition wrapped{place.latitude_rad, WrappedLongitude(place.longitude_rad),
                                  place.height_m};
-  const UtcInstant midnight = StartOfSolarDay(wrapped.longitude_rad, around);
+  const UtcInstant midnight = MeanSolarMidnight(wrapped.longitude_rad, around);
   if (event == SunEvent::kNoon) return AddSeconds(midnight, NoonOf(wrapped, midnight));
   const Crossing crossing = CrossingOf(event, wrapped);
   const auto height_over_crossing = [&](double time_s) {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/sun/time_zone.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/text_cursor.h"
@@ -45,7 +46,9 @@ class InstantReader {
 
   WrittenTime Read() {
     const sys_days day = Date();
-    if (!cursor_.Accept('T')) Refuse("expected T and a time after the date");
+    if (!cursor_.Accept('T') && !cursor_.Accept(' ')) {
+      Refuse("expected T or a space, and a time, after the date");
+    }
     WrittenTime written = TimeOfDay(day);
     written.offset = Offset();
     if (!cursor_.AtEnd()) Refuse(fmt::format("\"{}\" is left over at the end", cursor_.rest()));
@@ -182,6 +185,20 @@ std::string Formatted(const UtcInstant& instant, int decimals, const TimeZone* z
 }
 
 }  // namespace
+
+UtcInstant Now() {
+  const auto now = std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+  const sys_days day = std::chrono::floor<days>(now);
+  return {static_cast<int>(day.time_since_epoch().count()) + kUnixEpoch,
+          std::chrono::duration<double>(now - day).count()};
+}
+
+UtcInstant MeanSolarMidnight(double longitude_rad, const UtcInstant& around) {
+  const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // of Greenwich
+  const double local_day = std::floor((around.second_of_day + ahead_s) / kDay_s);
+  const int day = around.modified_julian_day + static_cast<int>(local_day);
+  return AddSeconds(UtcInstant{day, 0.0}, -ahead_s);
+}
 
 UtcInstant ParseInstant(std::string_view text, const std::optional<std::string>& zone) {
   InstantReader reader(text);

@@ -18,8 +18,14 @@ struct UtcInstant {
   bool operator==(const UtcInstant&) const = default;
 };
 
-/// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00", fractions of a second
-/// allowed. Without Z or an offset `zone` (IANA name) is needed; a local time in a DST gap or
+/// What the clock of this machine shows, to a millisecond.
+[[nodiscard]] UtcInstant Now();
+
+/// Mean solar midnight at a longitude [rad], in (-pi, pi], at or before an instant.
+[[nodiscard]] UtcInstant MeanSolarMidnight(double longitude_rad, const UtcInstant& around);
+
+/// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00", a space for the T and
+/// fractions of a second allowed. Without Z or an offset `zone` (IANA name) is needed; a local time in a DST gap or
 /// overlap is refused and the message asks for the offset. Where the text says the offset, `zone`
 /// is not asked. Years 1900 to 2100. Throws InputError naming text and fault.
 [[nodiscard]] UtcInstant ParseInstant(std::string_view text,

@@ -17,61 +17,18 @@ namespace {
 
 constexpr double kSecondsPerDay = 86400.0;
 
-const std::vector<std::string> kEventNames = {
-    "noon",          "sunrise",           "sunset",
-    "civil-dawn",    "civil-dusk",        "nautical-dawn",
-    "nautical-dusk", "astronomical-dawn", "astronomical-dusk"};
-
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
-
-struct EventText {
-  std::string_view name;    // "civil-dusk"
-  std::string_view offset;  // "+20m", or nothing
-};
-
-/// Cut at the last sign that a digit follows: names have signs too, but no digits.
-EventText SplitEvent(std::string_view text) {
-  for (std::size_t i = text.size(); i-- > 0;) {
-    const bool sign = text[i] == '+' || text[i] == '-';
-    if (sign && i + 1 < text.size() && IsDigit(text[i + 1])) {
-      return {text.substr(0, i), text.substr(i)};
-    }
+/// An instant at one end says of which day the event at the other end is.
+EventDay DayOfFrom(const TimesText& times, const EventDay& day) {
+  EventDay of_from = day;
+  if (!day.around && !IsDailyEvent(*times.to) && !IsDayText(*times.to)) {
+    of_from.around = InstantFromText(*times.to, day);
   }
-  return {text, {}};
-}
-
-bool IsEventText(std::string_view text) { return !text.empty() && !IsDigit(text.front()); }
-
-SunEvent EventFromText(std::string_view name, std::string_view text) {
-  if (const std::optional<SunEvent> event = SunEventFromName(name)) return *event;
-  const std::optional<std::string> nearest = NearestName(name, kEventNames);
-  throw InputError(fmt::format("time \"{}\": unknown event \"{}\"; {}", text, name,
-                               nearest
-                                   ? fmt::format("did you mean {}?", *nearest)
-                                   : fmt::format("known are {}", fmt::join(kEventNames, ", "))));
-}
-
-UtcInstant EventInstant(std::string_view text, const EventDay& day) {
-  const EventText parts = SplitEvent(text);
-  const SunEvent event = EventFromText(parts.name, text);
-  const double offset_s = parts.offset.empty() ? 0.0 : ParseDuration(parts.offset);
-  if (!day.around) {
-    throw InputError(fmt::format("time \"{}\": of which day? give a date", text));
-  }
-  const std::optional<UtcInstant> instant = FindSunEvent(event, day.place, *day.around);
-  if (!instant) {
-    throw InputError(fmt::format(
-        "time \"{}\": there is no {} on {} at latitude {:.4f}, longitude "
-        "{:.4f} (polar day or night)",
-        text, parts.name, FormatUtc(*day.around).substr(0, 10),
-        day.place.latitude_rad / kRadiansPerDegree, day.place.longitude_rad / kRadiansPerDegree));
-  }
-  return AddSeconds(*instant, offset_s);
+  return of_from;
 }
 
 UtcInstant EndOf(const TimesText& times, const EventDay& day, const UtcInstant& from) {
   const UtcInstant to = InstantFromText(*times.to, day);
-  if (SecondsBetween(from, to) > 0.0 || !IsEventText(*times.to)) return to;
+  if (SecondsBetween(from, to) > 0.0 || !IsDailyEvent(*times.to)) return to;
   EventDay next = day;
   next.around = AddSeconds(*day.around, kSecondsPerDay);
   return InstantFromText(*times.to, next);
@@ -85,21 +42,61 @@ std::vector<Frame> Numbered(const std::vector<UtcInstant>& instants) {
   return frames;
 }
 
-std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s,
-                                     const std::string& every) {
+double StepOf(const std::string& every) {
   const double step_s = ParseDuration(every);
   if (!(step_s > 0.0)) {
     throw InputError(fmt::format("--every is {}; it must be longer than nothing", every));
   }
+  return step_s;
+}
+
+/// How many steps fit into a span.
+int StepsIn(double span_s, const std::string& every) {
   constexpr double kRounding_s = 1e-6;  // of the event search and of sums of durations
-  const double steps = std::floor((span_s + kRounding_s) / step_s);
+  const double steps = std::floor((span_s + kRounding_s) / StepOf(every));
   if (steps >= kMostFrames) {
     throw InputError(fmt::format("--every {} gives {:.0f} frames; there may be {}", every,
                                  steps + 1.0, kMostFrames));
   }
+  return static_cast<int>(steps);
+}
+
+std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s,
+                                     const std::string& every) {
   std::vector<UtcInstant> instants;
-  for (int i = 0; i <= static_cast<int>(steps); ++i) {
-    instants.push_back(AddSeconds(from, i * step_s));
+  const int steps = StepsIn(span_s, every);
+  for (int i = 0; i <= steps; ++i) instants.push_back(AddSeconds(from, i * StepOf(every)));
+  return instants;
+}
+
+bool IsOfEachDay(const TimesText& times) {
+  return times.every && IsDailyEvent(TimeOfDayFromText(*times.from, {}).text) &&
+         std::fmod(StepOf(*times.every), kSecondsPerDay) == 0.0;
+}
+
+/// The event of `from` on its day and on those that follow, up to the day of `to`.
+std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const EventDay& day) {
+  const auto [event, first] = TimeOfDayFromText(*times.from, DayOfFrom(times, day));
+  if (!first.around) throw InputError("an event of each day needs a first day: give --date");
+  const UtcInstant last =
+      IsDayText(*times.to) ? DayFromText(*times.to, day) : InstantFromText(*times.to, first);
+  const auto midnight = [&](const UtcInstant& of) {
+    return MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), of);
+  };
+  const double span_s = SecondsBetween(midnight(*first.around), midnight(last));
+  if (span_s < 0.0) {
+    throw InputError(fmt::format("--to {} is before the day of --from", *times.to));
+  }
+  std::vector<UtcInstant> instants;
+  const int steps = StepsIn(span_s, *times.every);
+  for (int i = 0; i <= steps; ++i) {
+    EventDay of_frame = first;
+    of_frame.around = AddSeconds(*first.around, i * StepOf(*times.every));
+    if (const auto instant = FindDailyEvent(event, of_frame)) instants.push_back(*instant);
+  }
+  if (instants.empty()) {
+    throw InputError(
+        fmt::format("there is no {} on any of the days up to --to {}", event, *times.to));
   }
   return instants;
 }
@@ -148,21 +145,6 @@ std::vector<Range> RangesFromText(std::string_view ranges) {
 
 }  // namespace
 
-UtcInstant DayFromText(std::string_view date, const GeodeticPosition& place,
-                       const std::optional<std::string>& zone) {
-  if (date.size() != 10) {
-    throw InputError(fmt::format("date is \"{}\"; write it as 2026-06-21", date));
-  }
-  const std::string noon = fmt::format("{}T12:00:00", date);
-  if (zone) return ParseInstant(noon, zone);
-  const double longitude_turns = std::remainder(place.longitude_rad, 2.0 * kPi) / (2.0 * kPi);
-  return AddSeconds(ParseInstant(noon + "Z"), -kSecondsPerDay * longitude_turns);
-}
-
-UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
-  return IsEventText(text) ? EventInstant(text, day) : ParseInstant(text, day.zone);
-}
-
 std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) {
   if (!times.at.empty()) {
     std::vector<UtcInstant> instants;
@@ -172,13 +154,11 @@ std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) 
   if (!times.from || !times.to) {
     throw InputError("no time is given: give --at, or --from and --to, or [time] in the scene");
   }
-  // An instant at one end says of which day the event at the other end is.
-  EventDay day_of_from = day;
-  if (!day.around && !IsEventText(*times.to))
-    day_of_from.around = ParseInstant(*times.to, day.zone);
+  if (IsOfEachDay(times)) return Numbered(EventOfEachDay(times, day));
+  const EventDay day_of_from = DayOfFrom(times, day);
   const UtcInstant from = InstantFromText(*times.from, day_of_from);
   EventDay day_of_to = day_of_from;
-  if (!IsEventText(*times.from)) day_of_to.around = from;
+  if (!IsDailyEvent(*times.from)) day_of_to.around = from;
   const double span_s = SecondsBetween(from, EndOf(times, day_of_to, from));
   if (span_s < 0.0) {
     throw InputError(fmt::format("--to {} is before --from {}", *times.to, *times.from));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which instants a series shows, from what people type: instants, sun events with an offset.
+// Which instants a series shows, from what people type (time_text.h).
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
+#include "renderer/series/time_text.h"
 
 namespace alpenglow {
 
@@ -17,13 +17,6 @@ struct Frame {
   int number;
   UtcInstant instant;
   double path_s = 0.0;  // where on the path of the camera, if there is one
-};
-
-/// Where, and on which day, "sunrise" happens.
-struct EventDay {
-  GeodeticPosition place;
-  std::optional<std::string> zone;   // of local times, IANA
-  std::optional<UtcInstant> around;  // any instant of the day; needed by events
 };
 
 /// The times of a series as typed. Either `at`, or `from` and `to` with `every` or `count`.
@@ -37,21 +30,12 @@ struct TimesText {
 /// Frames in a series, at most.
 inline constexpr int kMostFrames = 1000000;
 
-/// The day "2026-06-21" at a place: its noon in the zone, or in mean solar time without a zone.
-/// Throws InputError for what is no date.
-[[nodiscard]] UtcInstant DayFromText(std::string_view date, const GeodeticPosition& place,
-                                     const std::optional<std::string>& zone);
-
-/// An instant ("2026-06-21T04:00:00Z", without Z or offset in the day's zone) or a sun event of the
-/// day with an offset ("sunrise-1h", "sunset+20m", "noon", "civil-dusk"). Throws InputError for
-/// other texts (naming the nearest event), for an event without a day, and for an event that does
-/// not happen that day (polar day and night).
-[[nodiscard]] UtcInstant InstantFromText(std::string_view text, const EventDay& day);
-
 /// The frames. A `to` that is an event and not after `from` is taken on the following day, so that
 /// "sunset" to "sunrise" is a night; an instant at one end says of which day the event at the other
-/// end is. Throws InputError for what InstantFromText refuses, a `to`
-/// before `from`, an `every` that is not positive, a `count` below 1, too many frames.
+/// end is. Where `from` is an event and `every` whole days, each frame is the event of its own day,
+/// from that of `from` to that of `to`, which may be a day without a time; days without the event
+/// have no frame. Throws InputError for what InstantFromText refuses, a `to` before `from`, an
+/// `every` that is not positive, a `count` below 1, too many frames, no frame.
 [[nodiscard]] std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day);
 
 /// The frames whose numbers are in "A-B,C"; throws InputError for numbers that the series does not

@@ -60,11 +60,6 @@ bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcInstant& 
   return highest_rad > wanted_rad - kMargin_rad && lowest_rad < wanted_rad + kMargin_rad;
 }
 
-/// "04:30" and "04:30:15" begin like this; a date has four digits.
-bool IsTimeOfDay(const std::string& text) {
-  return text.size() >= 5 && text[2] == ':' && (text.size() == 5 || text.size() == 8);
-}
-
 }  // namespace
 
 double SteppedTimeRate(double rate, int step) {
@@ -121,11 +116,7 @@ bool SceneClock::JumpToNext(SkyEvent event, const GeodeticPosition& place,
 
 void SceneClock::Type(const std::string& text, const GeodeticPosition& place,
                       const std::string& zone) {
-  const std::string today = FormatInZone(now_, zone).substr(0, 11);  // "2026-06-21T"
-  const std::string full = !IsTimeOfDay(text) ? text
-                           : text.size() == 5 ? today + text + ":00"
-                                              : today + text;
-  Set(InstantFromText(full, {place, zone, now_}));
+  Set(InstantFromText(text, {place, zone, now_}));
 }
 
 }  // namespace alpenglow

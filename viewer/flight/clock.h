@@ -57,9 +57,8 @@ class SceneClock {
   void Set(const UtcInstant& instant);
   /// To the next one; false, and nothing is moved, when there is none within 366 days.
   bool JumpToNext(SkyEvent event, const GeodeticPosition& place, const MoonEventAfter& moon = {});
-  /// To what is typed: "2026-06-21T04:00:00Z", a local time of the zone without the Z, "04:30" or
-  /// "04:30:15" of today's date in the zone, or an event of today with an offset ("sunset-20m").
-  /// Throws InputError as InstantFromText.
+  /// To what is typed, as InstantFromText has it (renderer/series/time_text.h); the day is that of
+  /// the hands in the zone, but "today" and "now" are of the machine's clock. Throws InputError.
   void Type(const std::string& text, const GeodeticPosition& place, const std::string& zone);
 
  private:

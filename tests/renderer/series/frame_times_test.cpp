@@ -1,80 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/series/frame_times.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
 
-using testing::HasSubstr;
-
 EventDay Fuji() {
   const GeodeticPosition place = PlaceFromDegrees(35.3606, 138.7274, 0.0);
-  return {place, "Asia/Tokyo", DayFromText("2026-06-21", place, "Asia/Tokyo")};
+  EventDay day{place, "Asia/Tokyo", {}};
+  day.around = DayFromText("2026-06-21", day);
+  return day;
 }
 
 EventDay Tromso(const char* date) {
   const GeodeticPosition place = PlaceFromDegrees(69.65, 18.96, 0.0);
-  return {place, std::nullopt, DayFromText(date, place, std::nullopt)};
+  EventDay day{place, std::nullopt, {}};
+  day.around = DayFromText(date, day);
+  return day;
 }
 
 using tests::FaultOf;
-
-TEST(FrameTimes, AnInstantIsReadAsItStands) {
-  EXPECT_EQ(FormatUtc(InstantFromText("2026-06-21T04:00:00Z", Fuji())), "2026-06-21T04:00:00Z");
-  EXPECT_EQ(FormatUtc(InstantFromText("2026-06-21T13:00:00", Fuji())), "2026-06-21T04:00:00Z")
-      << "without Z or offset in the zone of the place";
-}
-
-TEST(FrameTimes, AnEventIsFoundOnTheLocalDay) {
-  const EventDay day = Fuji();
-  const UtcInstant sunrise = InstantFromText("sunrise", day);
-  EXPECT_EQ(FormatInZone(sunrise, "Asia/Tokyo").substr(0, 14), "2026-06-21T04:")
-      << "the sun rises over Fuji in midsummer between 4 and 5 o'clock";
-  const UtcInstant sunset = InstantFromText("sunset", day);
-  EXPECT_EQ(FormatInZone(sunset, "Asia/Tokyo").substr(0, 14), "2026-06-21T19:");
-}
-
-TEST(FrameTimes, OffsetsMoveTheEvent) {
-  const EventDay day = Fuji();
-  const UtcInstant dusk = InstantFromText("civil-dusk", day);
-  EXPECT_NEAR(SecondsBetween(dusk, InstantFromText("civil-dusk+20m", day)), 1200.0, 1e-6);
-  EXPECT_NEAR(SecondsBetween(dusk, InstantFromText("civil-dusk-1h30m", day)), -5400.0, 1e-6);
-  EXPECT_NEAR(SecondsBetween(InstantFromText("noon", day), InstantFromText("noon-90s", day)), -90.0,
-              1e-6);
-}
-
-TEST(FrameTimes, UnknownEventsNameTheNearest) {
-  EXPECT_THAT(FaultOf([] { return InstantFromText("sunris-1h", Fuji()); }),
-              HasSubstr("unknown event \"sunris\"; did you mean sunrise?"));
-  EXPECT_THAT(FaultOf([] { return InstantFromText("teatime", Fuji()); }),
-              HasSubstr("unknown event"));
-  for (const char* text : {"", "sunrise+", "sunrise-1x", "2024-02-30T00:00:00Z", "sunrise 1h"}) {
-    EXPECT_NE(FaultOf([&] { return InstantFromText(text, Fuji()); }), "no fault") << text;
-  }
-}
-
-TEST(FrameTimes, AnEventNeedsADay) {
-  EventDay day = Fuji();
-  day.around.reset();
-  EXPECT_THAT(FaultOf([&] { return InstantFromText("sunrise", day); }), HasSubstr("which day"));
-}
-
-// Hard case 24.
-TEST(FrameTimes, PolarDayAndNightHaveNoSunrise) {
-  EXPECT_THAT(FaultOf([] { return InstantFromText("sunrise", Tromso("2026-06-21")); }),
-              HasSubstr("there is no sunrise on 2026-06-21"));
-  EXPECT_THAT(FaultOf([] { return InstantFromText("sunset+5m", Tromso("2026-12-21")); }),
-              HasSubstr("there is no sunset on 2026-12-21"));
-  EXPECT_EQ(FaultOf([] { return InstantFromText("noon", Tromso("2026-12-21")); }), "no fault");
-}
 
 TEST(FrameTimes, EveryStepsUpToTheEnd) {
   const std::vector<Frame> frames = FramesFromTimes(
@@ -149,11 +97,38 @@ TEST(FrameTimes, FramesAreSelectedByRanges) {
   }
 }
 
-TEST(FrameTimes, TheDayOfAPlaceWithoutZoneIsThatOfItsMeridian) {
-  const GeodeticPosition fiji = PlaceFromDegrees(-17.7, 178.0, 0.0);
-  EXPECT_EQ(FormatUtc(DayFromText("2026-06-21", fiji, std::nullopt)), "2026-06-21T00:08:00Z");
-  EXPECT_THROW((void)DayFromText("2026-6-21", fiji, std::nullopt), InputError);
-  EXPECT_THROW((void)DayFromText("2026-02-30", fiji, std::nullopt), InputError);
+TEST(FrameTimes, EachDayHasItsOwnSunrise) {
+  const std::vector<Frame> frames =
+      FramesFromTimes({{}, "sunrise-10m", "2027-06-20", "1d", std::nullopt}, Fuji());
+  ASSERT_EQ(frames.size(), 365U) << "both days belong to the series";
+  for (const Frame& frame : frames) {
+    EventDay day = Fuji();
+    day.around = AddSeconds(*day.around, frame.number * 86400.0);
+    EXPECT_EQ(frame.instant, InstantFromText("sunrise-10m", day)) << frame.number;
+  }
+}
+
+TEST(FrameTimes, AWrittenFirstDayCountsAsTheDayOfTheEvent) {
+  EventDay day = Fuji();
+  day.around.reset();
+  const std::vector<Frame> frames =
+      FramesFromTimes({{}, "2026-06-21 sunset", "2026-06-27", "2d", std::nullopt}, day);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_EQ(FormatUtc(frames[3].instant), FormatUtc(InstantFromText("2026-06-27 sunset", Fuji())));
+}
+
+TEST(FrameTimes, DaysWithoutTheEventHaveNoFrame) {
+  const std::vector<Frame> year =
+      FramesFromTimes({{}, "sunrise", "2026-12-31", "1d", std::nullopt}, Tromso("2026-01-01"));
+  // Midnight sun from May 18th to July 26th, polar night from November 27th to January 15th: 70 and
+  // 50 days; days on which refraction decides are left to the tolerance.
+  EXPECT_NEAR(static_cast<double>(year.size()), 365.0 - 70.0 - 50.0, 6.0);
+  EXPECT_EQ(year.back().number, static_cast<int>(year.size()) - 1) << "numbered without gaps";
+  EXPECT_NE(FaultOf([] {
+              return FramesFromTimes({{}, "sunrise", "2026-06-25", "1d", {}}, Tromso("2026-06-21"));
+            }),
+            "no fault")
+      << "a series without a frame is none";
 }
 
 }  // namespace

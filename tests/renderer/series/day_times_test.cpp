@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series/day_times.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderer/series/frame_list.h"
+
+namespace alpenglow {
+namespace {
+
+using testing::HasSubstr;
+
+EventDay Tromso() {
+  EventDay day{PlaceFromDegrees(69.65, 18.96, 0.0), "Europe/Oslo", {}};
+  day.around = DayFromText("2026-06-21", day);
+  return day;
+}
+
+TEST(DayTimes, WhatDoesNotHappenIsLeftOut) {
+  const std::vector<DayTimes> days = TimesOfDays(Tromso(), 2);
+  ASSERT_EQ(days.size(), 2U);
+  EXPECT_EQ(days[1].date, "2026-06-22");
+  EXPECT_FALSE(days[0].at[3].has_value()) << "no sunrise under the midnight sun";
+  EXPECT_TRUE(days[0].at[4].has_value());
+  EXPECT_NEAR(days[0].noon_elevation_deg, 90.0 - 69.65 + 23.44, 0.05) << "and 1' of refraction";
+  EXPECT_THAT(TableOf(days, Tromso().zone), HasSubstr("2026-06-21 --:-- --:-- --:-- --:-- 12:4"));
+  EXPECT_THAT(CsvOf(days), HasSubstr("\n2026-06-21,,,,,2026-06-21T10:4"));
+}
+
+TEST(DayTimes, TheMoonGrowsToTheFullMoon) {
+  EventDay day = Tromso();
+  day.around = DayFromText("2026-06-15", day);              // new moon of 02:54 UTC
+  const std::vector<DayTimes> days = TimesOfDays(day, 15);  // full moon on the 29th, 23:57 UTC
+  for (std::size_t i = 1; i < days.size(); ++i) {
+    EXPECT_GT(days[i].moon_illuminated, days[i - 1].moon_illuminated) << days[i].date;
+  }
+  EXPECT_LT(days.front().moon_illuminated, 0.01);
+  EXPECT_GT(days.back().moon_illuminated, 0.99);
+}
+
+TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
+  const EventDay day = Tromso();
+  FrameListing listing;
+  listing.place_of = [&](const Frame&) { return day.place; };
+  listing.zone = day.zone;
+  listing.name.emplace("night.%03d.exr");
+  const std::string text =
+      ListOf(FramesFromTimes({{"noon", "2026-06-21T22:00:00Z"}, {}, {}, {}, {}}, day), listing);
+  EXPECT_THAT(text, HasSubstr("\n0,2026-06-21T10:4"));
+  EXPECT_THAT(text, HasSubstr("\n1,2026-06-21T22:00:00Z,2026-06-22T00:00:00+02:00,"));
+  EXPECT_THAT(text, HasSubstr(",night.001.exr\n"));
+}
+
+}  // namespace
+}  // namespace alpenglow
