@@ -67,7 +67,8 @@ std::array<float, 3> Srgb(const std::vector<float>& matrix, const float* bands, 
 struct DiskPiece {
   int x, y;
   double zenith_angle_rad;
-  double weight;  // its share of the whole disk's light
+  double rho;     // from the disk's centre, in radii
+  double weight;  // of its solid angle
 };
 
 // Sine of half the angle between two directions, squared.
@@ -77,7 +78,7 @@ double HalfSine2(double zenith_a, double zenith_b, double azimuth) {
   return across * across + std::sin(zenith_a) * std::sin(zenith_b) * along * along;
 }
 
-/// Pieces of all pixels near the sun, small against its disk. Their weights add up to 1.
+/// Pieces of all pixels near the sun, small against its disk.
 std::vector<DiskPiece> PiecesOfDisk(const Grid& grid, const PanoramaSun& sun) {
   constexpr int kPiecesPerRadius = 12;
   const double zenith = 0.5 * kPi - sun.elevation_rad;
@@ -90,7 +91,6 @@ std::vector<DiskPiece> PiecesOfDisk(const Grid& grid, const PanoramaSun& sun) {
     return std::clamp(static_cast<int>(std::floor(angle / kPi * grid.height)), 0, grid.height - 1);
   };
   std::vector<DiskPiece> pieces;
-  double total = 0.0;
   for (int y = row_of(zenith - radius); y <= row_of(zenith + radius); ++y) {
     for (int j = 0; j < down; ++j) {
       const double angle = grid.ZenithAngle(y + (j + 0.5) / down);
@@ -105,25 +105,43 @@ std::vector<DiskPiece> PiecesOfDisk(const Grid& grid, const PanoramaSun& sun) {
           const double rho =
               2.0 * std::asin(std::sqrt(std::min(HalfSine2(angle, zenith, azimuth), 1.0))) / radius;
           if (rho >= 1.0) continue;
-          const double weight = LimbDarkening(rho) * std::sin(angle);
-          pieces.push_back({x, y, angle, weight});
-          total += weight;
+          pieces.push_back({x, y, angle, rho, std::sin(angle)});
         }
       }
     }
   }
-  for (DiskPiece& piece : pieces) piece.weight /= total;
   return pieces;
+}
+
+/// The share of the disk's light that a piece has in each band.
+std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
+                                   const std::vector<double>& wavelengths_nm) {
+  std::vector<Bands<float>> shares(pieces.size());
+  for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
+    const auto light = [&](const DiskPiece& piece) {
+      return piece.weight * LimbDarkening(piece.rho, wavelengths_nm[band]);
+    };
+    double total = 0.0;
+    for (const DiskPiece& piece : pieces) total += light(piece);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      shares[i].value[band] = static_cast<float>(light(pieces[i]) / total);
+    }
+  }
+  return shares;
 }
 
 void DrawSunDisk(const AirIntegrator<float>& air, const PanoramaSettings& settings,
                  const Grid& grid, const std::vector<float>& srgb, Image& image) {
-  for (const DiskPiece& piece : PiecesOfDisk(grid, settings.sun)) {
-    const Bands<float> seen =
+  const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, settings.sun);
+  const std::vector<Bands<float>> shares = SharesOf(pieces, air.medium().wavelengths_nm);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const DiskPiece& piece = pieces[i];
+    Bands<float> seen =
         air.TransmittanceToSpace(settings.altitude_m, std::cos(piece.zenith_angle_rad));
+    for (std::size_t band = 0; band < seen.count; ++band) seen[band] *= shares[i].value[band];
     const std::array<float, 3> rgb = Srgb(srgb, seen.value.data(), seen.count);
-    const auto share = static_cast<float>(piece.weight / grid.SolidAngle(piece.y));
-    for (std::size_t c = 0; c < 3; ++c) image.at(piece.x, piece.y)[c] += share * rgb[c];
+    const auto of_pixel = static_cast<float>(1.0 / grid.SolidAngle(piece.y));
+    for (std::size_t c = 0; c < 3; ++c) image.at(piece.x, piece.y)[c] += of_pixel * rgb[c];
   }
 }
 

@@ -10,7 +10,8 @@ namespace alpenglow {
 /// Sunlight that passes a straight edge which cuts the sun's disk, in [0, 1].
 /// @param x  height of the disk's centre over the edge in radii of the disk: 1 and more, all of the
 ///           light passes; -1 and less, none.
-/// Integral of LimbDarkening (sun_disk.h) over the circular segment: sunlight_over_edge.glsl.
+/// Integral of LimbDarkening(rho) (sun_disk.h) over the circular segment: sunlight_over_edge.glsl.
+/// The law of a single wavelength from 440 to 680 nm is within 0.01.
 [[nodiscard]] double SunlightOverEdge(double x);
 
 /// A stretch of a ray that sunlight reaches. The height of the disk's centre over the edge that

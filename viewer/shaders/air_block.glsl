@@ -13,6 +13,7 @@ layout(std140) uniform Air {
   vec4 shell;        // radius of the planet, top of the air, scale heights of molecules and aerosol
   vec4 ozone_layer;  // bottom, peak, top; 1 where it is smooth, 0 where it is a tent
   vec4 deficit;      // of molecules near the ground: share, scale height
+  vec4 wavelengths;  // [um]
 };
 
 #define RADIUS shell.x

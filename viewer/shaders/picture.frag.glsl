@@ -115,7 +115,7 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 disks = vec4(SunDiskRadiance(direction, RAY_ANGLE)) + MoonRadiance(direction, RAY_ANGLE);
+  vec4 disks = SunDiskRadiance(direction, RAY_ANGLE) + MoonRadiance(direction, RAY_ANGLE);
   bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
   vec4 radiance = planet ? vec4(0.0) : disks * TransmittanceToSpace(direction);
 #if HAS_FOG

@@ -23,14 +23,17 @@ vec2 DiskOverHorizon(float mu_s, float horizon_mu, float radius) {
 }
 
 // Radiance of the sun's disk outside the air, per unit of its irradiance [1/sr], times the share of
-// a pixel that the disk covers.
-float SunDiskRadiance(vec3 direction, float width) {
+// a pixel that the disk covers; one value a band.
+vec4 SunDiskRadiance(vec3 direction, float width) {
   float radius = sun.w;
   float rho = 2.0 * asin(min(0.5 * length(direction - sun.xyz), 1.0)) / radius;
   float covered = clamp((1.0 - rho) * radius / width + 0.5, 0.0, 1.0);
-  if (covered <= 0.0) return 0.0;
+  if (covered <= 0.0) return vec4(0.0);
   float half_sine = sin(0.5 * radius);
-  return covered * SunLimbDarkening(rho) / (4.0 * 3.14159265359 * half_sine * half_sine);
+  vec4 darkening =
+      vec4(SunLimbDarkeningAt(rho, wavelengths.x), SunLimbDarkeningAt(rho, wavelengths.y),
+           SunLimbDarkeningAt(rho, wavelengths.z), SunLimbDarkeningAt(rho, wavelengths.w));
+  return covered / (4.0 * 3.14159265359 * half_sine * half_sine) * darkening;
 }
 
 // Radiance of the moon's disk outside the air, per unit of solar irradiance [1/sr], times the share

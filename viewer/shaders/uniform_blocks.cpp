@@ -61,6 +61,8 @@ AirBlock AirBlockOf(const Medium& medium) {
                        medium.ozone.shape == OzoneShape::kSmooth ? 1.0F : 0.0F};
   block.deficit = {static_cast<float>(medium.rayleigh_deficit.share),
                    Kilometres(medium.rayleigh_deficit.scale_height_m), 0.0F, 0.0F};
+  constexpr float kMicrometresPerNanometre = 1e-3F;
+  block.wavelengths = kMicrometresPerNanometre * GpuBandsOf(medium.wavelengths_nm);
   return block;
 }
 

@@ -20,11 +20,11 @@ inline constexpr std::size_t kGpuBands = 4;
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
-  glm::vec4 shell, ozone_layer, deficit;
+  glm::vec4 shell, ozone_layer, deficit, wavelengths;
 };
-static_assert(sizeof(AirBlock) == 11 * sizeof(glm::vec4));
+static_assert(sizeof(AirBlock) == 12 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
-static_assert(offsetof(AirBlock, deficit) == 10 * sizeof(glm::vec4));
+static_assert(offsetof(AirBlock, wavelengths) == 11 * sizeof(glm::vec4));
 
 /// `block View` of view_block.glsl.
 struct ViewBlock {

@@ -53,6 +53,35 @@ TEST(SunlitPath, SunlightOverAnEdgeIsTheIntegralOfLimbDarkening) {
   EXPECT_EQ(SunlightOverEdge(-1.0), 0.0);
 }
 
+/// Light of a band over an edge, strip by strip across the disk.
+double LightOver(double x, double wavelength_nm) {
+  constexpr int kSteps = 300;
+  double over = 0.0, all = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double up = -1.0 + 2.0 * (i + 0.5) / kSteps;
+    const double half = std::sqrt((1.0 - up) * (1.0 + up));
+    for (int j = 0; j < kSteps; ++j) {
+      const double light =
+          half * LimbDarkening(std::hypot(up, half * (j + 0.5) / kSteps), wavelength_nm);
+      all += light;
+      if (up > -x) over += light;
+    }
+  }
+  return over / all;
+}
+
+// Penumbrae have one edge for all bands; how much that leaves out, of full sunlight.
+TEST(SunlitPath, TheGreyPenumbraIsWithinAHundredthOfThatOfEveryBand) {
+  double worst = 0.0;
+  for (const double wavelength_nm : {440.0, 510.0, 580.0, 680.0}) {
+    for (double x = -0.95; x < 1.0; x += 0.1) {
+      worst = std::max(worst, std::abs(LightOver(x, wavelength_nm) - SunlightOverEdge(x)));
+    }
+  }
+  EXPECT_LT(worst, 0.01);
+  EXPECT_GT(worst, 1e-4) << "else the grey law would need no excuse";
+}
+
 TEST(SunlitPath, JoiningPiecesMovesNoJointByMoreThanTheTolerance) {
   const auto height = [](double t) { return std::sin(6.0 * t); };
   SunlitPathBuilder builder;

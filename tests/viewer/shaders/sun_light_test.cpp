@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The sun's disk on the graphics card, against sun_disk.h.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -32,7 +34,8 @@ std::vector<tests::Arguments<float>> RisingDisks() {
 
 std::vector<float> OfDisks(const char* component) {
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+                      "viewer/shaders/sun_light.glsl"});
   return tests::EvaluateOnGpu(pieces, std::string("DiskOverHorizon(a[0], a[1], a[2])") + component,
                               RisingDisks());
 }
@@ -52,10 +55,13 @@ TEST_F(SunLight, OfADiskThatRisesIsThatOfTheRenderer) {
 
 TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   std::vector<ShaderPiece> pieces = SharedTexts();
-  pieces.push_back({"view", "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"});
+  pieces.push_back({"view",
+                    "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"
+                    "const vec4 wavelengths = vec4(0.68, 0.55, 0.44, 0.35);\n"});
   pieces.push_back(ViewerPiece("viewer/shaders/sun_light.glsl"));
+  constexpr std::array<double, 4> kWavelengths_nm{680.0, 550.0, 440.0, 350.0};
   std::vector<tests::Arguments<float>> points;
-  std::vector<double> expected;
+  std::vector<double> radii;
   for (double rho = 0.0; rho < 1.2; rho += 0.05) {
     if (std::abs(rho - 1.0) < 0.02) continue;  // partly covered
     const double angle = rho * double{kRadius_rad};
@@ -63,13 +69,18 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
         std::cos(angle) * glm::dvec3(0.6, 0.0, 0.8) + std::sin(angle) * glm::dvec3(-0.8, 0.0, 0.6);
     points.push_back({static_cast<float>(direction.x), static_cast<float>(direction.y),
                       static_cast<float>(direction.z)});
-    expected.push_back(rho < 1.0 ? LimbDarkening(rho) / DiskSolidAngle(double{kRadius_rad}) : 0.0);
+    radii.push_back(rho);
   }
-  const std::vector<float> found =
-      tests::EvaluateOnGpu(pieces, "SunDiskRadiance(vec3(a[0], a[1], a[2]), 1e-5)", points);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(found[i]), expected[i], 1e-3 * expected[0])
-        << "a direction in float lies within 2e-5 radii of its place";
+  const double mean = 1.0 / DiskSolidAngle(double{kRadius_rad});
+  for (std::size_t band = 0; band < kWavelengths_nm.size(); ++band) {
+    const std::vector<float> found = tests::EvaluateOnGpu(
+        pieces, fmt::format("SunDiskRadiance(vec3(a[0], a[1], a[2]), 1e-5)[{}]", band), points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double expected =
+          radii[i] < 1.0 ? mean * LimbDarkening(radii[i], kWavelengths_nm[band]) : 0.0;
+      EXPECT_NEAR(static_cast<double>(found[i]), expected, 2e-3 * mean)
+          << "a direction in float lies within 2e-5 radii of its place";
+    }
   }
 }
 
@@ -77,7 +88,8 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
+                      "viewer/shaders/sun_light.glsl"});
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (double right = -1.3; right <= 1.3; right += 0.1) {

@@ -64,7 +64,8 @@ TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
                           {"blue_from_bands", offsetof(AirBlock, blue_from_bands)},
                           {"shell", offsetof(AirBlock, shell)},
                           {"ozone_layer", offsetof(AirBlock, ozone_layer)},
-                          {"deficit", offsetof(AirBlock, deficit)}});
+                          {"deficit", offsetof(AirBlock, deficit)},
+                          {"wavelengths", offsetof(AirBlock, wavelengths)}});
 }
 
 TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
