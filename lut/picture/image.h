@@ -86,12 +86,12 @@ inline constexpr double kBrightestEv100 = 20.0;
 /// Luminance over which the exposure meter takes a pixel for the sun's disk [cd/m^2].
 inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 
-/// EV100 that a histogram meter picks: mean log luminance between the 40th and 95th percentile
-/// mapped to middle grey by K = 12.5; pixels brighter than `ignore_above_cd_per_m2` (the sun's
-/// disk), pixels without light, and those that stay black beside the rest (from 10 stops below the
-/// 95th percentile on their weight fades, to nothing at 14: space) do not count. Pixels of a
-/// panorama weigh as their solid angle. Within [kDarkestEv100, kBrightestEv100]; a picture
-/// without light gives kDarkestEv100.
+/// EV100 that a histogram meter picks (light_meter.h): mean log luminance between the 40th and 95th
+/// percentile mapped to middle grey by K = 12.5, or more where the latter would be over white by day.
+/// Pixels brighter than `ignore_above_cd_per_m2` (the sun's disk), those without light, and those
+/// that stay black beside the rest (space) do not count; those of a panorama weigh as their solid
+/// angle. Within [kDarkestEv100, kBrightestEv100], the limits of the camera: a night of stars by f/1.4
+/// for 30 s at ISO 12800, and sunlit snow eight times over. Without light kDarkestEv100.
 [[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2,
                                 Projection projection = Projection::kCamera);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lut/picture/image.h"
+#include "lut/picture/light_meter.h"
 
 namespace alpenglow {
 namespace {
@@ -79,11 +80,40 @@ TEST(Exposure, SpaceDoesNotCountThoughSomeAirIsLeftInIt) {
   }
 }
 
+TEST(Exposure, SunlitGroundBelowABlackSkyIsMeteredAtAllHeights) {
+  // From 25 km up the sky at noon is 6 stops darker than the ground, from 40 km 8. Between shares
+  // of 40 and 95 % 15 of 55 are sky until it counts less.
+  const double ground = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  for (double stops = 5.0; stops < 14.0; stops += 0.5) {
+    const auto sky = static_cast<float>(6000.0 * std::exp2(-stops));
+    EXPECT_GT(MeterEv100(GroundUnder(sky, 18), kNotTheDisk_cd_per_m2), ground - 1.8) << stops;
+  }
+  const float from_40_km = 6000.0F / 512.0F;
+  EXPECT_NEAR(MeterEv100(GroundUnder(from_40_km, 20), kNotTheDisk_cd_per_m2), ground, 0.5);
+}
+
 TEST(Exposure, ShadeOnTheGroundCounts) {
   const double even = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
-  // 70 % of the picture 9 stops darker: between shares of 40 and 95 % that is 30 of 55.
-  const double shaded = MeterEv100(GroundUnder(6000.0F / 512.0F, 12), kNotTheDisk_cd_per_m2);
-  EXPECT_NEAR(shaded, even - 9.0 * 30.0 / 55.0, 1.0 / 16.0) << "bins of a 16th of a stop";
+  // 70 % of the picture 3 stops darker: between shares of 40 and 95 % that is 30 of 55.
+  const double shaded = MeterEv100(GroundUnder(6000.0F / 8.0F, 12), kNotTheDisk_cd_per_m2);
+  EXPECT_NEAR(shaded, even - 3.0 * 30.0 / 55.0, 1.0 / 16.0) << "bins of a 16th of a stop";
+}
+
+TEST(Exposure, WhatTheSunLightsIsNoBrighterThanPaperBesideAGreyCard) {
+  const double even = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  // A tenth of the picture in the sun, the rest 5 stops darker: the mean alone would be 4.5 lower.
+  EXPECT_NEAR(MeterEv100(GroundUnder(6000.0F / 32.0F, 4), kNotTheDisk_cd_per_m2),
+              even - std::log2(0.90 / 0.18), 1.0 / 16.0);
+}
+
+TEST(Exposure, LampsDoNotCount) {
+  for (const float dusk : {300.0F, 3.0F, 0.03F}) {
+    const double without = MeterEv100(Uniform(dusk), kNotTheDisk_cd_per_m2);
+    Image lamps = Uniform(dusk);
+    for (int x = 0; x < 40; ++x) lamps.at(x, 20).fill(x % 2 == 0 ? 2e5F : 50.0F * dusk);
+    EXPECT_NEAR(MeterEv100(lamps, kNotTheDisk_cd_per_m2), without, 1.0 / 16.0)
+        << dusk << " cd/m^2: 40 of 1600 pixels are lamps and what they light";
+  }
 }
 
 TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
@@ -112,6 +142,28 @@ TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
   EXPECT_LT(MeterEv100(panorama, kNotTheDisk_cd_per_m2),
             MeterEv100(half, kNotTheDisk_cd_per_m2) - 0.5)
       << "as a picture of a camera two thirds are dark";
+}
+
+TEST(Exposure, FromNightToDayTheMeterFollowsTheLight) {
+  // A tenth is 8 stops brighter than the rest.
+  double before = 0.0;
+  for (double stop = -6.0; stop < 16.0; stop += 1.0 / 16.0) {
+    const auto bright = static_cast<float>(1.001 * std::exp2(stop));
+    Image image = Uniform(bright / 256.0F);
+    for (int x = 0; x < 40; ++x) {
+      for (int y = 36; y < 40; ++y) image.at(x, y).fill(bright);
+    }
+    const double now = MeterEv100(image, kNotTheDisk_cd_per_m2);
+    if (stop > -6.0) {
+      EXPECT_NEAR(now, before + 1.0 / 16.0, 1e-3) << "a bin of the histogram at " << stop;
+    }
+    before = now;
+  }
+}
+
+TEST(Exposure, TheRuleOfTheMeterIsSaidInWords) {
+  EXPECT_NE(MeterRule().find("0.4 to 0.95 of the solid angle"), std::string::npos) << MeterRule();
+  EXPECT_NE(MeterRule().find("over 1e+06 cd/m^2"), std::string::npos) << MeterRule();
 }
 
 TEST(Exposure, TheMeterHasLimits) {
