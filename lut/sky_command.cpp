@@ -20,7 +20,7 @@ namespace {
 struct SkyOptions {
   std::optional<std::string> atmosphere, png, time, zone;
   std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx",
-                   look = "photo";
+                   look = "photo", white_balance = "daylight";
   std::optional<double> sun_elevation, latitude, longitude;
   double sun_azimuth = 180.0, altitude = 2.0;
   bool sun_disk = false, night_vision = false, compass = false;
@@ -105,19 +105,11 @@ RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
           HorizontalIlluminance(air, diffuse, job.settings.altitude_m, job.settings.sun)};
 }
 
-double Ev100Of(const RenderedSky& sky, const ExposureRule& rule, const Look& look) {
-  switch (rule.kind) {
-    case ExposureRule::Kind::kFixed:
-      return rule.ev100;
-    case ExposureRule::Kind::kIncident:
-      return IncidentEv100(sky.illuminance_lux);
-    case ExposureRule::Kind::kMetered:
-    case ExposureRule::Kind::kEye:
-      break;
-  }
-  const double metered = MeterEv100(Seen(sky.image, look), kSunDiskLuminance_cd_per_m2,
-                                    Projection::kLatitudeLongitude);
-  return rule.kind == ExposureRule::Kind::kEye ? EyeEv100(metered, look) : metered;
+double Ev100Of(const RenderedSky& sky, const Image& seen, const ExposureRule& rule,
+               const Look& look) {
+  if (rule.kind == ExposureRule::Kind::kIncident) return IncidentEv100(sky.illuminance_lux);
+  return Ev100By(
+      rule, MeterEv100(seen, kSunDiskLuminance_cd_per_m2, Projection::kLatitudeLongitude), look);
 }
 
 /// Whatever would keep the picture from its files, before the picture is made.
@@ -136,17 +128,23 @@ void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   Look look = LookFromName(options.curve);
   look.agx = AgxLookFromName(options.look);
   look.night_vision = options.night_vision;
+  look.white = WhiteBalanceFromText(options.white_balance);
   SkyJob job = JobFrom(options);
   const RenderedSky sky = Rendered(job, common.progress_style());
-  const double ev100 = Ev100Of(sky, rule, look);
+  const PictureView view{Projection::kLatitudeLongitude, 2.0 * kPi / sky.image.width};
+  look = Settled(look, sky.image, view);
+  const Image seen = Seen(sky.image, look, view);
+  const double ev100 = Ev100Of(sky, seen, rule, look);
   Describe(job);
   job.metadata["alpenglow.illuminance_lux"] = fmt::format("{:.6g}", sky.illuminance_lux);
   job.metadata["alpenglow.ev100"] = fmt::format("{:.4f}", ev100);
   job.metadata["alpenglow.exposure"] = NameOf(rule.kind);
+  job.metadata["alpenglow.exposure_rule"] = RuleInWords(rule);
   WriteExr(options.out, sky.image, job.metadata, Projection::kLatitudeLongitude);
   if (options.png) {
     job.metadata["alpenglow.tone_curve"] = NameOf(look);
-    WritePng(*options.png, Develop(Seen(sky.image, look), ev100, look), job.metadata);
+    job.metadata["alpenglow.white_balance"] = NameOf(look.white);
+    WritePng(*options.png, Develop(seen, ev100, look), job.metadata);
   }
 }
 
@@ -211,9 +209,15 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
       ->check(CLI::IsMember(AgxLookNames()))
       ->needs(png)
       ->capture_default_str();
+  sky.add_option("--white-balance", options.white_balance,
+                 "Light that the PNG shows as white: daylight, auto (the mean colour of what is "
+                 "metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+      ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
+      ->needs(png)
+      ->capture_default_str();
   sky.add_flag("--night-vision", options.night_vision,
-               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
-               "grows brighter")
+               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades and "
+               "fine detail is lost")
       ->needs(png);
 }
 

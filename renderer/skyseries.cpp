@@ -119,6 +119,7 @@ int Run(const SkyseriesOptions& options) {
   output.look = LookFromName(options.tone_curve);
   output.look.agx = AgxLookFromName(options.look);
   output.look.night_vision = options.night_vision;
+  output.look.white = WhiteBalanceFromText(options.white_balance);
   output.glare = options.glare == "eye";
   output.resume = options.resume;
   output.inputs = InputsOf(options, scene);

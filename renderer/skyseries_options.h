@@ -41,7 +41,7 @@ struct SkyseriesOptions {
   TimesText times;
   std::optional<std::string> date, zone, frames, contact_sheet;
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
-                   filter = "blackman-harris", glare = "none";
+                   filter = "blackman-harris", glare = "none", white_balance = "daylight";
   std::optional<int> samples;
   std::optional<std::string> path;
   double frames_per_second = 25.0, shutter = 0.0;
@@ -174,9 +174,14 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
                  "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
       ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
+  app.add_option("--white-balance", options.white_balance,
+                 "Light that the PNG shows as white: daylight, auto (the mean colour of what is "
+                 "metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+      ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
+      ->capture_default_str();
   app.add_flag("--night-vision", options.night_vision,
-               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades, and blue "
-               "grows brighter");
+               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades and fine "
+               "detail is lost");
   app.add_option("--glare", options.glare,
                  "eye: PNG with the light that the eye scatters around sun and lamps; not in the "
                  "EXR, not of panoramas")

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "atmosphere/text/error.h"
+#include "lut/picture/acuity.h"
+#include "lut/picture/light_meter.h"
 #include "lut/picture/night_vision.h"
 #include "lut/picture/picture_text.h"
 #include "lut/picture/tone_curve.h"
@@ -22,8 +25,16 @@ std::string NameOf(const Look& look) {
          (look.night_vision ? ", night vision" : "");
 }
 
-Image Seen(const Image& image, const Look& look) {
-  return look.night_vision ? SeenByNight(image) : image;
+Look Settled(Look look, const Image& image, const PictureView& view) {
+  look.white = Settled(look.white, image, view.projection);
+  return look;
+}
+
+Image Seen(const Image& image, const Look& look, const PictureView& view) {
+  Image balanced = Balanced(image, look.white);
+  if (!look.night_vision) return balanced;
+  Image seen = SeenByNight(std::move(balanced));
+  return view.pixel_rad > 0.0 ? WithAcuityOfNight(std::move(seen), view.pixel_rad) : seen;
 }
 
 ExposureRule ExposureRuleFromText(const std::string& text) {
@@ -64,6 +75,35 @@ double EyeEv100(double metered_ev100, const Look& look) {
     (shown(middle) > wanted ? low : high) = middle;
   }
   return metered_ev100 + low;
+}
+
+double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look) {
+  switch (rule.kind) {
+    case ExposureRule::Kind::kMetered:
+      return metered_ev100;
+    case ExposureRule::Kind::kEye:
+      return EyeEv100(metered_ev100, look);
+    case ExposureRule::Kind::kFixed:
+      return rule.ev100;
+    case ExposureRule::Kind::kIncident:
+      break;
+  }
+  throw InternalError("an incident exposure is not of a picture");
+}
+
+std::string RuleInWords(const ExposureRule& rule) {
+  switch (rule.kind) {
+    case ExposureRule::Kind::kMetered:
+      return MeterRule();
+    case ExposureRule::Kind::kEye:
+      return MeterRule() +
+             "; grey shown by the cube root of luminance under EV 15, 6 stops at most";
+    case ExposureRule::Kind::kFixed:
+      return "as asked for";
+    case ExposureRule::Kind::kIncident:
+      return "illuminance of a horizontal plane at the eye, C 250";
+  }
+  throw InternalError("unknown rule of exposure");
 }
 
 double IncidentEv100(double illuminance_lux) {

@@ -7,6 +7,7 @@
 
 #include "lut/picture/agx_look.h"
 #include "lut/picture/image.h"
+#include "lut/picture/white_balance.h"
 
 namespace alpenglow {
 
@@ -15,16 +16,28 @@ struct Look {
   bool local_exposure = false;  // lut/picture/local_exposure.h
   bool night_vision = false;    // lut/picture/night_vision.h
   AgxLook agx = AgxLook::kPhoto;
+  WhiteBalance white = {};
 
   bool operator==(const Look&) const = default;
 };
 
 /// A tone curve by name, or "local": local exposure and AgX. Throws InputError for another name.
 [[nodiscard]] Look LookFromName(const std::string& name);
+/// Without the white balance, which has a name of its own.
 [[nodiscard]] std::string NameOf(const Look& look);
 
-/// A picture as it is metered and developed: with night vision, as the eye sees it.
-[[nodiscard]] Image Seen(const Image& image, const Look& look);
+/// What is seen of a picture.
+struct PictureView {
+  Projection projection = Projection::kCamera;
+  double pixel_rad = 0.0;  // angle between neighbouring pixels in the middle; 0: night is not soft
+};
+
+/// The look for a picture: its white balance settled.
+[[nodiscard]] Look Settled(Look look, const Image& image, const PictureView& view = {});
+
+/// A picture as it is metered and developed: balanced, and with night vision as the eye sees it, as
+/// soft as its acuity has it (acuity.h). Of a look that is settled.
+[[nodiscard]] Image Seen(const Image& image, const Look& look, const PictureView& view = {});
 
 /// A picture from Seen(), developed. Throws InternalError for a pixel that is not finite.
 [[nodiscard]] DisplayImage Develop(const Image& seen, double ev100, const Look& look);
@@ -56,6 +69,13 @@ struct ExposureRule {
 /// what there is (sun at -11 degrees): from there on the picture stays as dark.
 /// @param metered_ev100  MeterEv100 of the picture.
 [[nodiscard]] double EyeEv100(double metered_ev100, const Look& look);
+
+/// The exposure by a rule from what MeterEv100 says of a picture.
+/// @param rule  metered, eye or fixed; InternalError for incident, which is not of a picture.
+[[nodiscard]] double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look);
+
+/// The rule in words, for the files that it was used for.
+[[nodiscard]] std::string RuleInWords(const ExposureRule& rule);
 
 /// What an incident-light meter reads: E S / C = 2^EV with C = 250 for a flat receptor (ISO 2720).
 /// @param illuminance_lux  on a horizontal plane, >= 0. Within [kDarkestEv100, kBrightestEv100].

@@ -25,6 +25,13 @@ namespace fs = std::filesystem;
 constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
 constexpr char kFingerprint[] = "alpenglow.fingerprint";
 constexpr char kEv100[] = "alpenglow.ev100";
+constexpr char kExposure[] = "alpenglow.exposure";
+
+/// How a frame is developed.
+struct Development {
+  Look look;  // settled
+  double ev100;
+};
 
 std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
   return source.zone ? FormatInZone(instant, *source.zone) : "";
@@ -90,7 +97,7 @@ bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
 
 /// Everything that a frame's header says but its notes.
 Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
-                       double ev100) {
+                       const Development& development) {
   Metadata metadata = RenderMetadata(source, frame);
   const SunPosition sun = SunAt(source.PlaceOf(frame), frame.instant);
   metadata["alpenglow.frame"] = fmt::format("{}", frame.number);
@@ -98,9 +105,11 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
       fmt::format("{:.6f}", sun.azimuth_rad / kRadiansPerDegree);
   metadata["alpenglow.sun_elevation_deg"] =
       fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
-  metadata[kEv100] = fmt::format("{:.4f}", ev100);
-  metadata["alpenglow.exposure"] = NameOf(output.exposure.kind);
-  metadata["alpenglow.tone_curve"] = NameOf(output.look);
+  metadata[kEv100] = fmt::format("{:.4f}", development.ev100);
+  metadata[kExposure] = NameOf(output.exposure.kind);
+  metadata["alpenglow.exposure_rule"] = RuleInWords(output.exposure);
+  metadata["alpenglow.tone_curve"] = NameOf(development.look);
+  metadata["alpenglow.white_balance"] = NameOf(development.look.white);
   if (output.glare) metadata["alpenglow.glare"] = "eye, in the developed picture only";
   if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
@@ -120,16 +129,17 @@ class Series {
     if (output_.resume) picture = KeptPicture(exr, wanted);
     const bool rendered = !picture;
     if (rendered) picture = source_.render(frame, progress);
-    const double ev100 = Ev100Of(frame, picture->image);
-    Write(frame, *picture, ev100, rendered);
-    if (output_.contact_sheet) AddThumbnail(frame, AsLookedAt(frame, picture->image), ev100);
+    const Look look = Settled(output_.look, picture->image, ViewOf(frame, picture->image));
+    const Development development{look, Ev100Of(frame, picture->image, look)};
+    Write(frame, *picture, development, rendered);
+    if (output_.contact_sheet) AddThumbnail(frame, picture->image, development);
     return rendered;
   }
 
   void WriteManifest() const {
     std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100";
     if (source_.path) text += ",t_s,latitude,longitude,height_m,heading,pitch,roll,fov";
-    text += "\n";
+    text += ",exposure\n";
     for (const Frame& frame : frames_) text += ManifestLine(frame);
     WriteTextAtomically(output_.name.Manifest(), text);
   }
@@ -143,30 +153,39 @@ class Series {
   [[nodiscard]] const SeriesSummary& summary() const { return summary_; }
 
  private:
-  [[nodiscard]] double Ev100Of(const Frame& frame, const Image& image) const {
-    switch (output_.exposure.kind) {
-      case ExposureRule::Kind::kFixed:
-        return output_.exposure.ev100;
-      case ExposureRule::Kind::kIncident:
-        return IncidentEv100(source_.illuminance(frame));
-      case ExposureRule::Kind::kMetered:
-      case ExposureRule::Kind::kEye:
-        break;
-    }
-    const double metered = MeterEv100(Seen(image, output_.look), kSunDiskLuminance_cd_per_m2,
-                                      source_.ProjectionOf(frame));
-    return output_.exposure.kind == ExposureRule::Kind::kEye ? EyeEv100(metered, output_.look)
-                                                             : metered;
+  /// As they are in the files; empty before there is one.
+  struct ExposureTexts {
+    std::string ev100, rule;
+  };
+
+  [[nodiscard]] PictureView ViewOf(const Frame& frame, const Image& image) const {
+    const Projection projection = source_.ProjectionOf(frame);
+    const double across =
+        projection == Projection::kCamera ? 2.0 * std::tan(0.5 * source_.FovOf(frame)) : 2.0 * kPi;
+    return {projection, across / image.width};
   }
 
-  [[nodiscard]] Image AsLookedAt(const Frame& frame, const Image& image) const {
-    if (!output_.glare) return image;
-    return WithGlareOfEye(image, 2.0 * std::tan(0.5 * source_.FovOf(frame)) / image.width);
+  [[nodiscard]] double Ev100Of(const Frame& frame, const Image& image, const Look& look) const {
+    if (output_.exposure.kind == ExposureRule::Kind::kFixed) return output_.exposure.ev100;
+    if (output_.exposure.kind == ExposureRule::Kind::kIncident)
+      return IncidentEv100(source_.illuminance(frame));
+    const PictureView view = ViewOf(frame, image);
+    return Ev100By(
+        output_.exposure,
+        MeterEv100(Seen(image, look, view), kSunDiskLuminance_cd_per_m2, view.projection), look);
   }
 
-  void Write(const Frame& frame, const NotedPicture& picture, double ev100, bool rendered) {
+  /// As it is developed: with the eye's glare if asked for, balanced, by night as the eye sees it.
+  [[nodiscard]] Image AsLookedAt(const Frame& frame, const Image& image, const Look& look) const {
+    const PictureView view = ViewOf(frame, image);
+    if (!output_.glare) return Seen(image, look, view);
+    return Seen(WithGlareOfEye(image, view.pixel_rad), look, view);
+  }
+
+  void Write(const Frame& frame, const NotedPicture& picture, const Development& development,
+             bool rendered) {
     const Image& image = picture.image;
-    Metadata metadata = FrameMetadata(source_, output_, frame, ev100);
+    Metadata metadata = FrameMetadata(source_, output_, frame, development);
     metadata.insert(picture.notes.begin(), picture.notes.end());
     const fs::path exr = output_.name.Exr(frame.number);
     const fs::path png = output_.name.Png(frame.number);
@@ -174,29 +193,32 @@ class Series {
     const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
     if (!keep_exr) WriteExr(exr, image, metadata);
     if (!keep_png)
-      WritePng(png, Develop(Seen(AsLookedAt(frame, image), output_.look), ev100, output_.look),
-               metadata);
+      WritePng(
+          png,
+          Develop(AsLookedAt(frame, image, development.look), development.ev100, development.look),
+          metadata);
     (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
-    ev100_of_[frame.number] = metadata.at(kEv100);
+    exposure_of_[frame.number] = {metadata.at(kEv100), metadata.at(kExposure)};
   }
 
-  void AddThumbnail(const Frame& frame, const Image& image, double ev100) {
+  void AddThumbnail(const Frame& frame, const Image& image, const Development& development) {
     const std::string local = LocalTime(source_, frame.instant);
     const std::string time = (local.empty() ? FormatUtc(frame.instant) : local).substr(11, 5);
     const double elevation_deg =
         SunAt(source_.PlaceOf(frame), frame.instant).elevation_rad / kRadiansPerDegree;
-    const Image small = Reduced(Seen(image, output_.look), kThumbnailWidth);
-    thumbnails_.push_back(
-        {Develop(small, ev100, output_.look), fmt::format("{} {:+.1f}", time, elevation_deg)});
+    const Image small = Reduced(AsLookedAt(frame, image, development.look), kThumbnailWidth);
+    thumbnails_.push_back({Develop(small, development.ev100, development.look),
+                           fmt::format("{} {:+.1f}", time, elevation_deg)});
   }
 
   /// Frames of other runs (or machines) are looked up in their files.
-  [[nodiscard]] std::string Ev100Text(const Frame& frame) const {
-    const auto found = ev100_of_.find(frame.number);
-    if (found != ev100_of_.end()) return found->second;
+  [[nodiscard]] ExposureTexts ExposureOf(const Frame& frame) const {
+    const auto found = exposure_of_.find(frame.number);
+    if (found != exposure_of_.end()) return found->second;
     const fs::path exr = output_.name.Exr(frame.number);
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
-    return ExrValue(exr, kRenderFingerprint) == wanted ? ExrValue(exr, kEv100) : "";
+    if (ExrValue(exr, kRenderFingerprint) != wanted) return {};
+    return {ExrValue(exr, kEv100), ExrValue(exr, kExposure)};
   }
 
   [[nodiscard]] std::string PoseText(const Frame& frame) const {
@@ -213,17 +235,19 @@ class Series {
 
   [[nodiscard]] std::string ManifestLine(const Frame& frame) const {
     const SunPosition sun = SunAt(source_.PlaceOf(frame), frame.instant);
-    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{}\n", frame.number,
+    const ExposureTexts exposure = ExposureOf(frame);
+    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{},{}\n", frame.number,
                        output_.name.Exr(frame.number).filename().string(), FormatUtc(frame.instant),
                        LocalTime(source_, frame.instant), sun.azimuth_rad / kRadiansPerDegree,
-                       sun.elevation_rad / kRadiansPerDegree, Ev100Text(frame), PoseText(frame));
+                       sun.elevation_rad / kRadiansPerDegree, exposure.ev100, PoseText(frame),
+                       exposure.rule);
   }
 
   const SeriesSource& source_;
   const std::vector<Frame>& frames_;
   const SeriesOutput& output_;
   SeriesSummary summary_;
-  std::map<int, std::string> ev100_of_;
+  std::map<int, ExposureTexts> exposure_of_;
   std::vector<Thumbnail> thumbnails_;
 };
 

@@ -79,8 +79,8 @@ struct SeriesSummary {
 
 /// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
 /// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
-/// sun_elevation_deg (without refraction), ev100 (empty until the frame exists); on a path also
-/// t_s, latitude, longitude, height_m, heading, pitch, roll and fov.
+/// sun_elevation_deg (without refraction), ev100; on a path also t_s, latitude, longitude, height_m,
+/// heading, pitch, roll and fov; and exposure, the rule (as ev100 empty until the frame exists).
 ///
 /// Files are written atomically, in folders that are created when they are missing. With `resume`
 /// a frame is rendered only if its file is missing, unreadable, or made with other settings: each

@@ -124,6 +124,43 @@ TEST_F(SeriesRun, AnIncidentExposureFollowsTheLightOnThePlaceNotThePicture) {
   EXPECT_EQ(metadata.at("alpenglow.exposure"), "incident");
 }
 
+TEST_F(SeriesRun, FilesAndManifestSayWhatExposedThem) {
+  SeriesOutput output = Output();
+  output.png = true;
+  Run(Source(), output, 1);
+  for (const Metadata& metadata :
+       {ReadExrMetadata(folder_ / "frame.0001.exr"), ReadPngMetadata(folder_ / "frame.0001.png")}) {
+    EXPECT_EQ(metadata.at("alpenglow.exposure"), "metered");
+    EXPECT_EQ(metadata.at("alpenglow.exposure_rule"), RuleInWords({}));
+    EXPECT_EQ(metadata.at("alpenglow.white_balance"), "daylight (D65)");
+  }
+  const std::string manifest = ContentOf(folder_ / "frame.manifest.csv");
+  EXPECT_THAT(manifest, HasSubstr(",ev100,exposure\n"));
+  EXPECT_THAT(manifest, testing::EndsWith(",metered\n"));
+}
+
+TEST_F(SeriesRun, WhiteBalanceIsOfTheDevelopedPictureAndTheHeaderHasItsTemperature) {
+  SeriesSource source = Source();
+  source.render = [](const Frame&, Progress&) {
+    Image image(16, 9);
+    const auto white = LinearSrgbFromXyz() * WhiteOfTemperature(4000.0);
+    for (auto& pixel : image.rgb) {
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(800.0 * white[c]);
+    }
+    return image;
+  };
+  SeriesOutput output = Output();
+  output.png = true;
+  output.look.white.kind = WhiteBalance::Kind::kAuto;
+  Run(source, output, 1);
+  const Image light = ReadExr(folder_ / "frame.0001.exr");
+  EXPECT_GT(light.at(0, 0)[0], 2.0F * light.at(0, 0)[2]) << "light is as it was";
+  const DisplayImage shown = ReadPng(folder_ / "frame.0001.png");
+  EXPECT_NEAR(shown.rgb[0], shown.rgb[2], 3) << "grey, dithered";
+  EXPECT_EQ(ReadExrMetadata(folder_ / "frame.0001.exr").at("alpenglow.white_balance"),
+            "auto, 4000 K, CAT16");
+}
+
 TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
   SeriesSource source = Source();
   source.render = [](const Frame&, Progress&) {

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "lut/picture/acuity.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/picture/tone_curve.h"
+
+namespace alpenglow {
+namespace {
+
+using Plane = std::vector<std::array<float, 3>>;
+
+constexpr std::array<double, 9> kSpreads_px{0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
+
+/// Where light goes of a pixel beyond the edge: mirrored, so that none is lost.
+int Mirrored(int i, int count) {
+  const int period = 2 * count;
+  const int inside = ((i % period) + period) % period;
+  return inside < count ? inside : period - 1 - inside;
+}
+
+std::vector<float> GaussianTaps(double sigma_px) {
+  const int reach = static_cast<int>(std::ceil(4.0 * sigma_px));
+  std::vector<float> taps;
+  double sum = 0.0;
+  for (int i = -reach; i <= reach; ++i) sum += std::exp(-0.5 * i * i / (sigma_px * sigma_px));
+  for (int i = -reach; i <= reach; ++i)
+    taps.push_back(static_cast<float>(std::exp(-0.5 * i * i / (sigma_px * sigma_px)) / sum));
+  return taps;
+}
+
+/// Blurs lines of `count` pixels, `step` apart, that begin at the multiples of `next`.
+void BlurLines(Plane& plane, int lines, std::size_t next, int count, std::size_t step,
+               const std::vector<float>& taps) {
+  const int reach = static_cast<int>(taps.size() / 2);
+  tbb::parallel_for(0, lines, [&](int line) {
+    const std::size_t first = static_cast<std::size_t>(line) * next;
+    Plane wide(static_cast<std::size_t>(count + 2 * reach));
+    for (int i = -reach; i < count + reach; ++i)
+      wide[static_cast<std::size_t>(i + reach)] =
+          plane[first + step * static_cast<std::size_t>(Mirrored(i, count))];
+    for (int i = 0; i < count; ++i) {
+      std::array<float, 3> sum{};
+      for (std::size_t k = 0; k < taps.size(); ++k) {
+        for (std::size_t c = 0; c < 3; ++c)
+          sum[c] += taps[k] * wide[static_cast<std::size_t>(i) + k][c];
+      }
+      plane[first + step * static_cast<std::size_t>(i)] = sum;
+    }
+  });
+}
+
+void Blur(Plane& plane, int width, int height, double sigma_px) {
+  const std::vector<float> taps = GaussianTaps(sigma_px);
+  const auto row = static_cast<std::size_t>(width);
+  BlurLines(plane, height, row, width, 1, taps);
+  BlurLines(plane, width, 1, height, row, taps);
+}
+
+/// Between which of kSpreads_px a spread lies: the lower as a whole number, the share of the upper
+/// behind its point.
+double LevelOf(double sigma_px) {
+  const auto upper = std::upper_bound(kSpreads_px.begin(), kSpreads_px.end(), sigma_px);
+  if (upper == kSpreads_px.end()) return static_cast<double>(kSpreads_px.size() - 1);
+  const double high = *upper, low = *(upper - 1);
+  const double share = (sigma_px * sigma_px - low * low) / (high * high - low * low);
+  return static_cast<double>(upper - kSpreads_px.begin() - 1) + share;
+}
+
+}  // namespace
+
+double AcuityAt(double luminance_cd_per_m2) {
+  const double log_l = std::log10(std::max(luminance_cd_per_m2, 1e-6));
+  return 17.25 * std::atan(1.4 * log_l + 0.35) + 25.72;
+}
+
+double SpreadAt(double luminance_cd_per_m2) {
+  constexpr double kDay_cd_per_m2 = 5.0;
+  const auto spread = [](double luminance) {
+    return std::sqrt(0.5 * std::log(10.0)) / (kPi * AcuityAt(luminance)) * kRadiansPerDegree;
+  };
+  const double here = spread(luminance_cd_per_m2), day = spread(kDay_cd_per_m2);
+  return std::sqrt(std::max(here * here - day * day, 0.0));
+}
+
+Image WithAcuityOfNight(Image image, double pixel_rad) {
+  ALPENGLOW_ENSURE(pixel_rad, >, 0.0);
+  std::vector<double> levels(image.rgb.size());
+  tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t i) {
+    const auto& [red, green, blue] = image.rgb[i];
+    const double y = shared::Luminance<double>(red, green, blue);
+    levels[i] = LevelOf(SpreadAt(std::max(y, 0.0)) / pixel_rad);
+  });
+  const Plane light = image.rgb;
+  for (std::size_t level = 0; level < kSpreads_px.size(); ++level) {
+    Plane part(light.size());
+    bool any = false;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      const auto weight =
+          static_cast<float>(std::max(0.0, 1.0 - std::abs(levels[i] - static_cast<double>(level))));
+      any = any || weight > 0.0F;
+      for (std::size_t c = 0; c < 3; ++c) part[i][c] = weight * light[i][c];
+    }
+    if (level == 0) {
+      image.rgb = std::move(part);
+      continue;
+    }
+    if (!any) continue;
+    Blur(part, image.width, image.height, kSpreads_px.at(level));
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) image.rgb[i][c] += part[i][c];
+    }
+  }
+  return image;
+}
+
+}  // namespace alpenglow

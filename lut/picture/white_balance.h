@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// White balance: which light a developed picture shows as white.
+//
+// Light of chromaticity w is shown as the display's white, D65, by complete von Kries adaptation in
+// the space of CAT16 (Li et al. 2017, Color Research and Application 42, 703-718):
+//
+//   XYZ' = M^-1 diag(M D65 / M w) M XYZ,     Y of w kept
+//
+// The light of a temperature is that of CIE 224:2017 (TM-30): Planck's up to 4000 K, the daylight of
+// CIE 15 from 5000 K on, between them a mixture of both at equal luminance. Daylight is D65, 6504 K:
+// colours stay as they are. Auto is a camera's: it takes the mean colour of what the meter weighs
+// (light_meter.h) for the light, as far as that is a light between 3000 K and 7000 K.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "atmosphere/colour/spectrum.h"
+#include "lut/picture/image.h"
+
+namespace alpenglow {
+
+struct WhiteBalance {
+  enum class Kind { kDaylight, kAuto, kKelvin };
+  Kind kind = Kind::kDaylight;
+  std::optional<double> kelvin = {};  // of kKelvin, and of kAuto once it is settled
+
+  bool operator==(const WhiteBalance&) const = default;
+};
+
+/// Temperatures that can be asked for [K].
+inline constexpr double kWarmestWhite_k = 1500.0;
+inline constexpr double kCoolestWhite_k = 25000.0;
+
+/// "daylight", "auto" or kelvins, as 5600 or 5600K; throws InputError for another text.
+[[nodiscard]] WhiteBalance WhiteBalanceFromText(const std::string& text);
+/// "daylight (D65)", "auto", "auto, 4310 K, CAT16", "5600 K, CAT16".
+[[nodiscard]] std::string NameOf(const WhiteBalance& white);
+
+/// XYZ of the light of a temperature, Y = 1. @param kelvin in [kWarmestWhite_k, kCoolestWhite_k].
+[[nodiscard]] std::array<double, 3> WhiteOfTemperature(double kelvin);
+/// The temperature of the light whose chromaticity is nearest in CIE 1960 uv, to 0.1 mired, within
+/// the range above. @param xyz  Y > 0.
+[[nodiscard]] double TemperatureOf(const std::array<double, 3>& xyz);
+
+/// What auto is for a picture; others as they are.
+[[nodiscard]] WhiteBalance Settled(const WhiteBalance& white, const Image& image,
+                                   Projection projection);
+
+/// Linear sRGB as it is shown from linear sRGB. Of auto settled; InternalError before.
+[[nodiscard]] Matrix3 BalancingMatrix(const WhiteBalance& white);
+
+/// The picture, balanced; its layers are as they were. Daylight: the same picture.
+[[nodiscard]] Image Balanced(Image image, const WhiteBalance& white);
+
+}  // namespace alpenglow
