@@ -395,7 +395,8 @@ void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize
     throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
   RequireDrawable(size.width, size.height);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
-  flight_.PaintStill({screen.framebuffer(), size.width, size.height});
+  const Development development =
+      flight_.PaintStill({screen.framebuffer(), size.width, size.height});
   // Another one than that of the window, whose panels stay where they are and out of the picture.
   Hud instruments({.scale = hud_.scale(), .theme = hud_.theme_choice()});
   HudInput input;
@@ -403,7 +404,9 @@ void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize
   input.height = size.height;
   static_cast<void>(instruments.Update(Model(), {}, nullptr, input));
   instruments.Paint(screen.framebuffer());
-  WritePng(file, screen.ReadBytes(), flight_.PictureHeader(size));
+  Metadata header = flight_.PictureHeader(size);
+  header.merge(flight_.ExposureHeader(development));
+  WritePng(file, screen.ReadBytes(), header);
 }
 
 void FlightDeck::Paint(const Developer::Screen& screen, double seconds) {

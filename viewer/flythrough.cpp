@@ -48,6 +48,11 @@ double HalfWidthOfLand(const LandLattice& lattice, const GeodeticPosition& place
   return std::min(std::max(columns * size.column_m, rows * size.row_m) + size.row_m, kMost_m);
 }
 
+Look InDaylight(Look look) {
+  look.white = {};
+  return look;
+}
+
 // Refuses a medium of too many bands before it is solved.
 const Scene& Drawable(const Scene& scene) {
   static_cast<void>(AirBlockOf(scene.medium));
@@ -60,6 +65,11 @@ double AdaptedEv100(std::optional<double> before, double metered, double seconds
   constexpr double kHalfTime_s = 0.3;
   if (!before) return metered;
   return metered + (*before - metered) * std::exp2(-seconds / kHalfTime_s);
+}
+
+WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metered, double seconds) {
+  if (before.kind != metered.kind || !before.kelvin || !metered.kelvin) return metered;
+  return {metered.kind, 1.0 / AdaptedEv100(1.0 / *before.kelvin, 1.0 / *metered.kelvin, seconds)};
 }
 
 void RequirePictureName(const std::filesystem::path& file) {
@@ -82,7 +92,14 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
-               SizesOf(used_.quality)) {
+               SizesOf(used_.quality)),
+      rule_of_exposure_(settings.exposure),
+      look_(settings.look),
+      darkroom_(InDaylight(settings.look)) {
+  if (settings.exposure.kind == ExposureRule::Kind::kFixed) {
+    SetExposure(settings.exposure.ev100);
+    rule_of_exposure_ = {};  // once it is no longer locked
+  }
   if (scene.camera.height.above_ground) AwaitGround(scene.camera.height.value_m);
 }
 
@@ -331,13 +348,10 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
                                                     : SkyPainter::Disks::kPainted);
   }
   ShowReference({screen.width, screen.height});
-  if (const std::optional<double> metered = meter_.Take()) metered_ev100_ = *metered;
-  meter_.Look(painter_.picture());
-  if (!exposure_.ev100) metered_ev100_ = meter_.Read(painter_.picture());
-  if (!exposure_.locked) {
-    exposure_.ev100 =
-        AdaptedEv100(exposure_.ev100, metered_ev100_ - exposure_.compensation_ev, seconds);
-  }
+  if (const std::optional<MeterReading> metered = meter_.Take(look_)) metered_ = metered;
+  meter_.LookAt(painter_.picture());
+  if (!metered_) metered_ = meter_.Read(painter_.picture(), look_);
+  Expose(*metered_, seconds);
   darkroom_.Print(painter_, view, *exposure_.ev100, screen);
 }
 
@@ -386,30 +400,71 @@ Metadata Flythrough::PictureHeader(const ImageSize& size) const {
   return metadata;
 }
 
-double Flythrough::Ev100Of(const Image& picture) const {
-  return exposure_.ev100.value_or(MeterEv100(picture, kSunDiskLuminance_cd_per_m2) -
-                                  exposure_.compensation_ev);
+void Flythrough::Use(ToneCurve curve) {
+  look_.curve = curve;
+  Look shown = darkroom_.developer().look();
+  shown.curve = curve;
+  darkroom_.developer().Use(shown);
 }
 
-void Flythrough::PaintStill(const Developer::Screen& screen) {
+void Flythrough::Expose(const MeterReading& metered, double seconds) {
+  if (!exposure_.locked) {
+    const double wanted = Ev100By(rule_of_exposure_, metered.ev100, look_);
+    exposure_.ev100 = AdaptedEv100(exposure_.ev100, wanted - exposure_.compensation_ev, seconds);
+  }
+  white_ = white_ ? AdaptedWhite(*white_, metered.white, seconds) : metered.white;
+  Look shown = look_;
+  shown.white = *white_;
+  darkroom_.developer().Use(shown);
+}
+
+Development Flythrough::DevelopmentOf(const Image& picture) const {
+  Look look = look_;
+  if (white_ && exposure_.ev100) {
+    look.white = *white_;
+    return {look, *exposure_.ev100};
+  }
+  const MeterReading reading = ReadingOf(picture, look_);
+  look.white = reading.white;
+  const double metered = Ev100By(rule_of_exposure_, reading.ev100, look_);
+  return {look, exposure_.ev100.value_or(metered - exposure_.compensation_ev)};
+}
+
+Metadata Flythrough::ExposureHeader(const Development& development) const {
+  const ExposureRule rule = exposure_.locked
+                                ? ExposureRule{ExposureRule::Kind::kFixed, development.ev100}
+                                : rule_of_exposure_;
+  return {{"alpenglow.ev100", fmt::format("{:.4f}", development.ev100)},
+          {"alpenglow.exposure", NameOf(rule.kind)},
+          {"alpenglow.exposure_rule", RuleInWords(rule)},
+          {"alpenglow.exposure_compensation_ev",
+           fmt::format("{}", exposure_.locked ? 0.0 : exposure_.compensation_ev)},
+          {"alpenglow.tone_curve", NameOf(development.look)},
+          {"alpenglow.white_balance", NameOf(development.look.white)}};
+}
+
+Development Flythrough::PaintStill(const Developer::Screen& screen) {
   const ImageSize size{screen.width, screen.height};
   const Image image = Picture(size, kPictureSamples);
   const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
   picture.Write(image);
-  exposure_.ev100 = Ev100Of(image);
-  darkroom_.developer().Develop(picture, *exposure_.ev100, screen);
+  Development development = DevelopmentOf(image);
+  exposure_.ev100 = development.ev100;
+  darkroom_.developer().Use(development.look);
+  darkroom_.developer().Develop(picture, development.ev100, screen);
+  return development;
 }
 
 void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   RequirePictureName(file);
-  const Image image = Picture(size, kPictureSamples);
-  const double ev100 = Ev100Of(image);
+  Image image = Picture(size, kPictureSamples);
+  const auto [look, ev100] = DevelopmentOf(image);
   Metadata metadata = PictureHeader(size);
-  metadata["alpenglow.ev100"] = fmt::format("{}", ev100);
+  metadata.merge(ExposureHeader({look, ev100}));
   if (file.extension() == ".exr") {
     WriteExr(file, image, metadata);
   } else {
-    WritePng(file, Develop(image, ev100, darkroom_.developer().curve()), metadata);
+    WritePng(file, Develop(Balanced(std::move(image), look.white), ev100, look), metadata);
   }
 }
 
@@ -428,10 +483,10 @@ void Flythrough::WriteReplay(const CameraPath& path,
 
 DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
   Show(frame);
-  const Image image = Picture(size, kPictureSamples);
-  exposure_.ev100 =
-      AdaptedEv100(exposure_.ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), seconds);
-  return Develop(image, *exposure_.ev100, darkroom_.developer().curve());
+  Image image = Picture(size, kPictureSamples);
+  Expose(ReadingOf(image, look_), seconds);
+  const Look& look = darkroom_.developer().look();
+  return Develop(Balanced(std::move(image), look.white), *exposure_.ev100, look);
 }
 
 }  // namespace alpenglow

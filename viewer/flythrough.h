@@ -30,6 +30,10 @@ namespace alpenglow {
 /// Throws InputError unless the file's name ends in .png or .exr.
 void RequirePictureName(const std::filesystem::path& file);
 
+/// White balance that follows the meter like that, in reciprocal temperature.
+[[nodiscard]] WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metered,
+                                        double seconds);
+
 /// How pictures of a flight are painted.
 struct FlythroughSettings {
   LandSource land;
@@ -39,6 +43,8 @@ struct FlythroughSettings {
   /// Pictures are painted in parts of at most so many pixels a side; nothing: in one piece as far as
   /// OpenGL draws them.
   std::optional<int> largest_part = {};
+  ExposureRule exposure = {};  // metered, eye or fixed
+  Look look = {};              // without local exposure and night vision
 };
 
 /// Where the exposure comes from.
@@ -46,6 +52,12 @@ struct FlightExposure {
   bool locked = false;
   double compensation_ev = 0.0;  // over 0 is brighter
   std::optional<double> ev100;   // as shown; nothing before the first picture
+};
+
+/// How a picture is developed.
+struct Development {
+  Look look;  // settled
+  double ev100;
 };
 
 class Flythrough {
@@ -77,7 +89,7 @@ class Flythrough {
   [[nodiscard]] std::string JumpTo(SkyEvent event);
 
   void Use(const QualityRule& rule);
-  void Use(ToneCurve curve) { darkroom_.developer().Use(curve); }
+  void Use(ToneCurve curve);
   void Use(const AirChoice& choice);
   /// Another planet by the name of a preset, with the changes that were made to the last one.
   void UsePlanet(const std::string& preset);
@@ -110,10 +122,12 @@ class Flythrough {
   /// What the renderer would render: the scene from the eye, now, and where a scene cannot say what
   /// the land is, of several elevation models, the land that is loaded around the eye.
   [[nodiscard]] ReferenceScene SceneForRenderer() const;
-  /// The picture of WritePicture, developed onto a screen.
-  void PaintStill(const Developer::Screen& screen);
-  /// What made a picture of this size.
+  /// The picture of WritePicture, developed onto a screen. @return how.
+  Development PaintStill(const Developer::Screen& screen);
+  /// What made a picture of this size, but its exposure.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
+  /// How it was exposed and developed.
+  [[nodiscard]] Metadata ExposureHeader(const Development& development) const;
   /// Writes pictures at even steps of the path, its ends included, and notes them down.
   void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
                    const ImageSize& size, FlightRecorder& recorder);
@@ -128,7 +142,7 @@ class Flythrough {
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const AirChoice& air_choice() const { return air_; }
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
-  [[nodiscard]] ToneCurve curve() const { return darkroom_.developer().curve(); }
+  [[nodiscard]] ToneCurve curve() const { return look_.curve; }
   /// Height of the ground under a place; of the bare planet where there is no land.
   [[nodiscard]] GroundHeight Ground() const;
   /// Whether the eye stands where it was put: over the ground there, or where there is none. Until
@@ -146,7 +160,9 @@ class Flythrough {
   /// Without land of several elevation models.
   [[nodiscard]] Scene SceneSeen() const;
   [[nodiscard]] PaintedQuality Painted() const;
-  [[nodiscard]] double Ev100Of(const Image& picture) const;
+  void Expose(const MeterReading& metered, double seconds);
+  /// Of a picture without a frame before it: as frames are, or as it is metered.
+  [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
   [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples);
   void AwaitGround(std::optional<double> above_ground_m = std::nullopt);
   void StandOnGround();
@@ -164,11 +180,14 @@ class Flythrough {
   std::optional<int> largest_part_;
   Cockpit cockpit_;
   SkyPainter painter_;
-  Darkroom darkroom_{ToneCurve::kAgx};
+  ExposureRule rule_of_exposure_;
+  Look look_;  // as asked for: its white balance is not settled
+  Darkroom darkroom_{Look{}};
   ExposureMeter meter_;
   SpotMeter spot_;
   FlightExposure exposure_;
-  double metered_ev100_ = 15.0;
+  std::optional<MeterReading> metered_;
+  std::optional<WhiteBalance> white_;  // as shown; nothing before the first picture
   bool landing_light_ = false;
   bool knows_ground_ = false;                   // under the eye, since it was put there
   std::optional<double> waits_above_ground_m_;  // until then: how high it will stand over it

@@ -247,7 +247,8 @@ int Run(const SkyviewOptions& options) {
   if (headless && !PaintsInParts(options)) RequireDrawable(size.width, size.height);
   Flythrough flight(
       scene, start,
-      {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size});
+      {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size,
+       std::nullopt, FlightExposureFromText(options.exposure), LookOf(options)});
   flight.Place(PlacementOf(options));
   if (options.place) flight.GoTo(*options.place);
   if (options.track) flight.Follow(PathAlong(ReadTrack(*options.track), {}, flight.Ground()));

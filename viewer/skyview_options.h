@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lut/picture/look.h"
 #include "lut/picture/picture_text.h"
 #include "lut/program/command_line.h"
 #include "renderer/scene/scene_options.h"
@@ -23,6 +24,13 @@ inline constexpr char kSkyviewFooter[] =
     "  skyview --record flight.csv\n"
     "  skyview --replay flight.csv --headless --video flight.mp4";
 
+/// Refuses a rule of exposure that is not for pictures in flight; throws InputError.
+[[nodiscard]] inline ExposureRule FlightExposureFromText(const std::string& text) {
+  const ExposureRule rule = ExposureRuleFromText(text);
+  if (rule.kind != ExposureRule::Kind::kIncident) return rule;
+  throw InputError("skyview meters what it shows; incident is for skyseries");
+}
+
 /// What is typed; texts are read later, against the scene.
 struct SkyviewOptions {
   CommonOptions common;
@@ -33,7 +41,8 @@ struct SkyviewOptions {
   std::optional<double> benchmark;  // seconds
   double fps = 30.0;                // of the film
   int frames = 1;
-  std::string vsync = "on", quality = "auto", hud = "auto";
+  std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto", look = "photo",
+              white_balance = "daylight";
   double frame_rate = 20.0;  // that automatic quality keeps
   double hud_scale = 0.0;    // 0: as the desktop says
   bool invert_y = false, explain = false;
@@ -42,6 +51,32 @@ struct SkyviewOptions {
 
 [[nodiscard]] inline ImageSize SizeFromText(const std::string& text) {
   return ImageSizeFromText(text, kLargestImageSide);
+}
+
+inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
+  app.add_option(
+         "--exposure", options.exposure,
+         "auto (the picture is metered), eye (metered, but dusk is darker than day and night "
+         "darker) or EV at ISO 100, -30 to 30, locked")
+      ->check(ReadableBy([](const std::string& text) { (void)FlightExposureFromText(text); }))
+      ->capture_default_str();
+  app.add_option("--look", options.look,
+                 "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
+      ->check(CLI::IsMember(AgxLookNames()))
+      ->capture_default_str();
+  app.add_option(
+         "--white-balance", options.white_balance,
+         "Light that is shown as white: daylight, auto (the mean colour of what is metered, "
+         "3000 to 7000 K) or kelvins, 1500 to 25000")
+      ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
+      ->capture_default_str();
+}
+
+[[nodiscard]] inline Look LookOf(const SkyviewOptions& options) {
+  Look look;
+  look.agx = AgxLookFromName(options.look);
+  look.white = WhiteBalanceFromText(options.white_balance);
+  return look;
 }
 
 inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
@@ -134,6 +169,7 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
       ->capture_default_str();
   benchmark->excludes(video)->excludes("--replay")->excludes("--record");
   for (CLI::Option* flies_nothing : {explain, video}) flies_nothing->excludes("--record");
+  AddPictureLooks(app, options);
   AddCommonOptions(app, "skyview", options.common);
   app.callback([&options] {
     if (options.headless && !options.screenshot && !options.benchmark && !options.video &&

@@ -111,7 +111,7 @@ Times TimesOf(const View& view) {
                             static_cast<int>(scale * kWidth), static_cast<int>(scale * kHeight)};
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality));
   painter.Settle(painted);
-  Darkroom darkroom(ToneCurve::kAgx);
+  Darkroom darkroom(Look{});
   const RenderTarget screen(kWidth, kHeight, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone);
   const auto draw = [&] {
     constexpr double kEv100 = 13.0;

@@ -17,7 +17,7 @@ namespace alpenglow {
 
 class Darkroom {
  public:
-  explicit Darkroom(ToneCurve curve) : developer_(curve) {}
+  explicit Darkroom(const Look& look) : developer_(look) {}
 
   [[nodiscard]] Developer& developer() { return developer_; }
   [[nodiscard]] const Developer& developer() const { return developer_; }

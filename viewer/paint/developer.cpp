@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "viewer/gl/gl_context.h"
@@ -25,8 +27,8 @@ ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   return program;
 }
 
-void UploadTable() {
-  const ToneTable table;
+void UploadTable(AgxLook look) {
+  const ToneTable table(look);
   glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, ToneTable::kSide, ToneTable::kSide, ToneTable::kSide,
                0, GL_RGB, GL_FLOAT, table.codes().data());
   ClampAndFilter(GL_TEXTURE_3D, true);
@@ -41,19 +43,27 @@ std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers) {
   return WithViewerPieces(std::move(texts), {"viewer/shaders/dither_tile.glsl"});
 }
 
-Developer::Developer(ToneCurve curve)
-    : curve_(curve), program_(ProgramOf(curve, true)), small_program_(ProgramOf(curve, false)) {
+Developer::Developer(const Look& look)
+    : look_(look),
+      program_(ProgramOf(look.curve, true)),
+      small_program_(ProgramOf(look.curve, false)) {
+  FillTable();
+}
+
+void Developer::FillTable() {
   glActiveTexture(GL_TEXTURE0 + kTable);
   glBindTexture(GL_TEXTURE_3D, table_.id());
-  UploadTable();
+  UploadTable(look_.agx);
   CheckGl("Developer");
 }
 
-void Developer::Use(ToneCurve curve) {
-  if (curve == curve_) return;
-  program_ = ProgramOf(curve, true);
-  small_program_ = ProgramOf(curve, false);
-  curve_ = curve;
+void Developer::Use(const Look& look) {
+  const Look before = std::exchange(look_, look);
+  if (look.curve != before.curve) {
+    program_ = ProgramOf(look.curve, true);
+    small_program_ = ProgramOf(look.curve, false);
+  }
+  if (look.agx != before.agx) FillTable();
 }
 
 void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
@@ -68,6 +78,11 @@ void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, 
   program.Use();
   dither_.Bind(program, kDither, screen.width, screen.height);
   glUniform1f(program.Uniform("exposure"), static_cast<float>(ExposureScale(ev100)));
+  const Matrix3 balance = BalancingMatrix(look_.white);
+  std::array<GLfloat, 9> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i] = static_cast<GLfloat>(balance[i / 3][i % 3]);
+  glUniformMatrix3fv(program.Uniform("balance"), 1, GL_TRUE, rows.data());
   DrawFullScreen(program, no_vertices_);
   CheckGl("Developer::Develop");
 }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/picture/look.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
@@ -12,14 +12,16 @@
 
 namespace alpenglow {
 
-/// Exposure, gamut, tone curve and dither, as Develop (image.h) does them.
+/// White balance, exposure, gamut, tone curve and dither, as Seen and Develop (look.h) do them; local
+/// exposure and night vision are left out.
 class Developer {
  public:
-  explicit Developer(ToneCurve curve);
+  /// @param look  settled (look.h), here and below.
+  explicit Developer(const Look& look);
 
-  /// Takes another curve; nothing if it is the one in use.
-  void Use(ToneCurve curve);
-  [[nodiscard]] ToneCurve curve() const { return curve_; }
+  /// Takes another look; what it has in common with the one in use costs nothing.
+  void Use(const Look& look);
+  [[nodiscard]] const Look& look() const { return look_; }
 
   /// Where a developed picture goes: a framebuffer (0: the window) and its size [pixels].
   struct Screen {
@@ -33,10 +35,11 @@ class Developer {
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
  private:
+  void FillTable();
   void Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
             const Screen& screen) const;
 
-  ToneCurve curve_;
+  Look look_;
   ShaderProgram program_, small_program_;
   GlVertexArray no_vertices_;
   GlTexture table_;

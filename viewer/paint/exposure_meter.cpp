@@ -6,6 +6,15 @@
 
 namespace alpenglow {
 
+MeterReading ReadingOf(const Image& picture, const Look& look) {
+  const WhiteBalance white = Settled(look.white, picture, Projection::kCamera);
+  const auto ev100 = [](const Image& seen) {
+    return MeterEv100(seen, kSunDiskLuminance_cd_per_m2);
+  };
+  const bool stays = white.kind == WhiteBalance::Kind::kDaylight;
+  return {stays ? ev100(picture) : ev100(Balanced(picture, white)), white};
+}
+
 void ExposureMeter::Copy(const RenderTarget& picture) {
   const int longest = std::max(picture.width(), picture.height());
   const auto shrunk = [&](int side) {
@@ -19,23 +28,23 @@ void ExposureMeter::Copy(const RenderTarget& picture) {
                     GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-void ExposureMeter::Look(const RenderTarget& picture) {
+void ExposureMeter::LookAt(const RenderTarget& picture) {
   if (reader_.Busy()) return;
   Copy(picture);
   reader_.Begin(*small_, {0, 0, small_->width(), small_->height()});
 }
 
-std::optional<double> ExposureMeter::Take() {
+std::optional<MeterReading> ExposureMeter::Take(const Look& look) {
   std::optional<std::vector<std::array<float, 3>>> rgb = reader_.Take();
   if (!rgb) return std::nullopt;
   Image copy(small_->width(), small_->height());
   copy.rgb = std::move(*rgb);
-  return MeterEv100(copy, kSunDiskLuminance_cd_per_m2);
+  return ReadingOf(copy, look);
 }
 
-double ExposureMeter::Read(const RenderTarget& picture) {
+MeterReading ExposureMeter::Read(const RenderTarget& picture, const Look& look) {
   Copy(picture);
-  return MeterEv100(small_->Read(), kSunDiskLuminance_cd_per_m2);
+  return ReadingOf(small_->Read(), look);
 }
 
 }  // namespace alpenglow

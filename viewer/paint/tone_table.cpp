@@ -23,7 +23,7 @@ std::array<float, ToneTable::kSide> Nodes() {
 
 }  // namespace
 
-ToneTable::ToneTable() {
+ToneTable::ToneTable(AgxLook look) {
   const auto nodes = Nodes();
   codes_.resize(std::size_t{kSide} * kSide * kSide);
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t blue) {
@@ -31,7 +31,7 @@ ToneTable::ToneTable() {
     for (const float green : nodes) {
       for (const float red : nodes) {
         const Rgb<float> light =
-            DisplayLight<float>(ToneCurve::kAgx, {red, green, nodes[blue]}, 1.0F);
+            DisplayLight<float>(ToneCurve::kAgx, {red, green, nodes[blue]}, 1.0F, look);
         *code++ = {shared::SrgbCode(light[0]), shared::SrgbCode(light[1]),
                    shared::SrgbCode(light[2])};
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// AgX in its default look as a table that a graphics card interpolates: nine powers and logarithms a
+// AgX in one of its looks as a table that a graphics card interpolates: nine powers and logarithms a
 // pixel, and its hue, are one fetch.
 //
 // Codes of sRGB over the exposed colour (tone_curve.glsl), which is inside the gamut by then: kSide
@@ -10,17 +10,21 @@
 #include <array>
 #include <vector>
 
+#include "lut/picture/agx_look.h"
+
 namespace alpenglow {
 
-/// Error of trilinear interpolation for colours whose channels lie within three stops of each other:
-/// half below 0.06 codes of 8 bits, all but one in a hundred below 0.25, all below 0.7.
+/// Error of trilinear interpolation for colours whose channels lie within three stops of each other,
+/// in codes of 8 bits: of photo half below 0.06, all but one in a hundred below 0.25, all below 0.7;
+/// of other looks, which clip a channel at an edge between nodes, half below 0.1, all but one in
+/// twenty below 0.5, all but one in a hundred below 3.
 class ToneTable {
  public:
   static constexpr int kSide = 88;
   static constexpr double kLowestStop = -13.5;
   static constexpr double kHighestStop = 3.5;
 
-  ToneTable();
+  explicit ToneTable(AgxLook look);
 
   /// kSide^3 codes in [0, 1], red fastest.
   [[nodiscard]] const std::vector<std::array<float, 3>>& codes() const { return codes_; }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The picture on a display: exposure, gamut, tone curve, dither, as Develop (image.h) does it. AgX
+// The picture on a display: white balance, exposure, gamut, tone curve, dither, as Develop (image.h) does it. AgX
 // comes from its table (tone_table.h). Defined before this text: CURVE, a ToneCurve; DITHERS, 0 for
 // codes that enlarge.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;
 uniform vec2 stops;        // over saturation, at the first and the last node of the table
 uniform float exposure;
+uniform mat3 balance;      // linear sRGB as it is shown from linear sRGB
 out vec4 display;
 
 #if CURVE == 0
@@ -50,7 +51,7 @@ vec3 CodesOf(vec3 inside) {
 
 void main() {
   vec4 found = texture(linear_picture, gl_FragCoord.xy / screen_size);
-  vec3 rgb = found.rgb;
+  vec3 rgb = balance * found.rgb;
   vec3 exposed = vec3(ExposedChannel(rgb.r, exposure), ExposedChannel(rgb.g, exposure),
                       ExposedChannel(rgb.b, exposure));
   float y = Luminance(exposed.r, exposed.g, exposed.b);

@@ -39,10 +39,10 @@ TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
-  Developer developer(ToneCurve::kAgx);
+  Developer developer{Look{}};
   for (const ToneCurve curve : {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
                                 ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
-    developer.Use(curve);
+    developer.Use(Look{.curve = curve});
     developer.Develop(picture, ev100, {screen.framebuffer(), kWidth, kHeight});
     const DisplayImage judge = Develop(image, ev100, curve);
     const Image codes = screen.Read();
@@ -60,13 +60,30 @@ TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   }
 }
 
+TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
+  const Image image = Colours();
+  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
+  Developer developer{Look{}};
+  for (const AgxLook agx : {AgxLook::kNone, AgxLook::kPunchy, AgxLook::kPhoto}) {
+    Look look{.agx = agx};
+    look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
+    developer.Use(look);
+    developer.Develop(picture, 13.0, {screen.framebuffer(), kWidth, kHeight});
+    const DisplayImage judge = Develop(Seen(image, look), 13.0, look), shown = screen.ReadBytes();
+    for (std::size_t i = 0; i < judge.rgb.size(); ++i)
+      ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << NameOf(agx) << ", byte " << i;
+  }
+}
+
 TEST_F(DeveloperTest, APictureOfAnotherSizeFillsTheScreen) {
   Image image(8, 8);
   for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
   const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
-  Developer(ToneCurve::kAgx).Develop(picture, 12.0, {screen.framebuffer(), kWidth, kHeight});
+  Developer(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kWidth, kHeight});
   Image even(kWidth, kHeight);
   for (auto& pixel : even.rgb) pixel = image.rgb[0];
   const DisplayImage judge = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
@@ -81,7 +98,7 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
   const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   ExposureMeter meter;
-  EXPECT_NEAR(meter.Read(picture), MeterEv100(image, kSunDiskLuminance_cd_per_m2), 0.05)
+  EXPECT_NEAR(meter.Read(picture, {}).ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), 0.05)
       << "the copy shows the same picture, enlarged";
   const RenderTarget large(4 * ExposureMeter::kLongSide, 2 * ExposureMeter::kLongSide,
                            RenderTarget::Depth::kNone);
@@ -91,21 +108,37 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
       many.at(x, y) = image.at(x * kWidth / many.width, y * kHeight / many.height);
   }
   large.Write(many);
-  EXPECT_NEAR(meter.Read(large), MeterEv100(many, kSunDiskLuminance_cd_per_m2), 0.05)
+  EXPECT_NEAR(meter.Read(large, {}).ev100, MeterEv100(many, kSunDiskLuminance_cd_per_m2), 0.05)
       << "every fourth pixel of a smooth picture";
+}
+
+TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
+  Image image(kWidth, kHeight);
+  const auto white = LinearSrgbFromXyz() * WhiteOfTemperature(4200.0);
+  for (auto& pixel : image.rgb) {
+    for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(700.0 * white[c]);
+  }
+  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  Look look;
+  look.white.kind = WhiteBalance::Kind::kAuto;
+  const MeterReading reading = ExposureMeter().Read(picture, look);
+  EXPECT_NEAR(*reading.white.kelvin, *Settled(look, image).white.kelvin, 1e-6);
+  EXPECT_NEAR(reading.ev100,
+              MeterEv100(Seen(image, Settled(look, image)), kSunDiskLuminance_cd_per_m2), 1e-9);
 }
 
 TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
   const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
   picture.Write(Colours());
   ExposureMeter meter;
-  EXPECT_EQ(meter.Take(), std::nullopt) << "nothing was looked at";
-  meter.Look(picture);
+  EXPECT_FALSE(meter.Take({}).has_value()) << "nothing was looked at";
+  meter.LookAt(picture);
   glFinish();
-  const std::optional<double> arrived = meter.Take();
+  const std::optional<MeterReading> arrived = meter.Take({});
   ASSERT_TRUE(arrived.has_value());
-  EXPECT_EQ(*arrived, meter.Read(picture));
-  EXPECT_EQ(meter.Take(), std::nullopt);
+  EXPECT_EQ(arrived->ev100, meter.Read(picture, {}).ev100);
+  EXPECT_FALSE(meter.Take({}).has_value());
 }
 
 }  // namespace

@@ -38,8 +38,9 @@ std::array<double, 3> CodeOf(const ToneTable& table, const std::array<double, 3>
   return code;
 }
 
-TEST(ToneTable, ShowsTheCurveToAFractionOfACode) {
-  const ToneTable table;
+/// Of the table, in codes of 8 bits, ascending.
+std::vector<double> ErrorsOf(AgxLook look) {
+  const ToneTable table(look);
   std::vector<double> errors;
   for (int i = 1; i <= 20000; ++i) {
     // Colours as nature has them: channels within three stops of each other.
@@ -47,15 +48,30 @@ TEST(ToneTable, ShowsTheCurveToAFractionOfACode) {
     const std::array<double, 3> stops = {brightness, brightness - 1.5 + 3.0 * Halton(i, 3),
                                          brightness - 3.0 + 6.0 * Halton(i, 5)};
     const Rgb<double> light = DisplayLight<double>(
-        ToneCurve::kAgx, {std::exp2(stops[0]), std::exp2(stops[1]), std::exp2(stops[2])}, 1.0);
+        ToneCurve::kAgx, {std::exp2(stops[0]), std::exp2(stops[1]), std::exp2(stops[2])}, 1.0,
+        look);
     const std::array<double, 3> code = CodeOf(table, stops);
     for (std::size_t c = 0; c < 3; ++c)
       errors.push_back(255.0 * std::abs(code[c] - shared::SrgbCode(light[c])));
   }
   std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+TEST(ToneTable, ShowsTheCurveToAFractionOfACode) {
+  const std::vector<double> errors = ErrorsOf(AgxLook::kPhoto);
   EXPECT_LT(errors[errors.size() / 2], 0.06);
   EXPECT_LT(errors[errors.size() * 99 / 100], 0.25) << "less than half the dither";
   EXPECT_LT(errors.back(), 0.7);
+}
+
+TEST(ToneTable, OtherLooksAreOffWhereTheyClipAChannel) {
+  for (const AgxLook look : {AgxLook::kNone, AgxLook::kPunchy}) {
+    const std::vector<double> errors = ErrorsOf(look);
+    EXPECT_LT(errors[errors.size() / 2], 0.1) << NameOf(look);
+    EXPECT_LT(errors[errors.size() * 95 / 100], 0.5) << NameOf(look);
+    EXPECT_LT(errors[errors.size() * 99 / 100], 3.0) << NameOf(look) << ": an edge between nodes";
+  }
 }
 
 }  // namespace
