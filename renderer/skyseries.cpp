@@ -156,7 +156,10 @@ int Run(const SkyseriesOptions& options) {
       scene.zone,
       path,
       scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera,
-      scene.camera.fov_rad};
+      scene.camera.fov_rad,
+      [&](const Frame& frame) {
+        return renderer(nullptr).Render(shot(frame), PilotSettings(settings, options));
+      }};
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     if (summary.removed > 0) {

@@ -2,6 +2,7 @@
 // The command line of skyseries. Included by its one translation unit (CLI11 is slow to compile).
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -229,6 +230,20 @@ inline void SetRays(const SkyseriesOptions& options, RenderSettings& settings) {
   if (options.samples) settings.samples_per_pixel = *options.samples;
   if (options.noise || !options.samples)
     settings.noise = RelativeErrorFromText(options.noise.value_or("2%"));
+}
+
+/// What the meter of a series looks at: 96 pixels along the longer side, with all effects.
+inline RenderSettings PilotSettings(const RenderSettings& settings,
+                                    const SkyseriesOptions& options) {
+  constexpr int kLongSide = 96;
+  RenderSettings pilot;
+  const int longest = std::max(settings.width, settings.height);
+  pilot.width = std::max(settings.width * kLongSide / longest, 1);
+  pilot.height = std::max(settings.height * kLongSide / longest, 1);
+  pilot.effects = settings.effects;
+  pilot.filter = settings.filter;
+  if (options.night_vision) pilot.layers.push_back(PictureLayer::kScotopic);
+  return pilot;
 }
 
 /// Whether each picture is to have only what it needs.

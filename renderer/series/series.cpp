@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <system_error>
@@ -16,6 +17,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/provenance.h"
+#include "renderer/series/smooth_meter.h"
 
 namespace alpenglow {
 namespace {
@@ -26,11 +28,15 @@ constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
 constexpr char kFingerprint[] = "alpenglow.fingerprint";
 constexpr char kEv100[] = "alpenglow.ev100";
 constexpr char kExposure[] = "alpenglow.exposure";
+constexpr char kExposureRule[] = "alpenglow.exposure_rule";
+constexpr char kToneCurve[] = "alpenglow.tone_curve";
+constexpr char kWhiteBalance[] = "alpenglow.white_balance";
 
 /// How a frame is developed.
 struct Development {
   Look look;  // settled
   double ev100;
+  std::string rule;  // of the exposure, in words
 };
 
 std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
@@ -107,9 +113,9 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
       fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
   metadata[kEv100] = fmt::format("{:.4f}", development.ev100);
   metadata[kExposure] = NameOf(output.exposure.kind);
-  metadata["alpenglow.exposure_rule"] = RuleInWords(output.exposure);
-  metadata["alpenglow.tone_curve"] = NameOf(development.look);
-  metadata["alpenglow.white_balance"] = NameOf(development.look.white);
+  metadata[kExposureRule] = development.rule;
+  metadata[kToneCurve] = NameOf(development.look);
+  metadata[kWhiteBalance] = NameOf(development.look.white);
   if (output.glare) metadata["alpenglow.glare"] = "eye, in the developed picture only";
   if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
@@ -119,7 +125,16 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
 class Series {
  public:
   Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
-      : source_(source), frames_(frames), output_(output) {}
+      : source_(source), frames_(frames), output_(output) {
+    const ExposureRule::Kind kind = output.exposure.kind;
+    if (kind != ExposureRule::Kind::kMetered && kind != ExposureRule::Kind::kEye) return;
+    const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
+    if (!source.pilot || !per_node) return;
+    smooth_.emplace(frames, *per_node, [this](const Frame& frame) {
+      const Image pilot = source_.pilot(frame);
+      return Metered(frame, pilot, Settled(output_.look, pilot, ViewOf(frame, pilot)));
+    });
+  }
 
   /// @return whether the frame had to be rendered.
   bool Make(const Frame& frame, Progress& progress) {
@@ -130,7 +145,7 @@ class Series {
     const bool rendered = !picture;
     if (rendered) picture = source_.render(frame, progress);
     const Look look = Settled(output_.look, picture->image, ViewOf(frame, picture->image));
-    const Development development{look, Ev100Of(frame, picture->image, look)};
+    const Development development = DevelopmentOf(frame, picture->image, look, rendered);
     Write(frame, *picture, development, rendered);
     if (output_.contact_sheet) AddThumbnail(frame, picture->image, development);
     return rendered;
@@ -165,14 +180,44 @@ class Series {
     return {projection, across / image.width};
   }
 
-  [[nodiscard]] double Ev100Of(const Frame& frame, const Image& image, const Look& look) const {
-    if (output_.exposure.kind == ExposureRule::Kind::kFixed) return output_.exposure.ev100;
-    if (output_.exposure.kind == ExposureRule::Kind::kIncident)
-      return IncidentEv100(source_.illuminance(frame));
+  [[nodiscard]] double Metered(const Frame& frame, const Image& image, const Look& look) const {
     const PictureView view = ViewOf(frame, image);
-    return Ev100By(
-        output_.exposure,
-        MeterEv100(Seen(image, look, view), kSunDiskLuminance_cd_per_m2, view.projection), look);
+    return MeterEv100(Seen(image, look, view), kSunDiskLuminance_cd_per_m2, view.projection);
+  }
+
+  [[nodiscard]] Development DevelopmentOf(const Frame& frame, const Image& image, const Look& look,
+                                          bool rendered) {
+    const ExposureRule& rule = output_.exposure;
+    std::string words = RuleInWords(rule);
+    switch (rule.kind) {
+      case ExposureRule::Kind::kFixed:
+        return {look, rule.ev100, words};
+      case ExposureRule::Kind::kIncident:
+        return {look, IncidentEv100(source_.illuminance(frame)), words};
+      case ExposureRule::Kind::kMetered:
+      case ExposureRule::Kind::kEye:
+        break;
+    }
+    if (!smooth_) return {look, Ev100By(rule, Metered(frame, image, look), look), words};
+    words += "; " + smooth_->InWords();
+    if (!rendered) {
+      if (const std::optional<double> known = KeptEv100(frame, look, words))
+        return {look, *known, words};
+    }
+    return {look, Ev100By(rule, smooth_->At(frame), look), words};
+  }
+
+  /// Of a frame that is there, where it was exposed and developed as this run would: it takes no
+  /// pilots.
+  [[nodiscard]] std::optional<double> KeptEv100(const Frame& frame, const Look& look,
+                                                const std::string& words) const {
+    const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
+    const Metadata wanted{{kExposure, NameOf(output_.exposure.kind)},
+                          {kExposureRule, words},
+                          {kToneCurve, NameOf(look)},
+                          {kWhiteBalance, NameOf(look.white)}};
+    if (!std::includes(kept.begin(), kept.end(), wanted.begin(), wanted.end())) return std::nullopt;
+    return std::stod(kept.at(kEv100));
   }
 
   /// As it is developed: with the eye's glare if asked for, balanced, by night as the eye sees it.
@@ -247,6 +292,7 @@ class Series {
   const std::vector<Frame>& frames_;
   const SeriesOutput& output_;
   SeriesSummary summary_;
+  std::optional<SmoothMeter> smooth_;
   std::map<int, ExposureTexts> exposure_of_;
   std::vector<Thumbnail> thumbnails_;
 };

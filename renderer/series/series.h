@@ -45,6 +45,9 @@ struct SeriesSource {
   std::optional<CameraPath> path;               // that Frame::path_s is on
   Projection projection = Projection::kCamera;  // without a path
   double fov_rad = 0.0;                         // without a path
+  /// A small picture of a frame, for the meter of a series (smooth_meter.h); without it each frame is
+  /// metered by itself.
+  std::function<Image(const Frame&)> pilot = {};
 
   /// Of the eye of a frame.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {

@@ -139,6 +139,40 @@ TEST_F(SeriesRun, FilesAndManifestSayWhatExposedThem) {
   EXPECT_THAT(manifest, testing::EndsWith(",metered\n"));
 }
 
+TEST_F(SeriesRun, AFarmsSingleFrameIsExposedAsInTheWholeSeries) {
+  SeriesSource source = Source();
+  int pilots = 0;
+  source.pilot = [&](const Frame& frame) {
+    ++pilots;
+    Image image(4, 3);
+    const double jump = frame.number > 4 ? 30.0 : 1.0;
+    for (auto& pixel : image.rgb) pixel.fill(static_cast<float>(100.0 * jump));
+    return image;
+  };
+  SeriesOutput output = Output();
+  output.png = true;
+  const std::vector<Frame> frames = Frames(8);
+  RunSeries(source, frames, frames, output);
+  std::vector<double> ev100;
+  for (int i = 1; i <= 8; ++i) {
+    const Metadata metadata = ReadExrMetadata(folder_ / fmt::format("frame.{:04d}.exr", i));
+    ev100.push_back(std::stod(metadata.at("alpenglow.ev100")));
+    EXPECT_THAT(metadata.at("alpenglow.exposure_rule"), HasSubstr("over frames 0, 1, 2 ... of 8"));
+  }
+  for (std::size_t i = 1; i < ev100.size(); ++i)
+    EXPECT_LT(ev100[i] - ev100[i - 1], 0.75 * std::log2(30.0)) << "a jump is spread";
+  const std::string whole = ContentOf(folder_ / "frame.0005.png");
+  fs::remove(folder_ / "frame.0005.exr");
+  fs::remove(folder_ / "frame.0005.png");
+  RunSeries(source, frames, SelectFrames(frames, "5"), output);
+  EXPECT_EQ(ContentOf(folder_ / "frame.0005.png"), whole);
+
+  pilots = 0;
+  output.resume = true;
+  EXPECT_EQ(RunSeries(source, frames, frames, output).kept, 8);
+  EXPECT_EQ(pilots, 0) << "frames that are there say how they were exposed";
+}
+
 TEST_F(SeriesRun, WhiteBalanceIsOfTheDevelopedPictureAndTheHeaderHasItsTemperature) {
   SeriesSource source = Source();
   source.render = [](const Frame&, Progress&) {
