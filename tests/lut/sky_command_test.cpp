@@ -35,6 +35,7 @@ TEST_F(SkylutSky, AWrongCommandLineIsStatus2) {
         "--out a.exr --sun-elevation 10 --orient maya", "--out a.exr --sun-elevation 10 --size 5",
         "--out a.exr --sun-elevation 10 --tone-map agx",
         "--out a.exr --sun-elevation 10 --exposure bright",
+        "--out a.exr --sun-elevation 10 --white-balance 5600",
         "--out a.exr --sun-elevation 10 --altitude 1e10",
         "--out a.exr --sun-elevation 10 --zone Europe/Zurich"}) {
     EXPECT_EQ(Run(arguments).status, 2) << arguments;
@@ -101,6 +102,26 @@ TEST_F(SkylutSky, WritesALatitudeLongitudePictureThatSaysWhatMadeIt) {
     EXPECT_EQ(exr.count(name), 1U) << name;
   EXPECT_EQ(ReadPngMetadata(folder_ / "a.png").at("alpenglow.tone_curve"), "aces");
   EXPECT_EQ(ReadPng(folder_ / "a.png").width, 64);
+}
+
+TEST_F(SkylutSky, SunlitGroundIsExposedFromSpaceAsFromTheGround) {
+  const auto ev100 = [&](const std::string& altitude) {
+    const Outcome outcome =
+        Run("--quiet --size 32x16 --out a.exr --png a.png --sun-elevation 50 --sun-disk "
+            "--white-balance auto --altitude " +
+            altitude);
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    const Metadata png = ReadPngMetadata(folder_ / "a.png");
+    EXPECT_THAT(png.at("alpenglow.white_balance"), HasSubstr("auto, "));
+    EXPECT_THAT(png.at("alpenglow.exposure_rule"), HasSubstr("of the solid angle"));
+    return std::stod(png.at("alpenglow.ev100"));
+  };
+  const double from_the_ground = ev100("2");
+  for (const char* altitude : {"40000", "100000", "400000"}) {
+    EXPECT_NEAR(ev100(altitude), from_the_ground, 0.6)
+        << altitude
+        << " m: half of the sphere or less is lit; air in front of the ground adds light";
+  }
 }
 
 TEST_F(SkylutSky, APlaceAndATimeGiveTheSunThere) {

@@ -68,11 +68,13 @@ TEST_F(Skyseries, HelpIsTheManual) {
   const Outcome outcome = Run("--help");
   EXPECT_EQ(outcome.status, 0);
   for (const char* option :
-       {"--at",         "--from",    "--to",     "--every",         "--count",    "--date",
-        "--zone",       "--frames",  "--out",    "--png",           "--size",     "--samples",
-        "--aov",        "--filter",  "--path",   "--shutter",       "--fps",      "--exposure",
-        "--tone-map",   "--look",    "--resume", "--contact-sheet", "--latitude", "--dem",
-        "--atmosphere", "--threads", "--quiet",  "--progress",      "--version",  "Example"}) {
+       {"--at",         "--from",          "--to",       "--every",    "--count",
+        "--date",       "--zone",          "--frames",   "--out",      "--png",
+        "--size",       "--samples",       "--aov",      "--filter",   "--path",
+        "--shutter",    "--fps",           "--exposure", "--tone-map", "--look",
+        "--resume",     "--contact-sheet", "--latitude", "--dem",      "--white-balance",
+        "--atmosphere", "--threads",       "--quiet",    "--progress", "--version",
+        "Example"}) {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
 }
@@ -118,6 +120,7 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
                                        still + " --exposure nan",
                                        still + " --tone-map filmic",
                                        still + " --look golden",
+                                       still + " --white-balance warm",
                                        still + " --aov smell",
                                        still + " --samples 0",
                                        still + " --samples 1025",

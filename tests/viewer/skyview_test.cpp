@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include "lut/picture/image.h"
+#include "lut/picture/look.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
@@ -161,6 +162,30 @@ TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
   EXPECT_EQ(ReadExrMetadata(InFolder("low.exr")).at("alpenglow.quality"), "low");
 }
 
+TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const auto shot = [&](const std::string& name, const std::string& options) {
+    const Outcome outcome =
+        Run(InFolder("s.toml") + " --headless --quality low --size 16x9 --time " + "civil-dusk " +
+            options + " --screenshot " + InFolder(name));
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return ReadPngMetadata(InFolder(name));
+  };
+  const Metadata camera = shot("auto.png", "");
+  const Metadata eye = shot("eye.png", "--exposure eye");
+  EXPECT_EQ(camera.at("alpenglow.exposure"), "metered");
+  EXPECT_EQ(eye.at("alpenglow.exposure"), "eye");
+  EXPECT_EQ(eye.at("alpenglow.exposure_rule"), RuleInWords({ExposureRule::Kind::kEye}));
+  EXPECT_NEAR(std::stod(eye.at("alpenglow.ev100")),
+              EyeEv100(std::stod(camera.at("alpenglow.ev100")), {}), 2e-4)
+      << "the function of the series; four digits are written";
+  const Metadata asked = shot("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
+  EXPECT_EQ(asked.at("alpenglow.exposure"), "fixed");
+  EXPECT_EQ(asked.at("alpenglow.ev100"), "7.5000");
+  EXPECT_EQ(asked.at("alpenglow.tone_curve"), "agx, punchy");
+  EXPECT_EQ(asked.at("alpenglow.white_balance"), "4000 K, CAT16");
+}
+
 TEST_F(Skyview, AViewIsExplainedInATable) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const Outcome outcome = Run(InFolder("s.toml") + " --headless --size 32x18 --explain");
@@ -201,7 +226,8 @@ TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
   EXPECT_EQ(Run(InFolder("s.toml") + " --dem x.hgt").status, 2);
   for (const char* wrong :
        {"--size 0x10", "--size 40000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
-        "--vsync maybe", "--hud-scale 9", "--frame-rate 0"}) {
+        "--vsync maybe", "--hud-scale 9", "--frame-rate 0", "--exposure incident",
+        "--exposure bright", "--look golden", "--white-balance 900"}) {
     const Outcome outcome = Run(std::string("--headless --screenshot a.png ") + wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
     EXPECT_THAT(outcome.error, HasSubstr(std::string(wrong).substr(0, 6)));
