@@ -207,7 +207,7 @@ TEST_F(Skyseries, APathMakesFramesThatAreKeptUntilItChanges) {
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.error, HasSubstr("3 rendered"));
   EXPECT_THAT(ContentOf(folder_ / "f.manifest.csv"),
-              AllOf(HasSubstr(",t_s,latitude,longitude,height_m,heading,pitch,roll,fov\n"),
+              AllOf(HasSubstr(",t_s,latitude,longitude,height_m,heading,pitch,roll,fov,exposure\n"),
                     HasSubstr(",2.000000,46.50"), HasSubstr("2026-06-21T10:00:04Z")))
       << "the scene's time runs along the path";
   const Metadata metadata = ReadExrMetadata(folder_ / "f.2.exr");
