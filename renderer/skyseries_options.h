@@ -162,9 +162,12 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
       ->check(CLI::IsMember(LayerNames()));
   app.add_option(
          "--exposure", options.exposure,
-         "auto (each frame's picture is metered), eye (metered, but dusk is darker than day and "
-         "night darker, as an eye has it that adapts in part), incident (each frame's light on the "
-         "ground is metered: smooth from day to night) or EV at ISO 100, -30 to 30")
+         "auto (pictures are metered, those of a series smoothly from frame to frame), eye "
+         "(metered, "
+         "but dusk is darker than day and night darker, as an eye has it that adapts in part), "
+         "incident (each frame's light on the ground is metered: smooth from day to night) or EV "
+         "at "
+         "ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
   app.add_option("--tone-map", options.tone_curve,

@@ -28,16 +28,17 @@ std::array<double, 4> WeightsAt(double t) {
 }  // namespace
 
 std::optional<int> FramesPerNode(const std::vector<Frame>& frames, bool on_path) {
-  constexpr double kDay_s = 120.0, kPath_s = 0.5, kEven_s = 1e-3;
+  constexpr double kDay_s = 120.0, kPath_s = 0.5, kEven_s = 1e-3, kMostNodesApart = 5.0;
+  const double apart = on_path ? kPath_s : kDay_s;
   if (frames.size() < 3) return std::nullopt;
   const double length = SecondsAfter(frames.front(), frames.back(), on_path);
   const double step = length / static_cast<double>(frames.size() - 1);
-  if (!(step > 0.0)) return std::nullopt;
+  if (!(step > 0.0 && step <= kMostNodesApart * apart + kEven_s)) return std::nullopt;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double at = SecondsAfter(frames.front(), frames[i], on_path);
     if (std::abs(at - step * static_cast<double>(i)) > kEven_s) return std::nullopt;
   }
-  return std::max(static_cast<int>(std::lround((on_path ? kPath_s : kDay_s) / step)), 1);
+  return std::max(static_cast<int>(std::lround(apart / step)), 1);
 }
 
 SmoothMeter::SmoothMeter(const std::vector<Frame>& frames, int frames_per_node,
@@ -71,8 +72,9 @@ double SmoothMeter::At(const Frame& frame) {
 }
 
 std::string SmoothMeter::InWords() const {
-  return fmt::format("smoothed by a B-spline over frames 0, {0}, {1} ... of {2}, metered small",
-                     frames_per_node_, 2 * frames_per_node_, frames_.size());
+  return fmt::format(
+      "smoothed by a B-spline over frames 0, {}, {} ... of {} until {}, metered small",
+      frames_per_node_, 2 * frames_per_node_, frames_.size(), FormatUtc(frames_.back().instant));
 }
 
 }  // namespace alpenglow

@@ -3,8 +3,9 @@
 //
 // Frames 0, n, 2n ... are the nodes of a uniform cubic B-spline, whose coefficients are what the
 // meter says of a small picture of each. Beyond the ends nodes go on in a straight line, so that light
-// that fades evenly is followed without a lag. A step of s between two nodes is never more than
-// 3 s / (4 n) between two frames. De Boor (1978), "A practical guide to splines", chapter IX.
+// that fades evenly is followed without a lag; else the spline is off by a sixth of the second
+// difference of the nodes. A step of s between two nodes is never more than 3 s / (4 n) between two
+// frames. De Boor (1978), "A practical guide to splines", chapter IX.
 #pragma once
 
 #include <functional>
@@ -18,8 +19,8 @@
 namespace alpenglow {
 
 /// Frames from a node to the next: as many as two minutes of a day have, or, `on_path`, half a second
-/// of the path, and one at least. Nothing for less than three frames and those that are not evenly
-/// spaced: each is metered by itself.
+/// of the path, and one at least. Nothing for less than three frames, those that are not evenly spaced,
+/// and those farther apart than five times that: each is metered by itself.
 [[nodiscard]] std::optional<int> FramesPerNode(const std::vector<Frame>& frames, bool on_path);
 
 class SmoothMeter {
@@ -32,7 +33,8 @@ class SmoothMeter {
   /// EV100 of a frame of the series, to four digits behind the point.
   [[nodiscard]] double At(const Frame& frame);
 
-  /// For the files: "B-spline over every 4th of 97 frames".
+  /// For the files: "smoothed by a B-spline over frames 0, 4, 8 ... of 97 until
+  /// 2026-06-21T04:00:00Z, metered small".
   [[nodiscard]] std::string InWords() const;
 
  private:

@@ -151,7 +151,8 @@ TEST_F(SeriesRun, AFarmsSingleFrameIsExposedAsInTheWholeSeries) {
   };
   SeriesOutput output = Output();
   output.png = true;
-  const std::vector<Frame> frames = Frames(8);
+  std::vector<Frame> frames;
+  for (int i = 1; i <= 8; ++i) frames.push_back({i, UtcInstant{61212, 600.0 * i}});
   RunSeries(source, frames, frames, output);
   std::vector<double> ev100;
   for (int i = 1; i <= 8; ++i) {

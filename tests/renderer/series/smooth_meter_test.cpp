@@ -28,6 +28,7 @@ TEST(SmoothMeter, NodesLieTwoMinutesApartOrOnEveryFrame) {
 TEST(SmoothMeter, StillsAndUnevenTimesAreMeteredByThemselves) {
   EXPECT_EQ(FramesPerNode(Every(600.0, 1), false), std::nullopt);
   EXPECT_EQ(FramesPerNode(Every(600.0, 2), false), std::nullopt);
+  EXPECT_EQ(FramesPerNode(Every(2400.0, 20), false), std::nullopt) << "pictures of a day, no film";
   std::vector<Frame> uneven = Every(600.0, 5);
   uneven[2].instant.second_of_day += 1.0;
   EXPECT_EQ(FramesPerNode(uneven, false), std::nullopt);
@@ -43,6 +44,17 @@ TEST(SmoothMeter, LightThatFadesEvenlyIsFollowedWithoutALag) {
       const double truth = per_node == 200 ? 15.0 : 15.0 - 0.05 * frame.number;
       EXPECT_NEAR(meter.At(frame), truth, 1e-4) << "four digits; one node alone is a constant";
     }
+  }
+}
+
+TEST(SmoothMeter, LightThatFadesFasterAndFasterIsOffByASixthOfTheSecondDifference) {
+  const std::vector<Frame> frames = Every(60.0, 61);
+  SmoothMeter meter(frames, 4,
+                    [](const Frame& frame) { return -0.01 * frame.number * frame.number; });
+  for (int i = 8; i < 52; ++i) {
+    EXPECT_NEAR(meter.At(frames[static_cast<std::size_t>(i)]),
+                -0.01 * i * i - 0.01 * 2.0 * 16.0 / 6.0, 1e-4)
+        << "nodes are four frames apart; four digits";
   }
 }
 
