@@ -94,7 +94,7 @@ Image WithAcuityOfNight(Image image, double pixel_rad) {
   std::vector<double> levels(image.rgb.size());
   tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t i) {
     const auto& [red, green, blue] = image.rgb[i];
-    const double y = shared::Luminance<double>(red, green, blue);
+    const double y = shared::Luminance<double>(double{red}, double{green}, double{blue});
     levels[i] = LevelOf(SpreadAt(std::max(y, 0.0)) / pixel_rad);
   });
   const Plane light = image.rgb;

@@ -145,8 +145,9 @@ Image Balanced(Image image, const WhiteBalance& white) {
   if (white.kind == WhiteBalance::Kind::kDaylight) return image;
   const Matrix3 matrix = BalancingMatrix(white);
   tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
-    const Triple shown = matrix * Triple{image.rgb[i][0], image.rgb[i][1], image.rgb[i][2]};
-    for (std::size_t c = 0; c < 3; ++c) image.rgb[i][c] = static_cast<float>(shown[c]);
+    std::array<float, 3>& rgb = image.rgb[i];
+    const Triple shown = matrix * Triple{double{rgb[0]}, double{rgb[1]}, double{rgb[2]}};
+    for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<float>(shown[c]);
   });
   return image;
 }
