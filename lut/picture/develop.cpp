@@ -3,8 +3,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <cmath>
+#include <optional>
 
 #include "atmosphere/text/error.h"
+#include "lut/picture/clipped_edge.h"
 #include "lut/picture/dither.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/look.h"
@@ -19,11 +21,26 @@ void RequireFinite(const std::array<float, 3>& pixel, int x, int y) {
                                   pixel[0], pixel[1], pixel[2]));
 }
 
+/// Display light of a pixel; on the edge of a disk that is far brighter than white, of its parts.
+Rgb<float> DisplayLightAt(const Image& image, int x, int y, float scale, const Look& look) {
+  const auto shown = [&](const std::array<float, 3>& rgb) {
+    return DisplayLight(look.curve, rgb, scale, look.agx);
+  };
+  const std::optional<ClippedEdge> edge = ClippedEdgeAt(image, x, y, 1.0F / scale);
+  if (!edge) return shown(image.at(x, y));
+  const Rgb<float> light = shown(edge->light), beside = shown(edge->beside);
+  Rgb<float> mixed;
+  for (std::size_t c = 0; c < 3; ++c) {
+    mixed[c] = edge->share * light[c] + (1.0F - edge->share) * beside[c];
+  }
+  return mixed;
+}
+
 void DevelopRow(const Image& image, int y, float scale, const Look& look, DisplayImage& display) {
   for (int x = 0; x < image.width; ++x) {
     const std::array<float, 3>& pixel = image.at(x, y);
     RequireFinite(pixel, x, y);
-    const Rgb<float> light = DisplayLight(look.curve, pixel, scale, look.agx);
+    const Rgb<float> light = DisplayLightAt(image, x, y, scale, look);
     const auto index = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                             static_cast<std::size_t>(x));
     for (std::size_t c = 0; c < 3; ++c) {

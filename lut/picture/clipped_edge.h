@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Edges of the sun's and the moon's disk on a display. The disk is thousands of times as bright as
+// white: a pixel that it covers by a hundredth is as white as its middle, and its edge becomes stairs.
+// A display that shows the share of each pixel that the disk covers has a smooth edge:
+//
+//   shown = s D(light) + (1 - s) D(beside),    s = (L - L_beside) / (L_light - L_beside),
+//
+// D the tone curve, L luminances of the linear picture, in which the pixel is that mixture of light.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "lut/picture/image.h"
+
+namespace alpenglow {
+
+/// What a pixel on the edge of a clipped light is a mixture of.
+struct ClippedEdge {
+  std::array<float, 3> light, beside;  // colours like those of the picture
+  float share;                         // of the light, in [0, 1]
+};
+
+/// The mixture, where there is one: a light of at least 256 times white lies within four pixels, as
+/// bright in a square of 2x2 pixels (sparkles of water and lamps, which are smaller, are left as
+/// they are), and light that is not clipped does so, too. Nothing for all other pixels.
+/// @param white  luminance that a display shows as white, in the picture's unit, > 0.
+[[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y,
+                                                       float white);
+
+}  // namespace alpenglow

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "lut/picture/clipped_edge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lut/picture/look.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr std::array<float, 3> kSky{3000.0F, 6000.0F, 12000.0F};
+constexpr float kDisk = 1e9F, kWhite = 4e4F;
+
+/// The share of a pixel that a disk in the middle of a picture covers, by 32x32 rays.
+float CoveredShare(int x, int y, double middle, double radius) {
+  constexpr int kRays = 32;
+  int covered = 0;
+  for (int j = 0; j < kRays; ++j) {
+    for (int i = 0; i < kRays; ++i) {
+      const double dx = x + (i + 0.5) / kRays - middle, dy = y + (j + 0.5) / kRays - middle;
+      if (std::hypot(dx, dy) < radius) ++covered;
+    }
+  }
+  return static_cast<float>(covered) / (kRays * kRays);
+}
+
+/// A white disk before a sky; every pixel is the mean of its light.
+Image DiskBeforeSky(int side, double radius) {
+  Image image(side, side);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const float share = CoveredShare(x, y, 0.5 * side, radius);
+      for (std::size_t c = 0; c < 3; ++c)
+        image.at(x, y)[c] = share * kDisk + (1.0F - share) * kSky[c];
+    }
+  }
+  return image;
+}
+
+TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
+  for (const double radius : {2.5, 5.3, 11.7}) {
+    const Image image = DiskBeforeSky(32, radius);
+    int edges = 0;
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) {
+        const float share = CoveredShare(x, y, 16.0, radius);
+        const auto edge = ClippedEdgeAt(image, x, y, kWhite);
+        if (share < 0.01F || share > 0.99F) continue;
+        ++edges;
+        ASSERT_TRUE(edge.has_value()) << radius << ' ' << x << ' ' << y;
+        EXPECT_NEAR(edge->share, share, 1e-3F);
+        EXPECT_NEAR(edge->beside[2], kSky[2], 1e-5F * kSky[2]);
+      }
+    }
+    EXPECT_GT(edges, 8) << radius;
+  }
+}
+
+TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
+  const Image image = DiskBeforeSky(32, 7.5);
+  const DisplayImage shown = Develop(image, 15.0, ToneCurve::kAgx);
+  const auto blue_less_red = [&](int x, int y) {
+    const std::size_t at = 3 * static_cast<std::size_t>(y * 32 + x);
+    return static_cast<int>(shown.rgb[at + 2]) - static_cast<int>(shown.rgb[at]);
+  };
+  const int sky = blue_less_red(0, 0), disk = blue_less_red(16, 16);
+  int between = 0, partly = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const float share = CoveredShare(x, y, 16.0, 7.5);
+      if (share < 0.2F || share > 0.8F) continue;
+      ++partly;
+      const int here = blue_less_red(x, y);
+      if (here > disk + (sky - disk) / 8 && here < sky - (sky - disk) / 8) ++between;
+    }
+  }
+  EXPECT_GT(partly, 10);
+  EXPECT_EQ(between, partly) << "none of them is as white as the disk, none as blue as the sky";
+}
+
+TEST(ClippedEdge, SparklesAndPlainSkyAreNone) {
+  Image image = DiskBeforeSky(32, 0.0);
+  image.at(10, 10) = {kDisk, kDisk, kDisk};
+  image.at(20, 21) = {kDisk, kDisk, kDisk};
+  image.at(21, 20) = {kDisk, kDisk, kDisk};
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) EXPECT_FALSE(ClippedEdgeAt(image, x, y, kWhite)) << x << ' ' << y;
+  }
+}
+
+TEST(ClippedEdge, ALightThatACurveHoldsIsLeftAsItIs) {
+  const Image image = DiskBeforeSky(32, 8.0);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) EXPECT_FALSE(ClippedEdgeAt(image, x, y, kDisk)) << x << ' ' << y;
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
