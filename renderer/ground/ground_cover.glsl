@@ -123,10 +123,45 @@ SHARED Number PartlyCovered(Number below, Number cover, Number share) {
   return below + share * (cover - below);
 }
 
-// What is seen of the snow on the ground: a closed wood of conifers hides most of it (Betts, Ball
-// 1997, J. Geophys. Res. 102, 28901: albedo 0.13 of such a wood over snow, 0.75 of grass under it).
-SHARED Number SnowSeen(Number snow_share, Number forest, Number rock_share) {
-  return snow_share * (Number(1.0) - Number(0.88) * forest * (Number(1.0) - rock_share));
+// Which trees stand in a wood: broad-leaved up to a line, mixed with conifers in stands for some
+// 500 m under it, conifers above.
+SHARED Number BroadleafShare(Length altitude, Length line, Number broad, Number fine) {
+  return Number(1.0) - SmoothRise(line - Length(500.0), line + Length(200.0),
+                                  altitude + Length(900.0) * broad + Length(500.0) * fine);
+}
+
+// What is in leaf, or green: below a line that climbs in spring and comes down in autumn.
+SHARED Number LeafShare(Length altitude, Length line) {
+  return Number(1.0) - SmoothRise(line - Length(250.0), line + Length(250.0), altitude);
+}
+
+// How far the snow line of a slope lies over that of level ground: 400 m times the share of the
+// normal that faces the sun's side, for snow outlasts weeks of sun on shaded slopes.
+SHARED Length SunnySide(Number normal_sunward) { return Length(400.0) * normal_sunward; }
+
+// Share of the ground that an eye sees between the crowns of a wood: 0.12 of conifers and 0.2 of
+// broad-leaved trees without leaves, for they have albedos of 0.13 and 0.21 over snow, where grass
+// under it has 0.75 (Betts, Ball 1997, J. Geophys. Res. 102, 28901). Stands are denser and thinner.
+SHARED Number CanopyGap(Number leafless, Number broad, Number fine, Number grain) {
+  Number gap = Number(0.12) + Number(0.08) * leafless;
+  Number thinner = Number(1.4) * broad + Number(1.1) * fine + Number(1.5) * grain;
+  return gap * min(max(Number(1.0) + thinner, Number(0.2)), Number(3.0));
+}
+
+// What is seen of the snow on the ground.
+SHARED Number SnowSeen(Number snow_share, Number forest, Number rock_share, Number gap) {
+  return snow_share * (Number(1.0) - (Number(1.0) - gap) * forest * (Number(1.0) - rock_share));
+}
+
+// Albedo of what grows there, in a band. Between leaf and bare trees are the yellow of autumn.
+SHARED Number BroadleafAlbedo(Number bare, Number yellow, Number leaves, Number not_bare,
+                              Number in_leaf) {
+  return PartlyCovered(PartlyCovered(bare, yellow, not_bare), leaves, in_leaf);
+}
+
+SHARED Number GreenAlbedo(Number meadow, Number conifers, Number broadleaf, Number forest,
+                          Number broadleaf_share) {
+  return PartlyCovered(meadow, PartlyCovered(conifers, broadleaf, broadleaf_share), forest);
 }
 
 // Albedo in a band, from those of the materials. Fresh snow is even, ground is not.

@@ -61,7 +61,7 @@ class GroundMaterial {
   /// @param season  what covers mountains.
   [[nodiscard]] GroundPatch OfTerrain(const GroundPoint& at, const glm::dvec3& point,
                                       double normal_up, const MountainSurface& season) const;
-  /// The bare planet.
+  /// The bare planet of a scene without terrain; beyond terrain it is level terrain at altitude 0.
   /// @param planet_albedo  the medium's, for a cover that says nothing of it.
   [[nodiscard]] GroundPatch OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const;
 

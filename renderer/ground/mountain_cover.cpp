@@ -115,6 +115,17 @@ double AngleBetween(const GeodeticPosition& place, const Massif& massif) {
 constexpr std::array<double, 12> kWinterShare{0.98, 1.0, 0.87, 0.62, 0.40, 0.18,
                                               0.07, 0.0, 0.02, 0.24, 0.56, 0.85};
 
+// How much of a northern year is over.
+double YearShare(double latitude_rad, int modified_julian_day) {
+  // Day 58849 is 2020-01-01.
+  const double years = (modified_julian_day - 58849) / 365.2425 + (latitude_rad < 0.0 ? 0.5 : 0.0);
+  return years - std::floor(years);
+}
+
+// Days of the year at 500 m in the Alps, see the header.
+constexpr double kLeavesOut = 115.0, kLeavesTurn = 285.0, kLeavesFallen = 308.0;
+constexpr double kGrassGrows = 85.0, kGrassEnds = 330.0;
+
 }  // namespace
 
 MountainClimate MountainClimateAt(const GeodeticPosition& place) {
@@ -138,19 +149,36 @@ MountainClimate MountainClimateAt(const GeodeticPosition& place) {
 }
 
 double WinterShare(double latitude_rad, int modified_julian_day) {
-  // Day 58849 is 2020-01-01.
-  const double years = (modified_julian_day - 58849) / 365.2425 + (latitude_rad < 0.0 ? 0.5 : 0.0);
-  const double at = 12.0 * (years - std::floor(years)) + 11.5;  // 0.5: the middle of January
+  const double at =
+      12.0 * YearShare(latitude_rad, modified_julian_day) + 11.5;  // 0.5: the middle of January
   const auto month = static_cast<std::size_t>(at);
   const double share = at - std::floor(at);
   return kWinterShare[month % 12] * (1.0 - share) + kWinterShare[(month + 1) % 12] * share;
 }
 
+double GreenLine(double latitude_rad, int modified_julian_day, double from_day, double until_day) {
+  constexpr double kMetresPerDay = 122.0 / 4.0, kMetresPerDegree = 122.0;
+  const double day = 365.2425 * YearShare(latitude_rad, modified_julian_day);
+  const double of_latitude =
+      500.0 - kMetresPerDegree * (std::abs(latitude_rad) / kRadiansPerDegree - 46.5);
+  constexpr double kYear = 365.2425;  // the autumn before this spring, and the spring after
+  const double days = std::max(
+      {std::min(day - from_day, until_day - day), until_day - kYear - day, day - from_day - kYear});
+  return of_latitude + kMetresPerDay * days;
+}
+
 MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_day) {
   const MountainClimate climate = MountainClimateAt(place);
-  const double winter = WinterShare(place.latitude_rad, modified_julian_day);
+  const double latitude_rad = place.latitude_rad;
+  const double winter = WinterShare(latitude_rad, modified_julian_day);
+  constexpr double kUnderTreeLine_m = 800.0, kTropic_rad = 23.4 * kRadiansPerDegree;
   return {climate.tree_line_m,
-          climate.ice_line_m - winter * (climate.ice_line_m - climate.winter_line_m)};
+          climate.ice_line_m - winter * (climate.ice_line_m - climate.winter_line_m),
+          GreenLine(latitude_rad, modified_julian_day, kLeavesOut, kLeavesTurn),
+          GreenLine(latitude_rad, modified_julian_day, kLeavesOut, kLeavesFallen),
+          GreenLine(latitude_rad, modified_julian_day, kGrassGrows, kGrassEnds),
+          climate.tree_line_m - kUnderTreeLine_m,
+          std::clamp(latitude_rad / kTropic_rad, -1.0, 1.0)};
 }
 
 }  // namespace alpenglow

@@ -11,6 +11,14 @@
 // 5, and Koerner (1998), Oecologia 115, 445; equilibrium lines, Hermes (1955) and Ohmura, Kasser,
 // Funk (1992), J. Glaciology 38, 397; winter in the Alps, 641 m, Hantel, Maurer (2011), Meteorol.
 // Z. 20, 267. In other massifs the winter line is an estimate.
+//
+// Leaves come out and grass grows green by Hopkins (1920), Monthly Weather Review Supplement 9: four
+// days later per degree of latitude and per 122 m, in autumn as much earlier, which broad-leaved
+// woods follow (Richardson et al. 2019, Applications in Plant Sciences 7, e01228). So at any day
+// there is an altitude below which it is green. Beeches of the Alps at 500 m are in leaf from the
+// end of April and bare by the first days of November; grass there is green a month longer on both
+// sides. Woods are broad-leaved up to 800 m under the tree line, as in the Alps beech ends at 1300
+// m and conifers at 2100 m.
 #pragma once
 
 #include "atmosphere/sun/geodesy.h"
@@ -22,6 +30,13 @@ struct MountainCover {
   double tree_line_m = 1900.0;  // no trees above; below sea level where none grow
   double snow_line_m = 2700.0;  // about half of level ground is white there; below sea level where
                                 // all of it is
+  double leaf_line_m = kEverywhere_m;        // below it broad-leaved trees are in green leaf
+  double bare_line_m = kEverywhere_m;        // above it they are bare; between, in autumn, yellow
+  double grass_line_m = kEverywhere_m;       // below it grass is green
+  double broadleaf_line_m = -kEverywhere_m;  // below it woods are broad-leaved
+  double sun_in_south = 0.0;                 // 1 north of the tropics, -1 south of them
+
+  static constexpr double kEverywhere_m = 1e5;
 };
 
 /// What a map says of a place, in shares; see ground_cover.glsl.
@@ -43,6 +58,12 @@ struct MountainClimate {
 /// The share w of the way from the ice line down to the winter line: that of the Alps, half a year
 /// later south of the equator.
 [[nodiscard]] double WinterShare(double latitude_rad, int modified_julian_day);
+
+/// Altitude below which it is green that day [m].
+/// @param from_day, until_day  of the northern year, 0 to 365, at 500 m and a latitude of 46.5
+/// degrees.
+[[nodiscard]] double GreenLine(double latitude_rad, int modified_julian_day, double from_day,
+                               double until_day);
 
 [[nodiscard]] MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_day);
 

@@ -36,7 +36,8 @@ GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m,
           std::max(AltitudeOf(point), 0.0),
           shared::SeenFootprint(footprint_m, cosine),
           footprint_m,
-          cosine};
+          cosine,
+          point.z};
 }
 
 // Whether the bare planet stands between the eye and terrain behind its horizon: the ray goes

@@ -38,6 +38,7 @@ class SceneGeometry {
   SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief);
 
   [[nodiscard]] double radius_m() const { return medium_.planet_radius_m; }
+  [[nodiscard]] bool HasTerrain() const { return ground_.terrain.has_value(); }
   /// Distance from the sphere [m], to the rounding of the point's coordinates.
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   /// Unit.

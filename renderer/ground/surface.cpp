@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/colour/spectrum.h"
@@ -29,56 +30,118 @@ struct Noise {
   std::uint32_t seed;
   int fall;
 };
-constexpr Noise kBroad{shared::kBroadWave_m, shared::kBroadOctaves, shared::kBroadSeed,
-                       shared::kBroadFall};
-constexpr Noise kFine{shared::kFineWave_m, shared::kFineOctaves, shared::kFineSeed,
-                      shared::kFineFall};
-constexpr Noise kRelief{shared::kReliefWave_m, shared::kReliefOctaves, shared::kReliefSeed,
-                        shared::kReliefFall};
-constexpr Noise kGrain{shared::kGrainWave_m, shared::kGrainOctaves, shared::kGrainSeed,
-                       shared::kGrainFall};
+constexpr std::array<Noise, kGroundNoises> kNoises{{
+    {shared::kBroadWave_m, shared::kBroadOctaves, shared::kBroadSeed, shared::kBroadFall},
+    {shared::kFineWave_m, shared::kFineOctaves, shared::kFineSeed, shared::kFineFall},
+    {shared::kReliefWave_m, shared::kReliefOctaves, shared::kReliefSeed, shared::kReliefFall},
+    {shared::kGrainWave_m, shared::kGrainOctaves, shared::kGrainSeed, shared::kGrainFall},
+    {shared::kWaveWave_m, shared::kWaveOctaves, shared::kWaveSeed, shared::kWaveFall},
+}};
 
-constexpr Noise kWaves{shared::kWaveWave_m, shared::kWaveOctaves, shared::kWaveSeed,
-                       shared::kWaveFall};
+constexpr double kGoldenAngle = 2.399963229728653;  // no two octaves lean or travel alike
 
-// Calls visit(seed, amplitude, wavelength) for the octaves that a footprint keeps.
+// Waves travel to the east with 50 degrees to either side, 29 rms.
+void SetTravelling(NoiseOctave& wave, int octave) {
+  constexpr double kNoiseWaves = 4.1;  // rms slope of the noise over its rms height, per square
+  constexpr double kSpread_rad = 50.0 * kRadiansPerDegree;
+  const double turn = octave * kGoldenAngle / (2.0 * kPi);
+  const double direction = kSpread_rad * (2.0 * (turn - std::floor(turn)) - 1.0);
+  const double speed = WaveSpeed(kNoiseWaves / wave.wavelength_m);
+  wave.drift_east = speed * std::cos(direction);
+  wave.drift_north = speed * std::sin(direction);
+}
+
+std::vector<NoiseOctave> MadeOctaves(GroundNoise family) {
+  constexpr double kLean = 0.6;
+  const Noise& noise = kNoises[static_cast<std::size_t>(family)];
+  std::vector<NoiseOctave> octaves;
+  double wavelength_m = noise.longest_m;
+  for (int octave = 0; octave < noise.octaves; ++octave, wavelength_m *= 0.5) {
+    NoiseOctave made{wavelength_m, noise.seed + static_cast<std::uint32_t>(octave), 0.0, 0.0, 0.0,
+                     0.0};
+    if (family == GroundNoise::kWaves) {
+      SetTravelling(made, octave);
+    } else {
+      made.lean_east = kLean * std::cos(octave * kGoldenAngle);
+      made.lean_north = kLean * std::sin(octave * kGoldenAngle);
+    }
+    octaves.push_back(made);
+  }
+  return octaves;
+}
+
+// Calls visit(octave, amplitude) for the octaves that a footprint keeps.
 template <typename Visit>
-void VisitOctaves(const GroundPoint& point, const Noise& noise, const Visit& visit) {
-  double amplitude = 1.0, wavelength = noise.longest_m;
-  for (int octave = 0; octave < noise.octaves;
-       ++octave, amplitude /= noise.fall, wavelength *= 0.5) {
-    const double kept = shared::OctaveShare(wavelength, point.footprint_m);
+void VisitOctaves(const GroundPoint& point, GroundNoise family, const Visit& visit) {
+  const double fall = kNoises[static_cast<std::size_t>(family)].fall;
+  double amplitude = 1.0;
+  for (const NoiseOctave& octave : OctavesOf(family)) {
+    const double kept = shared::OctaveShare(octave.wavelength_m, point.footprint_m);
     if (kept == 0.0) break;
-    visit(noise.seed + static_cast<std::uint32_t>(octave), kept * amplitude, wavelength);
+    visit(octave, kept * amplitude);
+    amplitude /= fall;
   }
 }
 
-double DetailNoise(const GroundPoint& point, const Noise& noise) {
+double DetailNoise(const GroundPoint& point, GroundNoise family) {
   double sum = 0.0;
-  VisitOctaves(point, noise, [&](std::uint32_t seed, double amplitude, double wavelength) {
-    sum += amplitude * GradientNoise(point.east_m / wavelength, point.north_m / wavelength, seed);
+  VisitOctaves(point, family, [&](const NoiseOctave& octave, double amplitude) {
+    const glm::dvec2 at = octave.PlaceOf(point);
+    sum += amplitude * GradientNoise(at.x, at.y, octave.seed);
   });
   return sum;
 }
 
 }  // namespace
 
+glm::dvec2 NoiseOctave::PlaceOf(const GroundPoint& point) const {
+  const glm::dvec2 at((point.east_m + lean_east * point.up_m - drift_east * point.sea_s),
+                      (point.north_m + lean_north * point.up_m - drift_north * point.sea_s));
+  const glm::dvec2 squares = at / wavelength_m;
+  if (drift_east == 0.0) return squares;
+  constexpr double kAround = 4294967296.0;
+  return squares - kAround * glm::floor(squares / kAround + 0.5);
+}
+
+std::span<const NoiseOctave> OctavesOf(GroundNoise family) {
+  static const std::array<std::vector<NoiseOctave>, kGroundNoises> kOctaves{
+      MadeOctaves(GroundNoise::kBroad), MadeOctaves(GroundNoise::kFine),
+      MadeOctaves(GroundNoise::kRelief), MadeOctaves(GroundNoise::kGrain),
+      MadeOctaves(GroundNoise::kWaves)};
+  return kOctaves[static_cast<std::size_t>(family)];
+}
+
+double SeaTime(const UtcInstant& instant) {
+  return (instant.modified_julian_day - 58849) * 86400.0 + instant.second_of_day;
+}
+
+double WaveSpeed(double wave_number) {
+  constexpr double kGravity = 9.80665, kTension = 7.4e-5;
+  return std::sqrt(kGravity / wave_number + kTension * wave_number);
+}
+
 // Linear sRGB of broad classes of ground, chosen within the ranges of visible albedo that Oke
 // (1987), Boundary Layer Climates, table 1.1 gives: forest 0.05-0.15, grass 0.1-0.25, rock and soil
-// 0.1-0.3, snow 0.7-0.95.
+// 0.1-0.3, snow 0.7-0.95. Dry grass and trees without leaves grow lighter towards the red, as litter
+// and bark do and satellites see them: in the blue, green and red about 0.06, 0.10, 0.14 and 0.04,
+// 0.06, 0.08.
 MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover,
                                  double wetness)
     : cover_(cover),
       materials_{AlbedoBands({0.038, 0.054, 0.027}, wavelengths_nm),
+                 AlbedoBands({0.043, 0.067, 0.024}, wavelengths_nm),
+                 AlbedoBands({0.130, 0.092, 0.030}, wavelengths_nm),
+                 AlbedoBands({0.068, 0.060, 0.045}, wavelengths_nm),
                  Wetted(AlbedoBands({0.098, 0.115, 0.055}, wavelengths_nm), wetness),
+                 Wetted(AlbedoBands({0.126, 0.108, 0.060}, wavelengths_nm), wetness),
                  Wetted(AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm), wetness),
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
 Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
                                      const std::optional<MappedCover>& mapped) const {
-  const double broad = DetailNoise(point, kBroad);
-  const double fine = DetailNoise(point, kFine);
-  const double grain = DetailNoise(point, kGrain);
+  const double broad = DetailNoise(point, GroundNoise::kBroad);
+  const double fine = DetailNoise(point, GroundNoise::kFine);
+  const double grain = DetailNoise(point, GroundNoise::kGrain);
   const double altitude = shared::WaveringAltitude(point.altitude_m, broad, fine);
   const double level = shared::WaveringLevel(normal_up, broad, fine);
   const auto rise = [](double value) { return static_cast<float>(value); };
@@ -89,14 +152,28 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
   const float rock = shared::RockShare(
       mapped ? mapped->stone : rise(shared::BareRise(altitude, cover_.tree_line_m)),
       mapped ? 1.0F : rise(shared::SoilRise(level)), forest, rise(grain));
+  const double snow_line_m =
+      cover_.snow_line_m + shared::SunnySide(-cover_.sun_in_south * point.normal_north);
+  const float broadleaf =
+      rise(shared::BroadleafShare(altitude, cover_.broadleaf_line_m, broad, fine));
+  const float in_leaf = rise(shared::LeafShare(altitude, cover_.leaf_line_m));
+  const float not_bare = rise(shared::LeafShare(altitude, cover_.bare_line_m));
+  const float grass = rise(shared::LeafShare(altitude, cover_.grass_line_m));
+  const float gap =
+      shared::CanopyGap(broadleaf * (1.0F - not_bare), rise(broad), rise(fine), rise(grain));
   const float lying =
-      rise(shared::ColdRise(altitude, cover_.snow_line_m)) * rise(shared::SnowHoldRise(level));
-  const float snow = std::max(shared::SnowSeen(lying, forest, rock), mapped ? mapped->snow : 0.0F);
+      rise(shared::ColdRise(altitude, snow_line_m)) * rise(shared::SnowHoldRise(level));
+  const float snow =
+      std::max(shared::SnowSeen(lying, forest, rock, gap), mapped ? mapped->snow : 0.0F);
   const auto tone = shared::GroundTone(rise(broad), rise(fine), rise(grain), forest, rock);
   Bands<float> albedo(materials_.rock.count);
   for (std::size_t band = 0; band < albedo.count; ++band) {
-    const float green =
-        shared::PartlyCovered(materials_.meadow[band], materials_.forest[band], forest);
+    const Materials& of = materials_;
+    const float green = shared::GreenAlbedo(
+        shared::PartlyCovered(of.dry_meadow[band], of.meadow[band], grass), of.conifers[band],
+        shared::BroadleafAlbedo(of.bare_trees[band], of.yellow_leaves[band], of.leaves[band],
+                                not_bare, in_leaf),
+        forest, broadleaf);
     albedo[band] =
         shared::CoverAlbedo(green, materials_.rock[band], materials_.snow[band], rock, snow, tone);
   }
@@ -105,13 +182,14 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
 
 glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::dvec3& normal) {
   glm::dvec3 tilt(0.0);
-  VisitOctaves(point, kRelief, [&](std::uint32_t seed, double amplitude, double wavelength) {
-    const NoiseSlope noise =
-        GradientNoiseSlope(point.east_m / wavelength, point.north_m / wavelength, seed);
-    tilt -=
-        shared::kReliefHeight_m * amplitude / wavelength * glm::dvec3(noise.by_x, noise.by_y, 0.0);
+  VisitOctaves(point, GroundNoise::kRelief, [&](const NoiseOctave& octave, double amplitude) {
+    const glm::dvec2 at = octave.PlaceOf(point);
+    const NoiseSlope noise = GradientNoiseSlope(at.x, at.y, octave.seed);
+    tilt -= shared::kReliefHeight_m * amplitude / octave.wavelength_m *
+            glm::dvec3(noise.by_x, noise.by_y,
+                       octave.lean_east * noise.by_x + octave.lean_north * noise.by_y);
   });
-  return glm::normalize(normal + tilt * std::max(normal.z, 0.0));
+  return glm::normalize(normal + tilt - glm::dot(tilt, normal) * normal);
 }
 
 glm::dvec3 WavySurface::Normal(const glm::dvec3& up) const {
@@ -123,12 +201,12 @@ WavySurface WavesAt(const GroundPoint& point, double slope_variance) {
   const double each = shared::WaveOctaveVariance(slope_variance, longest_m);
   const double shown = shared::WaveShown(std::max(point.cosine, 0.0), slope_variance);
   WavySurface waves{0.0, 0.0, slope_variance};
-  VisitOctaves(point, kWaves, [&](std::uint32_t seed, double height, double wavelength) {
-    const double kept = shown * height * shared::kWaveWave_m / wavelength *
-                        shared::WaveRaised(wavelength, longest_m);
+  VisitOctaves(point, GroundNoise::kWaves, [&](const NoiseOctave& octave, double height) {
+    const double kept = shown * height * shared::kWaveWave_m / octave.wavelength_m *
+                        shared::WaveRaised(octave.wavelength_m, longest_m);
     if (kept == 0.0) return;
-    const NoiseSlope noise =
-        GradientNoiseSlope(point.east_m / wavelength, point.north_m / wavelength, seed);
+    const glm::dvec2 at = octave.PlaceOf(point);
+    const NoiseSlope noise = GradientNoiseSlope(at.x, at.y, octave.seed);
     waves.slope_east += kept * shared::WaveSlope(each) * noise.by_x;
     waves.slope_north += kept * shared::WaveSlope(each) * noise.by_y;
     waves.slope_variance -= kept * kept * each;

@@ -3,12 +3,15 @@
 // mesh.
 #pragma once
 
+#include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/sun/time.h"
 #include "renderer/ground/mountain_cover.h"
 
 namespace alpenglow {
@@ -20,7 +23,40 @@ struct GroundPoint {
   double footprint_m;             // what one ray of the picture covers: finer detail is left out
   double across_m = footprint_m;  // its width across the ray
   double cosine = 1.0;            // of the ray and the normal of the mesh
+  double up_m = 0.0;              // as east_m, over the plane of the pattern
+  double normal_north = 0.0;      // component of the normal of the mesh
+  double sea_s = 0.0;             // time of the waves
 };
+
+/// Families of noise of ground_cover.glsl, in the order of ground.glsl.
+enum class GroundNoise { kBroad, kFine, kRelief, kGrain, kWaves };
+inline constexpr std::size_t kGroundNoises = 5;
+
+/// One octave of a family: a lattice of squares in the plane of the pattern, which continues
+/// upwards along a line of its own that leans by 31 degrees. On a cliff an octave is drawn out along
+/// the line's foot, but each along another: on no face are all of them, as they are where a pattern
+/// is projected straight down. An octave of waves leans not; it travels.
+struct NoiseOctave {
+  double wavelength_m;  // side of a square
+  std::uint32_t seed;
+  double lean_east, lean_north;    // to the east and north per metre upwards
+  double drift_east, drift_north;  // m/s
+
+  /// Where a point lies, in squares; that of waves in [-2^31, 2^31), for lattices of 2^32 are the
+  /// same over and over.
+  [[nodiscard]] glm::dvec2 PlaceOf(const GroundPoint& point) const;
+};
+
+/// All of a family, longest first.
+[[nodiscard]] std::span<const NoiseOctave> OctavesOf(GroundNoise family);
+
+/// The time of waves: seconds since the beginning of 2020.
+[[nodiscard]] double SeaTime(const UtcInstant& instant);
+
+/// Phase speed of waves of deep water [m/s], omega^2 = g k + (s / rho) k^3 with the surface tension
+/// of water, s / rho = 7.4e-5 m^3/s^2: Lamb (1932), Hydrodynamics, section 267.
+/// @param wave_number  [1/m].
+[[nodiscard]] double WaveSpeed(double wave_number);
 
 /// Water at a point: the slopes of the waves that a footprint resolves, and what is left.
 struct WavySurface {
@@ -34,14 +70,15 @@ struct WavySurface {
 [[nodiscard]] WavySurface WavesAt(const GroundPoint& point, double slope_variance);
 
 /// Lambertian albedo of mountain ground: forest and meadow below the tree line, rock and scree
-/// above it and on steep slopes, snow above the snow line where the slope holds it. Lines and
-/// slopes waver by fractal noise from 10 m to 1 km, as on real mountains; crowns, tussocks and stones
+/// above it and on steep slopes, snow above the snow line where the slope holds it, lower on shaded
+/// slopes than on sunny ones. Broad-leaved woods and grass are green below the lines of the day. Lines
+/// and slopes waver by fractal noise from 10 m to 1 km, as on real mountains; crowns, tussocks and stones
 /// are lighter and darker spots from 12 m down to 5 cm.
 class MountainSurface {
  public:
   /// Albedos of pure materials.
   struct Materials {
-    Bands<float> forest, meadow, rock, snow;
+    Bands<float> conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
   };
 
   /// @param wetness  of rock and meadow, in [0, 1]; leaves of a wood shed water.

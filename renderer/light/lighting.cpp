@@ -14,7 +14,7 @@ Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
   const MountainCover cover = CoverInSeason(place, instant.modified_julian_day);
   Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
                  sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
-                 MountainSurface(medium.wavelengths_nm, cover, wetness)};
+                 MountainSurface(medium.wavelengths_nm, cover, wetness), SeaTime(instant)};
   for (std::size_t band = 0; band < light.irradiance.count; ++band) {
     light.irradiance[band] =
         static_cast<float>(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));

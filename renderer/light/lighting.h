@@ -25,6 +25,7 @@ struct Lighting {
   double sun_radius_rad;
   BandLight irradiance;                         // of the sun above the air, W m^-2 nm^-1
   MountainSurface surface;                      // as the season covers it
+  double sea_s = 0.0;                           // time of the waves, see SeaTime
   std::optional<MoonDisk> moon = std::nullopt;  // as a thing to see: it lights nothing yet
   EffectSet effects = EffectSet::All();
   /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.

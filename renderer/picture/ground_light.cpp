@@ -107,15 +107,16 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
 
 GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
                                  double cosine) const {
-  if (hit.kind == HitKind::kTerrain) {
-    return parts_.material.OfTerrain(parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine),
-                                     hit.point, glm::dot(hit.mesh_normal, up), light.surface);
+  GroundPoint at = parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine);
+  at.normal_north = hit.mesh_normal.y;
+  at.sea_s = light.sea_s;
+  if (hit.kind == HitKind::kTerrain || parts_.geometry.HasTerrain()) {
+    return parts_.material.OfTerrain(at, hit.point, glm::dot(hit.mesh_normal, up), light.surface);
   }
   BandLight albedo(air_.bands());
   for (std::size_t band = 0; band < albedo.count; ++band)
     albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);
-  return parts_.material.OfPlanet(parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine),
-                                  albedo);
+  return parts_.material.OfPlanet(at, albedo);
 }
 
 BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,

@@ -49,7 +49,8 @@ static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4)
 
 /// GroundRadiance and PlanetRadiance for this material; to be read after the shared texts,
 /// air_block, view_block, sun_light and TransmittanceToSun.
-[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material);
+/// @param has_land  whether the planet goes on as the terrain's low land.
+[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, bool has_land);
 
 /// The samplers of these texts.
 class GroundTextures {

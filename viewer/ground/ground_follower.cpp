@@ -39,14 +39,7 @@ class GroundFollower::Maker {
 
   Made Make(const Request& request) {
     const auto begin = std::chrono::steady_clock::now();
-    Made made{LitFor(request), {}, 0.0};
-    if (made.lit && made.lit->site().material().HasGloss()) {
-      const OpenSky sky(*made.lit->site().air().integrator, *made.lit->site().air().diffuse,
-                        made.lit->lighting().to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
-      made.sea_mirror =
-          SeaMirror::Of(sky, *made.lit->site().air().diffuse, made.lit->site().material().water(),
-                        made.lit->lighting().to_sun);
-    }
+    Made made{LitFor(request), MirrorFor(request), 0.0};
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return made;
   }
@@ -66,6 +59,18 @@ class GroundFollower::Maker {
                            DirectionFromAngles(view.sun.elevation_rad, view.sun.azimuth_rad)))
                        .xyz;
     return std::make_shared<const LitGround>(site, std::move(light));
+  }
+
+  // The sea mirrors the sky where there is no land, too.
+  [[nodiscard]] std::vector<BandTexel> MirrorFor(const Request& request) const {
+    const Medium medium = OnOsculatingSphere(request.air->medium, request.view.eye.latitude_rad);
+    const GroundMaterial material(cover_, drape_, medium.wavelengths_nm);
+    if (!material.HasGloss()) return {};
+    const AirIntegrator<float> integrator(medium);
+    const DiffuseLight& diffuse = request.air->diffuse;
+    const glm::dvec3 to_sun = Direction(request.view.sun);
+    const OpenSky sky(integrator, diffuse, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
+    return SeaMirror::Of(sky, diffuse, material.water(), to_sun);
   }
 
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {

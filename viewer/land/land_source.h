@@ -29,6 +29,8 @@ struct LandSource {
     GeodeticPosition place;
   };
   std::optional<Mesh> mesh = std::nullopt;
+
+  [[nodiscard]] bool IsEmpty() const { return files.empty() && !range_centre && !mesh; }
 };
 
 /// The land of a scene: its elevation model, its mesh or the built-in range.

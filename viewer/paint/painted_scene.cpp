@@ -38,6 +38,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
     : scene_(scene),
       ellipsoid_(EllipsoidOf(scene.medium)),
       sizes_(sizes),
+      has_land_(!land.IsEmpty()),
       lamp_ground_(LampGroundOf(scene)),
       drape_(DrapeOf(scene, lamp_ground_)),
       material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),

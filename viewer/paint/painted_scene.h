@@ -52,6 +52,8 @@ class PaintedScene {
   [[nodiscard]] const AirFollower& air() const { return air_; }
   [[nodiscard]] const Landscape& land() const { return land_; }
   [[nodiscard]] Landscape& land() { return land_; }
+  /// Whether there is any, somewhere.
+  [[nodiscard]] bool has_land() const { return has_land_; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
@@ -69,6 +71,7 @@ class PaintedScene {
   Scene scene_;
   Ellipsoid ellipsoid_;
   PaintSizes sizes_;
+  bool has_land_;
   SceneGround lamp_ground_;
   SceneDrape drape_;
   GroundMaterial material_;

@@ -30,14 +30,17 @@ LocalFrame PatternOf(const PaintedScene& scene) {
   return {scene.ellipsoid(), origin};
 }
 
-// On the pattern's plane, east and north [m].
-glm::dvec2 OnPattern(const PaintedScene& scene, const glm::dvec3& eye) {
+// In the pattern.
+GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const UtcInstant& now) {
   const Medium& medium = scene.air().air()->medium;
   const GeodeticPosition& origin = scene.place();
   const double radius =
       medium.follows_wgs84 ? OsculatingRadius(kWgs84, origin.latitude_rad) : medium.planet_radius_m;
-  return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius + eye.x,
-          origin.latitude_rad * radius + eye.y};
+  GroundPoint at{origin.longitude_rad * std::cos(origin.latitude_rad) * radius + eye.x,
+                 origin.latitude_rad * radius + eye.y, eye.z, 0.0};
+  at.up_m = eye.z;
+  at.sea_s = SeaTime(now);
+  return at;
 }
 
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
@@ -45,8 +48,8 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
   const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
                                 CoverInSeason(view.eye.place, view.now.modified_julian_day),
                                 scene.material().cover().wetness);
-  const glm::dvec2 at = OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz);
-  GroundBlock block = GroundBlockOf(surface, at.x, at.y);
+  GroundBlock block = GroundBlockOf(
+      surface, OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz, view.now));
   const auto axis = [&](const glm::dvec3& of_pattern) {
     return glm::vec4(here.EnuFromEcef(pattern.EcefFromEnu(Vector<Enu>{of_pattern})).xyz, 0.0);
   };

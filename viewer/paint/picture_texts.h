@@ -26,6 +26,7 @@ struct PictureStage {
 struct PictureKind {
   const GroundMaterial& material;
   const LampPainter& lamps;
+  bool has_land;
   std::optional<PhaseKind> fog;  // its phase function
 };
 

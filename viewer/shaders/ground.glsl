@@ -2,9 +2,9 @@
 // What the ground is made of, and relief finer than the mesh, around the eye: what GroundBlock of
 // uniform_blocks.h says of it, put into ground_cover.glsl and lattice_noise.glsl.
 //
-// Places are metres from the eye along the east and north axes of the mesh. Of every family of
-// noise the eye's own place comes as lattice cell and fraction of the longest octave, so that float
-// holds places thousands of kilometres from the origin of the pattern.
+// Places are metres from the eye along the east, north and upward axes of the mesh. Of every octave
+// the eye's own place comes as a square of the lattice and a fraction of it, so that float holds
+// places thousands of kilometres from the origin of the pattern.
 #define BROAD 0
 #define FINE 1
 #define RELIEF 2
@@ -12,15 +12,20 @@
 #define WAVES 4
 
 layout(std140) uniform Ground {
-  vec4 forest;
+  vec4 conifers;
+  vec4 leaves;
+  vec4 yellow_leaves;
+  vec4 bare_trees;
   vec4 meadow;
+  vec4 dry_meadow;
   vec4 rock;
   vec4 snow;
-  vec4 cover_lines;     // tree line, snow line [m]; octaves of the finest detail that are left out,
-                        // to save time
-  vec4 noise_cell[5];   // of the eye, east and north: by family
-  vec4 noise_place[5];  // fraction of the cell, east and north
-  vec4 mesh_east;       // axes of the mesh in the frame of the eye
+  vec4 cover_lines;      // tree line, snow line [m]; octaves of the finest detail that are left out,
+                         // to save time; how much of the sun is in the south
+  vec4 green_lines;      // of leaves, bare trees, grass and broad-leaved woods [m]
+  ivec4 octave_cell[42]; // of the eye, east and north: by octave of all families, NoiseOctave
+  vec4 octave_place[42]; // fraction of the square, east and north; lean, east and north
+  vec4 mesh_east;        // axes of the mesh in the frame of the eye
   vec4 mesh_north;
   vec4 mesh_up;
 };
@@ -31,6 +36,14 @@ ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed, fall
   if (family == GRAIN) return ivec4(kGrainWave_m, kGrainOctaves, kGrainSeed, kGrainFall);
   if (family == WAVES) return ivec4(kWaveWave_m, kWaveOctaves, kWaveSeed, kWaveFall);
   return ivec4(kReliefWave_m, kReliefOctaves, kReliefSeed, kReliefFall);
+}
+
+int FirstOctave(int family) {
+  if (family == BROAD) return 0;
+  if (family == FINE) return kBroadOctaves;
+  if (family == RELIEF) return kBroadOctaves + kFineOctaves;
+  if (family == GRAIN) return kBroadOctaves + kFineOctaves + kReliefOctaves;
+  return kBroadOctaves + kFineOctaves + kReliefOctaves + kGrainOctaves;
 }
 
 // A place in its cell of the lattice, and the hashes of the cell's corners.
@@ -48,9 +61,16 @@ NoiseCell NoiseCellAt(ivec2 cell, vec2 place, uint seed) {
                    LatticePoint(at.x + 1u, at.y + 1u, seed));
 }
 
-NoiseCell OctaveCell(vec2 offset, int family, float wavelength, int cells, uint seed) {
-  vec2 place = noise_place[family].xy * float(cells) + offset / wavelength;
-  return NoiseCellAt(ivec2(noise_cell[family].xy) * cells, place, seed);
+// @param octave  of all families.
+NoiseCell OctaveCell(vec3 offset, int octave, float wavelength, uint seed) {
+  vec4 at = octave_place[octave];
+  vec2 place = at.xy + (offset.xy + offset.z * at.zw) / wavelength;
+  return NoiseCellAt(octave_cell[octave].xy, place, seed);
+}
+
+vec2 SlopeOf(NoiseCell c) {
+  return vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),
+              SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
 }
 
 // How many octaves are summed: from waves of two footprints down OctaveShare is 0.
@@ -63,79 +83,85 @@ int OctavesKept(ivec4 of, float footprint) {
 float DetailFootprint(float footprint) { return footprint * exp2(cover_lines.z); }
 
 // The octaves that a footprint keeps.
-float DetailNoise(vec2 offset, int family, float footprint) {
+float DetailNoise(vec3 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
   int octaves = OctavesKept(of, footprint);
   float sum = 0.0;
   float amplitude = 1.0;
   float wavelength = float(of.x);
-  int cells = 1;
+  int first = FirstOctave(family);
   for (int octave = 0; octave < octaves; ++octave) {
-    NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
+    NoiseCell c = OctaveCell(offset, first + octave, wavelength, uint(of.z + octave));
     sum += OctaveShare(wavelength, footprint) * amplitude *
            NoiseOfHashes(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y);
     amplitude /= float(of.w);
     wavelength *= 0.5;
-    cells *= 2;
   }
   return sum;
 }
 
-// Its derivatives to the east and north [1/m].
-vec2 DetailSlope(vec2 offset, int family, float footprint) {
+// Its derivatives to the east, north and upwards [1/m].
+vec3 DetailSlope(vec3 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
   int octaves = OctavesKept(of, footprint);
-  vec2 sum = vec2(0.0);
+  vec3 sum = vec3(0.0);
   float amplitude = 1.0;
   float wavelength = float(of.x);
-  int cells = 1;
+  int first = FirstOctave(family);
   for (int octave = 0; octave < octaves; ++octave) {
-    NoiseCell c = OctaveCell(offset, family, wavelength, cells, uint(of.z + octave));
+    vec2 slope = SlopeOf(OctaveCell(offset, first + octave, wavelength, uint(of.z + octave)));
     sum += OctaveShare(wavelength, footprint) * (amplitude / wavelength) *
-           vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),
-                SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
+           vec3(slope, dot(slope, octave_place[first + octave].zw));
     amplitude /= float(of.w);
     wavelength *= 0.5;
-    cells *= 2;
   }
   return sum;
 }
 
-// @param altitude [m]; normal_up of the mesh's normal; mapped: shares of a map of land cover, and
-//     whether there are any, 1 or 0.
-vec4 GroundAlbedo(vec2 offset, float altitude, float normal_up, float footprint, vec4 mapped) {
+// @param altitude [m]; tilt: components of the mesh's normal upwards and to the north; mapped: shares
+//     of a map of land cover, and whether there are any, 1 or 0.
+vec4 GroundAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 mapped) {
   float width = DetailFootprint(footprint);
   float broad = DetailNoise(offset, BROAD, width);
   float fine = DetailNoise(offset, FINE, width);
   float grain = DetailNoise(offset, GRAIN, width);
   float wavering = WaveringAltitude(altitude, broad, fine);
-  float level = WaveringLevel(normal_up, broad, fine);
-  float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(normal_up), broad, fine);
+  float level = WaveringLevel(tilt.x, broad, fine);
+  float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(tilt.x), broad, fine);
   wood = PartlyCovered(wood, mapped.x, mapped.w);
   float bare = PartlyCovered(BareRise(wavering, cover_lines.x), mapped.y, mapped.w);
   float stone = RockShare(bare, PartlyCovered(SoilRise(level), 1.0, mapped.w), wood, grain);
-  float lying = ColdRise(wavering, cover_lines.y) * SnowHoldRise(level);
-  float white = max(SnowSeen(lying, wood, stone), mapped.z * mapped.w);
+  float broadleaf = BroadleafShare(wavering, green_lines.w, broad, fine);
+  float in_leaf = LeafShare(wavering, green_lines.x);
+  float not_bare = LeafShare(wavering, green_lines.y);
+  float grass = LeafShare(wavering, green_lines.z);
+  float gap = CanopyGap(broadleaf * (1.0 - not_bare), broad, fine, grain);
+  float snow_line = cover_lines.y + SunnySide(-cover_lines.w * tilt.y);
+  float lying = ColdRise(wavering, snow_line) * SnowHoldRise(level);
+  float white = max(SnowSeen(lying, wood, stone, gap), mapped.z * mapped.w);
   float tone = GroundTone(broad, fine, grain, wood, stone);
   vec4 albedo;
   for (int band = 0; band < 4; ++band) {
-    float green = PartlyCovered(meadow[band], forest[band], wood);
+    float trees = BroadleafAlbedo(bare_trees[band], yellow_leaves[band], leaves[band], not_bare,
+                                  in_leaf);
+    float green = GreenAlbedo(PartlyCovered(dry_meadow[band], meadow[band], grass), conifers[band],
+                              trees, wood, broadleaf);
     albedo[band] = CoverAlbedo(green, rock[band], snow[band], stone, white, tone);
   }
   return albedo;
 }
 
 // The normal with the relief that the mesh does not have.
-vec3 DetailedNormal(vec2 offset, vec3 normal, float footprint) {
-  vec2 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, DetailFootprint(footprint));
-  vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz;
-  return normalize(normal + tilt * max(dot(normal, mesh_up.xyz), 0.0));
+vec3 DetailedNormal(vec3 offset, vec3 normal, float footprint) {
+  vec3 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, DetailFootprint(footprint));
+  vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz - slope.z * mesh_up.xyz;
+  return normalize(normal + tilt - dot(tilt, normal) * normal);
 }
 
 // Slopes to the east and north of the waves that a footprint resolves, and the slope variance of
 // the others: WavesAt of surface.h.
 // @param variance  of all waves; cosine: of the vertical and the eye.
-vec3 WavesAt(vec2 offset, float footprint, float variance, float cosine) {
+vec3 WavesAt(vec3 offset, float footprint, float variance, float cosine) {
   float width = DetailFootprint(footprint);
   ivec4 of = NoiseOf(WAVES);
   int octaves = OctavesKept(of, width);
@@ -144,18 +170,15 @@ vec3 WavesAt(vec2 offset, float footprint, float variance, float cosine) {
   float shown = WaveShown(max(cosine, 0.0), variance);
   vec3 waves = vec3(0.0, 0.0, variance);
   float wavelength = float(of.x);
-  int cells = 1;
+  int first = FirstOctave(WAVES);
   for (int octave = 0; octave < octaves; ++octave) {
     float kept = shown * OctaveShare(wavelength, width) * WaveRaised(wavelength, longest);
     if (kept > 0.0) {
-      NoiseCell c = OctaveCell(offset, WAVES, wavelength, cells, uint(of.z + octave));
-      waves.xy += kept * WaveSlope(each) *
-                  vec2(SlopeOfHashesEast(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y),
-                       SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
+      NoiseCell c = OctaveCell(offset, first + octave, wavelength, uint(of.z + octave));
+      waves.xy += kept * WaveSlope(each) * SlopeOf(c);
       waves.z -= kept * kept * each;
     }
     wavelength *= 0.5;
-    cells *= 2;
   }
   return waves;
 }

@@ -17,8 +17,11 @@ struct GroundPlace {
   vec3 up;
   float altitude;   // km
   float footprint;  // across the ray [m]
-  vec2 offset;      // from the eye, east and north in the plane of the pattern [m]
+  vec3 offset;      // from the eye, east, north and upwards in the frame of the pattern [m]
 };
+
+// Components of a normal upwards and to the north.
+vec2 TiltOf(vec3 normal, vec3 up) { return vec2(dot(normal, up), dot(normal, mesh_north.xyz)); }
 
 // @param point  from the eye [m].
 GroundPlace GroundPlaceAt(vec3 point) {
@@ -27,7 +30,8 @@ GroundPlace GroundPlaceAt(vec3 point) {
   float h = AltitudeAlongRay(EYE_ALTITUDE, at.z / max(d, 1e-9), d, RADIUS);
   return GroundPlace(normalize(vec3(at.xy, RADIUS + EYE_ALTITUDE + at.z)), max(h, 0.0),
                      1e3 * d * ground_view.x,
-                     vec2(dot(point, mesh_east.xyz), dot(point, mesh_north.xyz)));
+                     vec3(dot(point, mesh_east.xyz), dot(point, mesh_north.xyz),
+                          dot(point, mesh_up.xyz)));
 }
 
 // Of the sun on a level across its beams: what of the disk stands over the planet's horizon, over
@@ -64,7 +68,7 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
   float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
   vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
   vec4 draped = DrapeAt(at.offset, altitude, at.footprint);
-  vec4 albedo = LandAlbedo(at.offset, altitude, dot(mesh_normal, at.up), footprint, draped);
+  vec4 albedo = LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped);
   vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),
                                 SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
 #if HAS_SEA || HAS_LAND_COVER
@@ -85,15 +89,29 @@ vec4 PlanetAt(GroundPlace at, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
 #if PLANET_IS_WATER
   return WaterRadiance(at.up, at.offset, at.footprint, dot(at.up, to_eye), across, sky_irradiance,
                        to_eye);
-#elif GROUND_COVER == MOUNTAIN_COVER
+#elif GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_LAND
   return EvenPlanetRadiance(at, across, sky_irradiance);
+#elif GROUND_COVER == MOUNTAIN_COVER
+  vec4 albedo =
+      LandAlbedo(at.offset, 0.0, TiltOf(at.up, at.up),
+                 SeenFootprint(at.footprint, dot(at.up, to_eye)),
+                 DrapeAt(at.offset, 0.0, at.footprint));
+  return CoverRadiance(albedo, at.up, across, sky_irradiance, to_eye);
 #else
   return CoverRadiance(cover_albedo, at.up, across, sky_irradiance, to_eye);
 #endif
 }
 
-// The bare planet beyond the terrain, as GroundMaterial::OfPlanet has it.
+// The planet beyond the terrain, level and at altitude 0.
 vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
   return PlanetAt(at, SunAcross(at, at.up, 1e9), LevelSky(dot(at.up, sun.xyz)), to_eye);
+}
+
+// What it sends more than the even planet that the sky's table has.
+vec4 PlanetBeyondEven(vec3 point_m, vec3 to_eye) {
+  GroundPlace at = GroundPlaceAt(point_m);
+  vec4 across = SunAcross(at, at.up, 1e9);
+  vec4 sky = LevelSky(dot(at.up, sun.xyz));
+  return PlanetAt(at, across, sky, to_eye) - EvenPlanetRadiance(at, across, sky);
 }

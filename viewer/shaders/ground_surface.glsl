@@ -68,7 +68,7 @@ vec4 SkyInWater(vec3 up, vec3 to_eye) {
 // Radiance of water under a sun across whose beams the irradiance is `across`, and a sky.
 // @param offset  from the eye in the plane of the pattern [m]; footprint  across the ray [m];
 //     cosine  of eye and normal of the mesh.
-vec4 WaterRadiance(vec3 up, vec2 offset, float footprint, float cosine, vec4 across,
+vec4 WaterRadiance(vec3 up, vec3 offset, float footprint, float cosine, vec4 across,
                    vec4 sky_irradiance, vec3 to_eye) {
   vec3 waves = WavesAt(offset, SeenFootprint(footprint, cosine), water.x, cosine);
   vec3 normal = normalize(up - waves.x * mesh_east.xyz - waves.y * mesh_north.xyz);
@@ -162,8 +162,8 @@ vec4 CoverRadiance(vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance, v
 #if HAS_DRAPE
 // What the drape shows there, and 1; 0 where it shows nothing.
 // @param offset  from the eye in the plane of the pattern [m]; altitude [m].
-vec4 DrapeAt(vec2 offset, float altitude, float footprint) {
-  vec2 foot = (offset + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
+vec4 DrapeAt(vec3 offset, float altitude, float footprint) {
+  vec2 foot = (offset.xy + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
   vec2 at = (foot - drape_place.xy) * drape_place.zw;
   float level = log2(max(footprint * drape_place.z * float(textureSize(drape, 0).x), 1.0));
   vec4 shown = textureLod(drape, clamp(at, 0.0, 1.0), level);
@@ -176,7 +176,7 @@ vec4 DrapeAt(vec2 offset, float altitude, float footprint) {
   return shown;
 }
 #else
-vec4 DrapeAt(vec2 offset, float altitude, float footprint) { return vec4(0.0); }
+vec4 DrapeAt(vec3 offset, float altitude, float footprint) { return vec4(0.0); }
 #endif
 
 // Whether it is water there.
@@ -188,11 +188,11 @@ bool IsWater(float altitude, vec4 drape_shown) {
 }
 
 // Albedo of the land's body there.
-// @param drape_shown  of DrapeAt.
-vec4 LandAlbedo(vec2 offset, float altitude, float normal_up, float footprint, vec4 drape_shown) {
+// @param tilt  see GroundAlbedo; drape_shown  of DrapeAt.
+vec4 LandAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 drape_shown) {
 #if GROUND_COVER == MOUNTAIN_COVER
   vec4 mapped = HAS_LAND_COVER == 1 ? drape_shown : vec4(0.0);
-  vec4 albedo = GroundAlbedo(offset, altitude, normal_up, footprint, mapped);
+  vec4 albedo = GroundAlbedo(offset, altitude, tilt, footprint, mapped);
 #else
   vec4 albedo = cover_albedo;
 #endif

@@ -54,7 +54,7 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
   float footprint = SeenFootprint(at.footprint, -dot(normal, direction));
   vec3 tilted = DetailedNormal(at.offset, normal, footprint);
   vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
-  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, dot(normal, at.up), footprint, draped);
+  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(normal, at.up), footprint, draped);
   return albedo / 3.14159265359 * LampsOnGround(point, tilted, RAY_ANGLE * surface.w);
 }
 
@@ -104,6 +104,12 @@ void main() {
 #if !PLANET_IS_PLAIN
   if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
     radiance = PlanetThroughAir(direction);
+#elif PLANET_IS_LAND
+  if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0) {
+    float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
+    vec4 beyond = PlanetBeyondEven(1e3 * distance_km * direction, -direction);
+    radiance = max(radiance + TransmittanceToSpace(direction) * beyond, vec4(0.0));
+  }
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 #if HAS_LAMPS

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <glm/common.hpp>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
@@ -20,6 +20,18 @@ glm::vec4 PerKilometre(const std::vector<double>& per_m) {
   std::vector<double> per_km(per_m);
   for (double& value : per_km) value *= kMetresPerKilometre;
   return GpuBandsOf(per_km);
+}
+
+// All octaves one after another, the eye's place in each.
+void SetOctaves(GroundBlock& block, const GroundPoint& eye) {
+  std::size_t i = 0;
+  for (std::size_t family = 0; family < kGroundNoises; ++family) {
+    for (const NoiseOctave& octave : OctavesOf(static_cast<GroundNoise>(family))) {
+      const glm::dvec2 at = octave.PlaceOf(eye), cell = glm::floor(at), place = at - cell;
+      block.octave_cell.at(i) = {glm::ivec2(cell), 0, 0};
+      block.octave_place.at(i++) = {place.x, place.y, octave.lean_east, octave.lean_north};
+    }
+  }
 }
 
 }  // namespace
@@ -66,26 +78,26 @@ AirBlock AirBlockOf(const Medium& medium) {
   return block;
 }
 
-GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m, double north_m) {
+GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye) {
   const auto bands = [](const Bands<float>& albedo) {
     return GpuBandsOf(
         {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
   };
-  constexpr std::array<double, 5> kLongest_m{shared::kBroadWave_m, shared::kFineWave_m,
-                                             shared::kReliefWave_m, shared::kGrainWave_m,
-                                             shared::kWaveWave_m};
+  const MountainSurface::Materials& materials = surface.materials();
+  const MountainCover& cover = surface.cover();
   GroundBlock block{};
-  block.forest = bands(surface.materials().forest);
-  block.meadow = bands(surface.materials().meadow);
-  block.rock = bands(surface.materials().rock);
-  block.snow = bands(surface.materials().snow);
-  block.cover_lines = {surface.cover().tree_line_m, surface.cover().snow_line_m, 0.0F, 0.0F};
-  for (std::size_t family = 0; family < kLongest_m.size(); ++family) {
-    const double east = east_m / kLongest_m[family];
-    const double north = north_m / kLongest_m[family];
-    block.noise_cell[family] = {std::floor(east), std::floor(north), 0.0, 0.0};
-    block.noise_place[family] = {east - std::floor(east), north - std::floor(north), 0.0, 0.0};
-  }
+  block.conifers = bands(materials.conifers);
+  block.leaves = bands(materials.leaves);
+  block.yellow_leaves = bands(materials.yellow_leaves);
+  block.bare_trees = bands(materials.bare_trees);
+  block.meadow = bands(materials.meadow);
+  block.dry_meadow = bands(materials.dry_meadow);
+  block.rock = bands(materials.rock);
+  block.snow = bands(materials.snow);
+  block.cover_lines = {cover.tree_line_m, cover.snow_line_m, 0.0, cover.sun_in_south};
+  block.green_lines = {cover.leaf_line_m, cover.bare_line_m, cover.grass_line_m,
+                       cover.broadleaf_line_m};
+  SetOctaves(block, eye);
   return block;
 }
 

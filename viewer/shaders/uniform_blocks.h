@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What shaders read of C++, byte for byte: uniform blocks in std140 layout made of vec4 alone, so
+// What shaders read of C++, byte for byte: uniform blocks in std140 layout, of vectors of four, so
 // that both sides agree on every offset (asserted here and asked of the driver by a test).
 #pragma once
 
@@ -36,22 +36,23 @@ static_assert(offsetof(ViewBlock, eye) == 5 * sizeof(glm::vec4));
 
 /// `block Ground` of ground.glsl.
 struct GroundBlock {
-  glm::vec4 forest, meadow, rock, snow;
-  glm::vec4 cover_lines;
-  std::array<glm::vec4, 5> noise_cell, noise_place;
+  glm::vec4 conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
+  glm::vec4 cover_lines, green_lines;
+  std::array<glm::ivec4, 42> octave_cell;
+  std::array<glm::vec4, 42> octave_place;
   glm::vec4 mesh_east, mesh_north, mesh_up;
 };
-static_assert(sizeof(GroundBlock) == 18 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, noise_place) == 10 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, mesh_up) == 17 * sizeof(glm::vec4));
+static_assert(sizeof(GroundBlock) == 97 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, octave_place) == 52 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, mesh_up) == 96 * sizeof(glm::vec4));
 
 /// Throws InputError when the medium has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
 
-/// Materials and noise around the eye, which stands at (east_m, north_m) on the pattern's plane;
-/// see GroundPoint. The axes of the mesh and the octaves left out are left to the caller.
-[[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, double east_m,
-                                        double north_m);
+/// Materials and noise around the eye. The axes of the mesh and the octaves left out are left to the
+/// caller.
+/// @param eye  where it is in the pattern, and the time of waves there.
+[[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye);
 
 /// One value a band, the rest 0.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);

@@ -127,6 +127,57 @@ TEST(MountainCover, LinesDoNotJumpOnTheWayRoundTheWorld) {
   }
 }
 
+TEST(MountainCover, BeechesOfTheAlpsAreInLeafFromTheEndOfAprilAndBareInNovember) {
+  EXPECT_LT(On("2026-04-10", 46.5, 8.0).leaf_line_m, 500.0);
+  EXPECT_NEAR(On("2026-04-25", 46.5, 8.0).leaf_line_m, 500.0, 50.0) << "a day is 30 m";
+  EXPECT_GT(On("2026-05-15", 46.5, 8.0).leaf_line_m, 1000.0);
+  EXPECT_GT(On("2026-10-20", 46.5, 8.0).bare_line_m, 500.0);
+  EXPECT_LT(On("2026-10-20", 46.5, 8.0).leaf_line_m, 500.0) << "yellow between both";
+  EXPECT_LT(On("2026-11-10", 46.5, 8.0).bare_line_m, 500.0);
+  EXPECT_LT(On("2026-02-10", 46.5, 8.0).grass_line_m, -300.0) << "grass sleeps";
+}
+
+TEST(MountainCover, SpringTakesFourDaysFor122MetresAndForADegree) {
+  const double here = On("2026-04-20", 46.5, 8.0).leaf_line_m;
+  EXPECT_NEAR(On("2026-04-24", 46.5, 8.0).leaf_line_m - here, 122.0, 0.1);
+  EXPECT_NEAR(On("2026-04-24", 47.5, 8.0).leaf_line_m - here, 0.0, 0.1);
+}
+
+TEST(MountainCover, TheTropicsAreGreenAllTheYear) {
+  for (int day = 61000; day < 61366; day += 10) {
+    for (const double latitude : {-20.0, 0.0, 20.0}) {
+      const MountainCover cover = CoverInSeason(PlaceFromDegrees(latitude, 30.0, 0.0), day);
+      EXPECT_GT(cover.leaf_line_m, 500.0) << latitude << " " << day;
+      EXPECT_GT(cover.grass_line_m, 500.0) << latitude << " " << day;
+    }
+  }
+}
+
+TEST(MountainCover, SnowLiesLowerOnSlopesThatTheSunDoesNotSee) {
+  for (const double latitude : {46.5, -43.6}) {
+    MountainCover cover = On("2026-01-15", latitude, 10.0);
+    cover.tree_line_m = -1000.0;
+    cover.snow_line_m = 2000.0;
+    const MountainSurface surface(WavelengthSet(4), cover);
+    GroundPoint polewards{0.0, 0.0, 2050.0, 1e4};
+    polewards.normal_north = latitude > 0.0 ? 0.4 : -0.4;
+    GroundPoint sunwards = polewards;
+    sunwards.normal_north = -polewards.normal_north;
+    EXPECT_GT(surface.Albedo(polewards, 0.9)[1], 0.6F) << latitude;
+    EXPECT_LT(surface.Albedo(sunwards, 0.9)[1], 0.4F) << latitude;
+  }
+}
+
+TEST(MountainCover, MoreSnowIsSeenInALeaflessWoodThanUnderConifers) {
+  MountainCover winter{2150.0, 650.0, -2000.0, -2000.0, -2000.0};
+  const GroundPoint at{0.0, 0.0, 1000.0, 1e4};
+  const float conifers = MountainSurface(WavelengthSet(4), winter).Albedo(at, 0.88)[1];
+  winter.broadleaf_line_m = 2000.0;
+  const float leafless = MountainSurface(WavelengthSet(4), winter).Albedo(at, 0.88)[1];
+  EXPECT_NEAR(conifers, 0.14F, 0.03F) << "Betts, Ball (1997): 0.13";
+  EXPECT_NEAR(leafless, 0.21F, 0.03F) << "Betts, Ball (1997): 0.21 of aspen";
+}
+
 TEST(MountainCover, SnowUnderAWoodIsMostlyHidden) {
   MountainCover winter;
   winter.tree_line_m = 2150.0;

@@ -72,6 +72,65 @@ TEST(MountainSurface, FlatLandHasMeadowsAndGroves) {
   EXPECT_GT(seen.share, 0.08);
 }
 
+// Surface reflectances in the blue, green and red (470, 555, 645 nm) as satellites see them: green
+// vegetation 0.04, 0.08, 0.04 and soil 0.08, 0.12, 0.17, rounded. Land is of both.
+TEST(MountainSurface, LowlandInSummerIsBetweenGreenVegetationAndSoil) {
+  const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
+  const Bands<float> seen = surface.Albedo({0.0, 0.0, 300.0, 1e4}, 1.0);
+  EXPECT_NEAR(seen[0], 0.045F, 0.015F);
+  EXPECT_NEAR(seen[1], 0.09F, 0.02F);
+  EXPECT_NEAR(seen[2], 0.07F, 0.03F);
+  EXPECT_GT(seen[1], seen[2]) << "green";
+}
+
+TEST(MountainSurface, DryGrassAndBareTreesGrowLighterTowardsTheRed) {
+  const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
+  for (const Bands<float>& dry : {surface.materials().dry_meadow, surface.materials().bare_trees}) {
+    EXPECT_GT(dry[1], dry[0]);
+    EXPECT_GE(dry[2], dry[1]);
+  }
+}
+
+TEST(MountainSurface, AWinterWoodHasStandsAndGaps) {
+  const MountainSurface surface(WavelengthSet(4), MountainCover{2100.0, 600.0});
+  double sum = 0.0, sum2 = 0.0;
+  constexpr int kPlaces = 1000;
+  for (int i = 0; i < kPlaces; ++i) {
+    const GroundPoint at{7e5 + 41.7 * i, 5e6 - 93.1 * i, 1300.0, 8.0};
+    const auto albedo = static_cast<double>(surface.Albedo(at, 0.88)[1]);
+    sum += albedo / kPlaces;
+    sum2 += albedo * albedo / kPlaces;
+  }
+  EXPECT_NEAR(sum, 0.15, 0.04) << "Betts, Ball (1997): 0.13, and thin stands over-count";
+  EXPECT_GT(std::sqrt(sum2 - sum * sum), 0.2 * sum);
+}
+
+/// Mean of how much the relief differs over a step.
+double ReliefOver(const glm::dvec3& step) {
+  double sum = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    GroundPoint at{7e5 + 37.7 * i, 5e6 - 91.3 * i, 1000.0, 0.5};
+    at.up_m = 1000.0 + 13.0 * i;
+    const glm::dvec3 normal =
+        glm::normalize(glm::dvec3(step.y, -step.x, 0.0) +
+                       (step.z != 0.0 ? glm::dvec3(0.3, 1.0, 0.0) : glm::dvec3(0.0)));
+    GroundPoint beside = at;
+    beside.east_m += step.x;
+    beside.north_m += step.y;
+    beside.up_m += step.z;
+    sum += glm::length(MountainSurface::DetailedNormal(at, normal) -
+                       MountainSurface::DetailedNormal(beside, normal)) /
+           500.0;
+  }
+  return sum;
+}
+
+TEST(MountainSurface, OnACliffThePatternIsNotDrawnOut) {
+  const double along = ReliefOver({2.0 * std::cos(2.862), 2.0 * std::sin(2.862), 0.0});
+  EXPECT_GT(ReliefOver({0.0, 0.0, 2.0}), 0.35 * along)
+      << "up the cliff; 0 where the pattern is projected straight down";
+}
+
 TEST(MountainSurface, ReliefTiltsTheGroundByEightDegreesNearAndNotAtAllFarAway) {
   double near2 = 0.0;
   constexpr int kPlaces = 2000;
@@ -125,6 +184,43 @@ TEST(Waves, AreResolvedNearAndGlitterFarAway) {
 TEST(Waves, ThatHideEachOtherAreLeftToTheGlitter) {
   EXPECT_EQ(WavesSeen(kBreeze, 0.01, 0.0).resolved, 0.0);
   EXPECT_EQ(WavesSeen(kBreeze, 0.01, -0.1).resolved, 0.0) << "a normal turned away from the eye";
+}
+
+// Lamb (1932), section 267: waves are slowest, 0.232 m/s, at 17 mm; longer ones go as the root of
+// their length.
+TEST(Waves, TravelAsInDeepWater) {
+  EXPECT_NEAR(WaveSpeed(2.0 * kPi / 0.0173), 0.232, 0.002);
+  EXPECT_GT(WaveSpeed(2.0 * kPi / 0.01), 0.232);
+  EXPECT_NEAR(WaveSpeed(2.0 * kPi / 100.0), 12.49, 0.01) << "sqrt(g 100 m / 2 pi)";
+}
+
+TEST(Waves, AnOctaveIsCarriedAlong) {
+  for (const NoiseOctave& octave : OctavesOf(GroundNoise::kWaves)) {
+    const GroundPoint now{7e5, 5e6, 0.0, 0.01};
+    GroundPoint then = now;
+    then.sea_s = 10.0;
+    then.east_m += 10.0 * octave.drift_east;
+    then.north_m += 10.0 * octave.drift_north;
+    const glm::dvec2 a = octave.PlaceOf(now), b = octave.PlaceOf(then);
+    EXPECT_NEAR(a.x, b.x, 1e-5) << octave.wavelength_m;
+    EXPECT_NEAR(a.y, b.y, 1e-5) << octave.wavelength_m;
+  }
+}
+
+TEST(Waves, MoveSmoothlyAfterYears) {
+  const double now_s = SeaTime(ParseInstant("2093-08-01T12:00:00Z"));
+  double moved = 0.0, jumped = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    GroundPoint at{7e5 + 317.3 * i, 5e6 - 211.7 * i, 0.0, 0.02};
+    at.sea_s = now_s;
+    const WavySurface here = WavesAt(at, kBreeze);
+    at.sea_s = now_s + 1.0;
+    moved += std::abs(WavesAt(at, kBreeze).slope_east - here.slope_east) / 300.0;
+    at.sea_s = now_s + 1e-4;
+    jumped = std::max(jumped, std::abs(WavesAt(at, kBreeze).slope_east - here.slope_east));
+  }
+  EXPECT_GT(moved, 0.02) << "after a second the sea is another: 0.12 rms";
+  EXPECT_LT(jumped, 2e-3) << "0.1 ms is 0.1 mm of ripples of 30 mm";
 }
 
 TEST(Waves, ACalmSeaHasNone) { EXPECT_EQ(WavesSeen(0.003, 0.01, 1.0).resolved, 0.0); }

@@ -61,6 +61,16 @@ TEST(GroundFollower, WithoutLandThereIsNoLight) {
   EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
 }
 
+TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
+  GroundCover sea;
+  sea.kind = GroundCover::Kind::kWater;
+  GroundFollower follower(sea, nullptr, kSmall);
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  EXPECT_EQ(follower.lit(), nullptr);
+  ASSERT_EQ(follower.sea_mirror().size(), SeaMirror::kSide * SeaMirror::kSide);
+  for (const BandTexel& texel : follower.sea_mirror()) EXPECT_GT(texel[1], 0.0F);
+}
+
 TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);

@@ -34,8 +34,13 @@ std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
       SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
                       "viewer/shaders/sun_light.glsl"});
   pieces.push_back(tests::SunInClosedForm());
-  for (ShaderPiece& piece : GroundTexts(material)) pieces.push_back(std::move(piece));
+  for (ShaderPiece& piece : GroundTexts(material, true)) pieces.push_back(std::move(piece));
   return pieces;
+}
+
+GroundPoint EyeOver(GroundPoint origin, double eye_m) {
+  origin.up_m += eye_m;
+  return origin;
 }
 
 template <typename Block>
@@ -66,7 +71,7 @@ class Blocks {
     view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
     const GroundPoint origin = site.geometry().GroundAt({0.0, 0.0, 0.0}, 0.0);
-    GroundBlock ground = GroundBlockOf(light.surface, origin.east_m, origin.north_m);
+    GroundBlock ground = GroundBlockOf(light.surface, EyeOver(origin, eye_m_));
     ground.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
     ground.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};

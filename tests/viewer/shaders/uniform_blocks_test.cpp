@@ -47,7 +47,7 @@ ShaderProgram PictureBlocks() {
   std::vector<ShaderPiece> pieces = WithViewerPieces(
       SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
                       "viewer/shaders/ground.glsl"});
-  pieces.push_back({"main", "void main() { gl_Position = shell + eye + forest; }\n"});
+  pieces.push_back({"main", "void main() { gl_Position = shell + eye + conifers; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
 }
 
@@ -82,13 +82,18 @@ TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
 TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
   const ShaderProgram program = PictureBlocks();
   EXPECT_EQ(SizeOf(program, "Ground"), static_cast<GLint>(sizeof(GroundBlock)));
-  ExpectOffsets(program, {{"forest", offsetof(GroundBlock, forest)},
+  ExpectOffsets(program, {{"conifers", offsetof(GroundBlock, conifers)},
+                          {"leaves", offsetof(GroundBlock, leaves)},
+                          {"yellow_leaves", offsetof(GroundBlock, yellow_leaves)},
+                          {"bare_trees", offsetof(GroundBlock, bare_trees)},
                           {"meadow", offsetof(GroundBlock, meadow)},
+                          {"dry_meadow", offsetof(GroundBlock, dry_meadow)},
                           {"rock", offsetof(GroundBlock, rock)},
                           {"snow", offsetof(GroundBlock, snow)},
                           {"cover_lines", offsetof(GroundBlock, cover_lines)},
-                          {"noise_cell[0]", offsetof(GroundBlock, noise_cell)},
-                          {"noise_place[0]", offsetof(GroundBlock, noise_place)},
+                          {"green_lines", offsetof(GroundBlock, green_lines)},
+                          {"octave_cell[0]", offsetof(GroundBlock, octave_cell)},
+                          {"octave_place[0]", offsetof(GroundBlock, octave_place)},
                           {"mesh_east", offsetof(GroundBlock, mesh_east)},
                           {"mesh_north", offsetof(GroundBlock, mesh_north)},
                           {"mesh_up", offsetof(GroundBlock, mesh_up)}});
@@ -109,9 +114,12 @@ TEST(AirBlock, AMediumOfThreeWavelengthsHasADarkFourthBand) {
 
 using GroundCover = tests::Headless;
 
-constexpr double kEast_m = 612345.678, kNorth_m = 5191234.567;  // of the eye
+constexpr double kEast_m = 612345.678, kNorth_m = 5191234.567, kUp_m = 1234.5;  // of the eye
 
-/// (east, north) from the eye, altitude, vertical component of the normal, footprint.
+constexpr double kSea_s = 2.2e8;  // years of waves
+
+/// (east, north) from the eye, altitude, vertical component of the normal, footprint. Half of them
+/// face the north, and a tenth of the altitude is how far they lie over the eye.
 std::vector<tests::Arguments<float>> GroundPoints() {
   std::vector<tests::Arguments<float>> points;
   for (int i = 0; i < 400; ++i) {
@@ -125,12 +133,19 @@ std::vector<tests::Arguments<float>> GroundPoints() {
 }
 
 GroundPoint PointOf(const tests::Arguments<float>& a) {
-  return {kEast_m + static_cast<double>(a[0]), kNorth_m + static_cast<double>(a[1]),
-          static_cast<double>(a[2]), static_cast<double>(a[4])};
+  GroundPoint at{kEast_m + static_cast<double>(a[0]), kNorth_m + static_cast<double>(a[1]),
+                 static_cast<double>(a[2]), static_cast<double>(a[4])};
+  at.up_m = kUp_m + 0.1 * static_cast<double>(a[2]);
+  at.normal_north = static_cast<double>(a[0]) > 0.0 ? 0.4 : -0.4;
+  at.sea_s = kSea_s;
+  return at;
 }
 
 std::vector<float> GroundValues(const MountainSurface& surface, const std::string& expression) {
-  GroundBlock block = GroundBlockOf(surface, kEast_m, kNorth_m);
+  GroundPoint eye{kEast_m, kNorth_m, kUp_m, 0.0};
+  eye.up_m = kUp_m;
+  eye.sea_s = kSea_s;
+  GroundBlock block = GroundBlockOf(surface, eye);
   block.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
   block.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
   block.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
@@ -144,30 +159,47 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   });
 }
 
-TEST_F(GroundCover, AlbedoIsThatOfTheRenderer) {
+TEST_F(GroundCover, AlbedoIsThatOfTheRendererInEverySeason) {
   const std::vector<double> wavelengths = WavelengthSet(4);
-  const MountainSurface surface(wavelengths,
-                                CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
-  const std::vector<float> on_gpu =
-      GroundValues(surface, "GroundAlbedo(vec2(a[0], a[1]), a[2], a[3], a[4], vec4(0.0)).y");
+  for (const int day : {61081, 61161, 61212, 61334}) {  // February, May, June, October 2026
+    const MountainSurface surface(wavelengths,
+                                  CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), day));
+    const std::vector<float> on_gpu = GroundValues(
+        surface,
+        "GroundAlbedo(vec3(a[0], a[1], 0.1 * a[2]), a[2], vec2(a[3], a[0] > 0.0 ? 0.4 : -0.4), "
+        "a[4], vec4(0.0)).y");
+    const auto points = GroundPoints();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Bands<float> albedo =
+          surface.Albedo(PointOf(points[i]), static_cast<double>(points[i][3]));
+      EXPECT_NEAR(on_gpu[i], albedo[1], 2e-3)
+          << "float places the pattern to 1e-4 of its shortest wave, and its edges are steep";
+    }
+  }
+}
+
+TEST_F(GroundCover, WavesAreThoseOfTheRenderer) {
+  const MountainSurface surface(WavelengthSet(4), {});
+  constexpr double kBreeze = 0.003 + 0.00512 * 5.0;  // Cox, Munk: 5 m/s
+  const std::vector<float> east =
+      GroundValues(surface, "WavesAt(vec3(a[0], a[1], 0.0), a[4], 0.0286, 1.0).x");
   const auto points = GroundPoints();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Bands<float> albedo =
-        surface.Albedo(PointOf(points[i]), static_cast<double>(points[i][3]));
-    EXPECT_NEAR(on_gpu[i], albedo[1], 2e-3)
-        << "float places the pattern to 1e-4 of its shortest wave, and its edges are steep";
+    const WavySurface waves = WavesAt(PointOf(points[i]), kBreeze);
+    EXPECT_NEAR(east[i], waves.slope_east, 1e-3) << "float places a wave to 1 mm";
   }
 }
 
 TEST_F(GroundCover, ReliefIsThatOfTheRenderer) {
   const MountainSurface surface(WavelengthSet(4),
                                 CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
-  const std::vector<float> east = GroundValues(
-      surface,
-      "DetailedNormal(vec2(a[0], a[1]), vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).x");
-  const std::vector<float> north = GroundValues(
-      surface,
-      "DetailedNormal(vec2(a[0], a[1]), vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).y");
+  const std::vector<float> east = GroundValues(surface,
+                                               "DetailedNormal(vec3(a[0], a[1], 0.1 * a[2]), "
+                                               "vec3(sqrt(1.0 - a[3] * a[3]), 0.0, a[3]), a[4]).x");
+  const std::vector<float> north =
+      GroundValues(surface,
+                   "DetailedNormal(vec3(a[0], a[1], 0.1 * a[2]), vec3(sqrt(1.0 - a[3] * a[3]), "
+                   "0.0, a[3]), a[4]).y");
   const auto points = GroundPoints();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto up = static_cast<double>(points[i][3]);
