@@ -84,7 +84,7 @@ SHARED Number FlatRise(Number normal_up) {
 // as ragged as the fine noise.
 SHARED Number ForestShare(Number treeless, Number flat_ground, Number broad, Number fine) {
   Number density =
-      Number(1.0) - Number(0.7) * flat_ground + Number(0.5) * broad + Number(0.6) * fine;
+      Number(1.0) - Number(0.7) * flat_ground + Number(0.8) * broad + Number(0.45) * fine;
   return (Number(1.0) - treeless) * SmoothRise(Number(0.05), Number(0.75), density);
 }
 
@@ -123,10 +123,10 @@ SHARED Number PartlyCovered(Number below, Number cover, Number share) {
   return below + share * (cover - below);
 }
 
-// Which trees stand in a wood: broad-leaved up to a line, mixed with conifers in stands for some
-// 500 m under it, conifers above.
+// Which trees stand in a wood: broad-leaved up to a line, for some 1000 m under it in stands with
+// conifers between, conifers above.
 SHARED Number BroadleafShare(Length altitude, Length line, Number broad, Number fine) {
-  return Number(1.0) - SmoothRise(line - Length(500.0), line + Length(200.0),
+  return Number(1.0) - SmoothRise(line - Length(1000.0), line + Length(300.0),
                                   altitude + Length(900.0) * broad + Length(500.0) * fine);
 }
 

@@ -38,8 +38,9 @@ std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
   return pieces;
 }
 
-GroundPoint EyeOver(GroundPoint origin, double eye_m) {
+GroundPoint EyeOver(GroundPoint origin, double eye_m, double sea_s) {
   origin.up_m += eye_m;
+  origin.sea_s = sea_s;
   return origin;
 }
 
@@ -71,7 +72,7 @@ class Blocks {
     view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
     const GroundPoint origin = site.geometry().GroundAt({0.0, 0.0, 0.0}, 0.0);
-    GroundBlock ground = GroundBlockOf(light.surface, EyeOver(origin, eye_m_));
+    GroundBlock ground = GroundBlockOf(light.surface, EyeOver(origin, eye_m_, light.sea_s));
     ground.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
     ground.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
