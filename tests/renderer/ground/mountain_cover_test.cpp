@@ -63,6 +63,33 @@ TEST(MountainCover, TreesEndWhereTheyDo) {
   EXPECT_LT(On("2026-06-15", 79.0, 12.0).tree_line_m, -500.0) << "none on Svalbard";
 }
 
+// Koerner (1998), Oecologia 115, 445: from 70 to 50 degrees north tree lines rise by 75 m a degree,
+// and from 30 north to 20 south they lie between 3500 and 4000 m. Where no massif is near.
+TEST(MountainCover, TreeLinesRiseTowardsTheTropicsAsKoernerFoundThem) {
+  const auto tree_line_m = [](double latitude, double longitude) {
+    return MountainClimateAt(PlaceFromDegrees(latitude, longitude, 0.0)).tree_line_m;
+  };
+  EXPECT_NEAR((tree_line_m(50.0, 115.0) - tree_line_m(70.0, 115.0)) / 20.0, 75.0, 10.0);
+  for (const double latitude : {29.0, 20.0, 10.0, 0.0, -10.0, -20.0})
+    EXPECT_NEAR(tree_line_m(latitude, -140.0), 3750.0, 300.0) << latitude;
+}
+
+// As collected in the article on the tree line of Wikipedia, of single mountains.
+TEST(MountainCover, TreeLinesAreThoseOfTheLands) {
+  struct Land {
+    const char* name;
+    double latitude, longitude, line_m;
+  };
+  for (const Land& land : {Land{"Sweden", 68.0, 18.5, 800.0},
+                           {"Norway", 61.0, 8.5, 1100.0},
+                           {"Swiss Alps", 46.5, 8.0, 2100.0},
+                           {"Alps of Piedmont", 45.0, 7.0, 2100.0}}) {
+    EXPECT_NEAR(MountainClimateAt(PlaceFromDegrees(land.latitude, land.longitude, 0.0)).tree_line_m,
+                land.line_m, 200.0)
+        << land.name << ": outer and inner valleys of the Alps differ by as much";
+  }
+}
+
 // Glaciers of long series (World Glacier Monitoring Service), rounded to 50 m; none is a massif of
 // the table, and all lie in valleys that are moister or drier than the massif.
 TEST(MountainCover, SnowOutlastsTheSummerAboutTheEquilibriumLinesOfGlaciers) {
