@@ -84,7 +84,7 @@ SHARED Number FlatRise(Number normal_up) {
 // as ragged as the fine noise.
 SHARED Number ForestShare(Number treeless, Number flat_ground, Number broad, Number fine) {
   Number density =
-      Number(1.0) - Number(0.7) * flat_ground + Number(0.8) * broad + Number(0.45) * fine;
+      Number(1.0) - Number(0.7) * flat_ground + Number(0.5) * broad + Number(0.6) * fine;
   return (Number(1.0) - treeless) * SmoothRise(Number(0.05), Number(0.75), density);
 }
 

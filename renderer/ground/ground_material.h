@@ -61,8 +61,9 @@ class GroundMaterial {
   /// @param season  what covers mountains.
   [[nodiscard]] GroundPatch OfTerrain(const GroundPoint& at, const glm::dvec3& point,
                                       double normal_up, const MountainSurface& season) const;
-  /// The bare planet of a scene without terrain; beyond terrain it is level terrain at altitude 0.
-  /// @param planet_albedo  the medium's, for a cover that says nothing of it.
+  /// The planet beyond terrain.
+  /// @param planet_albedo  where the cover is that of mountains: of the season's low land around
+  ///     terrain, the medium's where there is none.
   [[nodiscard]] GroundPatch OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const;
 
   /// Whether any of it mirrors the sky.

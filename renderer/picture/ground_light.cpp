@@ -110,9 +110,11 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const gl
   GroundPoint at = parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine);
   at.normal_north = hit.mesh_normal.y;
   at.sea_s = light.sea_s;
-  if (hit.kind == HitKind::kTerrain || parts_.geometry.HasTerrain()) {
+  if (hit.kind == HitKind::kTerrain) {
     return parts_.material.OfTerrain(at, hit.point, glm::dot(hit.mesh_normal, up), light.surface);
   }
+  if (parts_.geometry.HasTerrain())
+    return parts_.material.OfPlanet(at, light.surface.Albedo(at, glm::dot(hit.mesh_normal, up)));
   BandLight albedo(air_.bands());
   for (std::size_t band = 0; band < albedo.count; ++band)
     albedo[band] = static_cast<float>(air_.medium().ground_albedo[band]);

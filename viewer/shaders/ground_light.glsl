@@ -92,17 +92,15 @@ vec4 PlanetAt(GroundPlace at, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
 #elif GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_LAND
   return EvenPlanetRadiance(at, across, sky_irradiance);
 #elif GROUND_COVER == MOUNTAIN_COVER
-  vec4 albedo =
-      LandAlbedo(at.offset, 0.0, TiltOf(at.up, at.up),
-                 SeenFootprint(at.footprint, dot(at.up, to_eye)),
-                 DrapeAt(at.offset, 0.0, at.footprint));
+  vec4 albedo = GroundAlbedo(at.offset, 0.0, TiltOf(at.up, at.up),
+                             SeenFootprint(at.footprint, dot(at.up, to_eye)), vec4(0.0));
   return CoverRadiance(albedo, at.up, across, sky_irradiance, to_eye);
 #else
   return CoverRadiance(cover_albedo, at.up, across, sky_irradiance, to_eye);
 #endif
 }
 
-// The planet beyond the terrain, level and at altitude 0.
+// The planet beyond the terrain: low land of the season, where there is any.
 vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
   return PlanetAt(at, SunAcross(at, at.up, 1e9), LevelSky(dot(at.up, sun.xyz)), to_eye);
