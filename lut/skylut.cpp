@@ -43,7 +43,8 @@ void AddEval(CLI::App& app, Options& options) {
       "eval",
       "Evaluate cases, one a line: id,quantity,altitude_m,view_zenith_deg,"
       "relative_azimuth_deg,sun_zenith_deg,distance_m. Quantities: transmittance, "
-      "optical_depth, single, inscatter_single, total, irradiance_sun, irradiance_sky; "
+      "optical_depth, single, inscatter_single, total, irradiance_sun, irradiance_sky, stokes_q, "
+      "stokes_u; "
       "radiances [1/sr] and irradiances [1] per unit solar irradiance. distance_m empty: to the "
       "ground, whose light single and total bring, or out of the top; given: the segment ends "
       "there, or at the ground or the top if nearer, and light of the ground is left out. Results: "

@@ -2,11 +2,15 @@
 // atmosphere.toml. Everything is optional; what is not given is the preset's.
 //
 //   preset = "earth"     also clear-mountain, hazy, mars, bruneton2017
+//   polarised = true     light of all orders is polarised, molecules depolarise as the preset's gas
+//                        (GasDepolarisation) unless the file says how; false (bruneton2017's own):
+//                        scalar light, of round molecules unless the file says how
 //   [planet]             radius_m (makes the planet a sphere), follows_wgs84, atmosphere_top_m,
 //                        ground_albedo
 //   [spectrum]           wavelengths_nm | bands, solar_irradiance
 //   [rayleigh]           scattering_per_m, scale_height_m (makes the density one exponential),
-//                        deficit, deficit_scale_height_m (MoleculeDeficit)
+//                        deficit, deficit_scale_height_m (MoleculeDeficit), depolarisation (one
+//                        value or one per wavelength)
 //   [mie]                scattering_per_m, extinction_per_m, scale_height_m, phase with its
 //                        parameters, each one value or one per wavelength:
 //     rayleigh
@@ -59,11 +63,12 @@ using Values = std::vector<double>;
 using Phases = std::vector<PhaseFunction>;
 using ranges::Range;
 
-const Names kSections{"preset", "planet", "spectrum", "rayleigh", "mie", "aerosol", "ozone"};
+const Names kSections{"preset",   "polarised", "planet",  "spectrum",
+                      "rayleigh", "mie",       "aerosol", "ozone"};
 const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
 const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
-const Names kRayleighKeys{"scattering_per_m", "scale_height_m", "deficit",
-                          "deficit_scale_height_m"};
+const Names kRayleighKeys{"scattering_per_m", "scale_height_m", "deficit", "deficit_scale_height_m",
+                          "depolarisation"};
 const Names kMieKeys{
     "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
     "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
@@ -116,6 +121,9 @@ class AtmosphereFile {
   Medium Read() {
     Medium medium = OnWavelengthsOfFile();
     const Values scattering_share = ScatteringShare(medium);
+    medium = root_.Truth("polarised").value_or(medium.polarised)
+                 ? InPolarisedLight(std::move(medium), preset_)
+                 : InScalarLight(std::move(medium));
     if (planet_) ReadPlanet(medium);
     if (spectrum_) {
       ReadList(*spectrum_, "solar_irradiance", ranges::kSolarIrradiance, medium.solar_irradiance,
@@ -244,6 +252,19 @@ class AtmosphereFile {
     if (rayleigh_->Has("deficit_scale_height_m") && medium.rayleigh_deficit.share == 0.0) {
       rayleigh_->Fail("deficit_scale_height_m",
                       "rayleigh.deficit_scale_height_m has no effect without rayleigh.deficit");
+    }
+    ReadDepolarisation(medium);
+  }
+
+  void ReadDepolarisation(Medium& medium) const {
+    const std::string key = "depolarisation";
+    const auto values =
+        rayleigh_->Numbers(key, ranges::kDepolarisation.low, ranges::kDepolarisation.high);
+    if (values && values->size() == 1) {
+      medium.rayleigh_depolarisation = *values;
+    } else {
+      ReadList(*rayleigh_, key, ranges::kDepolarisation, medium.rayleigh_depolarisation,
+               medium.wavelengths_nm.size());
     }
   }
 

@@ -8,6 +8,7 @@
 
 #include "atmosphere/air/medium_ranges.h"
 #include "atmosphere/air/phase_table.h"
+#include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/fnv1a.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/text/error.h"
@@ -214,6 +215,20 @@ Fault FaultOfPhase(const Medium& medium) {
   return std::nullopt;
 }
 
+Fault FaultOfDepolarisation(const Medium& medium) {
+  const std::string key = "rayleigh.depolarisation";
+  const std::vector<double>& values = medium.rayleigh_depolarisation;
+  if (values.size() != 1 && values.size() != medium.wavelengths_nm.size()) {
+    return MediumFault{
+        key, fmt::format("{} has {} values; it must have 1 or {}, one per wavelength", key,
+                         values.size(), medium.wavelengths_nm.size())};
+  }
+  for (const double value : values) {
+    if (Fault fault = OutOfRange(key, value, ranges::kDepolarisation)) return fault;
+  }
+  return std::nullopt;
+}
+
 void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
   fnv.Add(NameOf(phase.kind));
   fnv.Add(phase.g);
@@ -221,6 +236,17 @@ void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
   fnv.Add(phase.back_weight);
   fnv.Add(phase.alpha);
   if (phase.table) fnv.Add(phase.table->hash());
+}
+
+// Nothing is added for scalar light without depolarisation: such air has the hash that it had
+// before either was known.
+void AddPolarisation(const Medium& medium, Fnv1a& fnv) {
+  const std::size_t bands = medium.wavelengths_nm.size();
+  std::vector<double> depolarisation;
+  for (std::size_t band = 0; band < bands; ++band)
+    depolarisation.push_back(Depolarisation(medium, band));
+  if (depolarisation != std::vector<double>(bands, 0.0)) fnv.Add(depolarisation);
+  if (medium.polarised) fnv.Add(std::uint64_t{1});
 }
 
 bool AllShareOnePhase(const Medium& medium) {
@@ -234,6 +260,14 @@ std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) 
   for (const PhaseFunction& phase : medium.mie_phase) {
     values.push_back(Phase(phase, cos_scattering));
   }
+  if (values.size() == 1) values.resize(medium.wavelengths_nm.size(), values.front());
+  return values;
+}
+
+std::vector<double> RayleighPhaseValues(const Medium& medium, double cos_scattering) {
+  std::vector<double> values;
+  for (const double depolarisation : medium.rayleigh_depolarisation)
+    values.push_back(shared::PhaseMolecules(cos_scattering, depolarisation));
   if (values.size() == 1) values.resize(medium.wavelengths_nm.size(), values.front());
   return values;
 }
@@ -256,6 +290,7 @@ std::optional<MediumFault> FindFault(const Medium& medium) {
   if (Fault fault = FaultOfRadius(medium)) return fault;
   if (Fault fault = FaultOfTop(medium)) return fault;
   if (Fault fault = FaultOfExtinction(medium)) return fault;
+  if (Fault fault = FaultOfDepolarisation(medium)) return fault;
   return FaultOfPhase(medium);
 }
 
@@ -289,6 +324,7 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.ozone.peak_m);
   fnv.Add(medium.ozone.top_m);
   if (medium.ozone.shape != OzoneShape::kTent) fnv.Add(std::uint64_t{1});
+  AddPolarisation(medium, fnv);
   return fnv.hash();
 }
 

@@ -69,6 +69,10 @@ struct Medium {
   std::vector<double> rayleigh_scattering_per_m;  // at altitude 0
   double rayleigh_scale_height_m = 8000.0;
   MoleculeDeficit rayleigh_deficit = {};
+  /// Of the molecules: of light scattered by 90 degrees, what vibrates in the plane of scattering
+  /// over what vibrates across it; one for all wavelengths, or one per wavelength, in [0, 1/2]. It
+  /// shapes their scattering; the coefficient is as given.
+  std::vector<double> rayleigh_depolarisation{0.0};
 
   std::vector<double> mie_scattering_per_m;  // at altitude 0
   std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
@@ -79,6 +83,11 @@ struct Medium {
   std::vector<double> ozone_absorption_per_m;  // at the peak of the layer
   OzoneLayer ozone;
 
+  /// Whether light scattered more than once is followed with its polarisation (molecules polarise,
+  /// aerosol and ground depolarise), as real light is, or as if each scattering left it
+  /// unpolarised, as renderers do. True of every preset but "bruneton2017".
+  bool polarised = false;
+
   bool operator==(const Medium&) const = default;
 };
 
@@ -86,6 +95,16 @@ struct Medium {
 [[nodiscard]] double MoleculeDensity(const Medium& medium, double altitude_m);
 /// Column of the molecules over altitude 0 at their density there [m].
 [[nodiscard]] double MoleculeColumn_m(const Medium& medium);
+
+/// The molecules' at the wavelength of this index.
+[[nodiscard]] inline double Depolarisation(const Medium& medium, std::size_t band) {
+  const std::vector<double>& values = medium.rayleigh_depolarisation;
+  return values.size() == 1 ? values.front() : values[band];
+}
+
+/// Values [1/sr] of the molecules' phase function, one per wavelength. @param cos_scattering  as
+/// for Phase().
+[[nodiscard]] std::vector<double> RayleighPhaseValues(const Medium& medium, double cos_scattering);
 
 /// The aerosol's phase function at the wavelength of this index.
 [[nodiscard]] inline const PhaseFunction& MiePhase(const Medium& medium, std::size_t band) {
@@ -127,6 +146,14 @@ void Validate(const Medium& medium);
 [[nodiscard]] Medium MediumPreset(std::string_view name);
 [[nodiscard]] Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm);
 [[nodiscard]] std::vector<std::string> MediumPresetNames();
+/// Depolarisation of a preset's gas at these wavelengths in [200, 4000]: of dry air
+/// (AirDepolarisation), on "mars" of carbon dioxide.
+[[nodiscard]] std::vector<double> GasDepolarisation(std::string_view preset,
+                                                    const std::vector<double>& wavelengths_nm);
+/// The same medium in polarised light, scattered by the gas of the preset.
+[[nodiscard]] Medium InPolarisedLight(Medium medium, std::string_view preset);
+/// The same medium of round molecules in scalar light, as other renderers have it.
+[[nodiscard]] Medium InScalarLight(Medium medium);
 
 /// The wavelengths [nm] on which every preset but "bruneton2017" has data.
 inline constexpr double kFirstPresetWavelength_nm = 360.0;

@@ -47,6 +47,17 @@ std::optional<std::vector<double>> Factors(const std::vector<double>& medium,
   return factors;
 }
 
+/// The gas's own where the medium has that.
+std::vector<double> DepolarisationAt(const Medium& medium, const std::string& preset,
+                                     const std::vector<double>& wavelengths_nm) {
+  const std::vector<double>& here = medium.rayleigh_depolarisation;
+  if (here == GasDepolarisation(preset, medium.wavelengths_nm))
+    return GasDepolarisation(preset, wavelengths_nm);
+  std::vector<double> there;
+  for (const double nm : wavelengths_nm) there.push_back(Between(medium.wavelengths_nm, here, nm));
+  return there;
+}
+
 }  // namespace
 
 std::optional<Medium> OnBands(const Medium& medium, int bands) {
@@ -61,6 +72,9 @@ std::optional<Medium> OnBands(const Medium& medium, int bands) {
   Medium result = medium;
   result.wavelengths_nm = there.wavelengths_nm;
   if (medium.mie_phase == here.mie_phase) result.mie_phase = there.mie_phase;
+  if (result.rayleigh_depolarisation.size() > 1) {
+    result.rayleigh_depolarisation = DepolarisationAt(medium, *name, there.wavelengths_nm);
+  }
   for (const Row row : kRows) {
     const auto factors = Factors(medium.*row, here.*row);
     if (!factors) return std::nullopt;

@@ -15,6 +15,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/air/ozone_column.h"
 #include "atmosphere/air/phase_table.h"
+#include "atmosphere/air/scattering_matrix.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/embedded_table.h"
@@ -92,8 +93,10 @@ Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) 
   return medium;
 }
 
+constexpr double kKingFactorOfCarbonDioxide = 1.15;  // Bodhaine et al. (1999)
+
 // Rayleigh scattering of carbon dioxide at the ground of Mars: refractivity 4.49e-4 and King factor
-// 1.15 (depolarisation 0.08) in (24 pi^3 / lambda^4 N^2) ((n^2 - 1)/(n^2 + 2))^2 F, for 610 Pa and
+// F = 1.15 (depolarisation 0.08) in (24 pi^3 / lambda^4 N^2) ((n^2 - 1)/(n^2 + 2))^2 F, for 610 Pa and
 // 210 K. The cross section at 532 nm, 1.32e-30 m^2, is 6 % above what Sneep and Ubachs (2005, JQSRT
 // 92, 293-310) measured; it is a two-hundredth of the dust.
 double RayleighScatteringOnMars(double wavelength_nm) {
@@ -103,7 +106,7 @@ double RayleighScatteringOnMars(double wavelength_nm) {
   constexpr double kLorentzLorenz = (kIndex * kIndex - 1.0) / (kIndex * kIndex + 2.0);
   const double wavelength_m = wavelength_nm * 1e-9;
   const double cross_section_m2 =
-      24.0 * kPi * kPi * kPi * kLorentzLorenz * kLorentzLorenz * 1.15 /
+      24.0 * kPi * kPi * kPi * kLorentzLorenz * kLorentzLorenz * kKingFactorOfCarbonDioxide /
       (std::pow(wavelength_m, 4) * kLoschmidt_per_m3 * kLoschmidt_per_m3);
   return kMolecules_per_m3 * cross_section_m2;
 }
@@ -205,6 +208,28 @@ std::vector<std::string> MediumPresetNames() {
   return {"earth", "clear-mountain", "hazy", "mars", "bruneton2017"};
 }
 
+std::vector<double> GasDepolarisation(std::string_view preset,
+                                      const std::vector<double>& wavelengths_nm) {
+  RequireKnownName(preset);
+  if (preset == "mars") {
+    constexpr double kKing = kKingFactorOfCarbonDioxide;
+    return std::vector<double>(wavelengths_nm.size(), 6.0 * (kKing - 1.0) / (7.0 * kKing + 3.0));
+  }
+  return Evaluate(wavelengths_nm, AirDepolarisation);
+}
+
+Medium InPolarisedLight(Medium medium, std::string_view preset) {
+  medium.polarised = true;
+  medium.rayleigh_depolarisation = GasDepolarisation(preset, medium.wavelengths_nm);
+  return medium;
+}
+
+Medium InScalarLight(Medium medium) {
+  medium.polarised = false;
+  medium.rayleigh_depolarisation = {0.0};
+  return medium;
+}
+
 Medium MediumPreset(std::string_view name) {
   if (name == "bruneton2017") return Bruneton2017();
   return MediumPreset(name, WavelengthSet(4));
@@ -222,6 +247,7 @@ Medium MediumPreset(std::string_view name, const std::vector<double>& wavelength
   for (const Aerosol& aerosol : kEarthAerosols) {
     if (name == aerosol.name) medium = Earth(aerosol, wavelengths_nm);
   }
+  medium = InPolarisedLight(std::move(medium), name);
   Validate(medium);
   return medium;
 }

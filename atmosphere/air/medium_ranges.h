@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "atmosphere/air/scattering_matrix.h"
+
 namespace alpenglow::ranges {
 
 struct Range {
@@ -23,6 +25,7 @@ inline constexpr Range kAtmosphereTop_m{1.0, 1e7};
 /// once, and more in thinner ones. Fog is a medium of its own in pictures.
 inline constexpr Range kScaleHeight_m{100.0, 2e5};
 inline constexpr Range kDeficit{0.0, 1.0};
+inline constexpr Range kDepolarisation{0.0, kLargestDepolarisation};
 inline constexpr Range kOzoneAltitude_m{0.0, 1e7};
 
 /// Radius over scale height. Columns are two terms of a series in its

@@ -64,6 +64,7 @@ std::string DeficitLines(const MoleculeDeficit& deficit) {
 
 std::string TomlFromMedium(const Medium& medium) {
   const std::string text =
+      fmt::format("polarised = {}\n", medium.polarised) +
       fmt::format("[planet]\nradius_m = {}\nfollows_wgs84 = {}\natmosphere_top_m = {}\n",
                   medium.planet_radius_m, medium.follows_wgs84, medium.atmosphere_height_m) +
       fmt::format("ground_albedo = {}\n", ListOf(medium.ground_albedo)) +
@@ -72,6 +73,7 @@ std::string TomlFromMedium(const Medium& medium) {
       fmt::format("[rayleigh]\nscattering_per_m = {}\nscale_height_m = {}\n",
                   ListOf(medium.rayleigh_scattering_per_m), medium.rayleigh_scale_height_m) +
       DeficitLines(medium.rayleigh_deficit) +
+      fmt::format("depolarisation = {}\n", ListOf(medium.rayleigh_depolarisation)) +
       fmt::format("[mie]\nscattering_per_m = {}\nextinction_per_m = {}\nscale_height_m = {}\n",
                   ListOf(medium.mie_scattering_per_m), ListOf(medium.mie_extinction_per_m),
                   medium.mie_scale_height_m) +

@@ -3,6 +3,8 @@
 // scattering (forward is +1). Each integrates to 1 over the sphere.
 //
 //   Rayleigh           3/(16 pi) (1 + c^2)
+//   molecules          D Rayleigh + (1 - D)/(4 pi), D = (1 - d)/(1 + d/2) of depolarisation d;
+//                      Hansen, Travis (1974)
 //   Henyey-Greenstein  1/(4 pi) (1 - g^2) / (1 + g^2 - 2 g c)^(3/2)       Henyey, Greenstein (1941)
 //   Cornette-Shanks    3/(8 pi) (1 - g^2)/(2 + g^2) (1 + c^2) / (1 + g^2 - 2 g c)^(3/2)
 //                                                                          Cornette, Shanks (1992)
@@ -40,6 +42,17 @@ SHARED Number PhaseLobe(Number cos_scattering, Number g) {
 SHARED Number PhaseRayleigh(Number cos_scattering) {
   Number c = PhaseClampedCosine(cos_scattering);
   return Number(0.0596831036594607509) * (Number(1.0) + c * c);
+}
+
+// The share of what molecules scatter that round ones would scatter so, D.
+SHARED Number RoundShare(Number depolarisation) {
+  return (Number(1.0) - depolarisation) / (Number(1.0) + Number(0.5) * depolarisation);
+}
+
+SHARED Number PhaseMolecules(Number cos_scattering, Number depolarisation) {
+  Number share = RoundShare(depolarisation);
+  return share * PhaseRayleigh(cos_scattering) +
+         (Number(1.0) - share) * Number(0.0795774715459476679);
 }
 
 SHARED Number PhaseHenyeyGreenstein(Number cos_scattering, Number g) {

@@ -106,7 +106,11 @@ double TauAt(const Medium& medium, std::size_t band, std::span<const double> col
          medium.ozone_absorption_per_m[band] * columns[2];
 }
 
-double PhaseRayleigh(double nu) { return 3.0 / (16.0 * kPi) * (1.0 + nu * nu); }
+// Hansen and Travis (1974), 2.15: a share D of round molecules' scattering, the rest alike all round.
+double PhaseOfMolecules(double depolarisation, double nu) {
+  const double share = (1.0 - depolarisation) / (1.0 + 0.5 * depolarisation);
+  return (0.75 * share * (1.0 + nu * nu) + 1.0 - share) / (4.0 * kPi);
+}
 
 // Columns from a point towards the sun, or nothing when the planet stands between.
 struct SunPath {
@@ -197,7 +201,9 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
     return any_dark && t > shadow.dark_begin_m && t < shadow.dark_end_m;
   };
 
-  const double phase_rayleigh = PhaseRayleigh(ray.nu);
+  std::vector<double> phase_rayleigh;
+  for (std::size_t band = 0; band < bands; ++band)
+    phase_rayleigh.push_back(PhaseOfMolecules(Depolarisation(medium, band), ray.nu));
   const std::vector<double> phase_mie = MiePhaseValues(medium, ray.nu);
   const auto source = [&](double t) {
     std::vector<double> scattered(bands, 0.0);
@@ -208,8 +214,9 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
     for (std::size_t band = 0; band < bands; ++band) {
       const double tau = TauAt(medium, band, view.value) + TauAt(medium, band, sun.columns);
       scattered[band] =
-          std::exp(-tau) * (medium.rayleigh_scattering_per_m[band] * density[0] * phase_rayleigh +
-                            medium.mie_scattering_per_m[band] * density[1] * phase_mie[band]);
+          std::exp(-tau) *
+          (medium.rayleigh_scattering_per_m[band] * density[0] * phase_rayleigh[band] +
+           medium.mie_scattering_per_m[band] * density[1] * phase_mie[band]);
     }
     return scattered;
   };

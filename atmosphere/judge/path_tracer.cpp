@@ -34,6 +34,7 @@ constexpr double kRouletteShare = 0.2;
 constexpr double kSplitShare = 2.0;
 constexpr double kMostCopies = 8.0;
 
+// What directions are drawn by; depolarisation is in the weight.
 const PhaseFunction kMolecules{.kind = PhaseKind::kRayleigh};
 
 double Mean(std::span<const double> values) {
@@ -443,7 +444,7 @@ Responses Tracer::ResponsesToSun(const Piece& piece) const {
   const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
   const std::vector<double> mie_phase = MiePhaseValues(scene_.medium(), nu);
   if (polarised_ == nullptr) {
-    return {std::vector<double>(bands, Phase(kMolecules, nu)), mie_phase};
+    return {RayleighPhaseValues(scene_.medium(), nu), mie_phase};
   }
   const PlaneTurn turn = TurnOf(piece.direction, reference_, scene_.sun());
   Responses responses{std::vector<double>(kStokes * bands), std::vector<double>(kStokes * bands)};
@@ -628,9 +629,9 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
     direction = FrameAround(piece.direction).Direction(cosine, azimuth);
   }
   const double cosine = std::clamp(glm::dot(direction, piece.direction), -1.0, 1.0);
-  const double rayleigh_phase = Phase(kMolecules, cosine);
+  const std::vector<double> rayleigh_phase = RayleighPhaseValues(medium, cosine);
   const std::vector<double> mie_phase = MiePhaseValues(medium, cosine);
-  double density = molecules * rayleigh_phase + aerosol * MeanBy(share, mie_phase);
+  double density = molecules * Phase(kMolecules, cosine) + aerosol * MeanBy(share, mie_phase);
   if (guidance.glow > 0.0) density += guidance.glow * glow.Density(direction);
   if (guidance.aureole > 0.0) {
     const double to_sun = std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0);
@@ -642,7 +643,7 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
     const double by_air = medium.rayleigh_scattering_per_m[band] * point.rayleigh;
     const double by_mie = medium.mie_scattering_per_m[band] * point.mie;
     weight_[band] *= (polarised_ == nullptr
-                          ? by_air * rayleigh_phase + by_mie * mie_phase[band]
+                          ? by_air * rayleigh_phase[band] + by_mie * mie_phase[band]
                           : TurnAnalyser(band, turn, by_air, by_mie, mie_phase[band], cosine)) /
                      density;
   }
@@ -845,9 +846,17 @@ Piece ViewPiece(const Medium& medium, const ViewRay& ray, const RayExtent& exten
 
 }  // namespace
 
+PolarisedScattering ScatteringOf(const Medium& medium) {
+  PolarisedScattering scattering;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
+    scattering.depolarisation.push_back(Depolarisation(medium, band));
+  return scattering;
+}
+
 PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
                                  const PathOptions& options) {
   Validate(medium);
+  if (medium.polarised) return TraceStokes(medium, ScatteringOf(medium), ray, options).i;
   RequireValid(options);
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const Scene scene(medium, SunDirection(ray.mu_s));
@@ -897,15 +906,19 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
   const Scene scene(medium, SunDirection(mu_s));
   const Vector from(0.0, 0.0, medium.planet_radius_m + altitude_m);
   const Vector normal(0.0, 0.0, side == PlaneSide::kFromAbove ? 1.0 : -1.0);
+  const PolarisedScattering polarised = ScatteringOf(medium);
   Estimate estimate =
-      Run(scene, nullptr, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
-        const double choice = random.Next();
-        const double u = random.Next();
-        const double v = random.Next();
-        const PlaneDirection drawn = DirectionAbove(scene, from, normal, 0, choice, u, v);
-        if (drawn.weight <= 0.0) return;
-        tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
-      });
+      Run(scene, medium.polarised ? &polarised : nullptr, options,
+          [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+            const double choice = random.Next();
+            const double u = random.Next();
+            const double v = random.Next();
+            const PlaneDirection drawn = DirectionAbove(scene, from, normal, 0, choice, u, v);
+            if (drawn.weight <= 0.0) return;
+            tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
+          });
+  estimate.total.resize(scene.bands());  // Q and U of what falls from all sides mean nothing
+  estimate.total_error.resize(scene.bands());
   return {std::move(estimate.total), std::move(estimate.total_error), estimate.paths,
           estimate.converged};
 }

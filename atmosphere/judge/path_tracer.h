@@ -52,7 +52,8 @@ struct PathTracedRadiance {
 
 /// The same result for any number of threads (oneTBB's, as the caller limits them). Light reflected
 /// by the ground at the ray's end is left out where BringsLightOfGround says so. Throws InputError
-/// for a ray or a medium that is not valid, max_order < 1 or relative_error < 0.
+/// for a ray or a medium that is not valid, max_order < 1 or relative_error < 0. Of a medium whose
+/// light is polarised, I of TraceStokes with the medium's depolarisation.
 [[nodiscard]] PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
                                                const PathOptions& options = {});
 
@@ -62,6 +63,9 @@ struct PolarisedScattering {
   /// Of the aerosol: none where it depolarises, one for all wavelengths, or one per wavelength.
   std::vector<SphereRatios> aerosol = {};
 };
+
+/// Of a medium's molecules; its aerosol depolarises.
+[[nodiscard]] PolarisedScattering ScatteringOf(const Medium& medium);
 
 /// Stokes parameters for unit solar irradiance [1/sr]. Q > 0 vibrates in the vertical plane of the
 /// view; U > 0 from the upper right to the lower left as the eye sees it where the sun is to the

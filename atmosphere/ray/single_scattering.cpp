@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "atmosphere/air/phase_table.h"
+#include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
@@ -375,7 +376,8 @@ ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples
 
 template <typename Real>
 Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
-  const Real rayleigh_phase = static_cast<Real>(Phase({.kind = PhaseKind::kRayleigh}, nu));
+  const std::vector<double>& depolarisation = medium_.rayleigh_depolarisation;
+  Real rayleigh_phase = Real(0);
   const std::vector<PhaseFunction>& phases = medium_.mie_phase;
   const bool tabulated = phases.front().kind == PhaseKind::kTable;
   const double position = tabulated ? PhaseTable::Position(nu) : 0.0;  // one for all tables
@@ -386,6 +388,8 @@ Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered,
       mie_phase =
           static_cast<Real>(tabulated ? phases[band].table->At(position) : Phase(phases[band], nu));
     }
+    if (band < depolarisation.size())
+      rayleigh_phase = static_cast<Real>(shared::PhaseMolecules(nu, depolarisation[band]));
     radiance[band] = rayleigh_phase * scattered.rayleigh[band] + mie_phase * scattered.mie[band];
   }
   return radiance;

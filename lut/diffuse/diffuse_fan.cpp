@@ -23,7 +23,8 @@ constexpr double kMetresPerKilometre = 1000.0;
 struct DiffuseFan::Line {
   const RaySamples<float>& samples;
   std::size_t directions;
-  std::vector<float> position, twilight, cosine;  // [sample * directions + direction]
+  // [sample * directions + direction]; the sine of the sun's zenith angle of polarised light alone
+  std::vector<float> position, twilight, cosine, sun_sine;
 };
 
 DiffuseFan::DiffuseFan(const DiffuseLight& light)
@@ -54,6 +55,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
   const DiffuseLightOptions& options = light_.options();
   const RaySamples<float>& samples = line.samples;
   const std::size_t bands = light_.bands();
+  const bool polarised = medium.polarised;
   const std::size_t node_floats = light_.channels() * stride_;
   const auto suns = static_cast<std::size_t>(options.sun_angles);
   const auto orders = static_cast<std::size_t>(options.degree) + 1;
@@ -68,7 +70,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
     const int low = std::clamp(static_cast<int>(*least) - 1, 0, options.sun_angles - 4);
     const int high = std::clamp(static_cast<int>(*most) + 2, low + 3, options.sun_angles - 1);
 
-    std::array<float, kMaxMoments * kLanes> factors;
+    std::array<float, (kMaxMoments + kTensorMoments) * kLanes> factors;
     const Moments legendre = LegendreTerms(options.degree, samples.mu[s]);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t band = std::min(first_band + lane, bands - 1);
@@ -83,13 +85,18 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
       const float molecules = seen * rayleigh * samples.rayleigh_density[s];
       const float aerosol = seen * per_km(medium.mie_scattering_per_m) * samples.mie_density[s];
       for (std::size_t l = 0; l < orders; ++l) {
-        const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? 0.1F : 0.0F;
+        const float chi2 = polarised ? 0.0F : RayleighChi2(medium, band);
+        const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? chi2 : 0.0F;
         const float source =
             molecules * rayleigh_chi + aerosol * static_cast<float>(chi_mie_[l * bands + band]);
         for (std::size_t m = 0; m <= l; ++m) {
           const std::size_t i = l * (l + 1) / 2 + m;
           factors[i * kLanes + lane] = source * legendre[i];
         }
+      }
+      for (std::size_t m = 0; m < kTensorMoments; ++m) {
+        factors[(light_.moments() + m) * kLanes + lane] =
+            molecules * RayleighChi2(medium, band) * legendre[MomentIndex(2, static_cast<int>(m))];
       }
     }
 
@@ -100,6 +107,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
     contraction.sun_stride = node_floats;
     contraction.moment_stride = stride_;
     contraction.degree = options.degree;
+    contraction.tensor = polarised ? light_.moments() : 0;
     contraction.factors = factors.data();
     contraction.rows = &rows[orders * kLanes];
     for (std::size_t a = 0; a < 4; ++a) {
@@ -111,8 +119,10 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
     kernel.contract(contraction);
     for (std::size_t sun = 0; sun < contraction.suns; ++sun) {
       const float twilight = twilight_[static_cast<std::size_t>(low) + sun];
+      const float sine = SunSine(MuSOfNode(light_.grid(), static_cast<std::size_t>(low) + sun));
       float* row = contraction.rows + sun * orders * kLanes;
-      for (std::size_t k = 0; k < orders * kLanes; ++k) row[k] /= twilight;
+      for (std::size_t k = 0; k < orders * kLanes; ++k)
+        row[k] /= twilight * SinePowerOf(light_.grid(), k / kLanes, sine);
     }
 
     // Beyond the ends of the grid the line through the last two nodes goes on, as in TapsAt.
@@ -124,17 +134,21 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
       after[k] = 2.0F * (after - width)[k] - (after - 2 * width)[k];
     }
     kernel.gather({line.directions, position, &line.twilight[s * line.directions],
-                   &line.cosine[s * line.directions], low - 1, high - low + 3, options.degree,
-                   rows.data(), light.data()});
+                   &line.cosine[s * line.directions],
+                   polarised ? &line.sun_sine[s * line.directions] : nullptr, low - 1,
+                   high - low + 3, options.degree, rows.data(), light.data()});
   }
 }
 
 std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, const ViewRay& ray,
                                               std::span<const float> nus) const {
   const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
-  Line line{samples, nus.size(), std::vector<float>(samples.count * nus.size()),
+  Line line{samples,
+            nus.size(),
             std::vector<float>(samples.count * nus.size()),
-            std::vector<float>(samples.count * nus.size())};
+            std::vector<float>(samples.count * nus.size()),
+            std::vector<float>(samples.count * nus.size()),
+            std::vector<float>(light_.medium().polarised ? samples.count * nus.size() : 0)};
   const double radius_km = light_.medium().planet_radius_m / kMetresPerKilometre;
   const double observer_km = radius_km + std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
   for (std::size_t s = 0; s < samples.count; ++s) {
@@ -145,7 +159,8 @@ std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, 
                       static_cast<float>(1.0 / (radius_km + double{samples.altitude[s]})),
                       samples.mu[s], position_of_mu_s_.data(), twilight_of_mu_s_.data(),
                       static_cast<float>(kTableCells), &line.position[s * nus.size()],
-                      &line.twilight[s * nus.size()], &line.cosine[s * nus.size()]});
+                      &line.twilight[s * nus.size()], &line.cosine[s * nus.size()],
+                      line.sun_sine.empty() ? nullptr : &line.sun_sine[s * nus.size()]});
   }
   const std::size_t bands = light_.bands();
   std::vector<float> all(nus.size() * bands);

@@ -2,6 +2,7 @@
 #include "lut/diffuse/diffuse_fan_kernel.h"
 
 #include "atmosphere/ray/batch.h"
+#include "lut/diffuse/tensor_moments.h"
 
 namespace alpenglow {
 namespace {
@@ -16,6 +17,13 @@ inline Four Load(const float* from) {
 
 inline void Store(float* to, Four four) { __builtin_memcpy(to, &four, sizeof four); }
 
+inline Four BetweenAltitudes(const FanContraction& work, std::size_t offset) {
+  return work.weights[0] * Load(work.nodes[0] + offset) +
+         work.weights[1] * Load(work.nodes[1] + offset) +
+         work.weights[2] * Load(work.nodes[2] + offset) +
+         work.weights[3] * Load(work.nodes[3] + offset);
+}
+
 void Contract(const FanContraction& work) {
   const int orders = work.degree + 1;
   for (std::size_t sun = 0; sun < work.suns; ++sun) {
@@ -26,11 +34,14 @@ void Contract(const FanContraction& work) {
       for (int l = m; l < orders; ++l) {
         const auto moment = static_cast<std::size_t>(l * (l + 1) / 2 + m);
         const std::size_t offset = at + moment * work.moment_stride;
-        const Four there = work.weights[0] * Load(work.nodes[0] + offset) +
-                           work.weights[1] * Load(work.nodes[1] + offset) +
-                           work.weights[2] * Load(work.nodes[2] + offset) +
-                           work.weights[3] * Load(work.nodes[3] + offset);
+        const Four there = BetweenAltitudes(work, offset);
         sum += Load(work.factors + 4 * moment) * there;
+      }
+      if (work.tensor > 0 && m < static_cast<int>(kTensorMoments)) {
+        const std::size_t channel = work.tensor + static_cast<std::size_t>(m);
+        const std::size_t offset = at + channel * work.moment_stride;
+        const Four there = BetweenAltitudes(work, offset);
+        sum += Load(work.factors + 4 * channel) * there;
       }
       Store(row + 4 * m, sum);
     }
@@ -46,6 +57,8 @@ void FindSuns(const FanSuns& work) {
     const float sines = std::sqrt(shared::max(view_sine2 * (1.0F - mu_s) * (1.0F + mu_s), 1e-12F));
     work.cosine[k] = shared::min(shared::max((nu - work.mu * mu_s) / sines, -1.0F), 1.0F);
     work.position[k] = 0.5F * (1.0F + mu_s) * work.table_cells;
+    if (work.sun_sine != nullptr)
+      work.sun_sine[k] = std::sqrt(shared::max((1.0F - mu_s) * (1.0F + mu_s), 0.0F));
   }
   for (std::size_t k = 0; k < work.count; ++k) {
     const float x = shared::min(work.position[k], work.table_cells - 1.0F);
@@ -73,12 +86,13 @@ void Gather(const FanGathering& work) {
     const float w3 = 0.5F * t * t * (t - 1.0F);
     const float* row = work.rows + 4 * orders * static_cast<std::size_t>(cell - 1);
     const float cosine = work.cosine[k];
+    const float sine = work.sun_sine == nullptr ? 1.0F : work.sun_sine[k];
     float before = cosine, now = 1.0F;  // cos((m - 1) phi), cos(m phi)
     Four sum = {};
     for (std::size_t m = 0; m < orders; ++m, row += 4) {
       const Four there = w0 * Load(row) + w1 * Load(row + 4 * orders) +
                          w2 * Load(row + 8 * orders) + w3 * Load(row + 12 * orders);
-      sum += now * there;
+      sum += now * SinePower(m, sine) * there;
       const float next = 2.0F * cosine * now - before;
       before = now;
       now = next;

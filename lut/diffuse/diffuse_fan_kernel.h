@@ -18,6 +18,7 @@ struct FanContraction {
   std::size_t sun_stride;     // floats between nodes of the sun's angle
   std::size_t moment_stride;  // between moments
   int degree;
+  std::size_t tensor;    // channel of T20 (tensor_moments.h); 0: light is not polarised
   const float* factors;  // four a moment: source per moment
   float* rows;           // [(sun * (degree + 1) + m) * 4]
 };
@@ -35,6 +36,7 @@ struct FanSuns {
   float* position;  // among the nodes of the sun's angle
   float* twilight;  // what light is multiplied by after interpolation
   float* cosine;    // of the azimuth between view and sun
+  float* sun_sine;  // of the sun's zenith angle, or null
 };
 
 /// Adds one sample's light.
@@ -43,7 +45,8 @@ struct FanGathering {
   const float* position;
   const float* twilight;
   const float* cosine;
-  int first_sun, suns;  // of the rows: the nodes that they stand for
+  const float* sun_sine;  // by whose power rows are to be multiplied (SinePower), or null
+  int first_sun, suns;    // of the rows: the nodes that they stand for
   int degree;
   const float* rows;
   float* light;  // four a direction

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "lut/diffuse/diffuse_grid.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "atmosphere/air/phase_text.h"
 
 namespace alpenglow {
 
@@ -11,6 +14,7 @@ DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
   grid.altitudes = static_cast<std::size_t>(options.altitudes);
   grid.suns = static_cast<std::size_t>(options.sun_angles);
   grid.degree = static_cast<std::size_t>(options.degree);
+  grid.polarised = medium.polarised;
   grid.top_km = static_cast<float>(medium.atmosphere_height_m / 1000.0);
   grid.sun_centre = static_cast<float>(sun.centre());
   grid.sun_width = static_cast<float>(sun.width());
@@ -30,6 +34,20 @@ float TwilightOf(const DiffuseGrid& grid, double mu_s) {
   const double width = static_cast<double>(grid.twilight_width);
   return static_cast<float>(std::exp(-0.5 * static_cast<double>(grid.twilight_fall) *
                                      (x + std::sqrt(x * x + width * width))));
+}
+
+float RayleighChi2(const Medium& medium, std::size_t band) {
+  return 0.1F * static_cast<float>(shared::RoundShare(Depolarisation(medium, band)));
+}
+
+double MuSOfNode(const DiffuseGrid& grid, std::size_t sun) {
+  const double mu_s = DiffuseLight::MuSFromCoordinate(static_cast<double>(sun) /
+                                                      static_cast<double>(grid.suns - 1));
+  return grid.polarised ? std::min(mu_s, kHighestPolarisedSun) : mu_s;
+}
+
+float SunSine(double mu_s) {
+  return static_cast<float>(std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0)));
 }
 
 CubicTaps SunTaps(const DiffuseGrid& grid, double mu_s) {

@@ -6,6 +6,7 @@
 
 #include "atmosphere/ray/batch.h"
 #include "atmosphere/ray/optical_depth.h"
+#include "lut/diffuse/tensor_moments.h"
 
 namespace alpenglow {
 namespace {
@@ -145,13 +146,13 @@ T CosineOfAzimuth(const T& mu, const T& sine, const T& mu_s, const T& nu) {
 }
 
 // Source of a march point per cos(m phi) at every sun node, altitude and degree summed: row
-// (1 + sun). A node beyond each end continues the line through the last two, so that every tap has
-// four neighbours.
-template <std::size_t kDegree, std::size_t kStep, std::size_t kLast>
+// (1 + sun) of kRow vectors.
+template <std::size_t kDegree, std::size_t kStep, std::size_t kLast, std::size_t kNode,
+          std::size_t kRow>
 void ContractRows(const DiffuseGrid& grid, const MarchPoint& point, const Eight* factor,
                   const float* previous, float* rows) {
   constexpr std::size_t kPairs = kDegree / 2 + 1;
-  constexpr std::size_t kNode = kPackedRow[kDegree + 1];
+  constexpr std::size_t kMoments = kPackedRow[kDegree + 1];
   const std::size_t stride = grid.suns * kNode * 8;
   const float* node[4] = {
       previous + point.altitude_node[0] * stride, previous + point.altitude_node[1] * stride,
@@ -164,49 +165,99 @@ void ContractRows(const DiffuseGrid& grid, const MarchPoint& point, const Eight*
       for (std::size_t l = 0; l <= kLast; l += kStep) {
         for (std::size_t p = 0; p <= l / 2; ++p) {
           const std::size_t i = kPackedRow[l] + p;
-          Add(sum[p], factor[tap * kNode + i], LoadEight(at + i * 8));
+          Add(sum[p], factor[tap * kMoments + i], LoadEight(at + i * 8));
         }
       }
     }
-    for (std::size_t p = 0; p < kPairs; ++p)
-      StoreEight(rows + ((sun + 1) * kPairs + p) * 8, sum[p]);
+    for (std::size_t p = 0; p < kPairs; ++p) StoreEight(rows + ((sun + 1) * kRow + p) * 8, sum[p]);
   }
 }
 
-template <std::size_t kDegree>
-void Contract(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight& light,
-              const BlockChi& chi, const float* previous, float* rows) {
-  constexpr std::size_t kPairs = kDegree / 2 + 1;
-  constexpr std::size_t kNode = kPackedRow[kDegree + 1];
-  Eight factor[4 * kNode];
+// Factors of moments in the source of a march point: [tap * vectors + vector]. Of polarised light
+// what molecules scatter is left to the tensor.
+template <std::size_t kDegree, bool kPolarised>
+void FindFactors(const MarchPoint& point, const MarchLight& light, const BlockShape& shape,
+                 Eight* factor) {
+  constexpr std::size_t kMoments = kPackedRow[kDegree + 1];
   for (std::size_t l = 0; l <= kDegree; ++l) {
     alignas(64) float source[8];
-    const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? 0.1F : 0.0F;
-    for (std::size_t band = 0; band < 8; ++band)
-      source[band] =
-          light.rayleigh[band % 4] * rayleigh_chi + light.mie[band % 4] * chi[l][band % 4];
+    for (std::size_t band = 0; band < 8; ++band) {
+      const std::size_t lane = band % 4;
+      const float rayleigh_chi = kPolarised ? 0.0F
+                                 : l == 0   ? 1.0F
+                                 : l == 2   ? shape.rayleigh_chi2[lane]
+                                            : 0.0F;
+      source[band] = light.rayleigh[lane] * rayleigh_chi + light.mie[lane] * shape.mie[l][lane];
+    }
     const Eight of_row = LoadEight(source);
     for (std::size_t p = 0; p <= l / 2; ++p) {
       const std::size_t m = l * (l + 1) / 2 + 2 * p;
       Eight legendre = Pair(point.legendre[m], 2 * p < l ? point.legendre[m + 1] : 0.0F);
       for (std::size_t i = 0; i < kParts; ++i) legendre.part[i] *= of_row.part[i];
       for (std::size_t tap = 0; tap < 4; ++tap) {
-        Eight& weighted = factor[tap * kNode + kPackedRow[l] + p];
+        Eight& weighted = factor[tap * kMoments + kPackedRow[l] + p];
         weighted = Zero();
         Add(weighted, V(point.altitude_weight[tap]), legendre);
       }
     }
   }
-  if (point.only_molecules) {
-    ContractRows<kDegree, 2, 2>(grid, point, factor, previous, rows);
-  } else {
-    ContractRows<kDegree, 1, kDegree>(grid, point, factor, previous, rows);
+}
+
+// A node beyond each end continues the line through the last two, so that every tap has four
+// neighbours.
+template <std::size_t kRow>
+void AddEnds(std::size_t suns, float* rows) {
+  for (std::size_t i = 0; i < kRow * 8; ++i) {
+    rows[i] = 2.0F * rows[kRow * 8 + i] - rows[2 * kRow * 8 + i];
+    const float* last = rows + suns * kRow * 8 + i;
+    rows[(suns + 1) * kRow * 8 + i] = 2.0F * last[0] - last[-static_cast<std::ptrdiff_t>(kRow * 8)];
   }
-  for (std::size_t i = 0; i < kPairs * 8; ++i) {
-    rows[i] = 2.0F * rows[kPairs * 8 + i] - rows[2 * kPairs * 8 + i];
-    const float* last = rows + grid.suns * kPairs * 8 + i;
-    rows[(grid.suns + 1) * kPairs * 8 + i] =
-        2.0F * last[0] - last[-static_cast<std::ptrdiff_t>(kPairs * 8)];
+}
+
+template <std::size_t kDegree>
+void Contract(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight& light,
+              const BlockShape& shape, const float* previous, float* rows) {
+  constexpr std::size_t kPairs = kDegree / 2 + 1;
+  constexpr std::size_t kNode = kPackedRow[kDegree + 1];
+  Eight factor[4 * kNode];
+  FindFactors<kDegree, false>(point, light, shape, factor);
+  if (point.only_molecules) {
+    ContractRows<kDegree, 2, 2, kNode, kPairs>(grid, point, factor, previous, rows);
+  } else {
+    ContractRows<kDegree, 1, kDegree, kNode, kPairs>(grid, point, factor, previous, rows);
+  }
+  AddEnds<kPairs>(grid.suns, rows);
+}
+
+// The tensor at every sun node times what molecules scatter: (D/10 T20, D/10 T21) and (D/10 T22,
+// moment 00 Y00), in the last two vectors of each row.
+template <std::size_t kDegree>
+void ContractTensor(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight& light,
+                    const BlockShape& shape, const float* previous, float* rows) {
+  constexpr std::size_t kNode = PackedVectors(kDegree, true);
+  constexpr std::size_t kRow = kDegree / 2 + 3;
+  alignas(64) float degree2[8], degree0[8];
+  for (std::size_t band = 0; band < 8; ++band) {
+    degree2[band] = light.rayleigh[band % 4] * shape.rayleigh_chi2[band % 4];
+    degree0[band] = band < 4 ? degree2[band] : light.rayleigh[band % 4] * point.legendre[0];
+  }
+  const Eight first = LoadEight(degree2), second = LoadEight(degree0);
+  for (std::size_t sun = 0; sun < grid.suns; ++sun) {
+    Eight sum[2] = {Zero(), Zero()};
+    for (std::size_t tap = 0; tap < 4; ++tap) {
+      const float* at =
+          previous +
+          ((point.altitude_node[tap] * grid.suns + sun) * kNode + kPackedRow[kDegree + 1]) * 8;
+      const V weight(point.altitude_weight[tap]);
+      Add(sum[0], weight, LoadEight(at));
+      Add(sum[1], weight, LoadEight(at + 8));
+    }
+    float* row = rows + ((sun + 1) * kRow + kDegree / 2 + 1) * 8;
+    Eight source[2] = {Zero(), Zero()};
+    Add(source[0], first, sum[0]);
+    Add(source[1], second, sum[1]);
+    StoreEight(row, source[0]);
+    StoreEight(row + 8, source[1]);
   }
 }
 
@@ -215,8 +266,24 @@ template <std::size_t kPairs>
 struct AzimuthTaps {
   alignas(64) float cell[kMostAzimuths];
   alignas(64) float weight[4][kMostAzimuths];
-  alignas(64) float cosine[2 * kPairs][kMostAzimuths];  // of m phi
+  alignas(64) float cosine[2 * kPairs][kMostAzimuths];  // of m phi, times SinePower if polarised
+  alignas(64) float sine[2][kMostAzimuths];             // of phi and 2 phi, the same; if polarised
 };
+
+// Multiplies cosines by powers of the sun's zenith sine, and finds the sines of azimuths.
+template <std::size_t kPairs>
+void ScaleAzimuths(const V& mu_s, const V& cosine, std::size_t k, AzimuthTaps<kPairs>& taps) {
+  using namespace shared;
+  const V zero(0.0F), one(1.0F);
+  const V squared = max((one - mu_s) * (one + mu_s), zero);
+  const V sun_sine = sqrt(squared);
+  const V sine = sqrt(max((one - cosine) * (one + cosine), zero));
+  Store(taps.sine[0] + k, sun_sine * sine);
+  Store(taps.sine[1] + k, squared * V(2.0F) * sine * cosine);
+  Store(taps.cosine[1] + k, sun_sine * Load(taps.cosine[1] + k));
+  for (std::size_t m = 2; m < 2 * kPairs; ++m)
+    Store(taps.cosine[m] + k, squared * Load(taps.cosine[m] + k));
+}
 
 template <std::size_t kPairs>
 void FindTaps(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint& point,
@@ -248,17 +315,18 @@ void FindTaps(const DiffuseGrid& grid, const MarchDirection& direction, const Ma
       before = now;
       now = next;
     }
+    if (grid.polarised) ScaleAzimuths<kPairs>(mu_s, cosine, k, taps);
   }
 }
 
 template <std::size_t kDegree>
 void ArriveOfDegree(const DiffuseGrid& grid, const MarchDirection& direction,
                     const MarchPoint* points, const MarchLight* lights, std::size_t count,
-                    const BlockChi& chi, const float* previous, float* rows, float* arriving) {
+                    const BlockShape& shape, const float* previous, float* rows, float* arriving) {
   constexpr std::size_t kPairs = kDegree / 2 + 1;
   AzimuthTaps<kPairs> taps;
   for (std::size_t s = 0; s < count; ++s) {
-    Contract<kDegree>(grid, points[s], lights[s], chi, previous, rows);
+    Contract<kDegree>(grid, points[s], lights[s], shape, previous, rows);
     float* light = arriving;
     for (std::size_t sun = 0; sun < grid.suns; ++sun) {
       FindTaps<kPairs>(grid, direction, points[s], sun, taps);
@@ -276,6 +344,84 @@ void ArriveOfDegree(const DiffuseGrid& grid, const MarchDirection& direction,
           Add(there, w3, LoadEight(row + (3 * kPairs + p) * 8));
           Add(sum, Pair(taps.cosine[2 * p][k], taps.cosine[2 * p + 1][k]), there);
         }
+        StoreEight(light, sum);
+      }
+    }
+  }
+}
+
+// Weights of four rows of suns, and where the first of them begins.
+struct SunRows {
+  const float* row;
+  V w0, w1, w2, w3;
+};
+
+template <std::size_t kRow>
+Eight BetweenSuns(const SunRows& at, std::size_t vector) {
+  const float* row = at.row + vector * 8;
+  Eight there = Zero();
+  Add(there, at.w0, LoadEight(row));
+  Add(there, at.w1, LoadEight(row + kRow * 8));
+  Add(there, at.w2, LoadEight(row + 2 * kRow * 8));
+  Add(there, at.w3, LoadEight(row + 3 * kRow * 8));
+  return there;
+}
+
+// Adds what a march point's molecules send along one azimuth: I, Q and U.
+template <std::size_t kPairs>
+void AddTensorLight(const MarchPoint& point, const TensorStokes<float>& stokes,
+                    const AzimuthTaps<kPairs>& taps, std::size_t k, const SunRows& at,
+                    float* light) {
+  constexpr std::size_t kRow = kPairs + 2;
+  const Eight first = BetweenSuns<kRow>(at, kPairs), second = BetweenSuns<kRow>(at, kPairs + 1);
+  const float cosine = taps.cosine[1][k], cosine2 = taps.cosine[2][k];
+  const float of_first[3][2] = {{point.legendre[3], point.legendre[4] * cosine},
+                                {stokes.q20, stokes.q21 * cosine},
+                                {0.0F, stokes.u21 * taps.sine[0][k]}};
+  const float of_second[3][2] = {{point.legendre[5] * cosine2, 1.0F},
+                                 {stokes.q22 * cosine2, 0.0F},
+                                 {stokes.u22 * taps.sine[1][k], 0.0F}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Eight sum = LoadEight(light + i * 8);
+    Add(sum, Pair(of_first[i][0], of_first[i][1]), first);
+    Add(sum, Pair(of_second[i][0], of_second[i][1]), second);
+    StoreEight(light + i * 8, sum);
+  }
+}
+
+template <std::size_t kDegree>
+void ArrivePolarisedOfDegree(const DiffuseGrid& grid, const MarchDirection& direction,
+                             const MarchPoint* points, const MarchLight* lights, std::size_t count,
+                             const BlockShape& shape, const float* previous, float* rows,
+                             float* arriving) {
+  constexpr std::size_t kPairs = kDegree / 2 + 1;
+  constexpr std::size_t kRow = kPairs + 2;
+  AzimuthTaps<kPairs> taps;
+  for (std::size_t s = 0; s < count; ++s) {
+    const MarchPoint& point = points[s];
+    const std::size_t pairs = point.only_molecules ? 0 : kPairs;
+    if (!point.only_molecules) {
+      Eight factor[4 * kPackedRow[kDegree + 1]];
+      FindFactors<kDegree, true>(point, lights[s], shape, factor);
+      ContractRows<kDegree, 1, kDegree, PackedVectors(kDegree, true), kRow>(grid, point, factor,
+                                                                            previous, rows);
+    }
+    ContractTensor<kDegree>(grid, point, lights[s], shape, previous, rows);
+    AddEnds<kRow>(grid.suns, rows);
+    const TensorStokes<float> stokes = TensorStokesAlong<float>(point.mu, point.sine);
+    float* light = arriving;
+    for (std::size_t sun = 0; sun < grid.suns; ++sun) {
+      FindTaps<kPairs>(grid, direction, point, sun, taps);
+      for (std::size_t k = 0; k < direction.azimuths; ++k, light += 3 * 8) {
+        const std::size_t cell = static_cast<std::size_t>(static_cast<int>(taps.cell[k]));
+        const SunRows at{rows + cell * kRow * 8, V(taps.weight[0][k]), V(taps.weight[1][k]),
+                         V(taps.weight[2][k]), V(taps.weight[3][k])};
+        AddTensorLight<kPairs>(point, stokes, taps, k, at, light);
+        if (pairs == 0) continue;
+        Eight sum = LoadEight(light);
+        for (std::size_t p = 0; p < pairs; ++p)
+          Add(sum, Pair(taps.cosine[2 * p][k], taps.cosine[2 * p + 1][k]),
+              BetweenSuns<kRow>(at, p));
         StoreEight(light, sum);
       }
     }
@@ -300,10 +446,20 @@ void OfDegree(std::size_t degree, const Run& run) {
 }
 
 void Arrive(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint* points,
-            const MarchLight* lights, std::size_t count, const BlockChi& chi, const float* previous,
-            float* rows, float* arriving) {
+            const MarchLight* lights, std::size_t count, const BlockShape& shape,
+            const float* previous, float* rows, float* arriving) {
   OfDegree(grid.degree, [&](auto degree) {
-    ArriveOfDegree<degree()>(grid, direction, points, lights, count, chi, previous, rows, arriving);
+    ArriveOfDegree<degree()>(grid, direction, points, lights, count, shape, previous, rows,
+                             arriving);
+  });
+}
+
+void ArrivePolarised(const DiffuseGrid& grid, const MarchDirection& direction,
+                     const MarchPoint* points, const MarchLight* lights, std::size_t count,
+                     const BlockShape& shape, const float* previous, float* rows, float* arriving) {
+  OfDegree(grid.degree, [&](auto degree) {
+    ArrivePolarisedOfDegree<degree()>(grid, direction, points, lights, count, shape, previous, rows,
+                                      arriving);
   });
 }
 
@@ -467,6 +623,15 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
   VisitHarmonics<kDegree, T>(
       mu, sine, CosineOfAzimuth<T>(mu, sine, mu_s, T(nu)),
       [&](std::size_t i, const T& y) { Lanes::Store(chunk.harmonic[i], y); });
+  if (grid.polarised) {
+    const T squared = max((one - mu_s) * (one + mu_s), T(0.0F));
+    const T sun_sine = sqrt(squared);
+    for (std::size_t l = 1; l <= kDegree; ++l) {
+      float(*row)[kChunk] = chunk.harmonic + l * (l + 1) / 2;
+      Lanes::Store(row[1], sun_sine * Lanes::Load(row[1]));
+      for (std::size_t m = 2; m <= l; ++m) Lanes::Store(row[m], squared * Lanes::Load(row[m]));
+    }
+  }
   const T u = sqrt(max(Lanes::Load(&samples.altitude[first]), T(0.0F)) * T(1.0F / grid.top_km));
   StoreTaps<T>(u * T(static_cast<float>(grid.altitudes - 1)), grid.altitudes, one,
                chunk.altitude_cell, chunk.altitude_weight);
@@ -491,7 +656,7 @@ void SumTaps(const float* const* node, const float* weight, float* moments,
 // Adds light that moments of rows 0 to kLast scatter at a sample.
 template <std::size_t kLast, std::size_t kStep>
 void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
-             const Eight* chi, Eight& rayleigh, Eight& mie) {
+             const Eight* chi, const Eight& rayleigh_chi2, Eight& rayleigh, Eight& mie) {
   constexpr std::size_t kCount = kPackedRow[kLast + 1];
   alignas(64) float moments[kCount * 8];
   SumTaps(node, weight, moments, std::make_index_sequence<kCount>{});
@@ -503,16 +668,39 @@ void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const 
           LoadEight(moments + (kPackedRow[l] + p) * 8));
     }
     if (l == 0) Add(rayleigh, V(1.0F), light);
-    if (l == 2) Add(rayleigh, V(0.1F), light);
+    if (l == 2) Add(rayleigh, rayleigh_chi2, light);
     Add(mie, chi[l], light);
   }
 }
 
+// Adds light that molecules scatter of polarised light at a sample; `first` is where the tensor
+// begins in a node.
+void AddTensor(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
+               std::size_t first, const Eight& rayleigh_chi2, Eight& rayleigh) {
+  const float* tensor[16];
+  for (std::size_t tap = 0; tap < 16; ++tap) tensor[tap] = node[tap] + first;
+  alignas(64) float sums[2 * 8];
+  SumTaps(tensor, weight, sums, std::make_index_sequence<2>{});
+  const Eight second = LoadEight(sums + 8);
+  Eight degree2 = Zero();
+  Add(degree2, Pair(chunk.harmonic[3][s], chunk.harmonic[4][s]), LoadEight(sums));
+  Add(degree2, Pair(chunk.harmonic[5][s], 0.0F), second);
+  Add(rayleigh, rayleigh_chi2, degree2);
+  Add(rayleigh, Pair(0.0F, chunk.harmonic[0][s]), second);
+}
+
+/// Legendre coefficients of a block, for both halves of eight lanes.
 template <std::size_t kDegree>
+struct EightChi {
+  Eight mie[kDegree + 1];
+  Eight rayleigh2;
+};
+
+template <std::size_t kDegree, bool kPolarised>
 void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
                const RaySamples<float>& samples, std::size_t sample, const DiffuseBlock& block,
-               const Eight* chi, const float* moments, float* light) {
-  constexpr std::size_t kNode = kPackedRow[kDegree + 1] * 8;
+               const EightChi<kDegree>& chi, const float* moments, float* light) {
+  constexpr std::size_t kNode = PackedVectors(kDegree, kPolarised) * 8;
   // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
   // only those to degree 3.
   constexpr float kNoAerosol = 3e-4F, kCoarseAerosol = 1e-3F;
@@ -546,11 +734,15 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   }
   Eight rayleigh = Zero(), mie = Zero();
   if (fine) {
-    AddRows<kDegree, 1>(chunk, s, node, weight, chi, rayleigh, mie);
+    AddRows<kDegree, 1>(chunk, s, node, weight, chi.mie, chi.rayleigh2, rayleigh, mie);
   } else if (aerosol) {
-    AddRows<kCoarseDegree, 1>(chunk, s, node, weight, chi, rayleigh, mie);
-  } else {
-    AddRows<2, 2>(chunk, s, node, weight, chi, rayleigh, mie);
+    AddRows<kCoarseDegree, 1>(chunk, s, node, weight, chi.mie, chi.rayleigh2, rayleigh, mie);
+  } else if (!kPolarised) {
+    AddRows<2, 2>(chunk, s, node, weight, chi.mie, chi.rayleigh2, rayleigh, mie);
+  }
+  if (kPolarised) {
+    rayleigh = Zero();
+    AddTensor(chunk, s, node, weight, kPackedRow[kDegree + 1] * 8, chi.rayleigh2, rayleigh);
   }
   alignas(64) float of_rayleigh[8], of_mie[8];
   StoreEight(of_rayleigh, rayleigh);
@@ -563,25 +755,29 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   }
 }
 
-template <std::size_t kDegree>
+Eight Twice(const std::array<float, kBlockBands>& bands) {
+  alignas(64) float twice[8];
+  for (std::size_t band = 0; band < 8; ++band) twice[band] = bands[band % 4];
+  return LoadEight(twice);
+}
+
+template <std::size_t kDegree, bool kPolarised>
 void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
                        const DiffuseBlock* blocks, std::size_t count, const float* moments,
                        float* light) {
   using namespace shared;
   using Lanes = BatchOf<float>;
   using T = typename Lanes::Type;
-  const std::size_t block_stride = grid.altitudes * grid.suns * kPackedRow[kDegree + 1] * 8;
+  const std::size_t block_stride =
+      grid.altitudes * grid.suns * PackedVectors(kDegree, kPolarised) * 8;
   Chunk chunk;
   for (std::size_t first = 0; first < samples.padded; first += kChunk) {
     Prepare<kDegree>(grid, samples, first, nu, chunk);
     const std::size_t size = samples.count - first < kChunk ? samples.count - first : kChunk;
     for (std::size_t b = 0; b < count; ++b) {
-      Eight chi[kDegree + 1];
-      for (std::size_t l = 0; l <= kDegree; ++l) {
-        alignas(64) float twice[8];
-        for (std::size_t band = 0; band < 8; ++band) twice[band] = blocks[b].chi[l][band % 4];
-        chi[l] = LoadEight(twice);
-      }
+      EightChi<kDegree> chi;
+      for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(blocks[b].chi[l]);
+      chi.rayleigh2 = Twice(blocks[b].rayleigh_chi2);
       alignas(64) float attenuation[kBlockBands][kChunk];
       for (std::size_t band = 0; band < kBlockBands; ++band) {
         const Extinction<T> extinction{T(blocks[b].rayleigh[band]),
@@ -595,8 +791,8 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
       for (std::size_t s = 0; s < size; ++s) {
         if (samples.weight[first + s] == 0.0F) continue;  // a place, not a node
         float source[kBlockBands] = {0.0F, 0.0F, 0.0F, 0.0F};
-        AddSample<kDegree>(grid, chunk, s, samples, first + s, blocks[b], chi,
-                           moments + b * block_stride, source);
+        AddSample<kDegree, kPolarised>(grid, chunk, s, samples, first + s, blocks[b], chi,
+                                       moments + b * block_stride, source);
         for (std::size_t band = 0; band < kBlockBands; ++band)
           light[b * kBlockBands + band] += attenuation[band][s] * source[band];
       }
@@ -607,7 +803,11 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
 void Inscatter(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
                const DiffuseBlock* blocks, std::size_t count, const float* moments, float* light) {
   OfDegree(grid.degree, [&](auto degree) {
-    InscatterOfDegree<degree()>(grid, samples, nu, blocks, count, moments, light);
+    if (grid.polarised) {
+      InscatterOfDegree<degree(), true>(grid, samples, nu, blocks, count, moments, light);
+    } else {
+      InscatterOfDegree<degree(), false>(grid, samples, nu, blocks, count, moments, light);
+    }
   });
 }
 
@@ -631,8 +831,8 @@ float FirstMissingLegendre(float x) {
 
 // Moments of a point summed over its nodes, times the factors of a surface.
 template <std::size_t kDegree>
-Eight SumOverNodes(const SurfacePoint& point, const float* moments, const Eight* factor) {
-  constexpr std::size_t kNode = kPackedRow[kDegree + 1] * 8;
+Eight SumOverNodes(const SurfacePoint& point, std::size_t node_floats, const float* moments,
+                   const Eight* factor) {
   Eight light = Zero();
   for (std::size_t l = 0; l <= kDegree; ++l) {
     if (l > 1 && l % 2 == 1) continue;  // the clamped cosine has none of these
@@ -640,7 +840,8 @@ Eight SumOverNodes(const SurfacePoint& point, const float* moments, const Eight*
       const std::size_t i = kPackedRow[l] + p;
       Eight moment = Zero();
       for (std::size_t tap = 0; tap < 16; ++tap)
-        Add(moment, V(point.weight[tap]), LoadEight(moments + point.node[tap] * kNode + i * 8));
+        Add(moment, V(point.weight[tap]),
+            LoadEight(moments + point.node[tap] * node_floats + i * 8));
       Add(light, factor[i], moment);
     }
   }
@@ -663,6 +864,9 @@ void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std:
   for (std::size_t l = 0; l <= kDegree; ++l) {
     const std::size_t first = l * (l + 1) / 2;
     of_moment[first] -= missing * kNorm[first];  // the harmonic of the vertical
+    if (grid.polarised) {
+      for (std::size_t m = 1; m <= l; ++m) of_moment[first + m] *= SinePower(m, point.sun_sine);
+    }
     for (std::size_t p = 0; p <= l / 2; ++p) {
       const float even = kClampedCosine[l] * of_moment[first + 2 * p];
       const float odd = 2 * p < l ? kClampedCosine[l] * of_moment[first + 2 * p + 1] : 0.0F;
@@ -670,10 +874,11 @@ void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std:
     }
   }
   const std::size_t nodes = grid.altitudes * grid.suns;
+  const std::size_t node_floats = PackedVectors(kDegree, grid.polarised) * 8;
   for (std::size_t block = 0; block < count; ++block) {
     alignas(64) float light[8];
-    StoreEight(light, SumOverNodes<kDegree>(
-                          point, moments + block * nodes * kPackedRow[kDegree + 1] * 8, factor));
+    StoreEight(light, SumOverNodes<kDegree>(point, node_floats,
+                                            moments + block * nodes * node_floats, factor));
     for (std::size_t band = 0; band < kBlockBands; ++band) {
       float from_sky = 0.0F;
       for (std::size_t tap = 0; tap < 16; ++tap) {
@@ -696,7 +901,8 @@ void Irradiance(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t 
 
 template <>
 const DiffuseKernel& KernelOf<DiffuseKernel, kThisSet>() {
-  static constexpr DiffuseKernel kernel{Arrive, Place, Scatter, Inscatter, Irradiance};
+  static constexpr DiffuseKernel kernel{Arrive,  ArrivePolarised, Place,
+                                        Scatter, Inscatter,       Irradiance};
   return kernel;
 }
 

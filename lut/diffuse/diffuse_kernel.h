@@ -37,11 +37,19 @@ class AlignedFloats {
   std::vector<Line> lines_;
 };
 
+/// Vectors of eight floats of a node: of polarised light (tensor_moments.h) two more, (T20, T21) and
+/// (T22, moment 00 again).
+constexpr std::size_t PackedVectors(std::size_t degree, bool polarised) {
+  return kPackedRow[degree + 1] + (polarised ? 2 : 0);
+}
+
 /// Nodes of the table: altitude = top u^2; sun as DiffuseLight::SunCoordinate. Between sun nodes
 /// moments are interpolated after division by Twilight(mu_s), the usual fall of their light when
-/// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s.
+/// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s; those of
+/// polarised light also by SinePower (tensor_moments.h).
 struct DiffuseGrid {
   std::size_t altitudes, suns, degree;
+  bool polarised;
   float top_km;
   float sun_centre, sun_width;      // of asinh
   float first_asinh, cells_a_unit;  // node = (asinh(...) - first_asinh) cells_a_unit
@@ -78,6 +86,7 @@ using BlockChi = std::array<std::array<float, kBlockBands>, kLargestDegree + 1>;
 /// A block of bands as look-ups need it; coefficients per km.
 struct DiffuseBlock {
   std::array<float, kBlockBands> rayleigh, mie_scattering, mie_extinction, ozone;
+  std::array<float, kBlockBands> rayleigh_chi2;  // of the molecules: D / 10
   BlockChi chi;
 };
 
@@ -102,6 +111,7 @@ struct LitPoints {
 struct SurfacePoint {
   std::array<std::uint32_t, 16> node;
   std::array<float, 16> weight;
+  float sun_sine;                   // of its zenith angle
   float normal_mu, normal_azimuth;  // cosines: to the vertical, of the azimuth from the sun's
 };
 
@@ -114,14 +124,26 @@ struct LayerHeights {
   float rayleigh, mie, deficit, deficit_height;
 };
 
+/// What scatters along marches, for four bands: the aerosol's chi_l, the molecules' chi_2.
+struct BlockShape {
+  BlockChi mie;
+  std::array<float, kBlockBands> rayleigh_chi2;
+};
+
 struct DiffuseKernel {
   /// Light of the previous order that arrives along a march: adds to
   /// arriving[((sun * azimuths) + azimuth) * 8 + half * 4 + band]; the two halves
-  /// are to be added. `rows` is room for (suns + 2) * (degree / 2 + 1) * 8 floats.
+  /// are to be added. `rows` is room for (suns + 2) * (degree / 2 + 3) * 8 floats.
   /// All begin at multiples of 64 bytes.
   void (*arrive)(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint* points,
-                 const MarchLight* lights, std::size_t count, const BlockChi& chi,
+                 const MarchLight* lights, std::size_t count, const BlockShape& shape,
                  const float* previous, float* rows, float* arriving);
+  /// The same of a polarised grid: I, Q and U at [(((sun * azimuths) + azimuth) * 3 + stokes) * 8 +
+  /// half * 4 + band], in the frame of tensor_moments.h.
+  void (*arrive_polarised)(const DiffuseGrid& grid, const MarchDirection& direction,
+                           const MarchPoint* points, const MarchLight* lights, std::size_t count,
+                           const BlockShape& shape, const float* previous, float* rows,
+                           float* arriving);
   /// Places nodes on lit pieces.
   void (*place)(const LitPieces& pieces, const LitPoints& points);
   /// Light scattered once along lit pieces without phase functions, of one band: rayleigh[piece],

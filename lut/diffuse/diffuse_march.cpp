@@ -38,8 +38,7 @@ DiffuseMarches::DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLig
     altitude_km_.push_back(air.medium().atmosphere_height_m / 1000.0 * u * u);
   }
   for (int j = 0; j < options.sun_angles; ++j) {
-    mu_s_.push_back(
-        DiffuseLight::MuSFromCoordinate(static_cast<double>(j) / (options.sun_angles - 1)));
+    mu_s_.push_back(MuSOfNode(grid_, static_cast<std::size_t>(j)));
     mu_s_floats_.push_back(static_cast<float>(mu_s_.back()));
     sine_s_.push_back(static_cast<float>(Sine(mu_s_.back())));
   }
@@ -49,6 +48,14 @@ DiffuseMarches::DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLig
       const double azimuth = (static_cast<double>(k) + 0.5) * kPi / options.azimuth_nodes;
       azimuth_cosines_[m].data()[k] =
           static_cast<float>(std::cos(static_cast<double>(m) * azimuth));
+    }
+  }
+  for (std::size_t m = 1; m <= azimuth_sines_.size(); ++m) {
+    azimuth_sines_[m - 1] = AlignedFloats(kMostAzimuths);
+    for (std::size_t k = 0; k < azimuths_; ++k) {
+      const double azimuth = (static_cast<double>(k) + 0.5) * kPi / options.azimuth_nodes;
+      azimuth_sines_[m - 1].data()[k] =
+          static_cast<float>(std::sin(static_cast<double>(m) * azimuth));
     }
   }
   marches_.resize(altitude_km_.size());

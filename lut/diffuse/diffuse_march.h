@@ -42,6 +42,10 @@ class DiffuseMarches {
   [[nodiscard]] float AzimuthCosine(std::size_t m, std::size_t azimuth) const {
     return azimuth_cosines_[m].data()[azimuth];
   }
+  /// sin(m phi) for m = 1, 2.
+  [[nodiscard]] float AzimuthSine(std::size_t m, std::size_t azimuth) const {
+    return azimuth_sines_[m - 1].data()[azimuth];
+  }
   [[nodiscard]] MarchDirection Direction(std::size_t altitude, const March& march) const;
   /// Cosine between a march and the sun.
   [[nodiscard]] double Nu(const March& march, std::size_t sun, std::size_t azimuth) const;
@@ -60,6 +64,7 @@ class DiffuseMarches {
   std::vector<double> altitude_km_, mu_s_;
   std::vector<float> mu_s_floats_, sine_s_;
   std::array<AlignedFloats, kLargestDegree + 1> azimuth_cosines_;
+  std::array<AlignedFloats, 2> azimuth_sines_;
   std::vector<std::vector<March>> marches_;
 };
 

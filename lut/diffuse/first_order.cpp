@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/air/phase.h"
+#include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 
@@ -96,14 +97,16 @@ class PieceScatterer {
     for (std::size_t sun = 0; sun < marches.grid().suns; ++sun) {
       for (std::size_t k = 0; k < marches.azimuths(); ++k) {
         const double nu = marches.Nu(march, sun, k);
-        rayleigh_phase_.push_back(static_cast<float>(Phase({.kind = PhaseKind::kRayleigh}, nu)));
+        for (const double depolarisation : medium.rayleigh_depolarisation) {
+          rayleigh_phase_.push_back(static_cast<float>(shared::PhaseMolecules(nu, depolarisation)));
+        }
         for (const PhaseFunction& phase : medium.mie_phase)
           mie_phase_.push_back(static_cast<float>(Phase(phase, nu)));
       }
     }
   }
 
-  void Add(const Pieces& pieces, std::vector<float>& radiance) const {
+  void Add(const Pieces& pieces, SunlightOfMarch& light) const {
     if (pieces.ray.empty()) return;
     const std::size_t count = RoundUp(pieces.ray.size());
     const std::size_t azimuths = marches_.azimuths();
@@ -121,11 +124,11 @@ class PieceScatterer {
     const LitPieces lit{count,       begin.data(), end.data(),   nu.data(),
                         mu_s.data(), altitude_km_, march_.mu,    air_.radius,
                         extinction,  node_.size(), node_.data(), weight_.data()};
-    Scatter(pieces, lit, radiance);
+    Scatter(pieces, lit, light);
   }
 
  private:
-  void Scatter(const Pieces& pieces, const LitPieces& lit, std::vector<float>& radiance) const {
+  void Scatter(const Pieces& pieces, const LitPieces& lit, SunlightOfMarch& light) const {
     const std::size_t points = lit.count * lit.nodes;
     AlignedFloats weight(points), altitude(points), mu(points), absolute_mu(points), mu_s(points);
     const LitPoints at{weight.data(), altitude.data(), mu.data(), absolute_mu.data(), mu_s.data()};
@@ -138,6 +141,7 @@ class PieceScatterer {
     AlignedFloats rayleigh(lit.count), mie(lit.count);
     const std::size_t rays_count = marches_.grid().suns * marches_.azimuths();
     const std::size_t phases = marches_.air().medium().mie_phase.size();
+    const std::size_t shapes = marches_.air().medium().rayleigh_depolarisation.size();
     for (std::size_t band = 0; band < air_.bands; ++band) {
       kernel.scatter(lit, at, up.Read(), sun.Read(), ends_,
                      {air_.rayleigh[band], air_.mie_extinction[band], air_.ozone[band]},
@@ -146,9 +150,11 @@ class PieceScatterer {
       for (std::size_t i = 0; i < pieces.ray.size(); ++i) {
         const std::size_t ray = pieces.ray[i];
         const float mie_phase = mie_phase_[ray * phases + (phases > 1 ? band : 0)];
-        radiance[band * rays_count + ray] +=
-            rayleigh_phase_[ray] * air_.rayleigh[band] * rayleigh.data()[i] +
+        const float rayleigh_phase = rayleigh_phase_[ray * shapes + (shapes > 1 ? band : 0)];
+        light.radiance[band * rays_count + ray] +=
+            rayleigh_phase * air_.rayleigh[band] * rayleigh.data()[i] +
             mie_phase * air_.mie_scattering[band] * mie.data()[i];
+        light.molecules[band * rays_count + ray] += air_.rayleigh[band] * rayleigh.data()[i];
       }
     }
   }
@@ -184,19 +190,19 @@ void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const 
 
 }  // namespace
 
-std::vector<float> SunlightScatteredOnce(const DiffuseMarches& marches, std::size_t altitude,
-                                         const March& march, int ray_nodes) {
-  std::vector<float> radiance(marches.air().bands() * marches.grid().suns * marches.azimuths(),
-                              0.0F);
+SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches, std::size_t altitude,
+                                      const March& march, int ray_nodes) {
+  const std::size_t values = marches.air().bands() * marches.grid().suns * marches.azimuths();
+  SunlightOfMarch light{std::vector<float>(values, 0.0F), std::vector<float>(values, 0.0F)};
   const PieceScatterer scatterer(marches, altitude, march, ray_nodes);
   for (std::size_t panel = 0; panel + 1 < march.panels.size(); ++panel) {
     for (const Pieces& pieces :
          SunlitPieces(marches, altitude, march, march.panels[panel], march.panels[panel + 1])) {
-      scatterer.Add(pieces, radiance);
+      scatterer.Add(pieces, light);
     }
   }
-  if (march.hits_ground) AddSunlitGround(marches, altitude, march, radiance);
-  return radiance;
+  if (march.hits_ground) AddSunlitGround(marches, altitude, march, light.radiance);
+  return light;
 }
 
 }  // namespace alpenglow

@@ -9,10 +9,14 @@
 
 namespace alpenglow {
 
-/// Radiance per unit solar irradiance [1/sr] along one march:
-/// [(band * suns + sun) * azimuths + azimuth].
-[[nodiscard]] std::vector<float> SunlightScatteredOnce(const DiffuseMarches& marches,
-                                                       std::size_t altitude, const March& march,
-                                                       int ray_nodes);
+/// Per unit solar irradiance along one march: [(band * suns + sun) * azimuths + azimuth].
+struct SunlightOfMarch {
+  std::vector<float> radiance;   // [1/sr]
+  std::vector<float> molecules;  // scattered by them, without phase function [1]
+};
+
+[[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches,
+                                                    std::size_t altitude, const March& march,
+                                                    int ray_nodes);
 
 }  // namespace alpenglow

@@ -82,6 +82,7 @@ std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
     block.mie_scattering[lane] = air.mie_scattering[band];
     block.mie_extinction[lane] = air.mie_extinction[band];
     block.ozone[lane] = air.ozone[band];
+    block.rayleigh_chi2[lane] = RayleighChi2(medium_, band);
     for (std::size_t l = 0; l <= grid_.degree; ++l)
       block.chi[l][lane] = static_cast<float>(chi[l * bands_ + band]);
   }
@@ -90,19 +91,25 @@ std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
 
 AlignedFloats DiffuseLight::Packed() const {
   const std::size_t nodes = grid_.altitudes * grid_.suns;
-  const std::size_t stride = kPackedRow[grid_.degree + 1] * 8;
+  const std::size_t stride = PackedVectors(grid_.degree, grid_.polarised) * 8;
   const std::vector<float> twilight = TwilightAtNodes(grid_);
   AlignedFloats packed(blocks_.size() * nodes * stride);
   for (std::size_t node = 0; node < nodes; ++node) {
     const float* value = &values_[node * channels() * bands_];
-    for (std::size_t l = 0; l <= grid_.degree; ++l) {
-      for (std::size_t m = 0; m <= l; ++m) {
-        for (std::size_t band = 0; band < bands_; ++band, ++value) {
-          packed.data()[(band / kBlockBands * nodes + node) * stride + PackedIndex(l, m) +
-                        band % kBlockBands] = *value / twilight[node % grid_.suns];
-        }
+    const std::size_t sun = node % grid_.suns;
+    const float sine = SunSine(MuSOfNode(grid_, sun));
+    const auto store = [&](std::size_t index, std::size_t m, const float* of_bands) {
+      for (std::size_t band = 0; band < bands_; ++band) {
+        packed.data()[(band / kBlockBands * nodes + node) * stride + index + band % kBlockBands] =
+            of_bands[band] / twilight[sun] / SinePowerOf(grid_, m, sine);
       }
+    };
+    if (grid_.polarised) store(PackedTensorTrace(grid_.degree), 0, value);
+    for (std::size_t l = 0; l <= grid_.degree; ++l) {
+      for (std::size_t m = 0; m <= l; ++m, value += bands_) store(PackedIndex(l, m), m, value);
     }
+    for (std::size_t m = 0; grid_.polarised && m < kTensorMoments; ++m, value += bands_)
+      store(PackedTensorIndex(grid_.degree, m), m, value);
   }
   return packed;
 }
@@ -114,7 +121,8 @@ std::vector<float> DiffuseLight::PackedSky() const {
   for (std::size_t node = 0; node < nodes; ++node) {
     for (std::size_t band = 0; band < bands_; ++band) {
       packed[(band / kBlockBands * nodes + node) * kBlockBands + band % kBlockBands] =
-          values_[(node * channels() + moments_) * bands_ + band] / twilight[node % grid_.suns];
+          values_[(node * channels() + channels() - 1) * bands_ + band] /
+          twilight[node % grid_.suns];
     }
   }
   return packed;
@@ -132,7 +140,8 @@ void DiffuseLight::VisitNodes(double altitude_coordinate, double mu_s, const Vis
     for (std::size_t s = 0; s < 4; ++s) {
       const float weight = row.weight[a] * column.weight[s];
       if (weight != 0.0F)
-        visit(&values_[(row.node[a] * grid_.suns + column.node[s]) * channels() * bands_], weight);
+        visit(&values_[(row.node[a] * grid_.suns + column.node[s]) * channels() * bands_], weight,
+              column.node[s]);
     }
   }
 }
@@ -154,7 +163,8 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
                       static_cast<double>(grid_.cells_a_unit);
   const CubicTaps column = TapsAt(cell / (options_.sun_angles - 1), options_.sun_angles);
   const float twilight = TwilightOf(grid_, mu_s);
-  SurfacePoint point{{}, {}, static_cast<float>(normal_mu), static_cast<float>(normal_cos_azimuth)};
+  SurfacePoint point{
+      {}, {}, SunSine(mu_s), static_cast<float>(normal_mu), static_cast<float>(normal_cos_azimuth)};
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t s = 0; s < 4; ++s) {
       point.node[4 * a + s] = static_cast<std::uint32_t>(row.node[a] * grid_.suns + column.node[s]);
@@ -171,10 +181,11 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
 
 Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
   Bands<float> irradiance(bands_);
-  VisitNodes(AltitudeCoordinate(altitude_m), mu_s, [&](const float* node, float weight) {
-    for (std::size_t band = 0; band < bands_; ++band)
-      irradiance[band] += weight * node[moments_ * bands_ + band];
-  });
+  VisitNodes(AltitudeCoordinate(altitude_m), mu_s,
+             [&](const float* node, float weight, std::size_t) {
+               for (std::size_t band = 0; band < bands_; ++band)
+                 irradiance[band] += weight * node[(channels() - 1) * bands_ + band];
+             });
   for (std::size_t band = 0; band < bands_; ++band)
     irradiance[band] = std::max(irradiance[band], 0.0F);
   return irradiance;
@@ -182,11 +193,56 @@ Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
 
 std::vector<float> DiffuseLight::ValuesAt(double altitude_coordinate, double sun_coordinate) const {
   std::vector<float> sum(channels() * bands_, 0.0F);
-  VisitNodes(altitude_coordinate, MuSFromCoordinate(sun_coordinate),
-             [&](const float* node, float weight) {
-               for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * node[i];
-             });
+  const double mu_s = MuSFromCoordinate(sun_coordinate);
+  const float here = SunSine(mu_s);
+  VisitNodes(altitude_coordinate, mu_s, [&](const float* node, float weight, std::size_t sun) {
+    const float there = SunSine(MuSOfNode(grid_, sun));
+    for (std::size_t channel = 0; channel < channels(); ++channel) {
+      const std::size_t m = OrderOf(channel);
+      const float share = weight * SinePowerOf(grid_, m, here) / SinePowerOf(grid_, m, there);
+      for (std::size_t i = channel * bands_; i < (channel + 1) * bands_; ++i)
+        sum[i] += share * node[i];
+    }
+  });
   return sum;
+}
+
+std::size_t DiffuseLight::OrderOf(std::size_t channel) const {
+  if (channel + 1 == channels()) return 0;
+  if (channel >= moments_) return channel - moments_;
+  std::size_t l = 0;
+  while ((l + 1) * (l + 2) / 2 <= channel) ++l;
+  return channel - l * (l + 1) / 2;
+}
+
+PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples, double nu) const {
+  PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
+  if (!medium_.polarised) return light;
+  const AirConstants<float> air = AirIntegrator<float>(medium_).constants();
+  for (std::size_t s = 0; s < samples.count; ++s) {
+    const float mu = samples.mu[s], mu_s = samples.mu_s[s];
+    const float sine = SunSine(static_cast<double>(mu));
+    const auto cosine = static_cast<float>(AzimuthCosineOrAhead(double{mu}, double{mu_s}, nu));
+    const float across = SunSine(static_cast<double>(cosine));
+    const TensorStokes<float> stokes = TensorStokesAlong<float>(mu, sine);
+    const std::vector<float> here =
+        ValuesAt(AltitudeCoordinate(1000.0 * static_cast<double>(samples.altitude[s])),
+                 SunCoordinate(static_cast<double>(mu_s)));
+    for (std::size_t band = 0; band < bands_; ++band) {
+      const auto tensor = [&](std::size_t m) { return here[(moments_ + m) * bands_ + band]; };
+      const float depth =
+          OpticalDepthOf(ExtinctionAt(air, band),
+                         {samples.view_rayleigh[s], samples.view_mie[s], samples.view_ozone[s]});
+      const float share = samples.weight[s] * std::exp(-depth) * air.rayleigh[band] *
+                          samples.rayleigh_density[s] * RayleighChi2(medium_, band);
+      light.q[band] += share * (stokes.q20 * tensor(0) + stokes.q21 * cosine * tensor(1) +
+                                stokes.q22 * (2.0F * cosine * cosine - 1.0F) * tensor(2));
+      // h points to the side that the sun is not on where sines of azimuths are positive.
+      light.u[band] -= share * (stokes.u21 * across * tensor(1) +
+                                stokes.u22 * 2.0F * across * cosine * tensor(2));
+    }
+  }
+  return light;
 }
 
 }  // namespace alpenglow

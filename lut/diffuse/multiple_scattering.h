@@ -12,8 +12,9 @@
 //
 //   J(w) = sigma_R sum_lm chi^R_l L_lm Y_lm(w) + sigma_M sum_lm chi^M_l L_lm Y_lm(w),
 //
-// exact for molecules (chi^R = 1, 0, 1/10) with l <= 2. The moments of all
-// orders are found by successive orders: radiance of one order along directions
+// exact for molecules (chi^R = 1, 0, D/10; D as in phase.glsl) with l <= 2. Where the medium's
+// light is polarised the molecules' source is made of three moments more (tensor_moments.h). The
+// moments of all orders are found by successive orders: radiance of one order along directions
 // of a Gauss grid split at the horizon, projected, gives the source of the
 // next. Light reflected by the (Lambertian) ground is part of every order.
 //
@@ -30,7 +31,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/diffuse_kernel.h"
+#include "lut/diffuse/polarised_light.h"
 #include "lut/diffuse/spherical_harmonics.h"
+#include "lut/diffuse/tensor_moments.h"
 #include "lut/table/sun_axis.h"
 
 namespace alpenglow {
@@ -86,6 +89,9 @@ class DiffuseLight {
   /// Does not include light from the ground at the end of the ray.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu) const;
 
+  /// Q and U of the same light, with signs as in PolarisedLight; 0 where light is not polarised.
+  [[nodiscard]] PolarisedLight PolarisationAlong(const RaySamples<float>& samples, double nu) const;
+
   /// Diffuse (sky and ground) irradiance on a surface [1], per unit solar irradiance.
   /// @param normal_mu   cosine of the angle between the surface's normal and the vertical.
   /// @param normal_cos_azimuth  cosine of the azimuth of the normal relative to the sun's.
@@ -100,13 +106,16 @@ class DiffuseLight {
 
   /// Node values, for files and graphics cards: index ((altitude *
   /// sun_angles + sun) * channels() + channel) * bands() + band. Channels:
-  /// the moments, l major (00, 10, 11, 20, ...), then SkyIrradiance.
+  /// the moments, l major (00, 10, 11, 20, ...), of polarised light T20, T21, T22
+  /// (tensor_moments.h), then SkyIrradiance.
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
-  [[nodiscard]] std::size_t channels() const { return moments_ + 1; }
+  [[nodiscard]] std::size_t channels() const {
+    return moments_ + 1 + (medium_.polarised ? kTensorMoments : 0);
+  }
 
   /// All channels [channel * bands() + band] at coordinates in [0, 1] (below), by the interpolation
   /// that every look-up uses: cubic, between sun angles after division by the usual fall of light
-  /// in twilight (DiffuseGrid).
+  /// in twilight, and of polarised light by powers of its sine (DiffuseGrid).
   [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
                                             double sun_coordinate) const;
 
@@ -119,9 +128,11 @@ class DiffuseLight {
   [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
   [[nodiscard]] AlignedFloats Packed() const;
   [[nodiscard]] std::vector<float> PackedSky() const;
-  /// Calls visit(node, weight) with the 16 nodes around a point.
+  /// Calls visit(node, weight, sun) with the 16 nodes around a point; `sun` is the node's own.
   template <typename Visit>
   void VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const;
+  /// Order m of a channel.
+  [[nodiscard]] std::size_t OrderOf(std::size_t channel) const;
   [[nodiscard]] double AltitudeCoordinate(double altitude_m) const;
 
   Medium medium_;

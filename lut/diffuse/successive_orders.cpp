@@ -17,7 +17,7 @@ namespace {
 
 using Light = glm::vec4;  // one value per band of a block
 
-/// Moments, packed, and sky irradiance at every node, divided by TwilightOf.
+/// Moments, packed, and sky irradiance at every node, divided by TwilightOf (and SinePower).
 struct Field {
   AlignedFloats moments;
   std::vector<Light> sky;
@@ -29,7 +29,7 @@ struct Layout {
       : degree(grid.degree),
         suns(grid.suns),
         nodes(grid.altitudes * grid.suns),
-        stride(kPackedRow[grid.degree + 1] * 8) {}
+        stride(PackedVectors(grid.degree, grid.polarised) * 8) {}
   std::size_t degree, suns, nodes, stride;
 };
 
@@ -40,6 +40,14 @@ Light Of(const std::vector<double>& bands, std::size_t first_band) {
   return block;
 }
 
+/// Four bands of the light that arrives along a march, one a sun and azimuth; Q and U, in the frame
+/// of tensor_moments.h, of polarised light alone.
+struct MarchRadiance {
+  MarchRadiance(std::size_t rays, bool polarised)
+      : i(rays, Light(0.0F)), q(polarised ? rays : 0, Light(0.0F)), u(q) {}
+  std::vector<Light> i, q, u;
+};
+
 /// Four bands along the marches of one set.
 class Transport {
  public:
@@ -48,11 +56,20 @@ class Transport {
   /// Moments of the light of the previous order that arrives at one altitude's nodes.
   void NextOrder(std::size_t altitude, const Field& previous, Field& next) const;
   /// The same of sunlight: radiance as SunlightScatteredOnce gives it.
-  void Project(const March& march, std::size_t altitude, const std::vector<float>& radiance,
+  void Project(const March& march, std::size_t altitude, const SunlightOfMarch& sunlight,
                Field& field) const;
 
  private:
-  void ProjectSun(const March& march, std::size_t node, const Light* radiance, Field& field) const;
+  using Around = std::array<Light, kLargestDegree + 1>;
+  [[nodiscard]] bool polarised() const { return marches_.grid().polarised; }
+  void ProjectMarch(const March& march, std::size_t altitude, const MarchRadiance& radiance,
+                    Field& field) const;
+  [[nodiscard]] Around Harmonics(const Light* radiance, float share, bool sines) const;
+  void AddMoments(const March& march, const Around& around, float sun_sine, float* moments) const;
+  void AddTensor(const March& march, const Around& i, const Around& q, const Around& u,
+                 float sun_sine, float* moments) const;
+  void PolariseSunlight(const March& march, const SunlightOfMarch& sunlight,
+                        MarchRadiance& radiance) const;
   void AddGroundLight(const March& march, const Light& reflected, const Field& previous,
                       std::vector<Light>& radiance) const;
 
@@ -60,7 +77,7 @@ class Transport {
   Layout layout_;
   std::size_t first_band_;
   Light albedo_;
-  BlockChi chi_{};
+  BlockShape shape_{};
   std::vector<float> twilight_;
   std::vector<std::vector<std::vector<MarchLight>>> lights_;  // [altitude][march][point]
   std::vector<std::vector<Light>> ground_transmittance_;      // [altitude][march]
@@ -91,8 +108,10 @@ Transport::Transport(const DiffuseMarches& marches, std::size_t first_band)
       MieLegendreCoefficients(marches.air().medium(), static_cast<int>(layout_.degree));
   for (std::size_t l = 0; l <= layout_.degree; ++l) {
     for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane)
-      chi_[l][lane] = static_cast<float>(chi[l * air.bands + first_band + lane]);
+      shape_.mie[l][lane] = static_cast<float>(chi[l * air.bands + first_band + lane]);
   }
+  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane)
+    shape_.rayleigh_chi2[lane] = RayleighChi2(marches.air().medium(), first_band + lane);
   for (std::size_t altitude = 0; altitude < marches.grid().altitudes; ++altitude) {
     auto& lights = lights_.emplace_back();
     auto& transmittance = ground_transmittance_.emplace_back();
@@ -107,40 +126,108 @@ Transport::Transport(const DiffuseMarches& marches, std::size_t first_band)
   }
 }
 
-// Radiance of all azimuths at one node along a march; they stand for their mirror images too.
-void Transport::ProjectSun(const March& march, std::size_t node, const Light* radiance,
-                           Field& field) const {
-  const float share = march.solid_angle / twilight_[node % layout_.suns];
-  std::array<Light, kLargestDegree + 1> around;
-  for (std::size_t m = 0; m <= layout_.degree; ++m) {
+// Sums over azimuths with cos(m phi), or with sin(m phi) for m = 1, 2.
+Transport::Around Transport::Harmonics(const Light* radiance, float share, bool sines) const {
+  Around around;
+  const std::size_t last = sines ? 2 : layout_.degree;
+  for (std::size_t m = sines ? 1 : 0; m <= last; ++m) {
     around[m] = Light(0.0F);
-    for (std::size_t k = 0; k < marches_.azimuths(); ++k)
-      around[m] += marches_.AzimuthCosine(m, k) * radiance[k];
+    for (std::size_t k = 0; k < marches_.azimuths(); ++k) {
+      around[m] +=
+          (sines ? marches_.AzimuthSine(m, k) : marches_.AzimuthCosine(m, k)) * radiance[k];
+    }
     around[m] *= share;
   }
-  float* moments = field.moments.data() + node * layout_.stride;
+  return around;
+}
+
+void Transport::AddMoments(const March& march, const Around& around, float sun_sine,
+                           float* moments) const {
   for (std::size_t l = 0; l <= layout_.degree; ++l) {
     for (std::size_t m = 0; m <= l; ++m) {
-      const float legendre = march.legendre[l * (l + 1) / 2 + m];
+      float legendre = march.legendre[l * (l + 1) / 2 + m];
+      if (polarised()) legendre /= SinePower(m, sun_sine);
       float* moment = moments + PackedIndex(l, m);
       for (int lane = 0; lane < 4; ++lane) moment[lane] += legendre * around[m][lane];
     }
   }
-  if (march.mu > 0.0F) field.sky[node] += march.mu * around[0];
 }
 
-void Transport::Project(const March& march, std::size_t altitude,
-                        const std::vector<float>& radiance, Field& field) const {
+// The light of one zenith angle in T20, T21, T22 and once more in moment 00: with ll = (I + Q) / 2,
+// hh = (I - Q) / 2 and lh = U / 2, J gains ll l l^T + hh h h^T + lh (l h^T + h l^T).
+void Transport::AddTensor(const March& march, const Around& i, const Around& q, const Around& u,
+                          float sun_sine, float* moments) const {
+  constexpr float kFactor = static_cast<float>(5.0 / (2.0 * kPi));
+  const float mu = march.mu, sine = march.sine;
+  const Light ll0 = 0.5F * (i[0] + q[0]), hh0 = 0.5F * (i[0] - q[0]);
+  const Light ll2 = 0.5F * (i[2] + q[2]), hh2 = 0.5F * (i[2] - q[2]);
+  const Light zz_less_mean = (sine * sine - 0.5F * mu * mu) * ll0 - 0.5F * hh0;
+  const Light xz = sine * (0.5F * u[1] - 0.5F * mu * (i[1] + q[1]));
+  const Light xx_less_yy = mu * mu * ll2 - hh2 - mu * u[2];
+  const Light tensor[kTensorMoments] = {
+      (-kFactor / kTensorNorm[0]) * zz_less_mean, (-kFactor / kTensorNorm[1] / sun_sine) * xz,
+      (-0.25F * kFactor / kTensorNorm[2] / SinePower(2, sun_sine)) * xx_less_yy};
+  float* trace = moments + PackedTensorTrace(layout_.degree);
+  for (int lane = 0; lane < 4; ++lane) {
+    for (std::size_t m = 0; m < kTensorMoments; ++m)
+      moments[PackedTensorIndex(layout_.degree, m) + static_cast<std::size_t>(lane)] +=
+          tensor[m][lane];
+    trace[lane] += march.legendre[0] * i[0][lane];
+  }
+}
+
+// Radiance of all suns and azimuths along a march; azimuths stand for their mirror images too.
+void Transport::ProjectMarch(const March& march, std::size_t altitude,
+                             const MarchRadiance& radiance, Field& field) const {
+  for (std::size_t sun = 0; sun < layout_.suns; ++sun) {
+    const std::size_t node = altitude * layout_.suns + sun;
+    const std::size_t ray = sun * marches_.azimuths();
+    const float share = march.solid_angle / twilight_[sun];
+    const float sun_sine = SunSine(marches_.mu_s(sun));
+    float* moments = field.moments.data() + node * layout_.stride;
+    const Around i = Harmonics(&radiance.i[ray], share, false);
+    AddMoments(march, i, sun_sine, moments);
+    if (polarised()) {
+      AddTensor(march, i, Harmonics(&radiance.q[ray], share, false),
+                Harmonics(&radiance.u[ray], share, true), sun_sine, moments);
+    }
+    if (march.mu > 0.0F) field.sky[node] += march.mu * i[0];
+  }
+}
+
+// Of the sun's light, unpolarised before molecules scatter it: J = E/2 P(sun).
+void Transport::PolariseSunlight(const March& march, const SunlightOfMarch& sunlight,
+                                 MarchRadiance& radiance) const {
   const std::size_t rays = layout_.suns * marches_.azimuths();
-  const std::size_t bands = radiance.size() / rays;
-  std::vector<Light> light(rays, Light(0.0F));
+  const std::size_t bands = sunlight.molecules.size() / rays;
+  for (std::size_t ray = 0; ray < rays; ++ray) {
+    const std::size_t sun = ray / marches_.azimuths(), k = ray % marches_.azimuths();
+    const auto mu_s = static_cast<float>(marches_.mu_s(sun));
+    const float sun_sine = SunSine(marches_.mu_s(sun));
+    const float in_l = march.mu * marches_.AzimuthCosine(1, k) * sun_sine - march.sine * mu_s;
+    const float in_h = -marches_.AzimuthSine(1, k) * sun_sine;
+    for (std::size_t lane = 0; lane < kBlockBands && first_band_ + lane < bands; ++lane) {
+      const float light = static_cast<float>(3.0 / (16.0 * kPi)) * 10.0F *
+                          shape_.rayleigh_chi2[lane] *
+                          sunlight.molecules[(first_band_ + lane) * rays + ray];
+      radiance.q[ray][static_cast<int>(lane)] = light * (in_h - in_l) * (in_h + in_l);
+      radiance.u[ray][static_cast<int>(lane)] = -2.0F * light * in_l * in_h;
+    }
+  }
+}
+
+void Transport::Project(const March& march, std::size_t altitude, const SunlightOfMarch& sunlight,
+                        Field& field) const {
+  const std::size_t rays = layout_.suns * marches_.azimuths();
+  const std::size_t bands = sunlight.radiance.size() / rays;
+  MarchRadiance radiance(rays, polarised());
   for (std::size_t lane = 0; lane < kBlockBands && first_band_ + lane < bands; ++lane) {
     for (std::size_t ray = 0; ray < rays; ++ray)
-      light[ray][static_cast<int>(lane)] = radiance[(first_band_ + lane) * rays + ray];
+      radiance.i[ray][static_cast<int>(lane)] =
+          sunlight.radiance[(first_band_ + lane) * rays + ray];
   }
-  for (std::size_t sun = 0; sun < layout_.suns; ++sun) {
-    ProjectSun(march, altitude * layout_.suns + sun, &light[sun * marches_.azimuths()], field);
-  }
+  if (polarised()) PolariseSunlight(march, sunlight, radiance);
+  ProjectMarch(march, altitude, radiance, field);
 }
 
 // Light of the previous order that the ground reflects into the march.
@@ -157,28 +244,32 @@ void Transport::AddGroundLight(const March& march, const Light& reflected, const
 
 void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& next) const {
   const std::size_t rays = layout_.suns * marches_.azimuths();
-  AlignedFloats rows((layout_.suns + 2) * (layout_.degree / 2 + 1) * 8);
-  std::vector<Light> radiance(rays);
+  const std::size_t stokes = polarised() ? 3 : 1;
+  const DiffuseKernel& kernel = Kernel<DiffuseKernel>();
+  const auto arrive = polarised() ? kernel.arrive_polarised : kernel.arrive;
+  AlignedFloats rows((layout_.suns + 2) * (layout_.degree / 2 + 3) * 8);
+  MarchRadiance radiance(rays, polarised());
   for (std::size_t i = 0; i < marches_.At(altitude).size(); ++i) {
     const March& march = marches_.At(altitude)[i];
-    AlignedFloats arriving(rays * 8);
-    Kernel<DiffuseKernel>().arrive(marches_.grid(), marches_.Direction(altitude, march),
-                                   march.points.data(), lights_[altitude][i].data(),
-                                   march.points.size(), chi_, previous.moments.data(), rows.data(),
-                                   arriving.data());
+    AlignedFloats arriving(rays * stokes * 8);
+    arrive(marches_.grid(), marches_.Direction(altitude, march), march.points.data(),
+           lights_[altitude][i].data(), march.points.size(), shape_, previous.moments.data(),
+           rows.data(), arriving.data());
     for (std::size_t ray = 0; ray < rays; ++ray) {
-      const float* halves = arriving.data() + ray * 8;
+      const float* halves = arriving.data() + ray * stokes * 8;
       for (int lane = 0; lane < 4; ++lane)
-        radiance[ray][lane] = std::max(halves[lane] + halves[lane + 4], 0.0F);
+        radiance.i[ray][lane] = std::max(halves[lane] + halves[lane + 4], 0.0F);
+      for (int lane = 0; lane < 4 && polarised(); ++lane) {
+        radiance.q[ray][lane] = halves[lane + 8] + halves[lane + 12];
+        radiance.u[ray][lane] = halves[lane + 16] + halves[lane + 20];
+      }
     }
     if (march.hits_ground) {
       const Light reflected =
           ground_transmittance_[altitude][i] * albedo_ * static_cast<float>(1.0 / kPi);
-      AddGroundLight(march, reflected, previous, radiance);
+      AddGroundLight(march, reflected, previous, radiance.i);
     }
-    for (std::size_t sun = 0; sun < layout_.suns; ++sun) {
-      ProjectSun(march, altitude * layout_.suns + sun, &radiance[sun * marches_.azimuths()], next);
-    }
+    ProjectMarch(march, altitude, radiance, next);
   }
 }
 
@@ -294,15 +385,20 @@ void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band,
             std::vector<float>& values) {
   const Layout layout(grid);
   const std::vector<float> twilight = TwilightAtNodes(grid);
-  const std::size_t channels = MomentCount(static_cast<int>(layout.degree)) + 1;
+  const std::size_t channels = values.size() / layout.nodes / bands;
   for (std::size_t node = 0; node < layout.nodes; ++node) {
     const float factor = twilight[node % layout.suns];
+    const float sun_sine = SunSine(MuSOfNode(grid, node % layout.suns));
     const float* moments = field.moments.data() + node * layout.stride;
     for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands; ++lane) {
       float* value = &values[node * channels * bands + first_band + lane];
       for (std::size_t l = 0; l <= layout.degree; ++l) {
         for (std::size_t m = 0; m <= l; ++m, value += bands)
-          *value = factor * moments[PackedIndex(l, m) + lane];
+          *value = factor * SinePowerOf(grid, m, sun_sine) * moments[PackedIndex(l, m) + lane];
+      }
+      for (std::size_t m = 0; grid.polarised && m < kTensorMoments; ++m, value += bands) {
+        *value = factor * SinePowerOf(grid, m, sun_sine) *
+                 moments[PackedTensorIndex(layout.degree, m) + lane];
       }
       *value = factor * field.sky[node][static_cast<int>(lane)];
     }
@@ -396,9 +492,15 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
   for (std::size_t l = 0; l <= layout.degree; ++l) {
     for (std::size_t m = 0; m <= l; ++m) {
       const float share = SpreadOf(layout.degree, l) *
-                          towards[MomentIndex(static_cast<int>(l), static_cast<int>(m))];
-      for (int lane = 0; lane < 4; ++lane)
-        moments[PackedIndex(l, m) + static_cast<std::size_t>(lane)] += share * light[lane];
+                          towards[MomentIndex(static_cast<int>(l), static_cast<int>(m))] /
+                          SinePowerOf(marches_.grid(), m, SunSine(marches_.mu_s(sun)));
+      // Light without polarisation has T2m = L2m.
+      const bool twice = marches_.grid().polarised && (l == 2 || l == 0);
+      const std::size_t again = PackedTensorIndex(layout.degree, l == 0 ? 3 : m);
+      for (std::size_t lane = 0; lane < kBlockBands; ++lane) {
+        moments[PackedIndex(l, m) + lane] += share * light[static_cast<int>(lane)];
+        if (twice) moments[again + lane] += share * light[static_cast<int>(lane)];
+      }
     }
   }
   field.sky[node] += std::max(mu_s, 0.0F) * light;
@@ -430,14 +532,15 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptio
     for (std::size_t block = 0; block < blocks.size(); ++block)
       peak.Add(altitude, block * kBlockBands, first[block]);
     for (const March& march : marches.At(altitude)) {
-      const std::vector<float> radiance =
+      const SunlightOfMarch sunlight =
           SunlightScatteredOnce(marches, altitude, march, options.ray_nodes);
       for (std::size_t block = 0; block < blocks.size(); ++block)
-        blocks[block].transport().Project(march, altitude, radiance, first[block]);
+        blocks[block].transport().Project(march, altitude, sunlight, first[block]);
     }
   });
   SolvedOrders solved;
-  const std::size_t channels = MomentCount(options.degree) + 1;
+  const std::size_t channels =
+      MomentCount(options.degree) + 1 + (medium.polarised ? kTensorMoments : 0);
   solved.values.resize(Layout(marches.grid()).nodes * channels * bands);
   for (std::size_t block = 0; block < blocks.size(); ++block) {
     const Block::Sum sum = blocks[block].Solve(std::move(first[block]));

@@ -28,6 +28,8 @@ const std::map<std::string_view, Quantity> kQuantities{
     {"single", Quantity::kSingle},
     {"inscatter_single", Quantity::kInscatterSingle},
     {"total", Quantity::kTotal},
+    {"stokes_q", Quantity::kStokesQ},
+    {"stokes_u", Quantity::kStokesU},
     {"irradiance_sun", Quantity::kIrradianceSun},
     {"irradiance_sky", Quantity::kIrradianceSky}};
 
@@ -53,9 +55,11 @@ std::optional<Case> CaseReader::Next() {
                                   lines_.Field(kQuantity), fmt::join(names, ", ")));
   }
   result.quantity = quantity->second;
-  result.ray =
-      RayFromAngles(lines_.Number(kAltitude, -12000.0, 1e9), lines_.Number(kView, 0.0, 180.0),
-                    lines_.Number(kAzimuth, -360.0, 360.0), lines_.Number(kSun, 0.0, 180.0));
+  const double altitude_m = lines_.Number(kAltitude, -12000.0, 1e9);
+  const double view_deg = lines_.Number(kView, 0.0, 180.0);
+  result.relative_azimuth_deg = lines_.Number(kAzimuth, -360.0, 360.0);
+  result.ray = RayFromAngles(altitude_m, view_deg, result.relative_azimuth_deg,
+                             lines_.Number(kSun, 0.0, 180.0));
   if (!lines_.Field(kDistance).empty()) {
     result.ray.length_m = lines_.Number(kDistance, 0.0, 1e12);
   }

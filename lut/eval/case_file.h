@@ -5,8 +5,9 @@
 //
 // as CsvReader reads them. distance_m empty: the ray goes to the ground, whose light it brings, or
 // out of the top. Given: the segment stops there, or at the ground or the top if nearer, and light
-// that the ground reflects is left out even where the segment reaches it. Cases of lamps have
-// columns of their own: lamp_cases.h.
+// that the ground reflects is left out even where the segment reaches it. relative_azimuth_deg in
+// (0, 180): the sun is to the left of the view, beyond (and below 0) to its right, which is another
+// sign of stokes_u. Cases of lamps have columns of their own: lamp_cases.h.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +27,10 @@ enum class Quantity {
   kSingle,           // scattered once, and sunlight from the ground at the end of the ray [1/sr]
   kInscatterSingle,  // scattered once [1/sr]
   kTotal,            // all orders, and light from the ground at the end of the ray [1/sr]
-  kIrradianceSun,    // of the direct sun on a horizontal plane [1]
-  kIrradianceSky,    // of the sky on a horizontal plane [1]
+  kStokesQ,          // of all orders, as PolarisedLight [1/sr]
+  kStokesU,
+  kIrradianceSun,  // of the direct sun on a horizontal plane [1]
+  kIrradianceSky,  // of the sky on a horizontal plane [1]
 };
 
 struct Case {
@@ -35,6 +38,7 @@ struct Case {
   std::size_t line = 0;
   Quantity quantity = Quantity::kTransmittance;
   ViewRay ray;
+  double relative_azimuth_deg = 0.0;
 };
 
 class CaseReader {

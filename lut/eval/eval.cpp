@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/eval/case_results.h"
 
@@ -29,6 +30,32 @@ std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray) {
   if (!BringsLightOfGround(ray, extent)) return std::nullopt;
   const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
   return std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
+}
+
+std::optional<std::string> RefusalOfScalarLight(const Medium& medium) {
+  if (medium.polarised) return std::nullopt;
+  return "needs polarised light; the atmosphere has polarised = false";
+}
+
+Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u) {
+  constexpr double kVertical = 1e-12;  // of the sine squared
+  const double azimuth = work.relative_azimuth_deg * kRadiansPerDegree;
+  const double side = std::sin(azimuth) < 0.0 ? -1.0 : 1.0;
+  const bool vertical = (1.0 - work.ray.mu) * (1.0 + work.ray.mu) < kVertical;
+  // Of the vertical view as if tilted towards the sun, U is 0 by symmetry, and Q turns by the
+  // azimuth with the picture, one way above and the other below.
+  const double turn = work.ray.mu > 0.0 ? 2.0 * azimuth : -2.0 * azimuth;
+  Estimates result(q.size());
+  for (std::size_t band = 0; band < q.size(); ++band) {
+    if (work.quantity == Quantity::kStokesQ) {
+      result[band] = q[band];
+      if (vertical) result[band].value *= std::cos(turn);
+    } else {
+      result[band] = {side * u[band].value, u[band].error};
+      if (vertical) result[band] = {q[band].value * std::sin(turn), q[band].error};
+    }
+  }
+  return result;
 }
 
 double ClosedFormError(const Medium& medium) {

@@ -78,8 +78,19 @@ inline constexpr double kClosedFormError = 2e-5;
 [[nodiscard]] double ClosedFormError(const Medium& medium);
 
 [[nodiscard]] constexpr bool NeedsLightOfAllOrders(Quantity quantity) {
-  return quantity == Quantity::kTotal || quantity == Quantity::kIrradianceSky;
+  return quantity == Quantity::kTotal || quantity == Quantity::kIrradianceSky ||
+         quantity == Quantity::kStokesQ || quantity == Quantity::kStokesU;
 }
+[[nodiscard]] constexpr bool NeedsPolarisedLight(Quantity quantity) {
+  return quantity == Quantity::kStokesQ || quantity == Quantity::kStokesU;
+}
+
+/// Why a medium has neither; nothing when it has.
+[[nodiscard]] std::optional<std::string> RefusalOfScalarLight(const Medium& medium);
+
+/// Of a case of either, from Q and U as PolarisedLight has them (the sun not to the right). Straight
+/// up and down the azimuth is that of the picture's upper edge: Q and U turn with it.
+[[nodiscard]] Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u);
 
 /// The sun's zenith cosine where a ray meets the ground; nothing when it does not, and for rays of
 /// a given length, which bring no light of the ground (BringsLightOfGround).

@@ -118,7 +118,9 @@ class IntegralEvaluator final : public Evaluator {
 
   [[nodiscard]] const Medium& medium() const override { return air_.medium(); }
 
-  [[nodiscard]] std::optional<std::string> Refusal(Quantity) const override { return {}; }
+  [[nodiscard]] std::optional<std::string> Refusal(Quantity quantity) const override {
+    return NeedsPolarisedLight(quantity) ? RefusalOfScalarLight(medium()) : std::nullopt;
+  }
 
   void Prepare(std::span<const Case> cases) override {
     if (fine_light_ || std::none_of(cases.begin(), cases.end(), [](const Case& work) {
@@ -144,6 +146,9 @@ class IntegralEvaluator final : public Evaluator {
         return Inscatter(work.ray);
       case Quantity::kTotal:
         return Inscatter(work.ray) + HigherOrders(work.ray) + LitGround(work.ray);
+      case Quantity::kStokesQ:
+      case Quantity::kStokesU:
+        return Stokes(work);
       case Quantity::kIrradianceSun:
         return SunIrradiance(work.ray.altitude_m, work.ray.mu_s);
       case Quantity::kIrradianceSky:
@@ -273,6 +278,29 @@ class IntegralEvaluator final : public Evaluator {
     for (std::size_t band = 0; band < result.size(); ++band)
       result[band].error += kShareOfDifferences * missing[band];
     return result;
+  }
+
+  // The error is that of the solutions' differences, and of the closed forms.
+  [[nodiscard]] Estimates Stokes(const Case& work) const {
+    const ViewRay& ray = work.ray;
+    const RaySamples<float> samples =
+        quick_air_.Sample(ray, {.nodes = 24, .split_ozone = false, .dark_samples = true});
+    const PolarisedLight once = PolarisedOnce(medium(), quick_air_.Scatter(samples), ray);
+    const PolarisedLight fine = fine_light_->PolarisationAlong(samples, ray.nu);
+    const PolarisedLight middling = middling_light_->PolarisationAlong(samples, ray.nu);
+    const PolarisedLight coarse = coarse_light_->PolarisationAlong(samples, ray.nu);
+    const auto sum = [&](const Bands<float>& first, const Estimates& more) {
+      Estimates result = more;
+      for (std::size_t band = 0; band < result.size(); ++band) {
+        const auto value = static_cast<double>(first[band]);
+        result[band].value += value;
+        result[band].error += fast_path_floor_ * std::abs(value);
+      }
+      return result;
+    };
+    return StokesOf(work,
+                    sum(once.q, Differences(fine.q, middling.q, coarse.q, kShareOfDifferences)),
+                    sum(once.u, Differences(fine.u, middling.u, coarse.u, kShareOfDifferences)));
   }
 
   [[nodiscard]] Estimates SkyIrradiance(double altitude_m, double mu_s) const {

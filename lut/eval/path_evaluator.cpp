@@ -39,6 +39,9 @@ class PathEvaluator final : public Evaluator {
       case Quantity::kTotal:
       case Quantity::kIrradianceSky:
         return std::nullopt;
+      case Quantity::kStokesQ:
+      case Quantity::kStokesU:
+        return RefusalOfScalarLight(medium_);
       case Quantity::kTransmittance:
       case Quantity::kOpticalDepth:
       case Quantity::kIrradianceSun:
@@ -51,6 +54,7 @@ class PathEvaluator final : public Evaluator {
 
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
     if (work.quantity == Quantity::kIrradianceSky) return SkyIrradiance(work.ray);
+    if (NeedsPolarisedLight(work.quantity)) return Stokes(work);
     judge::PathOptions options = paths_;
     if (work.quantity != Quantity::kTotal) options.max_order = 1;
     const bool air_only = work.quantity == Quantity::kInscatterSingle;
@@ -59,6 +63,12 @@ class PathEvaluator final : public Evaluator {
   }
 
  private:
+  [[nodiscard]] Estimates Stokes(const Case& work) const {
+    const auto traced = judge::TraceStokes(medium_, judge::ScatteringOf(medium_), work.ray, paths_);
+    return StokesOf(work, WithErrors(traced.q.total, traced.q.standard_error),
+                    WithErrors(traced.u.total, traced.u.standard_error));
+  }
+
   [[nodiscard]] Estimates SkyIrradiance(const ViewRay& ray) const {
     // Nothing shines down on a plane above the air but the sun itself.
     if (ray.altitude_m > medium_.atmosphere_height_m)

@@ -17,6 +17,7 @@ class TableEvaluator final : public Evaluator {
   [[nodiscard]] const Medium& medium() const override { return tables_.medium(); }
 
   [[nodiscard]] std::optional<std::string> Refusal(Quantity quantity) const override {
+    if (const auto refusal = integral_->Refusal(quantity)) return refusal;
     if (tables_.tables().multiple_scattering || !NeedsLightOfAllOrders(quantity)) {
       return std::nullopt;
     }
@@ -26,17 +27,36 @@ class TableEvaluator final : public Evaluator {
   void Prepare(std::span<const Case> cases) override { integral_->Prepare(cases); }
 
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
-    const Bands<float> values = LookUp(work.quantity, work.ray);
     Estimates result = integral_->Evaluate(work);
-    for (std::size_t band = 0; band < values.count; ++band) {
-      const auto value = static_cast<double>(values[band]);
-      result[band].error += std::abs(value - result[band].value);
-      result[band].value = value;
-    }
-    return result;
+    if (NeedsPolarisedLight(work.quantity)) return WithValues(std::move(result), Stokes(work));
+    const Bands<float> found = LookUp(work.quantity, work.ray);
+    Estimates values(found.count);
+    for (std::size_t band = 0; band < found.count; ++band)
+      values[band].value = static_cast<double>(found[band]);
+    return WithValues(std::move(result), values);
   }
 
  private:
+  // The error grows by the distance to the values.
+  [[nodiscard]] static Estimates WithValues(Estimates integral, const Estimates& values) {
+    for (std::size_t band = 0; band < values.size(); ++band) {
+      integral[band].error += std::abs(values[band].value - integral[band].value);
+      integral[band].value = values[band].value;
+    }
+    return integral;
+  }
+
+  [[nodiscard]] Estimates Stokes(const Case& work) const {
+    const PolarisedLight light = tables_.PolarisationOfAllOrders(work.ray);
+    const auto of = [](const Bands<float>& bands) {
+      Estimates values(bands.count);
+      for (std::size_t band = 0; band < bands.count; ++band)
+        values[band].value = static_cast<double>(bands[band]);
+      return values;
+    };
+    return StokesOf(work, of(light.q), of(light.u));
+  }
+
   [[nodiscard]] Bands<float> LookUp(Quantity quantity, const ViewRay& ray) const {
     switch (quantity) {
       case Quantity::kTransmittance:
@@ -49,6 +69,9 @@ class TableEvaluator final : public Evaluator {
         return tables_.InscatterOnce(ray);
       case Quantity::kTotal:
         return WithGround(ray, tables_.InscatterOfAllOrders(ray), true);
+      case Quantity::kStokesQ:
+      case Quantity::kStokesU:
+        break;
       case Quantity::kIrradianceSun:
         return tables_.SunIrradiance(ray.altitude_m, ray.mu_s);
       case Quantity::kIrradianceSky:

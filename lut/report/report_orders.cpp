@@ -11,7 +11,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kDegree4 = 0, kIsotropic = 1, kDegree2 = 2, kNothing = 5, kDegree6 = 6 };
+enum Style { kDegree4 = 0, kIsotropic = 1, kDegree2 = 2, kScalar = 3, kNothing = 5, kDegree6 = 6 };
 
 int StyleOf(int degree) { return degree == 2 ? kDegree2 : degree == 4 ? kDegree4 : kDegree6; }
 
@@ -65,19 +65,33 @@ class Topic : public TopicWork {
     const bool in_summary = options.degree == usual.degree &&
                             options.altitudes == usual.altitudes &&
                             options.sun_angles == usual.sun_angles;
-    const auto [light, seconds] = Built([&] { return DiffuseLight(medium_, options); });
-    Add({.series = fmt::format("moments to degree {}", options.degree),
-         .parameter = fmt::format("{} x {}", options.altitudes, options.sun_angles),
-         .style = StyleOf(options.degree),
-         .in_summary = in_summary,
-         .memory_bytes = light.values().size() * sizeof(float),
-         .build_s = seconds},
-        [&](const RaySamples<float>& samples, double nu) {
-          return light.InscatterAlong(samples, nu);
-        });
+    AddMoments({.series = fmt::format("moments to degree {}", options.degree),
+                .parameter = "",
+                .style = StyleOf(options.degree),
+                .in_summary = in_summary},
+               medium_, options);
+  }
+
+  /// As if each scattering left light unpolarised.
+  void AddScalar(const DiffuseLightOptions& options) {
+    AddMoments({.series = fmt::format("scalar light, moments to degree {}", options.degree),
+                .parameter = "",
+                .style = kScalar,
+                .in_summary = true},
+               InScalarLight(medium_), options);
   }
 
  private:
+  void AddMoments(ReportRow row, const Medium& medium, const DiffuseLightOptions& options) {
+    const auto [light, seconds] = Built([&] { return DiffuseLight(medium, options); });
+    row.parameter = fmt::format("{} x {}", options.altitudes, options.sun_angles);
+    row.memory_bytes = light.values().size() * sizeof(float);
+    row.build_s = seconds;
+    Add(std::move(row), [&](const RaySamples<float>& samples, double nu) {
+      return light.InscatterAlong(samples, nu);
+    });
+  }
+
   AirIntegrator<float> air_;
 };
 
@@ -88,6 +102,7 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   topic.AddNothing();
   topic.AddIsotropic({}, true);
   if (!effort.quick) topic.AddIsotropic({.side = 32, .directions_side = 16, .steps = 20}, false);
+  if (medium.polarised) topic.AddScalar({});
   for (const int degree : {2, 4, 6}) {
     DiffuseLightOptions options;
     const bool usual = degree == options.degree;
@@ -114,7 +129,9 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
                 "published (64 directions, 20 steps) and with four times the directions. Moments "
                 "are this library's spherical-harmonic moments of the diffuse light over altitude "
                 "and sun; the "
-                "largest is the quality fine of skylut build, which also has more directions.",
+                "largest is the quality fine of skylut build, which also has more directions. "
+                "Where the medium's light is polarised, so is the judge's, and scalar light is "
+                "what neglects it: the same single scattering, and moments of scalar light.",
        .wanted = 0.02,
        .cost = CostAxis::kTimeToBuild});
 }

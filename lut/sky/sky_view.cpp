@@ -9,6 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_fan.h"
+#include "lut/diffuse/diffuse_grid.h"
 #include "lut/sky/sky_row_kernel.h"
 #include "lut/table/cubic_taps.h"
 
@@ -311,7 +312,10 @@ class SkyView::Builder {
           {altitude_m_, mu, mu_s_, nu}, {.nodes = view_.size_.ray_nodes, .dark_samples = false}));
       for (std::size_t band = 0; band < view_.bands_; ++band) {
         float* node = Node(view_.blocks_[band / kLanes], row, static_cast<int>(k) + 1);
-        node[band % kLanes] = once.rayleigh[band];
+        const float round = 10.0F * RayleighChi2(air_.medium(), band);
+        node[band % kLanes] = round * once.rayleigh[band];
+        node[2 * kLanes + band % kLanes] =
+            (1.0F - round) * static_cast<float>(0.25 / kPi) * once.rayleigh[band];
         node[kLanes + band % kLanes] = once.mie[band];
       }
     }
@@ -337,7 +341,7 @@ class SkyView::Builder {
       }
       for (std::size_t band = 0; band < view_.bands_; ++band) {
         float* node = Node(view_.blocks_[band / kLanes], row, static_cast<int>(k) + 1);
-        node[2 * kLanes + band % kLanes] =
+        node[2 * kLanes + band % kLanes] +=
             rest[k * view_.bands_ + band] + through[band] * reflected[band];
       }
     }

@@ -11,6 +11,7 @@
 
 #include "atmosphere/air/medium_toml.h"
 #include "atmosphere/text/error.h"
+#include "lut/diffuse/diffuse_grid.h"
 #include "lut/program/program.h"
 #include "lut/store/table_image.h"
 
@@ -62,8 +63,8 @@ const Kind& KindOf(ScatteringAxes axes) {
   return axes == ScatteringAxes::kAzimuth ? kSingleScatteringByAzimuth : kSingleScattering;
 }
 
-/// Moments up to a degree, then the irradiance from above.
-Kind MultipleScattering(int degree) {
+/// Moments up to a degree, those of the tensor of polarised light, then the irradiance from above.
+Kind MultipleScattering(int degree, bool polarised) {
   Kind kind{"multiple scattering",
             "diffuse light of all orders per unit solar irradiance: moments of its radiance on "
             "real spherical harmonics L_lm (azimuth from the sun), and irradiance E from above",
@@ -77,6 +78,7 @@ Kind MultipleScattering(int degree) {
   for (int l = 0; l <= degree; ++l) {
     for (int m = 0; m <= l; ++m) kind.species.push_back(fmt::format("L{}{}", l, m));
   }
+  if (polarised) kind.species.insert(kind.species.end(), {"T20", "T21", "T22"});
   kind.species.emplace_back("E");
   return kind;
 }
@@ -278,12 +280,13 @@ bool YesOf(const TableImageReader& image, const std::string& name) {
   Fail(image.file(), fmt::format("{} is \"{}\"; it must be yes or no", name, text));
 }
 
-std::string SunCosinesText(std::size_t columns) {
+std::string SunCosinesText(std::size_t columns, bool polarised) {
+  DiffuseGrid grid{};
+  grid.suns = columns;
+  grid.polarised = polarised;
   std::string text;
-  for (std::size_t j = 0; j < columns; ++j) {
-    const double v = static_cast<double>(j) / static_cast<double>(columns - 1);
-    text += fmt::format("{}{:.9f}", j == 0 ? "" : " ", DiffuseLight::MuSFromCoordinate(v));
-  }
+  for (std::size_t j = 0; j < columns; ++j)
+    text += fmt::format("{}{:.9f}", j == 0 ? "" : " ", MuSOfNode(grid, j));
   return text;
 }
 
@@ -313,13 +316,13 @@ FolderUse UseOf(const TableImageReader& image) {
 StoredDiffuseLight DiffuseLightOf(const TableImageReader& image,
                                   const std::optional<std::uint64_t>& medium_hash) {
   const int degree = IntegerOf(image, "alpenglow.degree", 2, kMaxDegree);
-  const Kind kind = MultipleScattering(degree);
-  RequireKind(image, kind);
+  RequireKind(image, MultipleScattering(degree, false));
   const Medium medium = MediumOf(image);
+  const Kind kind = MultipleScattering(degree, medium.polarised);
   RequireMedium(image, medium, medium_hash);
   const std::vector<std::size_t> sizes = SizesOf(image, 2);
   RequireWindow(image, sizes[0], sizes[1]);
-  if (image.Attribute("alpenglow.sunCosines") != SunCosinesText(sizes[0])) {
+  if (image.Attribute("alpenglow.sunCosines") != SunCosinesText(sizes[0], medium.polarised)) {
     Fail(image.file(), "alpenglow.sunCosines are not the nodes of this program");
   }
   DiffuseLightOptions options;
@@ -378,12 +381,12 @@ void WriteTable(const fs::path& file, const DiffuseLight& light, const FolderUse
   const DiffuseLightOptions& options = light.options();
   const auto columns = static_cast<std::size_t>(options.sun_angles);
   const auto rows = static_cast<std::size_t>(options.altitudes);
-  const Kind kind = MultipleScattering(options.degree);
+  const Kind kind = MultipleScattering(options.degree, light.medium().polarised);
   TextAttributes attributes = AttributesOf(kind, light.medium(), {columns, rows});
   attributes["alpenglow.degree"] = std::to_string(options.degree);
   attributes["alpenglow.orders"] = std::to_string(light.orders());
   attributes["alpenglow.converged"] = light.converged() ? "yes" : "no";
-  attributes["alpenglow.sunCosines"] = SunCosinesText(columns);
+  attributes["alpenglow.sunCosines"] = SunCosinesText(columns, light.medium().polarised);
   attributes["alpenglow.rayNodes"] = std::to_string(use.ray_nodes);
   attributes["alpenglow.tables"] = TablesText(use);
   WriteTableImage(file, {columns, rows, ChannelNames(kind, light.medium()), light.values(),
@@ -425,9 +428,10 @@ TableDescription DescribeTable(const fs::path& file) {
   } else if (description.kind == kSingleScattering.name) {
     const ScatteringTable table = ScatteringTableOf(image, {});
     describe(KindOf(table.axes()), table.medium(), table.texels());
-  } else if (description.kind == MultipleScattering(0).name) {
+  } else if (description.kind == MultipleScattering(0, false).name) {
     const DiffuseLight light = DiffuseLightOf(image, {}).light;
-    describe(MultipleScattering(light.options().degree), light.medium(), light.values());
+    describe(MultipleScattering(light.options().degree, light.medium().polarised), light.medium(),
+             light.values());
   } else {
     Fail(file, fmt::format("is a table of {}, which this program does not know", description.kind));
   }

@@ -71,6 +71,18 @@ Bands<float> TableLookup::InscatterOfAllOrders(const ViewRay& ray) const {
   return light;
 }
 
+PolarisedLight TableLookup::PolarisationOfAllOrders(const ViewRay& ray) const {
+  const Sampling all{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = true};
+  const RaySamples<float> samples = air_.Sample(ray, all);
+  PolarisedLight light = PolarisedOnce(tables_.medium, air_.Scatter(samples), ray);
+  const PolarisedLight more = diffuse().PolarisationAlong(samples, ray.nu);
+  for (std::size_t band = 0; band < light.q.count; ++band) {
+    light.q[band] += more.q[band];
+    light.u[band] += more.u[band];
+  }
+  return light;
+}
+
 Bands<float> TableLookup::SunIrradiance(double altitude_m, double mu_s) const {
   if (mu_s <= 0.0) return Bands<float>(bands());
   Bands<float> irradiance = Transmittance({altitude_m, mu_s, mu_s, 1.0});

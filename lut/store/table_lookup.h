@@ -33,6 +33,8 @@ class TableLookup {
   /// (which needs the table of multiple scattering).
   [[nodiscard]] Bands<float> InscatterOnce(const ViewRay& ray) const;
   [[nodiscard]] Bands<float> InscatterOfAllOrders(const ViewRay& ray) const;
+  /// Its Q and U; 0 where light is not polarised.
+  [[nodiscard]] PolarisedLight PolarisationOfAllOrders(const ViewRay& ray) const;
   /// On a horizontal plane [1]: the sun's, and the sky's (needs multiple scattering).
   [[nodiscard]] Bands<float> SunIrradiance(double altitude_m, double mu_s) const;
   [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;

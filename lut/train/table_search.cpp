@@ -214,8 +214,9 @@ DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles,
       const std::vector<float> all = light.ValuesAt(share(a, altitudes), share(s, sun_angles));
       const auto bands = static_cast<std::ptrdiff_t>(light.bands());
       const auto kept = static_cast<std::ptrdiff_t>(moments) * bands;
+      const auto rest = static_cast<std::ptrdiff_t>(light.channels() - light.moments()) * bands;
       solved.values.insert(solved.values.end(), all.begin(), all.begin() + kept);
-      solved.values.insert(solved.values.end(), all.end() - bands, all.end());
+      solved.values.insert(solved.values.end(), all.end() - rest, all.end());
     }
   }
   DiffuseLightOptions options = light.options();

@@ -91,6 +91,27 @@ TEST(AtmosphereFile, BandsChooseTheWavelengths) {
   EXPECT_THAT(FaultOf("[spectrum]\nbands = 4\nwavelengths_nm = [500]\n"), HasSubstr("give one of"));
 }
 
+TEST(AtmosphereFile, LightIsPolarisedByTheGasOfThePresetUnlessTheFileSaysOtherwise) {
+  EXPECT_TRUE(Read("").polarised);
+  EXPECT_FALSE(Read("preset = \"bruneton2017\"\n").polarised) << "as others have it";
+  EXPECT_EQ(Read("polarised = true\n"), MediumPreset("earth"));
+  for (const char* preset : {"earth", "mars", "bruneton2017"}) {
+    const auto read = [preset](const std::string& polarised) {
+      return Read("polarised = " + polarised + "\npreset = \"" + preset + "\"\n");
+    };
+    const Medium here = MediumPreset(preset);
+    EXPECT_EQ(MediumHash(read("true")), MediumHash(InPolarisedLight(here, preset))) << preset;
+    EXPECT_EQ(MediumHash(read("false")), MediumHash(InScalarLight(here))) << preset;
+  }
+  EXPECT_EQ(Read("[rayleigh]\ndepolarisation = 0.04\n").rayleigh_depolarisation,
+            std::vector<double>{0.04});
+  const Medium reversed = Read(
+      "polarised = false\n[spectrum]\nwavelengths_nm = [600, 500]\n"
+      "[rayleigh]\ndepolarisation = [0.01, 0.02]\n");
+  EXPECT_EQ(reversed.rayleigh_depolarisation, (std::vector<double>{0.02, 0.01}));
+  EXPECT_FALSE(reversed.polarised) << "a shape of scattering of its own";
+}
+
 TEST(AtmosphereFile, AGivenRadiusIsASphere) {
   EXPECT_FALSE(Read("[planet]\nradius_m = 6371000\n").follows_wgs84);
   EXPECT_TRUE(Read("[planet]\nradius_m = 6371000\nfollows_wgs84 = true\n").follows_wgs84);
@@ -361,6 +382,10 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
       {"[planet]\natmosphere_top_m = 0\n", "a.toml:2: planet.atmosphere_top_m is 0"},
       {"planet = 3\n", "a.toml:1: planet is 3; it must be a table"},
       {"[[planet]]\nradius_m = 1e6\n", "a.toml:1: planet is a list; it must be a table"},
+      {"polarised = 1\n", "a.toml:1: polarised is 1"},
+      {"[rayleigh]\ndepolarisation = 0.6\n", "a.toml:2: rayleigh.depolarisation is 0.6"},
+      {"[rayleigh]\ndepolarisation = [0.1, 0.2]\n",
+       "a.toml:2: rayleigh.depolarisation has 2 values; it must have 4"},
       {"preset = 3\n", "a.toml:1: preset is 3; it must be text"},
       {"[spectrum]\nwavelengths_nm = []\n", "a.toml:2: spectrum.wavelengths_nm has 0 values"},
       {"[spectrum]\nwavelengths_nm = [500, 400, 600]\n", "a.toml:2: spectrum.wavelengths_nm has"},

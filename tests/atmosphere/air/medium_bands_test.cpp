@@ -31,6 +31,22 @@ TEST(MediumBands, FactorsOfAllWavelengthsAreKeptExactly) {
   }
 }
 
+TEST(MediumBands, DepolarisationIsThatOfTheGasOrLinearBetweenWavelengths) {
+  const auto polarised = [](int bands) { return MediumPreset("earth", WavelengthSet(bands)); };
+  const auto four = OnBands(polarised(16), 4);
+  ASSERT_TRUE(four.has_value());
+  EXPECT_EQ(*four, polarised(4));
+  Medium own = polarised(4);
+  own.rayleigh_depolarisation = {0.0, 0.1, 0.2, 0.3};
+  const auto eight = OnBands(own, 8);
+  ASSERT_TRUE(eight.has_value());
+  ASSERT_EQ(eight->rayleigh_depolarisation.size(), 8U);
+  for (std::size_t i = 1; i < 8; ++i)
+    EXPECT_GE(eight->rayleigh_depolarisation[i], eight->rayleigh_depolarisation[i - 1]);
+  own.rayleigh_depolarisation = {0.05};
+  EXPECT_EQ(OnBands(own, 8)->rayleigh_depolarisation, std::vector<double>{0.05});
+}
+
 TEST(MediumBands, ThereAreNoneWhereNothingSaysWhatTheyAre) {
   EXPECT_FALSE(OnBands(MediumPreset("bruneton2017"), 8).has_value());
   Medium own = MediumPreset("earth");

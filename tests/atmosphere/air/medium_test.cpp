@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "atmosphere/air/scattering_matrix.h"
 #include "atmosphere/colour/spectrum.h"
 #include "tests/fixtures/fault_of.h"
 
@@ -124,6 +125,9 @@ std::vector<Change> HashedChanges() {
       {"rayleigh", [](Medium& m) { m.rayleigh_scattering_per_m[0] *= 1.1; }},
       {"rayleigh height", [](Medium& m) { m.rayleigh_scale_height_m += 1.0; }},
       {"rayleigh deficit", [](Medium& m) { m.rayleigh_deficit.share = 0.3; }},
+      {"depolarisation", [](Medium& m) { m.rayleigh_depolarisation = {0.03}; }},
+      {"polarised", [](Medium& m) { m.polarised = false; }},
+      {"both", [](Medium& m) { m = InScalarLight(m); }},
       {"mie", [](Medium& m) { m.mie_scattering_per_m[0] *= 0.9; }},
       {"mie extinction", [](Medium& m) { m.mie_extinction_per_m[0] *= 1.1; }},
       {"mie height", [](Medium& m) { m.mie_scale_height_m += 1.0; }},
@@ -163,6 +167,34 @@ TEST(Medium, OnePhaseFunctionForAllIsTheSameAirAsItsCopies) {
   EXPECT_EQ(MiePhaseValues(copies, 0.3)[2], Phase(copies.mie_phase[2], 0.3));
 }
 
+TEST(Medium, OneDepolarisationForAllIsTheSameAirAsItsCopies) {
+  Medium one = MediumPreset("earth");
+  one.rayleigh_depolarisation = {0.03};
+  Medium copies = one;
+  copies.rayleigh_depolarisation.assign(4, 0.03);
+  EXPECT_EQ(MediumHash(one), MediumHash(copies));
+  EXPECT_EQ(RayleighPhaseValues(one, 0.3), RayleighPhaseValues(copies, 0.3));
+}
+
+TEST(Medium, MoleculesScatterAsHansenAndTravisSay) {
+  const Medium air = MediumPreset("earth");
+  EXPECT_EQ(RayleighPhaseValues(InScalarLight(air), 0.3),
+            std::vector<double>(4, Phase({.kind = PhaseKind::kRayleigh}, 0.3)));
+  for (const double cosine : {-1.0, -0.4, 0.0, 0.7, 1.0}) {
+    for (std::size_t band = 0; band < 4; ++band) {
+      EXPECT_NEAR(RayleighPhaseValues(air, cosine)[band],
+                  RayleighMatrix(Depolarisation(air, band), cosine).a1, 1e-15);
+    }
+  }
+}
+
+TEST(Medium, GasOfEarthIsAirAndThatOfMarsCarbonDioxide) {
+  EXPECT_EQ(GasDepolarisation("earth", {550.0})[0], AirDepolarisation(550.0));
+  const double d = GasDepolarisation("mars", {550.0})[0];
+  EXPECT_NEAR((6.0 + 3.0 * d) / (6.0 - 7.0 * d), 1.15, 1e-12)
+      << "the King factor of its scattering";
+}
+
 TEST(Medium, HashIsTheSameOnEveryMachine) {
   // A medium of literals only, so that no library's pow
   // can change it; the value is from a separate program.
@@ -198,6 +230,12 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
       {"rayleigh.deficit_scale_height_m is 9000",
        [](Medium& m) {
          m.rayleigh_deficit = {0.4, 9e3};
+       }},
+      {"rayleigh.depolarisation is 0.6; it must lie in [0, 0.5]",
+       [](Medium& m) { m.rayleigh_depolarisation = {0.6}; }},
+      {"rayleigh.depolarisation has 2 values; it must have 1 or 4",
+       [](Medium& m) {
+         m.rayleigh_depolarisation = {0.03, 0.03};
        }},
       {"mie.scale_height_m is 300000", [](Medium& m) { m.mie_scale_height_m = 3e5; }},
       {"mie.scattering_per_m is 1 at 445 nm; it must not exceed",

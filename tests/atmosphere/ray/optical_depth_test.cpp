@@ -177,7 +177,7 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
         << "density changes by 1e-7 over a millimetre";
     const double light =
         1e-3 * air.TransmittanceToSpace(100.0, 0.5)[0] *
-        (medium.rayleigh_scattering_per_m[0] * density_r * Phase({PhaseKind::kRayleigh}, 0.3) +
+        (medium.rayleigh_scattering_per_m[0] * density_r * RayleighPhaseValues(medium, 0.3)[0] +
          medium.mie_scattering_per_m[0] * density_m * Phase(medium.mie_phase.front(), 0.3));
     EXPECT_NEAR(Radiance(air, ray), light, 1e-5 * light);
     const float light_in_float =

@@ -21,10 +21,7 @@ double NuOf(double mu, double mu_s, double azimuth_rad) {
   return mu * mu_s + std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s)) * std::cos(azimuth_rad);
 }
 
-class DiffuseFanOf : public testing::TestWithParam<int> {};
-
-TEST_P(DiffuseFanOf, BandsIsTheDiffuseLightOfEveryAzimuth) {
-  const Medium medium = MediumPreset("earth", WavelengthSet(GetParam()));
+void ExpectDiffuseLightOfEveryAzimuth(const Medium& medium) {
   const DiffuseLight light(medium, kSmall);
   const AirIntegrator<float> air(medium);
   const DiffuseFan fan(light);
@@ -59,6 +56,16 @@ TEST_P(DiffuseFanOf, BandsIsTheDiffuseLightOfEveryAzimuth) {
       }
     }
   }
+}
+
+class DiffuseFanOf : public testing::TestWithParam<int> {};
+
+TEST_P(DiffuseFanOf, BandsIsTheDiffuseLightOfEveryAzimuth) {
+  ExpectDiffuseLightOfEveryAzimuth(InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
+}
+
+TEST_P(DiffuseFanOf, BandsIsThePolarisedLightOfEveryAzimuth) {
+  ExpectDiffuseLightOfEveryAzimuth(MediumPreset("earth", WavelengthSet(GetParam())));
 }
 
 INSTANTIATE_TEST_SUITE_P(AnyNumber, DiffuseFanOf, testing::Values(3, 4, 6));

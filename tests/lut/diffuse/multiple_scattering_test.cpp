@@ -356,7 +356,7 @@ TEST(DiffuseLight, SlopesAreLitByTheClampedCosineOfTheMoments) {
         const auto moment = [&](std::size_t i) {
           return static_cast<double>(values[i * light.bands() + band]);
         };
-        double expected = missing * moment(light.moments());
+        double expected = missing * moment(light.channels() - 1);
         for (int l = 0; l <= 6; ++l) {
           for (int m = 0; m <= l; ++m) {
             const std::size_t i = MomentIndex(l, m);

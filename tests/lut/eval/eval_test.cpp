@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "atmosphere/judge/path_tracer.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 #include "tests/fixtures/stored_cases.h"
@@ -352,6 +353,43 @@ TEST_F(StoredEval, MomentsAndIntegratedRaysAgreeWithPathsInTwilightToo) {
     EXPECT_GE(tables.compared, 9);
     EXPECT_LT(std::sqrt(tables.squares / tables.compared), kind.rms)
         << kind.quantity << ' ' << kind.tag << ' ' << tables.worst_id;
+  }
+}
+
+TEST_F(Eval, StokesParametersAreThoseOfThePathsOnBothSidesOfTheSun) {
+  const Medium medium = InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017");
+  const auto integral = MakeIntegralEvaluator(medium);
+  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.005, .max_paths = 1U << 14U});
+  std::string text = kHeader;
+  for (const char* quantity : {"stokes_q", "stokes_u", "total"}) {
+    text += fmt::format("{0}left,{0},0,60,70,50,\n{0}right,{0},0,60,-70,50,\n", quantity);
+    text += fmt::format("{0}up,{0},0,0,30,50,\n", quantity);
+  }
+  Results fast = Evaluate(text, *integral), slow = Evaluate(text, *paths);
+  for (const double band : {440.0, 550.0, 680.0}) {
+    for (const char* place : {"left", "right", "up"}) {
+      const double total = fast.at({fmt::format("total{}", place), band}).value;
+      for (const char* quantity : {"stokes_q", "stokes_u", "total"}) {
+        const std::string id = fmt::format("{}{}", quantity, place);
+        // Four standard errors, and the bound of 0.3 % that polarised light by day has.
+        EXPECT_NEAR(fast.at({id, band}).value, slow.at({id, band}).value,
+                    4.0 * slow.at({id, band}).error + 0.003 * total)
+            << id << " " << band;
+      }
+    }
+    const double left = fast.at({"stokes_uleft", band}).value;
+    EXPECT_EQ(fast.at({"stokes_uright", band}).value, -left);
+    EXPECT_GT(std::abs(left), 0.05 * fast.at({"totalleft", band}).value);
+    const double q = fast.at({"stokes_qup", band}).value, u = fast.at({"stokes_uup", band}).value;
+    EXPECT_NEAR(u / q, std::tan(60.0 * kRadiansPerDegree), 1e-6)
+        << "the picture's upper edge has turned by 30 degrees";
+  }
+}
+
+TEST_F(Eval, ScalarLightHasNoStokesParameters) {
+  for (const char* quantity : {"stokes_q", "stokes_u"}) {
+    ExpectRefused(std::string(kHeader) + "a," + quantity + ",0,60,70,50,\n",
+                  "needs polarised light");
   }
 }
 

@@ -168,6 +168,21 @@ TEST_F(TableFile, DiffuseLightComesBackBitForBit) {
   }
 }
 
+TEST_F(TableFile, PolarisedDiffuseLightComesBackBitForBitAndIsNeverReadAsScalar) {
+  const fs::path file = folder_ / "polarised.exr";
+  const DiffuseLight light(InPolarisedLight(Light().medium(), "bruneton2017"), Light().options());
+  WriteTable(file, light);
+  const StoredDiffuseLight back = ReadDiffuseLight(file, MediumHash(light.medium()));
+  EXPECT_EQ(back.light.values(), light.values());
+  EXPECT_TRUE(back.light.medium().polarised);
+  const std::string text = DescriptionText(file, DescribeTable(file));
+  EXPECT_THAT(text, HasSubstr("T22.0550nm"));
+  EXPECT_THROW(static_cast<void>(ReadDiffuseLight(file, MediumHash(Light().medium()))), InputError);
+  const fs::path scalar = folder_ / "scalar.exr";
+  WriteTable(scalar, Light());
+  EXPECT_THROW(static_cast<void>(ReadDiffuseLight(scalar, MediumHash(light.medium()))), InputError);
+}
+
 TEST_F(TableFile, DiffuseLightOfAnotherAtmosphereOrWithOtherAttributesIsRefused) {
   const fs::path file = folder_ / "multiple.exr";
   WriteTable(file, Light());
