@@ -225,7 +225,10 @@ class SingleOfRow {
                                                 const std::vector<std::size_t>& ends,
                                                 const SunColumns& sun, double nu) const {
     const AirConstants<float>& air = air_.constants();
-    const glm::vec4 molecules = AirPhases::OfMolecules(nu) * Vec4Of(air.rayleigh, air.bands);
+    glm::vec4 molecules = Vec4Of(air.rayleigh, air.bands);
+    const std::vector<double> phase = RayleighPhaseValues(air_.medium(), nu);
+    for (std::size_t band = 0; band < air.bands; ++band)
+      molecules[static_cast<glm::length_t>(band)] *= static_cast<float>(phase[band]);
     const glm::vec4 aerosol = phases_.OfAerosol(nu) * Vec4Of(air.mie_scattering, air.bands);
     std::vector<glm::vec4> light;
     glm::vec4 sum(0.0F);
