@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The linear picture [cd/m^2, linear sRGB] and the nearness of land (nearness.glsl), in passes that the depth of the land tells apart, for
-// software drivers work through both sides of a branch. Defined before this text:
+// The linear picture [cd/m^2, linear sRGB] and the nearness of land (nearness.glsl), in passes that
+// the depth of the land tells apart, for software drivers work through both sides of a branch.
+// Defined before this text:
 //   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; DISK_PASS: what
 //             the disks of sun and moon add
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
