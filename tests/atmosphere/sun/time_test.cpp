@@ -38,6 +38,10 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
 }
 
 // Hard case 25.
+TEST(Time, ASpaceStandsForTheT) {
+  EXPECT_EQ(ParseInstant("2024-06-21 04:00:00Z"), ParseInstant("2024-06-21T04:00:00Z"));
+}
+
 TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
   EXPECT_EQ(
       FaultOf("2024-02-30T00:00:00Z"),
@@ -67,7 +71,7 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
                            "2024-06-21T04Z",
                            "2024-6-21T04:00:00Z",
                            "24-06-21T04:00:00Z",
-                           "2024-06-21 04:00:00Z",
+                           "2024-06-21  04:00:00Z",
                            "2024-06-21t04:00:00z",
                            "2024-06-21T4:00:00Z",
                            "2024-06-21T04:00:00.Z",

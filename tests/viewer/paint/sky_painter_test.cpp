@@ -19,8 +19,8 @@ namespace alpenglow {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 90;
-// With four rays a pixel both are three times as far apart: at different places of rough ground.
-constexpr int kSamples = 16;
+// Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
+constexpr int kSamples = 32;
 
 RenderSettings JudgeSettings() {
   RenderSettings settings;
@@ -88,7 +88,7 @@ TEST_F(SkyPainterTest, TheRangeAtSunsetAndInTwilightIsTheRenderers) {
   const SevenView sunset = ViewNamed("ground, sunset, shafts"), twilight = ViewNamed("twilight");
   Both both(sunset.scene, sunset.instant);
   ExpectWithin(both.Difference(sunset), {0.0027, 0.011},
-               "noise of sixteen rays a pixel over rough ground, and tables between nodes");
+               "noise of thirty-two rays a pixel over rough ground, and tables between nodes");
   ExpectWithin(both.Difference(twilight), {0.0046, 0.032},
                "the same; what is dark is nearer to that noise");
 }
@@ -97,7 +97,7 @@ TEST_F(SkyPainterTest, TheRangeByDayIsTheRenderersFromTheGroundAndFromAnAeroplan
   const SevenView noon = ViewNamed("ground, noon"), high = ViewNamed("10 km");
   Both both(noon.scene, noon.instant);
   ExpectWithin(both.Difference(noon), {0.0044, 0.036},
-               "noise of sixteen rays a pixel where materials meet on rough ground");
+               "noise of thirty-two rays a pixel where materials meet on rough ground");
   ExpectWithin(both.Difference(ViewOf(high.scene, high.scene.camera.height.value_m, high.instant)),
                {0.0076, 0.057}, "the same, of more ground a pixel");
 }
