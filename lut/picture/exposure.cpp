@@ -120,7 +120,8 @@ double ExposureScale(double ev100) { return 1.0 / (1.2 * std::exp2(ev100)); }
 
 std::string MeterRule() {
   return fmt::format(
-      "mean log luminance of shares {} to {} of the solid angle, K {}; the upper not over {} beside "
+      "mean log luminance of shares {} to {} of the solid angle, K {}; the upper not over {} "
+      "beside "
       "{}; left out: over {:g} cd/m^2, and what is {} to {} stops under the upper",
       kDarkShare, kBrightShare, kMeterConstant, kPaper, kGreyCard, kSunDiskLuminance_cd_per_m2,
       kLastSeen_stops, kLastSeen_stops + kFade_stops);

@@ -17,7 +17,7 @@ struct PaintSizes {
   ShadeQuality shade = kMediumShade;
   LampQuality lamps = kMediumLamps;
   FogMapSize fog;
-  int dropped_octaves = 0;     // of the ground's detail
+  int dropped_octaves = 0;  // of the ground's detail
 };
 
 /// kReference is drawn as kHigh until the renderer's picture is there.
