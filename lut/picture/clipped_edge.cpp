@@ -2,14 +2,15 @@
 #include "lut/picture/clipped_edge.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lut/picture/tone_curve.h"
 
 namespace alpenglow {
 namespace {
 
-constexpr float kLeastLight = 256.0F;  // of white
-constexpr float kEven = 0.4F;          // of the light, in its square: the limb is half as bright
+constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // of white
+constexpr float kEven = 0.4F;  // of the light, in its square: the limb is half as bright
 constexpr int kToLight = 4, kToBeside = 4;  // pixels: filters spread an edge over four
 
 float LuminanceAt(const Image& image, int x, int y) {
@@ -72,14 +73,16 @@ std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float
     light = luminance;
     brightest = pixel;
   });
-  if (light < kLeastLight * white || !IsEven(image, brightest.x, brightest.y, light)) {
+  if (light <= kLeastLight * white || !IsEven(image, brightest.x, brightest.y, light)) {
     return std::nullopt;
   }
   const std::optional<std::array<float, 3>> beside = Beside(image, {x, y}, white);
   if (!beside) return std::nullopt;
   const float dark = shared::Luminance((*beside)[0], (*beside)[1], (*beside)[2]);
+  const float stops = std::log2(light / (kLeastLight * white));
   return ClippedEdge{image.at(brightest.x, brightest.y), *beside,
-                     std::clamp((here - dark) / (light - dark), 0.0F, 1.0F)};
+                     std::clamp((here - dark) / (light - dark), 0.0F, 1.0F),
+                     std::min(stops / std::log2(kFullLight / kLeastLight), 1.0F)};
 }
 
 }  // namespace alpenglow

@@ -3,9 +3,12 @@
 // white: a pixel that it covers by a hundredth is as white as its middle, and its edge becomes stairs.
 // A display that shows the share of each pixel that the disk covers has a smooth edge:
 //
-//   shown = s D(light) + (1 - s) D(beside),    s = (L - L_beside) / (L_light - L_beside),
+//   shown = w [s D(light) + (1 - s) D(beside)] + (1 - w) D(pixel),
+//   s = (L - L_beside) / (L_light - L_beside),
 //
 // D the tone curve, L luminances of the linear picture, in which the pixel is that mixture of light.
+// A light that a curve still holds needs none of it: w rises from 0 at 16 times white to 1 at 256, so
+// that nothing jumps while the sun sets.
 #pragma once
 
 #include <array>
@@ -19,9 +22,10 @@ namespace alpenglow {
 struct ClippedEdge {
   std::array<float, 3> light, beside;  // colours like those of the picture
   float share;                         // of the light, in [0, 1]
+  float weight;                        // w, in (0, 1]
 };
 
-/// The mixture, where there is one: a light of at least 256 times white lies within four pixels, as
+/// The mixture, where there is one: a light of over 16 times white lies within four pixels, as
 /// bright in a square of 2x2 pixels (sparkles of water and lamps, which are smaller, are left as
 /// they are), and light that is not clipped does so, too. Nothing for all other pixels.
 /// @param white  luminance that a display shows as white, in the picture's unit, > 0.

@@ -27,11 +27,13 @@ Rgb<float> DisplayLightAt(const Image& image, int x, int y, float scale, const L
     return DisplayLight(look.curve, rgb, scale, look.agx);
   };
   const std::optional<ClippedEdge> edge = ClippedEdgeAt(image, x, y, 1.0F / scale);
-  if (!edge) return shown(image.at(x, y));
+  const Rgb<float> whole = shown(image.at(x, y));
+  if (!edge) return whole;
   const Rgb<float> light = shown(edge->light), beside = shown(edge->beside);
   Rgb<float> mixed;
   for (std::size_t c = 0; c < 3; ++c) {
-    mixed[c] = edge->share * light[c] + (1.0F - edge->share) * beside[c];
+    const float parts = edge->share * light[c] + (1.0F - edge->share) * beside[c];
+    mixed[c] = edge->weight * parts + (1.0F - edge->weight) * whole[c];
   }
   return mixed;
 }

@@ -90,6 +90,19 @@ TEST(ClippedEdge, SparklesAndPlainSkyAreNone) {
   }
 }
 
+TEST(ClippedEdge, NothingJumpsWhileADiskGrowsDimmer) {
+  const Image image = DiskBeforeSky(32, 7.5);
+  int last = -1;
+  for (double ev100 = 30.0; ev100 > 10.0; ev100 -= 0.125) {
+    const DisplayImage shown = Develop(image, ev100, ToneCurve::kAgx);
+    const int here = shown.rgb[3 * (16 * 32 + 23) + 1];  // half of it covered
+    if (last >= 0) {
+      EXPECT_NEAR(here, last, 14) << ev100 << ": an eighth of a stop is 10 codes";
+    }
+    last = here;
+  }
+}
+
 TEST(ClippedEdge, ALightThatACurveHoldsIsLeftAsItIs) {
   const Image image = DiskBeforeSky(32, 8.0);
   for (int y = 0; y < 32; ++y) {
