@@ -84,9 +84,9 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
       const float seen = samples.weight[s] * std::exp(-tau);
       const float molecules = seen * rayleigh * samples.rayleigh_density[s];
       const float aerosol = seen * per_km(medium.mie_scattering_per_m) * samples.mie_density[s];
+      const float chi2 = RayleighChi2(medium, band);
       for (std::size_t l = 0; l < orders; ++l) {
-        const float chi2 = polarised ? 0.0F : RayleighChi2(medium, band);
-        const float rayleigh_chi = l == 0 ? 1.0F : l == 2 ? chi2 : 0.0F;
+        const float rayleigh_chi = l == 0 ? 1.0F : l == 2 && !polarised ? chi2 : 0.0F;
         const float source =
             molecules * rayleigh_chi + aerosol * static_cast<float>(chi_mie_[l * bands + band]);
         for (std::size_t m = 0; m <= l; ++m) {
@@ -96,7 +96,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
       }
       for (std::size_t m = 0; m < kTensorMoments; ++m) {
         factors[(light_.moments() + m) * kLanes + lane] =
-            molecules * RayleighChi2(medium, band) * legendre[MomentIndex(2, static_cast<int>(m))];
+            molecules * chi2 * legendre[MomentIndex(2, static_cast<int>(m))];
       }
     }
 

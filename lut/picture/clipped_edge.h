@@ -27,7 +27,9 @@ struct ClippedEdge {
 
 /// The mixture, where there is one: a light of over 16 times white lies within four pixels, as
 /// bright in a square of 2x2 pixels (sparkles of water and lamps, which are smaller, are left as
-/// they are), and light that is not clipped does so, too. Nothing for all other pixels.
+/// they are), and light that is not clipped does so, too. Nothing for all other pixels. Where sky and
+/// land are beside the light, `beside` is both; a disk that is darker at its limb counts as covering
+/// less there.
 /// @param white  luminance that a display shows as white, in the picture's unit, > 0.
 [[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y,
                                                        float white);

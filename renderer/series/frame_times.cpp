@@ -7,10 +7,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/sun/geodesy.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
 
 namespace alpenglow {
 namespace {

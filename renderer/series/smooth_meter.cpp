@@ -13,9 +13,7 @@ namespace {
 
 double SecondsAfter(const Frame& first, const Frame& frame, bool on_path) {
   if (on_path) return frame.path_s - first.path_s;
-  return 86400.0 * static_cast<double>(frame.instant.modified_julian_day -
-                                       first.instant.modified_julian_day) +
-         (frame.instant.second_of_day - first.instant.second_of_day);
+  return SecondsBetween(first.instant, frame.instant);
 }
 
 /// Of the uniform cubic B-spline, `t` in [0, 1] of the way from the second node to the third.

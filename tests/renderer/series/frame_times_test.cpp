@@ -3,26 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
 namespace {
 
-EventDay Fuji() {
-  const GeodeticPosition place = PlaceFromDegrees(35.3606, 138.7274, 0.0);
-  EventDay day{place, "Asia/Tokyo", {}};
-  day.around = DayFromText("2026-06-21", day);
-  return day;
-}
-
-EventDay Tromso(const char* date) {
-  const GeodeticPosition place = PlaceFromDegrees(69.65, 18.96, 0.0);
-  EventDay day{place, std::nullopt, {}};
-  day.around = DayFromText(date, day);
-  return day;
-}
-
 using tests::FaultOf;
+using tests::Fuji;
+using tests::Tromso;
 
 TEST(FrameTimes, EveryStepsUpToTheEnd) {
   const std::vector<Frame> frames = FramesFromTimes(

@@ -11,6 +11,7 @@
 
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow {
@@ -18,21 +19,9 @@ namespace {
 
 using testing::HasSubstr;
 
-EventDay Fuji() {
-  const GeodeticPosition place = PlaceFromDegrees(35.3606, 138.7274, 0.0);
-  EventDay day{place, "Asia/Tokyo", {}};
-  day.around = DayFromText("2026-06-21", day);
-  return day;
-}
-
-EventDay Tromso(const char* date) {
-  const GeodeticPosition place = PlaceFromDegrees(69.65, 18.96, 0.0);
-  EventDay day{place, std::nullopt, {}};
-  day.around = DayFromText(date, day);
-  return day;
-}
-
 using tests::FaultOf;
+using tests::Fuji;
+using tests::Tromso;
 
 TEST(TimeText, AnInstantIsReadAsItStands) {
   EXPECT_EQ(FormatUtc(InstantFromText("2026-06-21T04:00:00Z", Fuji())), "2026-06-21T04:00:00Z");
