@@ -17,9 +17,9 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/terrain/elevation.h"
+#include "viewer/job/latest_job.h"
 #include "viewer/shade/shade_map.h"
 #include "viewer/shade/shade_texture.h"
-#include "viewer/job/latest_job.h"
 
 namespace alpenglow {
 
