@@ -1,10 +1,33 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/painted_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/ray/shell.h"
+
 namespace alpenglow {
+namespace {
+
+constexpr double kMetresPerKilometre = 1000.0;
+
+// Where a convex function is least between -1 and 1, to a billionth.
+template <typename Function>
+double LeastOf(const Function& function) {
+  constexpr double kGolden = 0.6180339887498949;
+  double low = -1.0, high = 1.0;
+  while (high - low > 1e-9) {
+    const double width = kGolden * (high - low);
+    if (function(high - width) < function(low + width))
+      high = low + width;
+    else
+      low = high - width;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
 
 double PixelAngle(const PaintedView& view) {
   return 2.0 * std::tan(0.5 * view.eye.fov_rad) / (view.width * view.part.z);
@@ -47,6 +70,36 @@ std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_
   const int side = static_cast<int>(std::ceil(2.0 * reach)) + 1;
   return PixelBox{static_cast<int>(std::floor(x - reach)), static_cast<int>(std::floor(y - reach)),
                   side, side};
+}
+
+double RadiusUnder(const Eye& eye, const Medium& medium) {
+  return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
+}
+
+// A ray d goes under the horizon's cosine c <= 0 where d.z - c |d| < 0. That is convex over the
+// picture, and so is the least of a row over the rows.
+int RowsOfPlanet(const PaintedView& view, double radius_km) {
+  const LandView axes = LandViewOf(view);
+  const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
+  const double horizon = shared::HorizonCosine(altitude_km, radius_km);
+  const glm::dvec3 middle =
+      axes.forward + view.part.x * view.part.z * axes.right + view.part.y * view.part.w * axes.up;
+  const auto over_horizon = [&](double x, double y) {
+    const glm::dvec3 d = middle + x * axes.right + y * axes.up;
+    return d.z - horizon * glm::length(d);
+  };
+  const auto least_of_row = [&](double y) {
+    const auto of_row = [&](double x) { return over_horizon(x, y); };
+    return of_row(LeastOf(of_row));
+  };
+  double under = LeastOf(least_of_row), over = 1.0;
+  if (least_of_row(under) >= 0.0) return 0;
+  if (least_of_row(over) < 0.0) return view.height;
+  while (over - under > 1e-6) {
+    const double y = 0.5 * (under + over);
+    (least_of_row(y) < 0.0 ? under : over) = y;
+  }
+  return std::min(static_cast<int>(0.5 * (over + 1.0) * view.height) + 2, view.height);
 }
 
 glm::dvec3 DirectionToSun(const SunPosition& sun) {

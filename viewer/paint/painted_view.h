@@ -7,6 +7,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
+#include "atmosphere/air/medium.h"
 #include "atmosphere/sun/sun.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/scissor.h"
@@ -43,6 +44,13 @@ struct PixelRay {
 /// @param direction  unit, east, north, up at the eye; radius_rad: angular.
 [[nodiscard]] std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
                                                    const PaintedView& view);
+
+/// Of the planet's sphere under an eye [km].
+[[nodiscard]] double RadiusUnder(const Eye& eye, const Medium& medium);
+
+/// Rows from the lowest that hold all rays under the planet's horizon, and one more: above them is
+/// nothing but sky.
+[[nodiscard]] int RowsOfPlanet(const PaintedView& view, double radius_km);
 
 /// Unit vector to the sun: east, north, up where it is seen from.
 [[nodiscard]] glm::dvec3 DirectionToSun(const SunPosition& sun);

@@ -19,10 +19,6 @@ void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) 
   glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
 }
 
-double RadiusUnder(const Eye& eye, const Medium& medium) {
-  return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
-}
-
 // The frame of the ground's pattern, which a draped picture lies in too.
 LocalFrame PatternOf(const PaintedScene& scene) {
   GeodeticPosition origin = scene.place();

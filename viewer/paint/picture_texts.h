@@ -13,9 +13,9 @@
 
 namespace alpenglow {
 
-/// One of the picture's programs.
+/// One of the picture's programs. Sky is open above the horizon, see RowsOfPlanet.
 struct PictureStage {
-  enum class Pass { kLand, kSky, kDisks };
+  enum class Pass { kLand, kSky, kDisks, kOpenSky };
   Pass pass;
   bool has_shade = false, has_lamps = false;
 

@@ -129,14 +129,34 @@ void SkyPainter::DescribeMoon(const MoonDisk& moon) {
 }
 
 // One stage is made ready a frame: each takes tenths of a second.
-void SkyPainter::PaintLandAndSky(double share) {
+void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
   using enum PictureStage::Pass;
+  for (const PictureStage& stage :
+       {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOpenSky, has_shade, has_lamps},
+        PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
+        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}})
+    if (programs_.MakeReady(stage)) return;
+}
+
+// Software drivers work out the planet of every pixel that a program has it for.
+void SkyPainter::PaintSky(const PaintedView& view, bool has_shade, bool has_lamps) {
+  using enum PictureStage::Pass;
+  const int rows = RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
+  if (rows > 0) {
+    const Scissor below({0, 0, view.width, rows});
+    programs_.Paint({kSky, has_shade, has_lamps});
+  }
+  if (rows < view.height) {
+    const Scissor above({0, rows, view.width, view.height - rows});
+    programs_.Paint({kOpenSky, has_shade, has_lamps});
+  }
+}
+
+void SkyPainter::PaintLandAndSky(const PaintedView& view, double share) {
   const bool has_shade = scene_.HasShade(), has_lamps = !lamp_painter_.IsDark();
-  if (share == 1.0 && !programs_.MakeReady({kLand, !has_shade, has_lamps}) &&
-      !programs_.MakeReady({kSky, !has_shade, has_lamps}))
-    programs_.MakeReady({kDisks});
-  programs_.Paint({kLand, has_shade, has_lamps});
-  programs_.Paint({kSky, has_shade, has_lamps});
+  if (share == 1.0) MakeOneReady(has_shade, has_lamps);
+  programs_.Paint({PictureStage::Pass::kLand, has_shade, has_lamps});
+  PaintSky(view, has_shade, has_lamps);
 }
 
 std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
@@ -177,7 +197,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
-  PaintLandAndSky(share);
+  PaintLandAndSky(view, share);
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {

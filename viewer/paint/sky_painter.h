@@ -99,7 +99,9 @@ class SkyPainter {
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
   void PaintPicture(const PaintedView& view, double share);
-  void PaintLandAndSky(double share);
+  void MakeOneReady(bool has_shade, bool has_lamps);
+  void PaintSky(const PaintedView& view, bool has_shade, bool has_lamps);
+  void PaintLandAndSky(const PaintedView& view, double share);
   void PaintDisks(const PaintedView& view, double share);
   void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {

@@ -2,8 +2,8 @@
 // The linear picture [cd/m^2, linear sRGB] and the nearness of land (nearness.glsl), in passes that
 // the depth of the land tells apart, for software drivers work through both sides of a branch.
 // Defined before this text:
-//   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; DISK_PASS: what
-//             the disks of sun and moon add
+//   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; OPEN_SKY_PASS:
+//             sky where no planet is; DISK_PASS: what the disks of sun and moon add
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
 in vec2 screen;
 out vec4 picture;
@@ -81,7 +81,7 @@ void main() {
 }
 #endif
 
-#if PASS == SKY_PASS
+#if PASS == SKY_PASS || PASS == OPEN_SKY_PASS
 // Whether the table of the sky has the planet's ground as it is.
 #define PLANET_IS_PLAIN (!HAS_FOG && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
 
@@ -102,10 +102,10 @@ void main() {
   const float out_of_fog_km = 1e3;
   radiance = ThroughFog(direction, out_of_fog_km, radiance, vec4(0.0));
 #endif
-#if !PLANET_IS_PLAIN
+#if PASS == SKY_PASS && !PLANET_IS_PLAIN
   if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
     radiance = PlanetThroughAir(direction);
-#elif PLANET_IS_LAND
+#elif PASS == SKY_PASS && PLANET_IS_LAND
   if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0) {
     float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
     vec4 beyond = PlanetBeyondEven(1e3 * distance_km * direction, -direction);
