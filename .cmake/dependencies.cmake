@@ -13,6 +13,7 @@ find_dependency(PNG)
 find_dependency(embree 3.13)
 find_dependency(GDAL)
 find_dependency(tinyobjloader)
+find_dependency(tinyxml2)
 find_dependency(spdlog)
 find_dependency(GeographicLib)
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
-#include "viewer/flight/standard_air.h"
+#include "atmosphere/number/gravity.h"
 
 namespace alpenglow {
 namespace {

@@ -2,10 +2,10 @@
 // An eye that flies: where it is, where it looks, how keys and mouse move it.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/camera/ground_height.h"
 
 namespace alpenglow {
 
@@ -22,9 +22,6 @@ struct Eye {
 
   bool operator==(const Eye&) const = default;
 };
-
-/// Height of the ground [m] over the ellipsoid, under a place.
-using GroundHeight = std::function<double(const GeodeticPosition&)>;
 
 /// Where an eye is put, as people type it; what is left out stays as it is.
 struct EyePlacement {

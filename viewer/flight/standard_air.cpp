@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "atmosphere/number/gravity.h"
+
 namespace alpenglow {
 namespace {
 

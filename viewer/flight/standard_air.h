@@ -11,8 +11,6 @@
 
 namespace alpenglow {
 
-inline constexpr double kStandardGravity_m_per_s2 = 9.80665;  // CGPM 1901
-
 struct StandardAir {
   double density_kg_per_m3;
   double sound_m_per_s;  // speed of sound

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/track.h"
+#include "renderer/camera/track.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/number/gravity.h"
 #include "atmosphere/text/error.h"
-#include "viewer/flight/standard_air.h"
 
 namespace alpenglow {
 namespace {
 
 /// Of the chord that the camera looks along.
 constexpr double kChord_s = 4.0;
+/// On either side of a moment, where speed and bank are smoothed.
+constexpr double kSmooth_s = 4.0;
 
 bool HasTimes(const Track& track) {
   return std::all_of(track.points.begin(), track.points.end(),
@@ -95,17 +97,75 @@ void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
   }
 }
 
-/// Banks as wings would in the turns of the headings.
+/// How many points on either side of each are within kSmooth_s, as many before as after it.
+std::vector<int> ReachOf(const std::vector<CameraPathPoint>& points) {
+  const auto last = static_cast<int>(points.size()) - 1;
+  const double step_s = (points.back().time_s - points.front().time_s) / last;
+  const int most = static_cast<int>(std::lround(kSmooth_s / step_s));
+  std::vector<int> reach;
+  for (int i = 0; i <= last; ++i) reach.push_back(std::min({most, i, last - i}));
+  return reach;
+}
+
+/// Sums of `values` around each, by the weights of the steps from it; they are normalised.
+template <typename Weight>
+std::vector<double> Smoothed(const std::vector<double>& values, const std::vector<int>& reach,
+                             const Weight& weight) {
+  std::vector<double> smooth;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    double sum = 0.0, weights = 0.0;
+    for (int j = -reach[i]; j <= reach[i]; ++j) {
+      const double w = weight(reach[i], j);
+      sum += w * values[static_cast<std::size_t>(static_cast<int>(i) + j)];
+      weights += w;
+    }
+    smooth.push_back(sum / weights);
+  }
+  return smooth;
+}
+
+/// Of the least-squares parabola through 2 m + 1 even points, at its middle (Savitzky and Golay 1964,
+/// Anal. Chem. 36, 1627): even acceleration passes unchanged.
+double WeightOfParabola(int m, int j) { return 3.0 * m * (m + 1.0) - 1.0 - 5.0 * j * j; }
+
+/// A Hann window: weights that go to 0 at its ends.
+double WeightOfHann(int m, int j) { return 1.0 + std::cos(kPi * j / (m + 1.0)); }
+
+/// The same way, with a smooth speed: where each point is on it changes, not the way.
+void SmoothSpeed(const CameraPath& way, std::vector<CameraPathPoint>& points) {
+  std::vector<double> gone_m{0.0};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    gone_m.push_back(gone_m.back() + Distance(points[i - 1].pose.place, points[i].pose.place));
+  }
+  const std::vector<double> smooth_m = Smoothed(gone_m, ReachOf(points), WeightOfParabola);
+  std::vector<double> times_s;
+  for (const CameraPathPoint& point : points) times_s.push_back(point.time_s);
+  double farthest_m = 0.0;
+  std::size_t next = 1;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    farthest_m = std::clamp(smooth_m[i], farthest_m, gone_m.back());  // never back
+    while (next + 1 < gone_m.size() && gone_m[next] < farthest_m) ++next;
+    const double span_m = gone_m[next] - gone_m[next - 1];
+    const double share = span_m > 0.0 ? (farthest_m - gone_m[next - 1]) / span_m : 1.0;
+    const double time_s = times_s[next - 1] + share * (times_s[next] - times_s[next - 1]);
+    points[i].pose.place = way.PoseAt(time_s).place;
+  }
+}
+
+/// Banks as wings would in the turns of the headings, and rolls into them.
 void Bank(std::vector<CameraPathPoint>& points) {
   constexpr double kMost_rad = 35.0 * kRadiansPerDegree;
+  std::vector<double> bank_rad(points.size(), 0.0);
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const CameraPathPoint &before = points[i - 1], &after = points[i + 1];
     const double seconds = after.time_s - before.time_s;
     const double turn = std::remainder(after.pose.heading_rad - before.pose.heading_rad, 2.0 * kPi);
     const double speed = Distance(before.pose.place, after.pose.place) / seconds;
-    points[i].pose.roll_rad = std::clamp(
-        std::atan(speed * turn / seconds / kStandardGravity_m_per_s2), -kMost_rad, kMost_rad);
+    bank_rad[i] = std::clamp(std::atan(speed * turn / seconds / kStandardGravity_m_per_s2),
+                             -kMost_rad, kMost_rad);
   }
+  const std::vector<double> smooth_rad = Smoothed(bank_rad, ReachOf(points), WeightOfHann);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].pose.roll_rad = smooth_rad[i];
 }
 
 std::vector<CameraPathPoint> EvenPoints(const CameraPath& knots, const TrackStyle& style) {
@@ -128,6 +188,7 @@ CameraPath PathAlong(const Track& track, const TrackStyle& style, const GroundHe
   RequireInRange(style.over_ground_m, 0.0, 1e6, "height over the ground of the track");
   const CameraPath knots(Knots(track, style));
   std::vector<CameraPathPoint> points = EvenPoints(knots, style);
+  SmoothSpeed(knots, points);
   if (track.heights != TrackHeights::kSea) LiftOverGround(track, style, ground, points);
   LookAlong(CameraPath(points), points);
   Bank(points);

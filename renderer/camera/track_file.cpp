@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/track_file.h"
+#include "renderer/camera/track_file.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>

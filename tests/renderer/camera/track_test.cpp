@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/track.h"
+#include "renderer/camera/track.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -133,6 +133,62 @@ TEST(TrackPath, AJitterOfTheReceiverTurnsTheHeadLittle) {
     EXPECT_NEAR(Degrees(path.PoseAt(t).heading_rad), 0.0, 1.5) << "3 m in a chord of 130 m";
     EXPECT_NEAR(Degrees(path.PoseAt(t).roll_rad), 0.0, 8.0);
   }
+}
+
+TEST(TrackPath, AReceiverThatRunsAheadAndLagsBehindDoesNotShakeTheSpeed) {
+  Track track;
+  const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
+  for (int i = 0; i < 120; ++i) {
+    const double ahead = i % 2 == 0 ? 1.0 : -1.0;  // 10 m of the 60 m in a second
+    track.points.push_back(
+        {PlaceFromDegrees(46.0 + (60.0 * i + 10.0 * ahead) / 111150.0, 8.0, 1000.0),
+         AddSeconds(start, i)});
+  }
+  const CameraPath path = PathAlong(track, {}, Sea);
+  for (double t = 8.0; t < 110.0; t += 0.5) {
+    const double speed = Apart(path.PoseAt(t + 0.5).place, path.PoseAt(t - 0.5).place);
+    EXPECT_NEAR(speed, 60.0, 60.0 * 0.1)
+        << t << ": from 40 to 80 m/s in the track; a parabola through nine of its points leaves a "
+        << "weight of 0.11 of what changes its sign from each to the next";
+  }
+}
+
+TEST(TrackPath, AnEvenAccelerationPassesTheSmoothingUnchanged) {
+  Track track;
+  const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
+  const auto way_m = [](double t) { return 20.0 * t + 0.5 * t * t; };
+  for (int i = 0; i <= 100; ++i) {
+    track.points.push_back(
+        {PlaceFromDegrees(0.0, way_m(i) / 111319.49079, 1000.0 + 0.0 * i), AddSeconds(start, i)});
+  }
+  const CameraPath path = PathAlong(track, {}, Sea);
+  for (double t = 0.0; t <= 100.0; t += 10.0) {
+    EXPECT_NEAR(Degrees(path.PoseAt(t).place.longitude_rad) * 111319.49079, way_m(t), 0.05)
+        << t << ": the way between points is taken as straight, and as even";
+  }
+}
+
+TEST(TrackPath, WingsRollIntoATurnAndOutOfItWithoutAJump) {
+  Track track;  // north for 3 km, a quarter of a circle of 1 km, east for 3 km
+  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.0, 8.0, 1000.0));
+  const auto add = [&](double east_m, double north_m) {
+    track.points.push_back({frame.GeodeticFromEnu(Point<Enu>{{east_m, north_m, 0.0}})});
+    track.points.back().place.height_m = 1000.0;
+  };
+  for (int i = 0; i < 30; ++i) add(0.0, 100.0 * i);
+  for (int i = 0; i <= 15; ++i) {
+    const double angle = 6.0 * i * kRadiansPerDegree;
+    add(1000.0 * (1.0 - std::cos(angle)), 3000.0 + 1000.0 * std::sin(angle));
+  }
+  for (int i = 1; i <= 30; ++i) add(1000.0 + 100.0 * i, 4000.0);
+  const CameraPath path = PathAlong(track, {.speed_m_per_s = 60.0}, Sea);
+  const double turn_s = 50.0, full = Degrees(std::atan(60.0 * 60.0 / (1000.0 * kG)));
+  for (double t = 0.0; t < path.end_s(); t += 0.25) {
+    const double rate = Degrees(path.PoseAt(t + 0.5).roll_rad - path.PoseAt(t).roll_rad) / 0.5;
+    EXPECT_LT(std::abs(rate), 6.0) << t << ": a window of Hann spreads 20 degrees to 5 a second";
+  }
+  EXPECT_NEAR(Degrees(path.PoseAt(turn_s + 13.0).roll_rad), full, 1.0) << "in the turn's middle";
+  EXPECT_NEAR(Degrees(path.PoseAt(turn_s - 8.0).roll_rad), 0.0, 0.5);
 }
 
 // Hard case 27.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/capture/video.h"
+#include "renderer/series/video.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,13 +3,15 @@
 //
 //   bank = atan(v psi' / g), to 35 degrees           psi' is the turn of the path per second
 //
-// The camera goes through all points of the track on the smooth curve of CameraPath. Where it looks
-// is where the chord of the curve points, over 4 s: receivers are not as steady as wings.
+// The camera goes through all points of the track on the smooth curve of CameraPath. Receivers are
+// not as steady as wings: it looks where the chord of the curve points, over 4 s; where it is on the
+// curve, and so its speed, is the parabola that fits best 4 s before and after; so far the bank is
+// smoothed too.
 #pragma once
 
 #include "renderer/camera/camera_path.h"
-#include "viewer/flight/flight.h"
-#include "viewer/flight/track_file.h"
+#include "renderer/camera/ground_height.h"
+#include "renderer/camera/track_file.h"
 
 namespace alpenglow {
 
