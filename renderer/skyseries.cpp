@@ -79,6 +79,11 @@ Metadata MetadataOf(const Scene& scene, const std::optional<CameraPath>& path,
   return metadata;
 }
 
+/// Those that are typed.
+std::optional<std::filesystem::path> FileOf(const std::optional<std::string>& name) {
+  return name ? std::optional<std::filesystem::path>(*name) : std::nullopt;
+}
+
 NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
                          const RenderSettings& settings, const SkyseriesOptions& options) {
   if (!ChoosesEffects(options) && !options.explain) {
@@ -123,7 +128,11 @@ int Run(const SkyseriesOptions& options) {
   output.glare = options.glare == "eye";
   output.resume = options.resume;
   output.inputs = InputsOf(options, scene);
-  if (options.contact_sheet) output.contact_sheet = *options.contact_sheet;
+  output.contact_sheet = FileOf(options.contact_sheet);
+  output.keogram = FileOf(options.keogram);
+  output.plot = FileOf(options.plot);
+  output.video = FileOf(options.video);
+  output.video_frames_per_s = options.frames_per_second;
   output.progress = options.common.progress_style();
 
   const ImageSize size = ImageSizeFromText(options.size);
@@ -148,7 +157,10 @@ int Run(const SkyseriesOptions& options) {
   const SeriesSource source{
       [&](const Frame& frame, Progress& progress) {
         settings.progress = &progress;
-        return RenderFrame(renderer(&progress), shot(frame), settings, options);
+        NotedPicture picture = RenderFrame(renderer(&progress), shot(frame), settings, options);
+        picture.notes[kIlluminanceNote] =
+            fmt::format("{:.6g}", renderer(nullptr).Illuminance(shot(frame)));
+        return picture;
       },
       [&](const Frame& frame) { return renderer(nullptr).Illuminance(shot(frame)); },
       MetadataOf(scene, path, settings, options),

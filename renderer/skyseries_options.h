@@ -40,7 +40,7 @@ struct SkyseriesOptions {
   std::string scene_file;
   SceneOptions scene;
   TimesText times;
-  std::optional<std::string> date, zone, frames, contact_sheet;
+  std::optional<std::string> date, zone, frames, contact_sheet, keogram, plot, video;
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
                    filter = "blackman-harris", glare = "none", white_balance = "daylight";
   std::optional<int> samples;
@@ -97,9 +97,11 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
       "Way of the camera: a CSV with a header of t_s, latitude, longitude, height_m (over the "
       "ellipsoid) and, if wanted, heading, pitch, roll, fov and utc; skyview --record writes one. "
       "Its frames begin at its first point");
-  CLI::Option* fps = app.add_option("--fps", options.frames_per_second,
-                                    "Frames per second of the path, without --every and --count")
-                         ->capture_default_str();
+  CLI::Option* fps =
+      app.add_option(
+             "--fps", options.frames_per_second,
+             "Frames per second of the path, without --every and --count, and of the --video")
+          ->capture_default_str();
   app.add_option(
          "--shutter", options.shutter,
          "Share of the time between frames of a path that the shutter is open, 0 to 1: what "
@@ -109,16 +111,18 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
       ->capture_default_str();
   from->needs(to)->excludes(at)->excludes(path);
   to->needs(from);
-  every->excludes(count)->excludes(fps);
-  count->excludes(fps);
-  fps->needs(path);
+  every->excludes(count);
   // CLI11 has no "needs one of".
-  app.parse_complete_callback([from, path, every, count] {
+  app.parse_complete_callback([from, path, every, count, fps, &options] {
     for (const CLI::Option* option : {every, count}) {
       if (*option && !*from && !*path) {
         throw CLI::RequiresError(option->get_name(), "--from or --path");
       }
+      if (*option && *fps && !options.video) {
+        throw CLI::ExcludesError(option->get_name(), "--fps");
+      }
     }
+    if (*fps && !*path && !options.video) throw CLI::RequiresError("--fps", "--path or --video");
   });
   app.add_option("--date", options.date,
                  "Day of events and clock times: 2026-06-21, today, tomorrow, yesterday (default: "
@@ -196,6 +200,17 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
                "runs that were killed on this machine");
   app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small")
       ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
+  app.add_option("--keogram", options.keogram,
+                 "PNG of the middle column of every frame of this run, side by side")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
+  app.add_option("--plot", options.plot,
+                 "SVG of the elevation of sun and moon, the light on the ground and the exposure "
+                 "over the time of the series")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
+  app.add_option(
+         "--video", options.video,
+         "Film of all frames of this run (.mp4, .mov, .mkv), --fps a second, through ffmpeg")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ""); });
 }
 
 inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {

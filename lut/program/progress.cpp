@@ -12,6 +12,7 @@
 #include <set>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/json_text.h"
 #include "lut/program/messages.h"
 
 namespace alpenglow {
@@ -33,15 +34,6 @@ Form FormOf(ProgressStyle style) {
       return Form::kNothing;
   }
   throw InternalError("unknown progress style");
-}
-
-std::string JsonString(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    if (static_cast<unsigned char>(c) >= 0x20) quoted += c;
-  }
-  return quoted + '"';
 }
 
 constexpr std::size_t kBarWidth = 30;

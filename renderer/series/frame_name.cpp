@@ -82,6 +82,10 @@ std::filesystem::path FrameName::Manifest() const {
   return first.parent_path() / (stem.empty() ? "manifest.csv" : stem + ".manifest.csv");
 }
 
+std::filesystem::path FrameName::JsonManifest() const {
+  return Manifest().replace_extension(".json");
+}
+
 std::filesystem::path FrameName::Folder() const {
   return std::filesystem::path(before_).parent_path();
 }

@@ -21,6 +21,8 @@ class FrameName {
   [[nodiscard]] std::filesystem::path Png(int number) const;
   /// The list of the frames, in their folder: "DIR/frame.manifest.csv".
   [[nodiscard]] std::filesystem::path Manifest() const;
+  /// The same for programs: "DIR/frame.manifest.json".
+  [[nodiscard]] std::filesystem::path JsonManifest() const;
   [[nodiscard]] std::filesystem::path Folder() const;
 
  private:

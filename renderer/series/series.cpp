@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/glare.h"
@@ -16,8 +18,12 @@
 #include "lut/program/program.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/contact_sheet.h"
+#include "renderer/series/day_plot.h"
+#include "renderer/series/keogram.h"
+#include "renderer/series/manifest_json.h"
 #include "renderer/series/provenance.h"
 #include "renderer/series/smooth_meter.h"
+#include "renderer/series/video.h"
 
 namespace alpenglow {
 namespace {
@@ -66,6 +72,23 @@ std::string HeaderValue(const std::function<Metadata()>& read, const std::string
   } catch (const InputError&) {
     return "";
   }
+}
+
+/// What the files say of a frame; texts are empty before there is one.
+struct FoundFrame {
+  std::string ev100, rule;
+  std::optional<double> illuminance_lx;
+};
+
+FoundFrame FoundIn(const Metadata& header) {
+  const auto value = [&](const char* name) {
+    const auto found = header.find(name);
+    return found == header.end() ? std::string() : found->second;
+  };
+  FoundFrame found{value(kEv100), value(kExposure), std::nullopt};
+  const std::string illuminance = value(kIlluminanceNote);
+  if (!illuminance.empty()) found.illuminance_lx = std::stod(illuminance);
+  return found;
 }
 
 std::string ExrValue(const fs::path& file, const std::string& name) {
@@ -147,6 +170,7 @@ class Series {
     const Look look = Settled(output_.look, picture->image, ViewOf(frame, picture->image));
     const Development development = DevelopmentOf(frame, picture->image, look, rendered);
     Write(frame, *picture, development, rendered);
+    if (output_.video || output_.keogram) developments_.emplace(frame.number, development);
     if (output_.contact_sheet) AddThumbnail(frame, picture->image, development);
     return rendered;
   }
@@ -155,8 +179,10 @@ class Series {
     std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100";
     if (source_.path) text += ",t_s,latitude,longitude,height_m,heading,pitch,roll,fov";
     text += ",exposure\n";
-    for (const Frame& frame : frames_) text += ManifestLine(frame);
+    const std::vector<ManifestEntry> entries = Entries();
+    for (const ManifestEntry& entry : entries) text += ManifestLine(entry);
     WriteTextAtomically(output_.name.Manifest(), text);
+    WriteTextAtomically(output_.name.JsonManifest(), JsonOfManifest(entries, source_.settings));
   }
 
   void WriteContactSheet() const {
@@ -165,14 +191,49 @@ class Series {
     }
   }
 
+  void WritePlot() const {
+    if (!output_.plot) return;
+    std::vector<PlottedMoment> moments;
+    for (const ManifestEntry& entry : Entries()) {
+      const UtcInstant& instant = entry.frame.instant;
+      moments.push_back({instant, SunAt(entry.place, instant).elevation_rad / kRadiansPerDegree,
+                         MoonAt(entry.place, instant).elevation_rad / kRadiansPerDegree,
+                         entry.illuminance_lx, entry.ev100});
+    }
+    std::stable_sort(moments.begin(), moments.end(),
+                     [](const PlottedMoment& a, const PlottedMoment& b) {
+                       return SecondsBetween(a.instant, b.instant) > 0.0;
+                     });
+    WriteTextAtomically(*output_.plot, SvgOfDay(moments, source_.zone));
+  }
+
+  /// Both show the developed pictures, which are asked for one by one: they need not be held.
+  void WriteVideoAndKeogram(const std::vector<Frame>& shown) const {
+    if (!output_.video && !output_.keogram) return;
+    Keogram keogram;
+    const auto picture = [&](int index) {
+      DisplayImage image = Shown(shown[static_cast<std::size_t>(index)]);
+      if (output_.keogram) keogram.Add(image);
+      return image;
+    };
+    const auto count = static_cast<int>(shown.size());
+    if (output_.video) {
+      const DisplayImage first = Shown(shown.front());
+      WriteVideo(*output_.video,
+                 {first.width, first.height, output_.video_frames_per_s, source_.settings}, count,
+                 picture);
+    } else {
+      for (int i = 0; i < count; ++i) {
+        ThrowIfInterrupted();
+        static_cast<void>(picture(i));
+      }
+    }
+    if (output_.keogram) WritePng(*output_.keogram, keogram.Image(), source_.settings);
+  }
+
   [[nodiscard]] const SeriesSummary& summary() const { return summary_; }
 
  private:
-  /// As they are in the files; empty before there is one.
-  struct ExposureTexts {
-    std::string ev100, rule;
-  };
-
   [[nodiscard]] PictureView ViewOf(const Frame& frame, const Image& image) const {
     const Projection projection = source_.ProjectionOf(frame);
     const double across =
@@ -243,7 +304,15 @@ class Series {
           Develop(AsLookedAt(frame, image, development.look), development.ev100, development.look),
           metadata);
     (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
-    exposure_of_[frame.number] = {metadata.at(kEv100), metadata.at(kExposure)};
+    found_[frame.number] = FoundIn(metadata);
+  }
+
+  /// A frame that is there, developed.
+  [[nodiscard]] DisplayImage Shown(const Frame& frame) const {
+    if (output_.png) return ReadPng(output_.name.Png(frame.number));
+    const Development& development = developments_.at(frame.number);
+    const Image image = ReadExr(output_.name.Exr(frame.number));
+    return Develop(AsLookedAt(frame, image, development.look), development.ev100, development.look);
   }
 
   void AddThumbnail(const Frame& frame, const Image& image, const Development& development) {
@@ -257,35 +326,54 @@ class Series {
   }
 
   /// Frames of other runs (or machines) are looked up in their files.
-  [[nodiscard]] ExposureTexts ExposureOf(const Frame& frame) const {
-    const auto found = exposure_of_.find(frame.number);
-    if (found != exposure_of_.end()) return found->second;
-    const fs::path exr = output_.name.Exr(frame.number);
+  [[nodiscard]] FoundFrame FoundOf(const Frame& frame) const {
+    const auto found = found_.find(frame.number);
+    if (found != found_.end()) return found->second;
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
-    if (ExrValue(exr, kRenderFingerprint) != wanted) return {};
-    return {ExrValue(exr, kEv100), ExrValue(exr, kExposure)};
+    try {
+      const Metadata header = ReadExrMetadata(output_.name.Exr(frame.number));
+      const auto made = header.find(kRenderFingerprint);
+      return made != header.end() && made->second == wanted ? FoundIn(header) : FoundFrame{};
+    } catch (const InputError&) {
+      return {};
+    }
   }
 
-  [[nodiscard]] std::string PoseText(const Frame& frame) const {
-    if (!source_.path) return "";
-    const CameraPose pose = source_.path->PoseAt(frame.path_s);
-    std::string text = fmt::format(
-        ",{:.6f},{:.8f},{:.8f},{:.3f}", frame.path_s, pose.place.latitude_rad / kRadiansPerDegree,
-        pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m);
+  [[nodiscard]] std::vector<ManifestEntry> Entries() const {
+    std::vector<ManifestEntry> entries;
+    for (const Frame& frame : frames_) {
+      ManifestEntry entry{frame, output_.name.Exr(frame.number).filename().string(),
+                          LocalTime(source_, frame.instant), source_.PlaceOf(frame)};
+      if (source_.path) entry.pose = source_.path->PoseAt(frame.path_s);
+      const FoundFrame found = FoundOf(frame);
+      entry.illuminance_lx = found.illuminance_lx;
+      if (!found.ev100.empty()) entry.ev100 = std::stod(found.ev100);
+      entry.exposure = found.rule;
+      entries.push_back(entry);
+    }
+    return entries;
+  }
+
+  [[nodiscard]] static std::string PoseText(const ManifestEntry& entry) {
+    if (!entry.pose) return "";
+    const CameraPose& pose = *entry.pose;
+    std::string text =
+        fmt::format(",{:.6f},{:.8f},{:.8f},{:.3f}", entry.frame.path_s,
+                    pose.place.latitude_rad / kRadiansPerDegree,
+                    pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m);
     for (const double angle : {pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad}) {
       text += fmt::format(",{:.6f}", angle / kRadiansPerDegree);
     }
     return text;
   }
 
-  [[nodiscard]] std::string ManifestLine(const Frame& frame) const {
-    const SunPosition sun = SunAt(source_.PlaceOf(frame), frame.instant);
-    const ExposureTexts exposure = ExposureOf(frame);
-    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{},{}\n", frame.number,
-                       output_.name.Exr(frame.number).filename().string(), FormatUtc(frame.instant),
-                       LocalTime(source_, frame.instant), sun.azimuth_rad / kRadiansPerDegree,
-                       sun.elevation_rad / kRadiansPerDegree, exposure.ev100, PoseText(frame),
-                       exposure.rule);
+  [[nodiscard]] static std::string ManifestLine(const ManifestEntry& entry) {
+    const SunPosition sun = SunAt(entry.place, entry.frame.instant);
+    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{},{}\n", entry.frame.number, entry.file,
+                       FormatUtc(entry.frame.instant), entry.local_time,
+                       sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
+                       entry.ev100 ? fmt::format("{:.4f}", *entry.ev100) : "", PoseText(entry),
+                       entry.exposure);
   }
 
   const SeriesSource& source_;
@@ -293,7 +381,8 @@ class Series {
   const SeriesOutput& output_;
   SeriesSummary summary_;
   std::optional<SmoothMeter> smooth_;
-  std::map<int, ExposureTexts> exposure_of_;
+  std::map<int, FoundFrame> found_;
+  std::map<int, Development> developments_;
   std::vector<Thumbnail> thumbnails_;
 };
 
@@ -304,11 +393,23 @@ void CreateFolder(const fs::path& folder) {
   if (error) throw OutputError(fmt::format("{}: {}", folder.string(), error.message()));
 }
 
+/// What is made of the frames once they are there.
+std::vector<NamedFile> MadeOfTheFrames(const SeriesOutput& output) {
+  std::vector<NamedFile> files;
+  const auto add = [&](const char* name, const std::optional<fs::path>& file) {
+    if (file) files.push_back({name, *file});
+  };
+  add("--contact-sheet", output.contact_sheet);
+  add("--keogram", output.keogram);
+  add("--plot", output.plot);
+  add("--video", output.video);
+  return files;
+}
+
 void RequireNoInputAmongTheOutputs(const std::vector<Frame>& frames, const SeriesOutput& output) {
   RequireNoInput({"--out: the manifest", output.name.Manifest()}, output.inputs);
-  if (output.contact_sheet) {
-    RequireNoInput({"--contact-sheet", *output.contact_sheet}, output.inputs);
-  }
+  RequireNoInput({"--out: the manifest", output.name.JsonManifest()}, output.inputs);
+  for (const NamedFile& made : MadeOfTheFrames(output)) RequireNoInput(made, output.inputs);
   for (const Frame& frame : frames) {
     RequireNoInput({"--out", output.name.Exr(frame.number)}, output.inputs);
     if (output.png) RequireNoInput({"--png", output.name.Png(frame.number)}, output.inputs);
@@ -318,9 +419,10 @@ void RequireNoInputAmongTheOutputs(const std::vector<Frame>& frames, const Serie
 std::size_t RemoveLeftovers(const SeriesOutput& output) {
   const fs::path folder = output.name.Folder();
   std::size_t removed = RemoveAbandonedTemporaries(folder);
-  if (output.contact_sheet && output.contact_sheet->parent_path() != folder) {
-    removed += RemoveAbandonedTemporaries(output.contact_sheet->parent_path());
-  }
+  std::set<fs::path> others;
+  for (const NamedFile& made : MadeOfTheFrames(output)) others.insert(made.file.parent_path());
+  others.erase(folder);
+  for (const fs::path& other : others) removed += RemoveAbandonedTemporaries(other);
   return removed;
 }
 
@@ -345,9 +447,10 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   }
   RequireNoInputAmongTheOutputs(frames, output);
   CreateFolder(output.name.Folder());
-  if (output.contact_sheet) {
-    CreateFolder(output.contact_sheet->parent_path());
-    RequireWritable(*output.contact_sheet);
+  if (output.video) RequireVideo(*output.video);
+  for (const NamedFile& made : MadeOfTheFrames(output)) {
+    CreateFolder(made.file.parent_path());
+    RequireWritable(made.file);
   }
   Series series(source, frames, output);
   const std::size_t removed = output.resume ? RemoveLeftovers(output) : 0;
@@ -372,6 +475,8 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   }
   series.WriteManifest();
   series.WriteContactSheet();
+  series.WritePlot();
+  series.WriteVideoAndKeogram(selected);
   SeriesSummary summary = series.summary();
   summary.removed = removed;
   return summary;

@@ -30,6 +30,8 @@ struct NotedPicture {
   Metadata notes;  // names begin with kNotePrefix
 };
 inline constexpr const char* kNotePrefix = "alpenglow.note.";
+/// Of sun and sky on level ground at the eye [lx], for the plot and the manifest.
+inline constexpr const char* kIlluminanceNote = "alpenglow.note.illuminance_lx";
 
 /// What makes the pictures of a series.
 struct SeriesSource {
@@ -67,9 +69,13 @@ struct SeriesOutput {
   Look look = {};
   bool resume = false;
   std::vector<NamedFile> inputs = {};  // that no file of the series may replace
-  std::optional<std::filesystem::path> contact_sheet = std::nullopt;
+  std::optional<std::filesystem::path> contact_sheet = std::nullopt;  // PNG
   ProgressStyle progress = ProgressStyle::kAuto;
   bool glare = false;  // developed pictures have that of the eye (glare.h); the EXR never
+  std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (keogram.h)
+  std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_plot.h)
+  std::optional<std::filesystem::path> video = std::nullopt;    // video.h
+  double video_frames_per_s = 25.0;
 };
 
 /// What was done for the selected frames.
@@ -83,7 +89,9 @@ struct SeriesSummary {
 /// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
 /// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
 /// sun_elevation_deg (without refraction), ev100; on a path also t_s, latitude, longitude, height_m,
-/// heading, pitch, roll and fov; and exposure, the rule (as ev100 empty until the frame exists).
+/// heading, pitch, roll and fov; and exposure, the rule (as ev100 empty until the frame exists);
+/// and the same as JSON (manifest_json.h). Contact sheet, keogram and video show the selected frames,
+/// the plot all that there are times of; they are made when the last of the selected is there.
 ///
 /// Files are written atomically, in folders that are created when they are missing. With `resume`
 /// a frame is rendered only if its file is missing, unreadable, or made with other settings: each
@@ -91,7 +99,7 @@ struct SeriesSummary {
 /// removed (RemoveAbandonedTemporaries). Stops between frames when a signal has come
 /// (ThrowIfInterrupted), finished frames and the manifest kept.
 ///
-/// Throws OutputError; InputError for several frames under a name without a number, and when a file
+/// Throws OutputError, also for a video without an ffmpeg, before the first frame; InputError for several frames under a name without a number, and when a file
 /// of the series is one of its inputs.
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
                         const std::vector<Frame>& selected, const SeriesOutput& output);

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series/day_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "atmosphere/text/error.h"
+#include "lut/report/svg_plot.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kGap = 34.0,
+                 kPanelHeight = 170.0, kBottom = 44.0;
+constexpr int kPanels = 3;
+constexpr double kHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kGap + kBottom;
+constexpr double kDay_s = 86400.0;
+
+constexpr char kStyle[] =
+    "<style>text {font:12px Helvetica,Arial,'Liberation Sans',sans-serif; fill:#222}\n"
+    ".title {font-size:15px; font-weight:bold}\n.grid {stroke:#0002}\n"
+    ".frame {fill:none; stroke:#888}\n.curve {fill:none; stroke-width:2}\n"
+    ".sun {stroke:#d55e00; fill:#d55e00}\n.moon {stroke:#0072b2; fill:#0072b2}\n"
+    ".light {stroke:#b87f00; fill:#b87f00}\n.ev {stroke:#4b3fa7; fill:#4b3fa7}\n"
+    "text.sun,text.moon,text.light,text.ev {stroke:none; font-weight:bold}\n"
+    "polyline.curve {fill:none}</style>\n";
+
+using Value = std::function<std::optional<double>(const PlottedMoment&)>;
+
+struct Curve {
+  std::string name, kind;
+  Value value;  // on the panel's axis
+};
+
+struct Panel {
+  std::string title;
+  std::vector<Curve> curves;
+  double step;       // smallest one between lines of the grid
+  bool logarithmic;  // values are powers of ten
+  double low, high;  // shown at least
+};
+
+std::string TextAt(double x, double y, const std::string& more, const std::string& text) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, more, XmlText(text));
+}
+
+std::string LineOf(double x0, double y0, double x1, double y1) {
+  return fmt::format(
+      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"grid\"/>\n", x0, y0,
+      x1, y1);
+}
+
+/// The axis of time.
+class TimeAxis {
+ public:
+  TimeAxis(const std::vector<PlottedMoment>& moments, const std::optional<std::string>& zone)
+      : first_(moments.front().instant),
+        zone_(zone),
+        span_s_(std::max(SecondsBetween(first_, moments.back().instant), 1.0)) {}
+
+  [[nodiscard]] double X(const UtcInstant& instant) const {
+    return kLeft + SecondsBetween(first_, instant) / span_s_ * (kWidth - kLeft - kRight);
+  }
+  [[nodiscard]] std::string Local(const UtcInstant& instant) const {
+    return zone_ ? FormatInZone(instant, *zone_) : FormatUtc(instant);
+  }
+  /// Instants at round local times, and what they are called.
+  [[nodiscard]] std::vector<std::pair<UtcInstant, std::string>> Ticks() const {
+    const double step_s = Step();
+    const std::string local = Local(first_);
+    const double clock_s = 3600.0 * std::stoi(local.substr(11, 2)) +
+                           60.0 * std::stoi(local.substr(14, 2)) + std::stoi(local.substr(17, 2));
+    std::vector<std::pair<UtcInstant, std::string>> ticks;
+    const double before_s = std::fmod(clock_s, std::min(step_s, kDay_s));
+    for (double at_s = before_s > 0.0 ? std::min(step_s, kDay_s) - before_s : 0.0; at_s <= span_s_;
+         at_s += step_s) {
+      // Half a second more, against seconds that are cut off.
+      const std::string text = Local(AddSeconds(first_, at_s + 0.5));
+      ticks.emplace_back(AddSeconds(first_, at_s),
+                         step_s < kDay_s ? text.substr(11, 5) : text.substr(5, 5));
+    }
+    return ticks;
+  }
+
+ private:
+  [[nodiscard]] double Step() const {
+    constexpr double kMost = 13.0;
+    for (const double step_s : {10.0, 60.0, 300.0, 600.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0,
+                                43200.0, kDay_s, 2.0 * kDay_s, 7.0 * kDay_s}) {
+      if (span_s_ <= kMost * step_s) return step_s;
+    }
+    return kDay_s * std::ceil(span_s_ / kDay_s / kMost);
+  }
+
+  UtcInstant first_;
+  std::optional<std::string> zone_;
+  double span_s_;
+};
+
+/// Darker behind the curves, the lower the sun is: day, three twilights, night.
+std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const TimeAxis& time,
+                            double top) {
+  std::string text;
+  for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
+    const double sun = 0.5 * (moments[i].sun_elevation_deg + moments[i + 1].sun_elevation_deg);
+    constexpr std::array<double, 4> kEnds{-0.833, -6.0, -12.0, -18.0};
+    const auto darkness =
+        std::count_if(kEnds.begin(), kEnds.end(), [&](double end) { return sun < end; });
+    if (darkness == 0) continue;
+    const double x0 = time.X(moments[i].instant), x1 = time.X(moments[i + 1].instant);
+    text += fmt::format(
+        "<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{:.1f}\" fill=\"#20306a\" "
+        "fill-opacity=\"{:.2f}\" shape-rendering=\"crispEdges\"/>\n",
+        x0, top, x1 - x0, kPanelHeight, 0.055 * static_cast<double>(darkness));
+  }
+  return text;
+}
+
+/// The range of a panel, in whole steps that are at most eight.
+struct Range {
+  double low, high, step;
+
+  Range(const Panel& panel, const std::vector<PlottedMoment>& moments)
+      : low(panel.low), high(panel.high), step(panel.step) {
+    bool empty = true;
+    for (const Curve& curve : panel.curves) {
+      for (const PlottedMoment& moment : moments) {
+        const std::optional<double> value = curve.value(moment);
+        if (!value) continue;
+        low = empty && panel.low >= panel.high ? *value : std::min(low, *value);
+        high = empty && panel.low >= panel.high ? *value : std::max(high, *value);
+        empty = false;
+      }
+    }
+    while ((high - low) / step > 8.0) step *= 2.0;
+    low = step * std::floor(low / step);
+    high = step * std::max(std::ceil(high / step), std::floor(low / step) + 1.0);
+  }
+};
+
+std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& moments,
+                      const TimeAxis& time, const std::function<double(double)>& y) {
+  std::string text, run;
+  int points = 0;
+  const auto end_run = [&] {
+    if (points > 1)
+      text += fmt::format("<polyline class=\"curve {}\" points=\"{}\"/>\n", curve.kind, run);
+    run.clear();
+    points = 0;
+  };
+  for (const PlottedMoment& moment : moments) {
+    const std::optional<double> value = curve.value(moment);
+    if (!value) {
+      end_run();
+      continue;
+    }
+    const double at_x = time.X(moment.instant), at_y = y(*value);
+    run += fmt::format("{:.1f},{:.1f} ", at_x, at_y);
+    if (++points == 1)  // a frame alone is seen too
+      text += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>\n",
+                          curve.kind, at_x, at_y);
+  }
+  end_run();
+  return text;
+}
+
+std::string GridText(const Panel& panel, const Range& range, const TimeAxis& time, double top,
+                     const std::function<double(double)>& y) {
+  std::string text;
+  for (double value = range.low; value <= range.high + 1e-9; value += range.step) {
+    text += LineOf(kLeft, y(value), kWidth - kRight, y(value));
+    const std::string name =
+        panel.logarithmic ? fmt::format("1e{:.0f}", value) : fmt::format("{:.0f}", value);
+    text += TextAt(kLeft - 6.0, y(value) + 4.0, "text-anchor=\"end\"", name);
+  }
+  for (const auto& tick : time.Ticks())
+    text += LineOf(time.X(tick.first), top, time.X(tick.first), top + kPanelHeight);
+  return text;
+}
+
+std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& moments,
+                      const TimeAxis& time, double top) {
+  const Range range(panel, moments);
+  const auto y = [&](double value) {
+    return top + kPanelHeight * (range.high - value) / (range.high - range.low);
+  };
+  std::string text = BandsOfTwilight(moments, time, top) + GridText(panel, range, time, top, y);
+  text +=
+      fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/>\n",
+                  kLeft, top, kWidth - kLeft - kRight, kPanelHeight);
+  double name_x = kWidth - kRight;
+  for (auto curve = panel.curves.rbegin(); curve != panel.curves.rend(); ++curve) {
+    text += CurveText(*curve, moments, time, y);
+    text += TextAt(name_x, top - 6.0, fmt::format("class=\"{}\" text-anchor=\"end\"", curve->kind),
+                   curve->name);
+    name_x -= 60.0;
+  }
+  return text + TextAt(kLeft, top - 6.0, "", panel.title);
+}
+
+std::vector<Panel> Panels() {
+  const Value lux = [](const PlottedMoment& moment) -> std::optional<double> {
+    constexpr double kLeast_lx = 1e-5;
+    if (!moment.illuminance_lx || *moment.illuminance_lx < kLeast_lx) return std::nullopt;
+    return std::log10(*moment.illuminance_lx);
+  };
+  return {{"elevation, degrees, without refraction",
+           {{"sun", "sun", [](const PlottedMoment& m) { return m.sun_elevation_deg; }},
+            {"moon", "moon", [](const PlottedMoment& m) { return m.moon_elevation_deg; }}},
+           10.0,
+           false,
+           -10.0,
+           10.0},
+          {"illuminance of level ground, lx", {{"lux", "light", lux}}, 1.0, true, 0.0, 0.0},
+          {"exposure, EV at ISO 100",
+           {{"EV", "ev", [](const PlottedMoment& m) { return m.ev100; }}},
+           1.0,
+           false,
+           0.0,
+           0.0}};
+}
+
+}  // namespace
+
+std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
+                     const std::optional<std::string>& zone) {
+  ALPENGLOW_ENSURE(moments.size(), >, 0U);
+  const TimeAxis time(moments, zone);
+  std::string text = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+      "height=\"{1}\">\n{2}<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+      kWidth, kHeight, kStyle);
+  text += TextAt(kLeft, 22.0, "class=\"title\"",
+                 fmt::format("{} to {}", time.Local(moments.front().instant),
+                             time.Local(moments.back().instant)));
+  double top = kTop;
+  for (const Panel& panel : Panels()) {
+    text += PanelText(panel, moments, time, top);
+    top += kPanelHeight + kGap;
+  }
+  for (const auto& [instant, name] : time.Ticks())
+    text += TextAt(time.X(instant), kHeight - kBottom + 16.0, "text-anchor=\"middle\"", name);
+  return text +
+         TextAt(kWidth - kRight, kHeight - 8.0, "text-anchor=\"end\"", zone.value_or("UTC")) +
+         "</svg>\n";
+}
+
+}  // namespace alpenglow
