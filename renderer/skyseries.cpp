@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "atmosphere/number/constants.h"
+#include "renderer/camera/track.h"
 #include "renderer/report_command.h"
 #include "renderer/scene/scene_files.h"
 #include "renderer/series/frame_list.h"
@@ -16,15 +18,46 @@
 namespace alpenglow {
 namespace {
 
+bool IsTrack(const std::filesystem::path& file) {
+  return file.extension() == ".gpx" || file.extension() == ".kml";
+}
+
+/// Without a scene and without a place, a track says where.
+SceneOptions OptionsOfScene(const SkyseriesOptions& options) {
+  SceneOptions scene = options.scene;
+  const SceneOptions untyped;
+  if (options.path && IsTrack(*options.path) && scene.latitude == untyped.latitude &&
+      scene.longitude == untyped.longitude) {
+    const std::vector<TrackPoint> points = ReadTrack(*options.path).points;
+    const GeodeticPosition middle = points[points.size() / 2].place;
+    scene.latitude = middle.latitude_rad / kRadiansPerDegree;
+    scene.longitude = middle.longitude_rad / kRadiansPerDegree;
+  }
+  return scene;
+}
+
 Scene SceneOf(const SkyseriesOptions& options) {
-  Scene scene =
-      options.scene_file.empty() ? SceneFromOptions(options.scene) : ReadScene(options.scene_file);
+  Scene scene = options.scene_file.empty() ? SceneFromOptions(OptionsOfScene(options))
+                                           : ReadScene(options.scene_file);
   if (options.zone) scene.zone = options.zone;
   return scene;
 }
 
+/// A track as a path; its ground is loaded for tracks that are not over the sea.
+CameraPath PathOfTrack(const SkyseriesOptions& options, const Scene& scene) {
+  const Track track = ReadTrack(*options.path);
+  TrackStyle style = options.track;
+  style.fov_rad = scene.camera.fov_rad;
+  std::optional<SceneGround> ground;
+  return PathAlong(track, style, [&](const GeodeticPosition& place) {
+    if (!ground) ground.emplace(LoadGround(scene));
+    return GroundHeightUnder(*ground, place);
+  });
+}
+
 std::optional<CameraPath> PathOf(const SkyseriesOptions& options, const Scene& scene) {
   if (!options.path) return std::nullopt;
+  if (IsTrack(*options.path)) return PathOfTrack(options, scene);
   const Camera& camera = scene.camera;
   return ReadCameraPath(*options.path, {scene.place, camera.heading_rad, camera.pitch_rad,
                                         camera.roll_rad, camera.fov_rad});

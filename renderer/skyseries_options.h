@@ -13,6 +13,7 @@
 #include "lut/program/command_line.h"
 #include "lut/program/output_name.h"
 #include "renderer/camera/pixel_samples.h"
+#include "renderer/camera/track.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
@@ -32,7 +33,10 @@ inline constexpr char kSkyseriesFooter[] =
     "  skyseries --dem N35E138.hgt --latitude 35.50 --longitude 138.76 --heading 190 "
     "--zone Asia/Tokyo --date 2026-01-01 --at sunrise-10m --out fuji.exr --png\n"
     "Example: along a recorded flight, what moves blurred\n"
-    "  skyseries --path flight.csv --fps 24 --shutter 0.5 --out 'out/f.%04d.exr' --png";
+    "  skyseries --path flight.csv --fps 24 --shutter 0.5 --out 'out/f.%04d.exr' --png\n"
+    "Example: a walk as a film\n"
+    "  skyseries --dem N46E008.hgt --path walk.gpx --every 2s --out 'out/w.%04d.exr' --video "
+    "walk.mp4";
 
 /// What is typed; texts are read later, against the scene.
 struct SkyseriesOptions {
@@ -45,6 +49,7 @@ struct SkyseriesOptions {
                    filter = "blackman-harris", glare = "none", white_balance = "daylight";
   std::optional<int> samples;
   std::optional<std::string> path;
+  TrackStyle track;
   double frames_per_second = 25.0, shutter = 0.0;
   std::vector<std::string> layers;
   std::optional<std::string> effects, max_error, noise;
@@ -94,7 +99,9 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
                                       "included");
   CLI::Option* path = app.add_option(
       "--path", options.path,
-      "Way of the camera: a CSV with a header of t_s, latitude, longitude, height_m (over the "
+      "Way of the camera: a GPX or KML track (.gpx, .kml), along which the camera looks and banks, "
+      "or "
+      "a CSV with a header of t_s, latitude, longitude, height_m (over the "
       "ellipsoid) and, if wanted, heading, pitch, roll, fov and utc; skyview --record writes one. "
       "Its frames begin at its first point");
   CLI::Option* fps =
@@ -102,6 +109,16 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
              "--fps", options.frames_per_second,
              "Frames per second of the path, without --every and --count, and of the --video")
           ->capture_default_str();
+  app.add_option("--track-speed", options.track.speed_m_per_s,
+                 "Metres a second along a track without times, 0.1 to 1e5")
+      ->check(CLI::Range(0.1, 1e5))
+      ->needs(path)
+      ->capture_default_str();
+  app.add_option("--track-height", options.track.over_ground_m,
+                 "Metres over the ground of a track without heights, 0 to 1e6")
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(path)
+      ->capture_default_str();
   app.add_option(
          "--shutter", options.shutter,
          "Share of the time between frames of a path that the shutter is open, 0 to 1: what "

@@ -20,19 +20,15 @@ constexpr int kPanels = 3;
 constexpr double kHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kGap + kBottom;
 constexpr double kDay_s = 86400.0;
 
-constexpr char kStyle[] =
-    "<style>text {font:12px Helvetica,Arial,'Liberation Sans',sans-serif; fill:#222}\n"
-    ".title {font-size:15px; font-weight:bold}\n.grid {stroke:#0002}\n"
-    ".frame {fill:none; stroke:#888}\n.curve {fill:none; stroke-width:2}\n"
-    ".sun {stroke:#d55e00; fill:#d55e00}\n.moon {stroke:#0072b2; fill:#0072b2}\n"
-    ".light {stroke:#b87f00; fill:#b87f00}\n.ev {stroke:#4b3fa7; fill:#4b3fa7}\n"
-    "text.sun,text.moon,text.light,text.ev {stroke:none; font-weight:bold}\n"
-    "polyline.curve {fill:none}</style>\n";
+// Attributes instead of a style sheet, which not all readers of SVG know; colours of Okabe and Ito
+// as in svg_plot.h.
+constexpr char kSunColour[] = "#d55e00", kMoonColour[] = "#0072b2", kLightColour[] = "#b87f00",
+               kEvColour[] = "#4b3fa7";
 
 using Value = std::function<std::optional<double>(const PlottedMoment&)>;
 
 struct Curve {
-  std::string name, kind;
+  std::string name, colour;
   Value value;  // on the panel's axis
 };
 
@@ -50,8 +46,9 @@ std::string TextAt(double x, double y, const std::string& more, const std::strin
 
 std::string LineOf(double x0, double y0, double x1, double y1) {
   return fmt::format(
-      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"grid\"/>\n", x0, y0,
-      x1, y1);
+      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" "
+      "stroke-width=\"0.5\"/>\n",
+      x0, y0, x1, y1);
 }
 
 /// The axis of time.
@@ -112,10 +109,11 @@ std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const Tim
         std::count_if(kEnds.begin(), kEnds.end(), [&](double end) { return sun < end; });
     if (darkness == 0) continue;
     const double x0 = time.X(moments[i].instant), x1 = time.X(moments[i + 1].instant);
+    constexpr std::array<const char*, 4> kShades{"#eceef5", "#dcdfec", "#cbd0e2", "#bac1d9"};
     text += fmt::format(
-        "<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{:.1f}\" fill=\"#20306a\" "
-        "fill-opacity=\"{:.2f}\" shape-rendering=\"crispEdges\"/>\n",
-        x0, top, x1 - x0, kPanelHeight, 0.055 * static_cast<double>(darkness));
+        "<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{:.1f}\" fill=\"{}\" "
+        "stroke=\"none\" shape-rendering=\"crispEdges\"/>\n",
+        x0, top, x1 - x0, kPanelHeight, kShades[static_cast<std::size_t>(darkness) - 1]);
   }
   return text;
 }
@@ -148,7 +146,9 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
   int points = 0;
   const auto end_run = [&] {
     if (points > 1)
-      text += fmt::format("<polyline class=\"curve {}\" points=\"{}\"/>\n", curve.kind, run);
+      text +=
+          fmt::format("<polyline fill=\"none\" stroke-width=\"2\" stroke=\"{}\" points=\"{}\"/>\n",
+                      curve.colour, run);
     run.clear();
     points = 0;
   };
@@ -161,8 +161,8 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
     const double at_x = time.X(moment.instant), at_y = y(*value);
     run += fmt::format("{:.1f},{:.1f} ", at_x, at_y);
     if (++points == 1)  // a frame alone is seen too
-      text += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>\n",
-                          curve.kind, at_x, at_y);
+      text += fmt::format("<circle fill=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>\n",
+                          curve.colour, at_x, at_y);
   }
   end_run();
   return text;
@@ -189,14 +189,17 @@ std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& mome
     return top + kPanelHeight * (range.high - value) / (range.high - range.low);
   };
   std::string text = BandsOfTwilight(moments, time, top) + GridText(panel, range, time, top, y);
-  text +=
-      fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/>\n",
-                  kLeft, top, kWidth - kLeft - kRight, kPanelHeight);
+  text += fmt::format(
+      "<rect fill=\"none\" stroke=\"#888\" x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+      "height=\"{}\"/>\n",
+      kLeft, top, kWidth - kLeft - kRight, kPanelHeight);
   double name_x = kWidth - kRight;
   for (auto curve = panel.curves.rbegin(); curve != panel.curves.rend(); ++curve) {
     text += CurveText(*curve, moments, time, y);
-    text += TextAt(name_x, top - 6.0, fmt::format("class=\"{}\" text-anchor=\"end\"", curve->kind),
-                   curve->name);
+    text +=
+        TextAt(name_x, top - 6.0,
+               fmt::format("fill=\"{}\" font-weight=\"bold\" text-anchor=\"end\"", curve->colour),
+               curve->name);
     name_x -= 60.0;
   }
   return text + TextAt(kLeft, top - 6.0, "", panel.title);
@@ -209,15 +212,15 @@ std::vector<Panel> Panels() {
     return std::log10(*moment.illuminance_lx);
   };
   return {{"elevation, degrees, without refraction",
-           {{"sun", "sun", [](const PlottedMoment& m) { return m.sun_elevation_deg; }},
-            {"moon", "moon", [](const PlottedMoment& m) { return m.moon_elevation_deg; }}},
+           {{"sun", kSunColour, [](const PlottedMoment& m) { return m.sun_elevation_deg; }},
+            {"moon", kMoonColour, [](const PlottedMoment& m) { return m.moon_elevation_deg; }}},
            10.0,
            false,
            -10.0,
            10.0},
-          {"illuminance of level ground, lx", {{"lux", "light", lux}}, 1.0, true, 0.0, 0.0},
+          {"illuminance of level ground, lx", {{"lux", kLightColour, lux}}, 1.0, true, 0.0, 0.0},
           {"exposure, EV at ISO 100",
-           {{"EV", "ev", [](const PlottedMoment& m) { return m.ev100; }}},
+           {{"EV", kEvColour, [](const PlottedMoment& m) { return m.ev100; }}},
            1.0,
            false,
            0.0,
@@ -232,9 +235,11 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
   const TimeAxis time(moments, zone);
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\">\n{2}<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      kWidth, kHeight, kStyle);
-  text += TextAt(kLeft, 22.0, "class=\"title\"",
+      "height=\"{1}\" font-size=\"12\" font-family=\"Helvetica,Arial,'Liberation "
+      "Sans',sans-serif\" "
+      "fill=\"#222\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+      kWidth, kHeight);
+  text += TextAt(kLeft, 22.0, "font-size=\"15\" font-weight=\"bold\"",
                  fmt::format("{} to {}", time.Local(moments.front().instant),
                              time.Local(moments.back().instant)));
   double top = kTop;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/text/error.h"
+#include "renderer/ground/camera_stand.h"
 
 namespace alpenglow {
 namespace {
@@ -44,6 +45,16 @@ std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
     frames.push_back({i, path.UtcAt(path_s).value_or(AddSeconds(start, along_s)), path_s});
   }
   return frames;
+}
+
+double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
+  if (!ground.terrain) return 0.0;
+  constexpr double kHighest_m = 20000.0;  // over any mountain
+  GeodeticPosition high = place;
+  high.height_m = kHighest_m;
+  const CameraStand stand = StandAt(ground, high);
+  const auto hit = ground.terrain->Intersect(stand.eye, -stand.frame_from_enu[2]);
+  return hit ? kHighest_m - hit->distance_m : 0.0;
 }
 
 Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s) {

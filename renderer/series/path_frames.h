@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/camera/camera_path.h"
+#include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/frame_times.h"
 
@@ -29,6 +30,10 @@ struct PathRate {
 /// Throws InputError as FrameInterval and for more than kMostFrames.
 [[nodiscard]] std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
                                              const UtcInstant& start);
+
+/// Height over the ellipsoid [m] of a scene's ground under a place: the highest of it, and 0 where
+/// there is none. Throws InputError as StandAt (camera_stand.h).
+[[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place);
 
 /// The camera of a frame; with a shutter that is open for a time around it, its way in that time.
 [[nodiscard]] Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s);

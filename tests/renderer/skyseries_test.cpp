@@ -93,7 +93,7 @@ TEST_F(Skyseries, AStillIsASeriesOfOne) {
   EXPECT_EQ(image.layers.size(), 4U) << "depth and three of the normal";
   EXPECT_EQ(ReadPng(folder_ / "still.png").height, 9);
   EXPECT_EQ(ReadExrMetadata(folder_ / "still.exr").at("alpenglow.utc"), "2026-06-21T10:00:00.000Z");
-  EXPECT_EQ(FileCount(), 4U) << "scene, EXR, PNG, manifest";
+  EXPECT_EQ(FileCount(), 5U) << "scene, EXR, PNG, manifest, and the same as JSON";
   EXPECT_EQ(outcome.out, "") << "standard output is for results only";
 }
 
@@ -140,6 +140,10 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
                                        still + " --progress loud",
                                        still + " --at noon --from sunrise --to sunset",
                                        still + " --from sunrise --to sunset --every 1h --count 3",
+                                       still + " --keogram k.jpg",
+                                       still + " --plot p.png",
+                                       still + " --fps 5",
+                                       still + " --track-speed 5",
                                        still + " --latitude 3"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.error;
@@ -222,6 +226,26 @@ TEST_F(Skyseries, APathMakesFramesThatAreKeptUntilItChanges) {
   outcome = Run(command);
   EXPECT_EQ(outcome.status, 3);
   EXPECT_THAT(outcome.error, HasSubstr("p.csv:3: t_s is 0; it must grow"));
+}
+
+TEST_F(Skyseries, ATrackOfGpxIsFlownAndItsFaultsAreNamed) {
+  WriteText(folder_ / "t.gpx",
+            "<gpx><trk><trkseg>"
+            "<trkpt lat='46.5' lon='8.0'><ele>1000</ele><time>2026-06-21T10:00:00Z</time></trkpt>"
+            "<trkpt lat='46.51' lon='8.0'><ele>1100</ele><time>2026-06-21T10:00:20Z</time></trkpt>"
+            "</trkseg></trk></gpx>");
+  const std::string command = InFolder("s.toml") + " --path " + InFolder("t.gpx") +
+                              " --size 16x9 --samples 2 --every 10s --out " + InFolder("t.%d.exr");
+  const Outcome outcome = Run(command + " --keogram " + InFolder("k.png"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(ContentOf(folder_ / "t.manifest.csv"),
+              AllOf(HasSubstr("1,t.1.exr,2026-06-21T10:00:10Z"), HasSubstr(",46.505")));
+  EXPECT_EQ(ReadPng(folder_ / "k.png").width, 3);
+  EXPECT_THAT(ContentOf(folder_ / "t.manifest.json"), HasSubstr("\"illuminance_lx\":1"))
+      << "a hundred thousand lux at noon";
+  WriteText(folder_ / "t.gpx", "<gpx>\n</gpx>");
+  EXPECT_EQ(Run(command).status, 3);
+  EXPECT_THAT(Run(command).error, HasSubstr("t.gpx:1: there is no trkpt, rtept or wpt in it"));
 }
 
 TEST_F(Skyseries, AMeasuredLampThatIsNotThereExitsWith3) {
@@ -333,11 +357,11 @@ TEST_F(Skyseries, ResumingRemovesWhatAKilledRunLeft) {
     return std::distance(fs::directory_iterator(folder_ / "series"), fs::directory_iterator());
   };
   ASSERT_EQ(Run(series).status, 0);
-  EXPECT_EQ(files(), 3) << "picture, manifest, and what was left: another run may be looking at it";
+  EXPECT_EQ(files(), 4) << "picture, two manifests, and what was left: another run may look at it";
   const Outcome resumed = Run(series + " --resume");
   EXPECT_EQ(resumed.status, 0);
   EXPECT_THAT(resumed.error, HasSubstr("removed 1 unfinished"));
-  EXPECT_EQ(files(), 2);
+  EXPECT_EQ(files(), 3);
 }
 
 TEST_F(Skyseries, AnInputIsNeverOverwritten) {

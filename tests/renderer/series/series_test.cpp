@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <sstream>
 
 #include "atmosphere/text/error.h"
@@ -90,7 +91,7 @@ TEST_F(SeriesRun, WritesEveryFrameAndTheManifest) {
   output.png = true;
   const SeriesSummary summary = Run(Source(), output);
   EXPECT_EQ(summary.rendered, 3);
-  EXPECT_EQ(FileCount(), 7U) << "three EXR, three PNG, one manifest";
+  EXPECT_EQ(FileCount(), 8U) << "three EXR, three PNG, the manifest and the same as JSON";
   EXPECT_EQ(ReadExr(folder_ / "frame.0002.exr").at(0, 0)[0], 18000.0F);
   const std::string manifest = ContentOf(folder_ / "frame.manifest.csv");
   EXPECT_THAT(manifest, testing::StartsWith("frame,file,utc,local_time,sun_azimuth_deg,"));
@@ -346,7 +347,7 @@ TEST_F(SeriesRun, ASignalKeepsFinishedFramesAndLeavesNoPart) {
   testing::internal::GetCapturedStderr();
   EXPECT_EQ(status, 130);
   EXPECT_EQ(renderings_, 2);
-  EXPECT_EQ(FileCount(), 3U) << "two frames and the manifest, no temporary";
+  EXPECT_EQ(FileCount(), 4U) << "two frames and two manifests, no temporary";
   EXPECT_NO_THROW((void)ReadExr(folder_ / "frame.0002.exr"));
   EXPECT_EQ(RunProgram("skytest", [] { return 0; }), 0) << "forgets the signal";
 }
@@ -388,6 +389,55 @@ TEST_F(SeriesRun, TheContactSheetShowsEveryFrame) {
   const DisplayImage sheet = ReadPng(folder_ / "sheet.png");
   EXPECT_EQ(sheet.width, 3 * (16 + 8) + 8) << "three columns of 16 pixels";
   EXPECT_GT(sheet.height, 2 * 9);
+}
+
+TEST_F(SeriesRun, WhatIsMadeOfFramesIsMadeOfThoseThatAreThereWithoutRendering) {
+  SeriesOutput output = Output();
+  output.png = true;
+  Run(Source(), output, 5);
+  const int rendered = renderings_;
+  output.resume = true;
+  output.keogram = folder_ / "made" / "keogram.png";
+  output.plot = folder_ / "made" / "plot.svg";
+  Run(Source(), output, 5);
+  EXPECT_EQ(renderings_, rendered);
+  const DisplayImage keogram = ReadPng(*output.keogram);
+  EXPECT_EQ(keogram.width, 5);
+  EXPECT_EQ(keogram.height, 9);
+  const DisplayImage third = ReadPng(folder_ / "frame.0003.png");
+  EXPECT_EQ(keogram.rgb[3 * (4 * 5 + 2)], third.rgb[3 * (4 * 16 + 8)]);
+  EXPECT_THAT(ContentOf(*output.plot), HasSubstr("<polyline"));
+  const std::string with_png = ContentOf(*output.keogram);
+  output.png = false;
+  Run(Source(), output, 5);
+  EXPECT_EQ(ContentOf(*output.keogram), with_png) << "the same pixels, developed again";
+}
+
+TEST_F(SeriesRun, LightOnTheGroundIsNotedByTheFrameAndReadByTheManifest) {
+  SeriesSource source = Source();
+  const auto render = source.render;
+  source.render = [&](const Frame& frame, Progress& progress) {
+    NotedPicture picture = render(frame, progress);
+    picture.notes[kIlluminanceNote] = "1234.5";
+    return picture;
+  };
+  const std::vector<Frame> frames = Frames(2);
+  RunSeries(source, frames, SelectFrames(frames, "1"), Output());
+  RunSeries(source, frames, SelectFrames(frames, "2"), Output());
+  const std::string manifest = ContentOf(folder_ / "frame.manifest.json");
+  EXPECT_THAT(manifest, testing::ContainsRegex("0001.exr.*illuminance_lx\":1234.5"))
+      << "of another run's frame";
+}
+
+TEST_F(SeriesRun, AFilmWithoutFfmpegIsRefusedBeforeTheFirstFrame) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder_.c_str(), 1);
+  SeriesOutput output = Output();
+  output.video = folder_ / "film.mp4";
+  EXPECT_THROW((void)Run(Source(), output), OutputError);
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(renderings_, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "film.mp4"));
 }
 
 TEST(ContactSheet, ReducingKeepsTheMean) {
