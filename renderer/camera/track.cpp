@@ -164,6 +164,12 @@ void Bank(std::vector<CameraPathPoint>& points) {
     bank_rad[i] = std::clamp(std::atan(speed * turn / seconds / kStandardGravity_m_per_s2),
                              -kMost_rad, kMost_rad);
   }
+  // Near its ends the path knows only half of its turns: there it banks as a little farther on.
+  const auto reach = static_cast<std::size_t>(
+      std::clamp(std::lround(kSmooth_s / (points[1].time_s - points[0].time_s)), 1L,
+                 static_cast<long>(points.size()) / 2 - 1));
+  std::fill_n(bank_rad.begin(), reach, bank_rad[reach]);
+  std::fill_n(bank_rad.rbegin(), reach, bank_rad[points.size() - 1 - reach]);
   const std::vector<double> smooth_rad = Smoothed(bank_rad, ReachOf(points), WeightOfHann);
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pose.roll_rad = smooth_rad[i];
 }

@@ -52,6 +52,15 @@ TEST(TrackPath, ACircleIsFlownWithTheBankOfItsRadiusAndTheSpeed) {
   }
 }
 
+TEST(TrackPath, ATrackThatEndsInATurnBanksToItsEnd) {
+  const CameraPath path = PathAlong(Circle(), {.speed_m_per_s = 80.0}, Sea);
+  const double bank = Degrees(std::atan(80.0 * 80.0 / (3000.0 * kG)));
+  for (const double t : {path.begin_s(), path.end_s()}) {
+    EXPECT_NEAR(Degrees(path.PoseAt(t).roll_rad), bank, 6.0)
+        << "chords are shorter there, and turn half as much";
+  }
+}
+
 TEST(TrackPath, GoesThroughEveryPointOfTheTrack) {
   const Track track = Circle();
   const CameraPath path = PathAlong(track, {}, Sea);

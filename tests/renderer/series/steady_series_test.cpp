@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// From noon to noon, minute by minute: the exposure of a series makes no step of its own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
+#include "lut/picture/look.h"
+#include "renderer/series/smooth_meter.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kThreePercent_ev = 0.0426;  // log2(1.03)
+
+const GeodeticPosition& Place() {
+  static const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  return place;
+}
+
+std::vector<Frame> Minutes() {
+  std::vector<Frame> frames;
+  for (int i = 0; i <= 1440; ++i)
+    frames.push_back({i, AddSeconds(UtcInstant{61212, 41400.0}, 60.0 * i)});
+  return frames;
+}
+
+/// Of a sky [cd/m^2], made up: 5000 by day, 1e-3 in a moonlit night (darker ones are beyond the
+/// camera's limit, and fade), as steep in between as twilight is (a
+/// factor of 1.4 in a minute, where the sun is 6 degrees low).
+double Luminance(const Frame& frame) {
+  const double elevation = SunAt(Place(), frame.instant).elevation_rad / kRadiansPerDegree;
+  return std::pow(10.0, -3.0 + 6.7 / (1.0 + std::exp(-(elevation + 6.0) / 2.2)));
+}
+
+double MeteredEv100(const Frame& frame) { return std::log2(8.0 * Luminance(frame)); }
+
+/// As the meter of a small picture has it: with half a bin of its histogram, this way and that.
+double RoughlyMeteredEv100(const Frame& frame) {
+  constexpr double kBin_ev = 0.04;
+  return kBin_ev * std::round(MeteredEv100(frame) / kBin_ev);
+}
+
+/// The largest change [EV] of what is shown from one minute to the next.
+template <typename Ev100>
+double LargestStep(const Ev100& ev100) {
+  double largest = 0.0, before = 0.0;
+  for (const Frame& frame : Minutes()) {
+    const double shown = MeteredEv100(frame) - ev100(frame);
+    if (frame.number > 0) largest = std::max(largest, std::abs(shown - before));
+    before = shown;
+  }
+  return largest;
+}
+
+TEST(SteadySeries, MeteredMinutesDifferByLessThanThreePercentFromNoonToNoon) {
+  const std::vector<Frame> frames = Minutes();
+  SmoothMeter meter(frames, *FramesPerNode(frames, false), RoughlyMeteredEv100);
+  EXPECT_LT(LargestStep([&](const Frame& frame) { return meter.At(frame); }), kThreePercent_ev);
+}
+
+TEST(SteadySeries, TheLightOfTheGroundExposesWithoutSteps) {
+  // A sky of even luminance L lights the ground with pi L.
+  EXPECT_LT(LargestStep([](const Frame& frame) { return IncidentEv100(kPi * Luminance(frame)); }),
+            kThreePercent_ev);
+}
+
+TEST(SteadySeries, TheEyeLetsDuskBeDarkByItsLawAndMakesNoOtherStep) {
+  const std::vector<Frame> frames = Minutes();
+  SmoothMeter meter(frames, *FramesPerNode(frames, false), RoughlyMeteredEv100);
+  ExposureRule eye;
+  eye.kind = ExposureRule::Kind::kEye;
+  double before = 0.0, wanted_before = 0.0;
+  for (const Frame& frame : frames) {
+    const double light = MeteredEv100(frame);
+    const double shown = light - Ev100By(eye, meter.At(frame), {});
+    const double wanted = light - Ev100By(eye, light, {});
+    if (frame.number > 0) {
+      EXPECT_NEAR(shown - before, wanted - wanted_before, kThreePercent_ev)
+          << FormatUtc(frame.instant);
+    }
+    before = shown;
+    wanted_before = wanted;
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
