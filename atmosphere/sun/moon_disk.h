@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The moon as a disk that the sun lights: how bright it is from place to place, outside the air.
 //
-// Grey ground that scatters by Lommel and Seeliger (disk_light.glsl), of a brightness that makes
-// the light of the whole disk that of the moon:
+// Ground that scatters by Lommel and Seeliger (disk_light.glsl), of a brightness that makes the
+// light of the whole disk that of the moon (moon_reflectance.h): a full moon of 0.3 lux, before the
+// air. Beside the sun the earth lights it, whose disk there is (R / d)^2 of a hemisphere, of a
+// geometric albedo of 0.37 (Cox 2000, Allen's Astrophysical Quantities, table 12.1), full when the
+// moon is new, as a sphere of Lambert:
 //
-//   E(a) / E(0) = 10^(-0.4 (0.026 |a| + 4e-9 a^4)),     a the phase angle in degrees
+//   E_earth / E_sun = 0.37 (R / d)^2 (sin a' + (pi - a') cos a') / pi,     a' = pi - a
 //
-// (Krisciunas, Schaefer 1991, PASP 103, 1033, equation 9, after Allen), and E(0) what a geometric
-// albedo of 0.12 sends back (Cox 2000, Allen's Astrophysical Quantities, table 12.1): 0.33 lux, 5,000
-// cd/m^2. Maria, colour and earthshine are left out.
+// and the moon sends that back as when it is full: earthshine. Maria are left out.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,8 +18,6 @@
 
 namespace alpenglow {
 
-inline constexpr double kMoonGeometricAlbedo = 0.12;
-
 /// Directions in any one frame.
 struct MoonDisk {
   glm::dvec3 to_moon;  // unit, to the disk's centre
@@ -26,9 +25,11 @@ struct MoonDisk {
   double radius_rad;   // angular
   double
       radiance_per_irradiance;  // [1/sr], of LommelSeeliger: by the sun's irradiance at the earth
+  double earthshine_per_irradiance = 0.0;  // [1/sr], of the whole disk, even over it
 };
 
-/// Phase angles over 150 degrees, which were never measured, are as bright a place as 150.
+/// At 550 nm. Phase angles over 150 degrees, which were never measured, are as bright a place as
+/// 150.
 /// @param earth_sun_au  distance of the place from the sun, for whose irradiance the radiance is.
 [[nodiscard]] MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon,
                                   const glm::dvec3& to_sun, double earth_sun_au);
@@ -37,8 +38,12 @@ struct MoonDisk {
 [[nodiscard]] MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
                                         double earth_sun_au);
 
-/// Radiance [1/sr] outside the air per unit of solar irradiance, in a direction; 0 beside the disk
-/// and on its dark side.
+/// Radiance [1/sr] outside the air per unit of solar irradiance, in a direction; 0 beside the disk,
+/// on its dark side that of earthshine.
 [[nodiscard]] double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction);
+
+/// Irradiance of the whole moon outside the air, per unit of the sun's there, at a wavelength.
+[[nodiscard]] double MoonIrradiance(const MoonPosition& moon, double earth_sun_au,
+                                    double wavelength_nm);
 
 }  // namespace alpenglow
