@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The sky of a night without moon, above the air that scatters.
+//
+// Airglow of a layer 90 km high, longer the lower one looks (van Rhijn 1921), z the angle from the
+// zenith:     V(z) = 1 / sqrt(1 - (R sin z / (R + 90 km))^2)
+//
+// Zodiacal light by the table of Leinert et al. (1998, Astron. Astrophys. Suppl. 127, 1, table 17),
+// over ecliptic latitude and longitude from the sun, of the sun's own colour. Light of the stars
+// too faint to be drawn one by one: a disk that thins out away from the plane of the galaxy, b the
+// galactic latitude, and brighter towards its centre,
+//
+//   S = 24 S10 (1 + 0.45 cos l) / (|sin b| + 0.07),
+//
+// with a bulge of 400 S10 around l = 0, b = -5 and the lane of dust from there to Cygnus, where
+// seven tenths of the light are lost; coarse, after the maps of star counts of Roach and Megill
+// (1961, Astrophys. J. 133, 228). 1 S10 is a star of V = 10 in a square degree: 27.78 magnitudes a
+// square arcsecond. Airglow is what of the 21.6 of a dark zenith (Patat 2003, Astron. Astrophys.
+// 400, 1183) is left for it: 180 S10, as in years of a middling sun.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/sun/time.h"
+
+namespace alpenglow {
+
+/// Light of V magnitudes a square arcsecond [cd/m^2]: 10.8e4 10^(-0.4 V).
+[[nodiscard]] double LuminanceOfSurfaceBrightness(double magnitudes);
+
+/// In S10 [cd/m^2].
+inline constexpr double kS10_cd_per_m2 = 8.29e-7;
+
+/// Length of a layer 90 km high along a ray, relative to straight up. @param sin_z  in [0, 1].
+[[nodiscard]] double VanRhijn(double sin_z);
+
+/// [W m^-2 sr^-1 um^-1] at 500 nm. @param longitude_rad  from the sun, any; latitude_rad in
+/// [-pi/2, pi/2]. Within 15 degrees of the sun as there.
+[[nodiscard]] double ZodiacalLight(double longitude_rad, double latitude_rad);
+
+/// [S10], of stars fainter than V 6.
+[[nodiscard]] double Starlight(double longitude_rad, double latitude_rad);
+
+/// The part of each, in a direction.
+struct NightRadiance {
+  double airglow_cd_per_m2;
+  double zodiacal_per_irradiance;  // [1/sr], of the sun's irradiance at 1 au
+  double starlight_cd_per_m2;
+};
+
+/// Where the heavens stand over a place. Its frame is turned along with that of the picture.
+class NightSky {
+ public:
+  NightSky(const GeodeticPosition& place, const UtcInstant& instant);
+
+  /// @param frame_from_enu  a rotation.
+  [[nodiscard]] NightSky InFrame(const glm::dmat3& frame_from_enu) const;
+
+  /// @param direction, up  unit, in the frame: east, north, up at first.
+  /// @param altitude_m  of the eye: over the layer there is no airglow above.
+  [[nodiscard]] NightRadiance Towards(const glm::dvec3& direction, const glm::dvec3& up,
+                                      double altitude_m) const;
+
+ private:
+  glm::dmat3 ecliptic_from_frame_;
+  glm::dmat3 galactic_from_frame_;
+  double sun_longitude_rad_;
+};
+
+}  // namespace alpenglow
