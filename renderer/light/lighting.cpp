@@ -22,6 +22,24 @@ Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
   return light;
 }
 
+std::vector<DistantLight> Lighting::Lights() const {
+  std::vector<DistantLight> lights{{to_sun, sun_radius_rad, irradiance}};
+  if (moonlight) lights.push_back(*moonlight);
+  return lights;
+}
+
+Lighting Lighting::By(const DistantLight& light) const {
+  Lighting alone = *this;
+  alone.to_sun = light.to_light;
+  alone.sun_radius_rad = light.radius_rad;
+  alone.irradiance = light.irradiance;
+  alone.moon = std::nullopt;
+  alone.moonlight = std::nullopt;
+  alone.night = nullptr;
+  alone.on_terrain = nullptr;
+  return alone;
+}
+
 LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
                     const glm::dvec3& to_sun, double sun_radius_rad) {
   const double altitude = std::max(geometry.AltitudeOf(point), 0.0);

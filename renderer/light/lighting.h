@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The sun over a scene at one time: where it stands, what it sends above the air, what of its disk
-// a point sees over the planet's horizon, and what the season makes of the ground.
+// a point sees over the planet's horizon, and what the season makes of the ground; by night what
+// else shines. All lights so far away that they are a direction have one form (DistantLight), by
+// which tables, terrain and fog serve each of them: radiance of air lit from a direction is linear
+// in the irradiance.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/sun/moon_disk.h"
@@ -15,9 +19,17 @@
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/surface.h"
+#include "renderer/light/night_light.h"
 #include "renderer/light/terrain_light.h"
 
 namespace alpenglow {
+
+/// A light so far away that it shines everywhere from one direction.
+struct DistantLight {
+  glm::dvec3 to_light;   // unit, to the middle of its disk
+  double radius_rad;     // of the disk
+  BandLight irradiance;  // above the air, W m^-2 nm^-1
+};
 
 /// Light in the air and on surfaces for one position of the sun.
 struct Lighting {
@@ -26,10 +38,20 @@ struct Lighting {
   BandLight irradiance;                         // of the sun above the air, W m^-2 nm^-1
   MountainSurface surface;                      // as the season covers it
   double sea_s = 0.0;                           // time of the waves, see SeaTime
-  std::optional<MoonDisk> moon = std::nullopt;  // as a thing to see: it lights nothing yet
+  std::optional<MoonDisk> moon = std::nullopt;  // as a thing to see
+  BandLight moon_colour = {};                   // of its reflectance, relative to that at 550 nm
+  /// The moon where it could show beside the sun.
+  std::optional<DistantLight> moonlight = std::nullopt;
+  /// The sky of the night where it could show beside the sun; null: it could not.
+  std::shared_ptr<const NightLight> night = nullptr;
   EffectSet effects = EffectSet::All();
   /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
   std::shared_ptr<const TerrainLight> on_terrain = nullptr;
+
+  /// The sun, and the moon where it could show.
+  [[nodiscard]] std::vector<DistantLight> Lights() const;
+  /// The same scene with one light alone, as if that were the sun.
+  [[nodiscard]] Lighting By(const DistantLight& light) const;
 };
 
 /// The sun as it stands, the ground as the season covers it at that place.

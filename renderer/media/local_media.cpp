@@ -151,6 +151,12 @@ LocalMedia::LocalMedia(std::vector<LocalMedium> all, std::size_t bands)
   if (fog() != nullptr) fog_bottom_m_ = all_.back().fog()->base_m();
 }
 
+LocalMedia LocalMedia::WithoutGlow() const {
+  LocalMedia dark = *this;
+  for (LocalMedium& medium : dark.all_) medium.optics.emission_per_m = Bands<double>(bands_);
+  return dark;
+}
+
 LocalMedia LocalMedia::Only(bool volumes, bool with_fog) const {
   LocalMedia some = *this;
   std::erase_if(some.all_, [&](const LocalMedium& medium) {

@@ -52,6 +52,9 @@ class LocalMedia {
   /// Some of them: the volumes or none, the fog or none.
   [[nodiscard]] LocalMedia Only(bool volumes, bool fog) const;
 
+  /// The same without light of their own.
+  [[nodiscard]] LocalMedia WithoutGlow() const;
+
   [[nodiscard]] bool IsNothing() const { return all_.empty(); }
   [[nodiscard]] bool HasVolumes() const {
     return !all_.empty() && all_.front().volume() != nullptr;

@@ -147,36 +147,58 @@ std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Ground
   return clear * from.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
 }
 
-GroundRadiance GroundLight::Towards(const Hit& seen, const glm::dvec3& to_eye,
-                                    const GroundSources& from, const LampNodes& near,
-                                    std::array<double, 2> disk_sample) const {
-  const Lighting& light = from.light;
-  const LocalSun sun = LocalSunAt(seen.point, light);
-  const GroundPatch patch = PatchAt(seen, light, sun.up, glm::dot(seen.mesh_normal, to_eye));
-  Hit hit = seen;
-  if (patch.IsWater()) {
-    hit.mesh_normal = sun.up;
-    hit.normal = patch.WaterNormal(sun.up);
+GroundLight::Seen GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
+                                        const Lighting& light) const {
+  const LocalSun sun = LocalSunAt(hit.point, light);
+  Seen seen{sun, PatchAt(hit, light, sun.up, glm::dot(hit.mesh_normal, to_eye)), hit, {}};
+  if (seen.patch.IsWater()) {
+    seen.hit.mesh_normal = sun.up;
+    seen.hit.normal = seen.patch.WaterNormal(sun.up);
   }
-  const double mu_eye = AnglesBetween(hit.normal, hit.normal, to_eye).mu_eye;
-  const BandLight body = patch.BodyAlbedo(mu_eye);
+  const double mu_eye = AnglesBetween(seen.hit.normal, seen.hit.normal, to_eye).mu_eye;
+  seen.body = seen.patch.BodyAlbedo(mu_eye);
+  return seen;
+}
+
+BandLight GroundLight::Natural(const Seen& seen, const glm::dvec3& to_eye,
+                               const GroundSources& from, const std::optional<BandLight>& direct,
+                               std::array<double, 2> disk_sample) const {
+  const Lighting& light = from.light;
   BandLight radiance(air_.bands());
-  GroundRadiance sent;
-  if (const auto direct = SunIrradiance(hit, from, sun, disk_sample)) {
-    sent.sun_visibility = static_cast<float>(sun.visible_fraction);
+  if (direct) {
     const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
-    radiance = patch.Brdf(AnglesBetween(hit.normal, to_disk, to_eye)) * *direct;
+    radiance = seen.patch.Brdf(AnglesBetween(seen.hit.normal, to_disk, to_eye)) * *direct;
   }
   if (light.effects.Has(Effect::kSkylight)) {
-    radiance = radiance + static_cast<float>(1.0 / kPi) * (body * SkyIrradiance(hit, from, sun));
-    if (patch.IsGlossy() && light.on_terrain)
-      radiance = radiance + Mirrored(patch, hit, to_eye, light, sun);
+    radiance = radiance + static_cast<float>(1.0 / kPi) *
+                              (seen.body * SkyIrradiance(seen.hit, from, seen.sun));
+    if (seen.patch.IsGlossy() && light.on_terrain)
+      radiance = radiance + Mirrored(seen.patch, seen.hit, to_eye, light, seen.sun);
   }
-  sent.albedo = body;
-  sent.natural = light.irradiance * radiance;
+  return light.irradiance * radiance;
+}
+
+BandLight GroundLight::NaturalTowards(const Hit& hit, const glm::dvec3& to_eye,
+                                      const GroundSources& from,
+                                      std::array<double, 2> disk_sample) const {
+  const Seen seen = SeenFrom(hit, to_eye, from.light);
+  return Natural(seen, to_eye, from, SunIrradiance(seen.hit, from, seen.sun, disk_sample),
+                 disk_sample);
+}
+
+GroundRadiance GroundLight::Towards(const Hit& hit, const glm::dvec3& to_eye,
+                                    const GroundSources& from, const LampNodes& near,
+                                    std::array<double, 2> disk_sample) const {
+  const Seen seen = SeenFrom(hit, to_eye, from.light);
+  const auto direct = SunIrradiance(seen.hit, from, seen.sun, disk_sample);
+  GroundRadiance sent;
+  if (direct) sent.sun_visibility = static_cast<float>(seen.sun.visible_fraction);
+  sent.albedo = seen.body;
+  sent.natural = Natural(seen, to_eye, from, direct, disk_sample);
+  const Hit& at = seen.hit;
   sent.lamps = static_cast<float>(1.0 / kPi) *
-               (body * parts_.lamps.OnSurface(
-                           near, {hit.point, hit.smooth_point, hit.normal, hit.geometric_normal}));
+               (seen.body * parts_.lamps.OnSurface(
+                                near, {at.point, at.smooth_point, at.normal, at.geometric_normal}));
   return sent;
 }
 

@@ -60,9 +60,27 @@ class GroundLight {
                                        const GroundSources& from, const LampNodes& near,
                                        std::array<double, 2> disk_sample) const;
 
+  /// Of `natural` alone, by another light: what it adds.
+  [[nodiscard]] BandLight NaturalTowards(const Hit& hit, const glm::dvec3& to_eye,
+                                         const GroundSources& from,
+                                         std::array<double, 2> disk_sample) const;
+
   [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
 
  private:
+  /// A point of the ground as light and eye meet it.
+  struct Seen {
+    LocalSun sun;
+    GroundPatch patch;
+    Hit hit;  // with the normal of water where that is
+    BandLight body;
+  };
+  [[nodiscard]] Seen SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
+                              const Lighting& light) const;
+  /// Of sun and sky. @param direct  SunIrradiance.
+  [[nodiscard]] BandLight Natural(const Seen& seen, const glm::dvec3& to_eye,
+                                  const GroundSources& from, const std::optional<BandLight>& direct,
+                                  std::array<double, 2> disk_sample) const;
   /// Cosine between the shading normal and a point of the disk; 0 where terrain or the planet
   /// stands before it.
   [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,

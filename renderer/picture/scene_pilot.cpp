@@ -32,13 +32,17 @@ EffectSet SceneState::Present(const PictureFrame& frame) const {
     return effects;
   };
   EffectSet present = EffectSet::All();
-  present = without(present, frame.sunlight->IsBroken(), {Effect::kShafts});
+  const bool moon_is_broken = frame.moonlit && frame.moonlit->sunlight->IsBroken();
+  present = without(present, frame.sunlight->IsBroken() || moon_is_broken, {Effect::kShafts});
   present = without(present, !lamps.All().empty(), {Effect::kLights, Effect::kBeams});
   present = without(present, ground.terrain.has_value(), {Effect::kShadows, Effect::kRelief});
   present =
       without(present, frame.light.on_terrain != nullptr, {Effect::kHorizons, Effect::kBounce});
   present = without(present, media.HasVolumes(), {Effect::kVolumes});
   present = without(present, media.fog() != nullptr, {Effect::kFogGlow});
+  present = without(present, frame.moonlit != nullptr, {Effect::kMoonlight});
+  present = without(present, frame.night != nullptr, {Effect::kNightSky});
+  present = without(present, frame.stars != nullptr, {Effect::kStars});
   return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
 }
 
@@ -55,8 +59,13 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
     return state.Reduced(*on_few_bands, effects);
   };
   EffectPilot pilot;
-  pilot.groups = PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun,
-                             frame.lamps->Directions());
+  std::vector<glm::dvec3> points = frame.lamps->Directions();
+  if (frame.stars) {
+    const auto& stars = frame.stars->directions();
+    points.insert(points.end(), stars.begin(), stars.end());
+  }
+  pilot.groups =
+      PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
   std::vector<PixelPlace> places;
   for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
   const auto timed = [&](const SceneState& state, const PictureFrame& of) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun_disk.h"
 #include "lut/program/program.h"
 #include "renderer/effect/picture_change.h"
@@ -58,11 +59,19 @@ BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& th
   return disk;
 }
 
-BandLight SceneState::Moonlight(const glm::dvec3& direction, const AirAlongRay& through,
-                                const Lighting& light) const {
+BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
+                               const Lighting& light) const {
   const double radiance = light.moon ? MoonRadiance(*light.moon, direction) : 0.0;
   if (radiance == 0.0) return BandLight(light.irradiance.count);
-  return static_cast<float>(radiance) * (light.irradiance * through.transmittance);
+  return static_cast<float>(radiance) *
+         (light.moon_colour * (light.irradiance * through.transmittance));
+}
+
+PixelSum SceneState::WithStars(const PictureFrame& frame, int x, int y, PixelSum rays) {
+  const BandLight* star = frame.stars ? frame.stars->At(x, y) : nullptr;
+  if (star != nullptr)
+    rays.sum.radiance = rays.sum.radiance + static_cast<float>(rays.rays) * *star;
+  return rays;
 }
 
 Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
@@ -71,6 +80,12 @@ Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraR
   Shaded shaded;
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
+  const bool has_air = frame.Has(hit.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
+  if (frame.night && has_air) {
+    const BandLight& scattered = frame.night->scattered();
+    for (std::size_t band = 0; band < scattered.count; ++band)
+      shaded.inscatter[band] += (1.0F - shaded.transmittance[band]) * scattered[band];
+  }
   shaded.albedo = BandLight(medium.wavelengths_nm.size());
   const auto left = [&](double distance_m) {
     return LeftByVolumes(through.pieces, distance_m, through.media.count);
@@ -82,16 +97,29 @@ Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraR
   if (hit.kind == HitKind::kSky) {
     shaded.radiance =
         shaded.radiance + through.fog * (SunDisk(ray.direction, through.air, frame.light) +
-                                         Moonlight(ray.direction, through.air, frame.light));
+                                         MoonSeen(ray.direction, through.air, frame.light));
+    if (frame.night) {
+      shaded.radiance = shaded.radiance + shaded.transmittance * frame.night->Above(ray.direction);
+    }
     return shaded;
   }
   const GroundRadiance sent = frame.model->ground_light.Towards(
       hit, -ray.direction, frame.ground_sources(), near.surface, disk_sample);
   shaded.albedo = sent.albedo;
   shaded.sun_visibility = sent.sun_visibility;
+  BandLight natural = sent.natural;
+  if (frame.moonlit) {
+    natural = natural + frame.model->ground_light.NaturalTowards(
+                            hit, -ray.direction, frame.moonlit->ground_sources(), disk_sample);
+  }
+  if (frame.night) {
+    const double cos_up = glm::dot(hit.normal, geometry.UpAt(hit.point));
+    natural =
+        natural + static_cast<float>(1.0 / kPi) * (sent.albedo * frame.night->OnSurface(cos_up));
+  }
   const BandLight lamp_light = shaded.transmittance * sent.lamps;
   shaded.lamps = shaded.lamps + lamp_light;
-  shaded.radiance = shaded.radiance + lamp_light + shaded.transmittance * sent.natural;
+  shaded.radiance = shaded.radiance + lamp_light + shaded.transmittance * natural;
   return shaded;
 }
 
@@ -104,7 +132,7 @@ Image SceneState::Pixels(const PictureFrame& frame, const std::vector<PixelPlace
     if (Interrupted()) return;
     PixelLight pixel(*this, frame, at.x, at.y, rays);
     pixel.TakeUpTo(rays);
-    writer.Write(i, 0, pixel.sum());
+    writer.Write(i, 0, WithStars(frame, at.x, at.y, pixel.sum()));
   });
   ThrowIfInterrupted();
   return writer.Take();
@@ -192,7 +220,7 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
 
 void SceneState::Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
                        PixelWriter& writer) const {
-  writer.Write(x, y, pixel.sum());
+  writer.Write(x, y, WithStars(frame, x, y, pixel.sum()));
   if (!writer.AsksForMiddle()) return;
   writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
 }

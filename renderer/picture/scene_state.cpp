@@ -2,21 +2,48 @@
 #include "renderer/picture/scene_state.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 
+#include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon_reflectance.h"
+#include "atmosphere/sun/refraction.h"
+#include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/ground/terrain_sunlight.h"
 
 namespace alpenglow {
 
-double SceneState::Illuminance(const glm::dvec3& eye, const Lighting& light) const {
-  const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light);
+namespace {
+
+// By less than this share of the light that is there nobody sees whether another is.
+constexpr double kUnseenShare = 1e-4;
+// The brightest moon, and the sky without it. By day nothing of the night is asked for.
+constexpr double kBrightestMoon_lux = 0.5, kNightSky_lux = 1e-3;
+constexpr double kDaylight_lux = kBrightestMoon_lux / kUnseenShare;
+
+}  // namespace
+
+double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
+                                 const Lighting& light) const {
+  const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
       direct * models.whole().air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
       models.whole().diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s);
-  return colour.Xyz(InDouble(light.irradiance * irradiance))[1];
+  return colour.Xyz(InDouble(source.irradiance * irradiance))[1];
+}
+
+double SceneState::SunIlluminance(const PictureFrame& frame) const {
+  return IlluminanceBy(frame.light.Lights().front(), frame.camera().eye(), frame.light);
+}
+
+double SceneState::Illuminance(const glm::dvec3& eye, const Lighting& light) const {
+  double lux = light.night ? colour.Xyz(InDouble(light.night->OnSurface(1.0)))[1] : 0.0;
+  for (const DistantLight& source : light.Lights()) lux += IlluminanceBy(source, eye, light);
+  return lux;
 }
 
 LampPlan SceneState::PlanLamps(const PictureFrame& frame) const {
@@ -56,7 +83,32 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
   light.moon = ApparentMoonDisk(EyeOf(shot), shot.instant, sun.distance_au);
   light.moon->to_moon = stand.frame_from_enu * light.moon->to_moon;
   light.moon->to_sun = stand.frame_from_enu * light.moon->to_sun;
+  AddNight(shot, stand, sun.distance_au, light);
   return light;
+}
+
+void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
+                          Lighting& light) const {
+  const double phase_rad =
+      std::acos(std::clamp(-glm::dot(light.moon->to_moon, light.moon->to_sun), -1.0, 1.0));
+  light.moon_colour = BandLight(medium.wavelengths_nm.size());
+  const double grey = MoonReflectance(phase_rad, 550.0);
+  for (std::size_t band = 0; band < light.moon_colour.count; ++band) {
+    light.moon_colour[band] =
+        static_cast<float>(MoonReflectance(phase_rad, medium.wavelengths_nm[band]) / grey);
+  }
+  const double sun_lux = Illuminance(stand.eye, light);
+  if (sun_lux > kDaylight_lux) return;
+  const GeodeticPosition eye = EyeOf(shot);
+  const double share = MoonIrradiance(MoonAt(eye, shot.instant), earth_sun_au, 550.0);
+  const DistantLight moonlight{light.moon->to_moon, light.moon->radius_rad,
+                               static_cast<float>(share) * (light.moon_colour * light.irradiance)};
+  if (IlluminanceBy(moonlight, stand.eye, light) > kUnseenShare * (sun_lux + kNightSky_lux))
+    light.moonlight = moonlight;
+  if (kNightSky_lux < kUnseenShare * sun_lux) return;
+  light.night = std::make_shared<NightLight>(
+      NightSky(eye, shot.instant).InFrame(stand.frame_from_enu), models.whole().air, colour,
+      geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye));
 }
 
 PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& settings,
@@ -87,16 +139,93 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
     frame.plan = std::make_shared<LampPlan>(PlanLamps(frame));
     frame.plan_s = watch.seconds();
   }
+  LightNight(frame);
   LightMedia(frame);
   LightTerrain(frame);
+  if (frame.Has(Effect::kStars)) frame.stars = StarsIn(frame, shot);
   return frame;
 }
 
+void SceneState::LightNight(PictureFrame& frame) const {
+  frame.night = nullptr;
+  frame.moonlit = nullptr;
+  if (frame.Has(Effect::kNightSky)) frame.night = frame.light.night;
+  if (!frame.Has(Effect::kMoonlight) || !frame.light.moonlight) return;
+  SecondLight moon{frame.light.By(*frame.light.moonlight), BandLight(frame.light.irradiance.count),
+                   std::make_shared<TerrainSunlight>(), nullptr};
+  for (std::size_t band = 0; band < moon.by_sun.count; ++band)
+    moon.by_sun[band] = moon.light.irradiance[band] / frame.light.irradiance[band];
+  if (frame.Has(Effect::kShafts)) {
+    moon.sunlight =
+        std::make_shared<TerrainSunlight>(ground, moon.light.to_sun, moon.light.sun_radius_rad);
+  }
+  frame.moonlit = std::make_shared<SecondLight>(std::move(moon));
+}
+
+std::optional<BandLight> SceneState::LeftOfSpace(const PictureFrame& frame, double x,
+                                                 double y) const {
+  const CameraRay ray = frame.camera().MiddleRay(x, y);
+  const Hit hit = Trace(ray, frame);
+  if (hit.kind != HitKind::kSky) return std::nullopt;
+  SharedAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
+  AddAir(frame, geometry, medium, air);
+  const BandLight fog =
+      frame.lamps->FogTransmittance(ray.through, frame.HasLitFog() ? 0.0 : air.length_m());
+  return fog * air.air.transmittance;
+}
+
+std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
+                                                      const Shot& shot) const {
+  // A star that makes its pixel brighter than an even sky would be by this share is drawn.
+  constexpr double kUnseenStar = 1e-3;
+  const double lux = Illuminance(frame.camera().eye(), frame.light);
+  if (!frame.light.moon || lux > kDaylight_lux) return nullptr;
+  const double angle = frame.camera().PixelAngle();
+  const double faintest = MagnitudeOf(kUnseenStar * angle * angle / kPi * lux);
+  const GeodeticPosition eye = EyeOf(shot);
+  const LocalFrame local(kWgs84, eye);
+  const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
+  std::vector<StarLight> lights;
+  const auto add = [&](const PointLight& point) {
+    if (point.magnitude > faintest) return;
+    const glm::dvec3 enu = local.EnuFromEcef(point.direction).xyz;
+    const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
+    const glm::dvec3 seen =
+        DirectionFromAngles(elevation + RefractionFromHeight(elevation, eye.height_m),
+                            std::atan2(enu.x, enu.y))
+            .xyz;
+    if (glm::length(frame_from_enu * seen - frame.light.moon->to_moon) <
+        frame.light.moon->radius_rad) {
+      return;
+    }
+    BandLight spectrum(medium.wavelengths_nm.size());
+    for (std::size_t band = 0; band < spectrum.count; ++band) {
+      spectrum[band] = static_cast<float>(
+          1e6 * BlackBodyRadiance(medium.wavelengths_nm[band], TemperatureOf(point.colour_index)));
+    }
+    const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
+    lights.push_back({frame_from_enu * seen,
+                      static_cast<float>(IlluminanceOf(point.magnitude) / of_spectrum) * spectrum});
+  };
+  for (const PointLight& planet : PlanetsAt(eye, shot.instant)) add(planet);
+  for (const PointLight& star : StarsAt(shot.instant, faintest)) add(star);
+  if (lights.empty()) return nullptr;
+  return std::make_shared<StarPixels>(frame.camera(), frame.settings.width, frame.settings.height,
+                                      lights,
+                                      [&](double x, double y) { return LeftOfSpace(frame, x, y); });
+}
+
+// The terrain in the light of the sun, and of the moon.
 void SceneState::LightTerrain(PictureFrame& frame) const {
   Prepare(frame.settings.progress, "light of slopes");
   if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // made once, for all frames
   const Stopwatch watch;
   frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.ground_sources());
+  if (frame.moonlit) {
+    SecondLight moon = *frame.moonlit;
+    moon.light.on_terrain = frame.model->ground_light.OnTerrain(moon.ground_sources());
+    frame.moonlit = std::make_shared<SecondLight>(std::move(moon));
+  }
   frame.slopes_s = watch.seconds();
 }
 
@@ -104,14 +233,22 @@ void SceneState::LightMedia(PictureFrame& frame) const {
   // By the light of less than a millionth of a lux fog is what lamps make of it, unless it stands
   // before a volume.
   const bool has_volumes = frame.Has(Effect::kVolumes) && media.HasVolumes();
-  const bool is_lit = frame.Has(Effect::kFogGlow) &&
-                      (has_volumes || Illuminance(frame.camera().eye(), frame.light) > 1e-6);
+  const bool is_lit =
+      frame.Has(Effect::kFogGlow) && (has_volumes || frame.moonlit || SunIlluminance(frame) > 1e-6);
   LocalMedia here = media.Only(has_volumes, is_lit);
   frame.media = here.IsNothing()
                     ? nullptr
                     : std::make_shared<MediaLight>(
                           std::move(here), geometry, frame.model->air, frame.model->diffuse,
                           frame.light, frame.Has(Effect::kLights) ? frame.lamps.get() : nullptr);
+  if (frame.moonlit) {
+    SecondLight moon = *frame.moonlit;
+    moon.media = frame.media ? std::make_shared<MediaLight>(frame.media->media().WithoutGlow(),
+                                                            geometry, frame.model->air,
+                                                            frame.model->diffuse, moon.light)
+                             : nullptr;
+    frame.moonlit = std::make_shared<SecondLight>(std::move(moon));
+  }
 }
 
 // The same picture with fewer effects.
@@ -128,6 +265,15 @@ PictureFrame SceneState::Reduced(PictureFrame frame, EffectSet effects) const {
   frame.settings.effects = frame.light.effects = effects;
   frame.model = &models.With(effects);
   if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
+  if (!effects.Has(Effect::kNightSky)) frame.night = nullptr;
+  if (!effects.Has(Effect::kStars)) frame.stars = nullptr;
+  if (frame.moonlit) {
+    SecondLight moon = *frame.moonlit;
+    moon.light.effects = effects;
+    if (!effects.Has(Effect::kShafts)) moon.sunlight = std::make_shared<TerrainSunlight>();
+    frame.moonlit =
+        effects.Has(Effect::kMoonlight) ? std::make_shared<SecondLight>(std::move(moon)) : nullptr;
+  }
   if (!effects.Has(Effect::kLights)) frame.plan = std::make_shared<LampPlan>();
   if (!media_are_lit_alike) LightMedia(frame);
   if (!is_lit_alike) LightTerrain(frame);

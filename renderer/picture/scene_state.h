@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
@@ -51,6 +52,13 @@ struct SceneState {
       const std::shared_ptr<const TerrainSunlight>& known = nullptr) const;
   void LightMedia(PictureFrame& frame) const;
   void LightTerrain(PictureFrame& frame) const;
+  /// Moonlight, the sky of the night, stars: what of them could show.
+  void LightNight(PictureFrame& frame) const;
+  [[nodiscard]] std::shared_ptr<const StarPixels> StarsIn(const PictureFrame& frame,
+                                                          const Shot& shot) const;
+  /// What air and fog leave of light from space at a place of the picture; nothing behind ground.
+  [[nodiscard]] std::optional<BandLight> LeftOfSpace(const PictureFrame& frame, double x,
+                                                     double y) const;
   [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
   [[nodiscard]] Image Pixels(const PictureFrame& frame,
                              const std::vector<PixelPlace>& places) const;
@@ -73,12 +81,21 @@ struct SceneState {
                              std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
-  [[nodiscard]] BandLight Moonlight(const glm::dvec3& direction, const AirAlongRay& through,
-                                    const Lighting& light) const;
+  /// With the stars at the pixel, which rays do not meet.
+  [[nodiscard]] static PixelSum WithStars(const PictureFrame& frame, int x, int y, PixelSum rays);
+  [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
+                                   const Lighting& light) const;
   [[nodiscard]] GeodeticPosition EyeOf(const Shot& shot) const;
   [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
   [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
   [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;
+  /// What shines besides the sun, where that is dim enough.
+  void AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
+                Lighting& light) const;
+  /// Of one light and the sky that it makes, on a level plane [lux].
+  [[nodiscard]] double IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
+                                     const Lighting& light) const;
+  [[nodiscard]] double SunIlluminance(const PictureFrame& frame) const;
   /// See SceneRenderer.
   [[nodiscard]] double Illuminance(const glm::dvec3& eye, const Lighting& light) const;
   [[nodiscard]] LampPlan PlanLamps(const PictureFrame& frame) const;

@@ -12,23 +12,22 @@ namespace {
 class AirTo {
  public:
   AirTo(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
-        const SharedAir& rays, const glm::dvec3& direction)
-      : frame_(frame), kind_(rays.kind) {
+        const SharedAir& rays, const glm::dvec3& direction, const Lighting& light,
+        const TerrainSunlight& sunlight)
+      : frame_(frame), sunlight_(sunlight), kind_(rays.kind) {
     const glm::dvec3& from = frame.camera().eye();
     const glm::dvec3 up = geometry.UpAt(from);
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up), -1.0, 1.0),
-            std::clamp(glm::dot(frame.light.to_sun, up), -1.0, 1.0),
-            std::clamp(glm::dot(direction, frame.light.to_sun), -1.0, 1.0)};
+            std::clamp(glm::dot(light.to_sun, up), -1.0, 1.0),
+            std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)};
     // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
     if (kind_ == HitKind::kTerrain) ray_.length_m = rays.length_m();
-    if (!frame.sunlight->IsBroken()) return;
+    if (!sunlight_.IsBroken()) return;
     const RayExtent extent = ExtentOf(ray_, geometry.radius_m(), medium.atmosphere_height_m);
-    path_ = frame.sunlight->Along(from, direction, extent.end_m);
+    path_ = sunlight_.Along(from, direction, extent.end_m);
   }
 
-  [[nodiscard]] const SunlitPath* sunlit() const {
-    return frame_.sunlight->IsBroken() ? &path_ : nullptr;
-  }
+  [[nodiscard]] const SunlitPath* sunlit() const { return sunlight_.IsBroken() ? &path_ : nullptr; }
 
   [[nodiscard]] AirAlongRay operator()(double length_m) const {
     const AirModel& in = *frame_.model;
@@ -44,12 +43,13 @@ class AirTo {
     const AerialPerspective::Nodes sampling{
         .sky = frame_.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
         .higher_orders = frame_.Has(Effect::kMultipleScattering)};
-    return frame_.sunlight->IsBroken() ? in.aerial.Along(ray, path_, sampling)
-                                       : in.aerial.Along(ray, sampling);
+    return sunlight_.IsBroken() ? in.aerial.Along(ray, path_, sampling)
+                                : in.aerial.Along(ray, sampling);
   }
 
  private:
   const PictureFrame& frame_;
+  const TerrainSunlight& sunlight_;
   HitKind kind_;
   ViewRay ray_;
   SunlitPath path_;
@@ -82,22 +82,44 @@ std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFra
   return static_cast<std::size_t>(known - airs.begin());
 }
 
+namespace {
+
+/// Of a second light, in air and media. After the sun's.
+void AddSecondLight(const PictureFrame& frame, const SecondLight& second,
+                    const SceneGeometry& geometry, const Medium& medium,
+                    const glm::dvec3& direction, SharedAir& rays) {
+  const AirTo air(frame, geometry, medium, rays, direction, second.light, *second.sunlight);
+  BandLight inscatter = air(std::numeric_limits<double>::infinity()).inscatter;
+  if (second.media) {
+    const MarchedLight marched =
+        second.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
+    inscatter = DimmedByMedia(
+        marched.pieces, [&](double m) { return air(m).inscatter; }, inscatter, Behind::kAll);
+    rays.media = rays.media + marched.radiance;
+  }
+  rays.air.inscatter = rays.air.inscatter + second.by_sun * inscatter;
+}
+
+}  // namespace
+
 void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
             SharedAir& rays) {
   constexpr double kAll = std::numeric_limits<double>::infinity();
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
-  const AirTo air(frame, geometry, medium, rays, direction);
+  const AirTo air(frame, geometry, medium, rays, direction, frame.light, *frame.sunlight);
   rays.air = air(kAll);
   rays.media = BandLight(rays.air.inscatter.count);
-  if (!frame.media) return;
-  MarchedLight marched =
-      frame.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
-  rays.air = {DimmedByMedia(
-                  marched.pieces, [&](double m) { return air(m).inscatter; }, rays.air.inscatter,
-                  Behind::kAll),
-              rays.air.transmittance * marched.transmittance};
-  rays.media = marched.radiance;
-  rays.pieces = std::move(marched.pieces);
+  if (frame.media) {
+    MarchedLight marched =
+        frame.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
+    rays.air = {DimmedByMedia(
+                    marched.pieces, [&](double m) { return air(m).inscatter; }, rays.air.inscatter,
+                    Behind::kAll),
+                rays.air.transmittance * marched.transmittance};
+    rays.media = marched.radiance;
+    rays.pieces = std::move(marched.pieces);
+  }
+  if (frame.moonlit) AddSecondLight(frame, *frame.moonlit, geometry, medium, direction, rays);
 }
 
 void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays) {

@@ -17,8 +17,19 @@
 #include "renderer/media/media_light.h"
 #include "renderer/picture/air_model.h"
 #include "renderer/picture/render_settings.h"
+#include "renderer/picture/star_pixels.h"
 
 namespace alpenglow {
+
+/// What a light beside the sun makes of a picture, as if it were the sun.
+struct SecondLight {
+  Lighting light;
+  BandLight by_sun;  // its irradiance, relative to the sun's
+  std::shared_ptr<const TerrainSunlight> sunlight;
+  std::shared_ptr<const MediaLight> media;
+
+  [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
+};
 
 /// What all pixels of a picture share. Copies share what took time to prepare.
 struct PictureFrame {
@@ -31,6 +42,9 @@ struct PictureFrame {
   std::shared_ptr<const LampLight> lamps;
   std::shared_ptr<const LampPlan> plan;
   std::shared_ptr<const MediaLight> media;  // null: no volumes, and fog is lit by lamps alone
+  std::shared_ptr<const SecondLight> moonlit = nullptr;  // null: the moon lights nothing
+  std::shared_ptr<const NightLight> night = nullptr;     // null: the sky of the night does not show
+  std::shared_ptr<const StarPixels> stars = nullptr;     // null: none are seen
   double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
