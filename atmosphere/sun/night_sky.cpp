@@ -104,7 +104,7 @@ double Starlight(double longitude_rad, double latitude_rad) {
   const double b = latitude_rad / kRadiansPerDegree;
   const auto bell = [](double x) { return std::exp(-x * x); };
   const double disk =
-      24.0 * (1.0 + 0.45 * std::cos(longitude_rad)) / (std::abs(std::sin(latitude_rad)) + 0.07);
+      24.0 * (1.0 + 0.45 * std::cos(longitude_rad)) / std::hypot(std::sin(latitude_rad), 0.12);
   const double bulge = 400.0 * bell(l / 16.0) * bell((b + 5.0) / 6.0);
   // The lane leaves the plane by 4 degrees towards Aquila, and ends at Deneb.
   const double middle = 1.0 + 3.0 * std::sin(std::clamp(l, -30.0, 90.0) * 2.0 * kRadiansPerDegree);

@@ -9,7 +9,7 @@
 // too faint to be drawn one by one: a disk that thins out away from the plane of the galaxy, b the
 // galactic latitude, and brighter towards its centre,
 //
-//   S = 24 S10 (1 + 0.45 cos l) / (|sin b| + 0.07),
+//   S = 24 S10 (1 + 0.45 cos l) / sqrt(sin^2 b + 0.12^2),
 //
 // with a bulge of 400 S10 around l = 0, b = -5 and the lane of dust from there to Cygnus, where
 // seven tenths of the light are lost; coarse, after the maps of star counts of Roach and Megill

@@ -44,9 +44,17 @@ Light LampToTheNorth(double north_m, double candela) {
   return light;
 }
 
+// With the lamps alone: without what else shines at night.
 Image Picture(const Scene& scene) {
-  return SceneRenderer(scene).Render(
-      kNight, {.width = 17, .height = 9, .samples_per_pixel = 1, .layers = {PictureLayer::kLamps}});
+  const EffectSet effects = EffectSet::All()
+                                .Without(Effect::kMoonlight)
+                                .Without(Effect::kNightSky)
+                                .Without(Effect::kStars);
+  return SceneRenderer(scene).Render(kNight, {.width = 17,
+                                              .height = 9,
+                                              .samples_per_pixel = 1,
+                                              .effects = effects,
+                                              .layers = {PictureLayer::kLamps}});
 }
 
 double BrightestOf(const Image& image) {
