@@ -14,8 +14,8 @@
 
 namespace alpenglow {
 
-/// Measured from 1.55 to 97 degrees; beyond, the same curve, within 3 % of that of Krisciunas and
-/// Schaefer (1991) up to 150 degrees, from where on it stays.
+/// Measured from 1.55 to 97 degrees; beyond, the same curve, within 12 % of that of Krisciunas
+/// and Schaefer (1991) from 7 to 145 degrees; it ends at 150.
 /// @param wavelength_nm  in [350, 1060], linear between nine filters; beyond as at the ends.
 [[nodiscard]] double MoonReflectance(double phase_angle_rad, double wavelength_nm);
 

@@ -22,7 +22,8 @@ struct PointLight {
   double colour_index;     // B - V
 };
 
-/// Mercury, Venus, Mars, Jupiter, Saturn, seen from a place. Errors of magnitudes: 0.2.
+/// Mercury, Venus, Mars, Jupiter, Saturn, seen from a place. Errors of magnitudes: 0.2, of
+/// Saturn 0.3.
 [[nodiscard]] std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place,
                                                   const UtcInstant& instant);
 

@@ -10,8 +10,8 @@
 //
 // is what molecules, or droplets deep in a cloud, would scatter of light that comes from all sides.
 // It makes the zenith brighter by a tenth than extinction alone, and the horizon by as much as it
-// is: an approximation good to a tenth of light that itself varies by a factor of two from night to
-// night. What ozone and soot absorb of J is left out.
+// is: an approximation, for light that itself varies by a factor of two from night to night. What
+// ozone and soot absorb of J is left out.
 #pragma once
 
 #include <glm/vec3.hpp>
