@@ -37,14 +37,14 @@ PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x
       samples_(x, y, most_rays) {}
 
 PixelLight::Ray PixelLight::Traced(int sample) {
-  glm::dvec2 at(x_ + 0.5, y_ + 0.5);
+  glm::dvec2 offset(0.0);
   if (!through_middle_) {
     const auto [u, v] = samples_.Point(sample, SampleOf::kPixel);
-    at += glm::dvec2(frame_->filter.Offset(u), frame_->filter.Offset(v));
+    offset = {frame_->filter.Offset(u), frame_->filter.Offset(v)};
   }
-  const CameraRay ray = RayOf(samples_, sample, at, *frame_);
+  const CameraRay ray = RayOf(samples_, sample, glm::dvec2(x_ + 0.5, y_ + 0.5) + offset, *frame_);
   const Hit hit = scene_->Trace(ray, *frame_);
-  return {ray, hit, AirFor(hit, ray.through, *frame_, airs_)};
+  return {ray, hit, AirFor(hit, ray.through, *frame_, airs_), offset};
 }
 
 void PixelLight::AddNewAir(std::size_t known) {
@@ -74,6 +74,7 @@ void PixelLight::TakeUpTo(int rays) {
     const Shaded shaded = scene_->Shade(seen.hit, airs_[seen.air], seen.ray, *frame_, near,
                                         samples_.Point(sum_.rays, SampleOf::kSunDisk));
     spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
+    new_rays_.push_back({seen.offset.x, seen.offset.y, shaded.radiance});
     sum_.Add(shaded);
   }
 }

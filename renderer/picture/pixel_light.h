@@ -2,6 +2,8 @@
 // The light of one pixel: its rays, what they meet, and the air they look through.
 #pragma once
 
+#include <glm/vec2.hpp>
+#include <utility>
 #include <vector>
 
 #include "renderer/camera/pixel_samples.h"
@@ -9,6 +11,7 @@
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_noise.h"
 #include "renderer/picture/shared_air.h"
+#include "renderer/picture/shared_rays.h"
 
 namespace alpenglow {
 
@@ -30,11 +33,19 @@ class PixelLight {
   [[nodiscard]] const PixelSum& sum() const { return sum_; }
   [[nodiscard]] const RaySpread& spread() const { return spread_; }
 
+  /// The rays since it was last asked.
+  [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
+  /// What is known of the mean radiance better than from its rays alone.
+  void SetMeanRadiance(const BandLight& mean) {
+    sum_.sum.radiance = static_cast<float>(sum_.rays) * mean;
+  }
+
  private:
   struct Ray {
     CameraRay ray;
     Hit hit;
-    std::size_t air;  // of airs_
+    std::size_t air;    // of airs_
+    glm::dvec2 offset;  // from the middle of the pixel
   };
   [[nodiscard]] Ray Traced(int sample);
   void AddNewAir(std::size_t known);
@@ -48,6 +59,7 @@ class PixelLight {
   std::vector<SharedAir> airs_;
   PixelSum sum_;
   RaySpread spread_;
+  std::vector<SeenRay> new_rays_;
 };
 
 }  // namespace alpenglow

@@ -20,12 +20,21 @@ namespace {
 
 /// A square of pixels that one thread works on, within a picture.
 struct Tile {
-  static constexpr int kSide = 48;
+  static constexpr int kSide = 64;
   int x0, y0, x1, y1;
 
   [[nodiscard]] bool Has(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
   [[nodiscard]] std::size_t Index(int x, int y) const {
     return static_cast<std::size_t>((y - y0) * (x1 - x0) + x - x0);
+  }
+  [[nodiscard]] std::size_t Size() const { return Index(x0, y1); }
+
+  /// visit(x, y), row by row.
+  template <typename See>
+  void Visit(const See& visit) const {
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) visit(x, y);
+    }
   }
 };
 
@@ -185,37 +194,53 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
   });
 }
 
-// First rays of the tile and of the pixels around it, which
-// belong to others and are only asked about noise.
+// First rays of the tile and of the pixels around it, which belong to others and are only asked
+// about noise and for what these rays see.
 void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0,
                          PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
-  const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0),
-                   std::min(x0 + Tile::kSide + 1, settings.width),
-                   std::min(y0 + Tile::kSide + 1, settings.height)};
-  AirLattice air(*this, frame, x0, y0, std::min(x0 + Tile::kSide, settings.width),
-                 std::min(y0 + Tile::kSide, settings.height));
+  const Tile tile{x0, y0, std::min(x0 + Tile::kSide, settings.width),
+                  std::min(y0 + Tile::kSide, settings.height)};
+  const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0), std::min(tile.x1 + 1, settings.width),
+                   std::min(tile.y1 + 1, settings.height)};
+  const auto stopped = [&] { return Interrupted() || settings.stop.stop_requested(); };
+  AirLattice air(*this, frame, x0, y0, tile.x1, tile.y1);
   std::vector<PixelLight> pixels;
   std::vector<double> variances;
-  pixels.reserve(static_cast<std::size_t>((asked.x1 - asked.x0) * (asked.y1 - asked.y0)));
-  for (int y = asked.y0; y < asked.y1; ++y) {
-    for (int x = asked.x0; x < asked.x1; ++x) {
-      if (Interrupted() || settings.stop.stop_requested()) return;
-      pixels.emplace_back(*this, frame, x, y, most, settings.share_air ? &air : nullptr)
-          .TakeUpTo(first);
-      variances.push_back(pixels.back().spread().RelativeVariance(floor));
-    }
-  }
-  for (int y = y0; y < std::min(y0 + Tile::kSide, settings.height); ++y) {
-    for (int x = x0; x < std::min(x0 + Tile::kSide, settings.width); ++x) {
-      if (Interrupted() || settings.stop.stop_requested()) return;
-      PixelLight& pixel = pixels[asked.Index(x, y)];
-      pixel.TakeUpTo(
-          RaysForNoise(VarianceAround(variances, asked, x, y), *settings.noise, first, most));
-      Write(frame, x, y, pixel, writer);
-    }
-  }
+  pixels.reserve(asked.Size());
+  asked.Visit([&](int x, int y) {
+    if (stopped()) return;
+    pixels.emplace_back(*this, frame, x, y, most, settings.share_air ? &air : nullptr)
+        .TakeUpTo(first);
+    variances.push_back(pixels.back().spread().RelativeVariance(floor));
+  });
+  if (stopped()) return;
+  std::vector<int> wanted(asked.Size(), first);
+  tile.Visit([&](int x, int y) {
+    wanted[asked.Index(x, y)] =
+        RaysForNoise(VarianceAround(variances, asked, x, y), *settings.noise, first, most);
+  });
+  SharedRays shared(frame.filter, asked.x1 - asked.x0, asked.y1 - asked.y0,
+                    medium.wavelengths_nm.size());
+  asked.Visit(
+      [&](int x, int y) { shared.Expect(x - asked.x0, y - asked.y0, wanted[asked.Index(x, y)]); });
+  asked.Visit([&](int x, int y) {
+    if (stopped()) return;
+    PixelLight& pixel = pixels[asked.Index(x, y)];
+    const auto share = [&] {
+      for (const SeenRay& ray : pixel.NewRays()) shared.Add(x - asked.x0, y - asked.y0, ray);
+    };
+    share();
+    pixel.TakeUpTo(wanted[asked.Index(x, y)]);
+    share();
+  });
+  if (stopped()) return;
+  tile.Visit([&](int x, int y) {
+    PixelLight& pixel = pixels[asked.Index(x, y)];
+    pixel.SetMeanRadiance(shared.Light(x - asked.x0, y - asked.y0));
+    Write(frame, x, y, pixel, writer);
+  });
 }
 
 void SceneState::Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,

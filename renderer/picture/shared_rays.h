@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Rays that count for every pixel whose filter they lie in.
+//
+// A pixel spreads its rays as its filter w is (pixel_filter.h), over three pixels each way: there
+// they are samples of its neighbours' filters, too. With n_q rays of each pixel q of a tile the
+// light of a pixel p is
+//
+//   L_p = sum_r g(r) L_r / sum_r g(r) - s . o,     g(r) = w(r - p) / sum_q n_q w(r - q),
+//   o   = sum_r g(r) (r - p) / sum_r g(r)
+//
+// over all rays r: the balance heuristic of Veach, Guibas (1995), "Optimally combining sampling
+// techniques for Monte Carlo rendering", SIGGRAPH, by which no ray weighs much more than another. o
+// is how far these rays lie off the middle of the filter, s the change of light from pixel to pixel:
+// the limited difference of van Leer (1977), J. Comput. Phys. 23, 276, which is 0 at crests and never
+// over twice the difference to either neighbour, so that light does not become negative.
+//
+// The same rays have a half to two thirds of the error of means of each pixel's own.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "renderer/camera/pixel_filter.h"
+#include "renderer/ground/band_light.h"
+
+namespace alpenglow {
+
+/// What a ray saw, and where it went [pixels from the middle of its pixel].
+struct SeenRay {
+  double right, down;
+  BandLight radiance;
+};
+
+/// Of a rectangle of pixels. First it is told how many rays each will take, then the rays; then it
+/// is asked.
+class SharedRays {
+ public:
+  /// @param filter  at most three pixels wide.
+  SharedRays(const PixelFilter& filter, int columns, int rows, std::size_t bands);
+
+  void Expect(int column, int row, int rays);
+  void Add(int column, int row, const SeenRay& ray);
+
+  /// The mean of a pixel that has rays.
+  [[nodiscard]] BandLight Light(int column, int row) const;
+
+ private:
+  static constexpr int kReach = 3;  // pixels each way whose filters a ray may lie in
+  struct Weights {
+    int first;  // column or row
+    std::array<float, kReach> of;
+  };
+  [[nodiscard]] Weights Around(double at, int end) const;
+  [[nodiscard]] std::size_t Index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+  [[nodiscard]] float Mean(std::size_t pixel, std::size_t band) const {
+    return light_[pixel * bands_ + band] / weights_[pixel];
+  }
+
+  int columns_, rows_;
+  std::size_t bands_;
+  double radius_;
+  std::vector<float> filter_;  // over the distance, up to its radius
+  std::vector<float> expected_;
+  std::vector<float> weights_, right_, down_;  // sums of g, and of g times the distance
+  std::vector<float> light_;                   // bands of a pixel together
+};
+
+}  // namespace alpenglow
