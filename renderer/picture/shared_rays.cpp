@@ -22,15 +22,17 @@ float LimitedSlope(float before, float here, float behind) {
 }  // namespace
 
 SharedRays::SharedRays(const PixelFilter& filter, int columns, int rows, std::size_t bands)
-    : columns_(columns), rows_(rows), bands_(bands), radius_(filter.radius()) {
+    : columns_(columns),
+      rows_(rows),
+      bands_(bands),
+      stride_(kLight + (bands + 3) / 4 * 4),
+      radius_(filter.radius()) {
   ALPENGLOW_ENSURE(radius_, <=, 0.5 * kReach);
   for (int i = 0; i < kSteps; ++i)
     filter_.push_back(static_cast<float>(filter.Weight(radius_ * i / kSteps)));
   filter_.push_back(filter_.back());  // a box ends at its full height
-  const std::size_t pixels = Index(0, rows);
-  expected_.assign(pixels, 0.0F);
-  weights_ = right_ = down_ = expected_;
-  light_.assign(pixels * bands, 0.0F);
+  expected_.assign(Index(0, rows), 0.0F);
+  sums_.assign(expected_.size() * stride_, 0.0F);
 }
 
 void SharedRays::Expect(int column, int row, int rays) {
@@ -54,9 +56,12 @@ SharedRays::Weights SharedRays::Around(double at, int end) const {
 void SharedRays::Add(int column, int row, const SeenRay& ray) {
   const double x = column + ray.right, y = row + ray.down;
   const Weights across = Around(x, columns_), along = Around(y, rows_);
+  alignas(16) std::array<float, kLight + kMaxBands> values{1.0F, static_cast<float>(x),
+                                                           static_cast<float>(y)};
+  std::copy_n(ray.radiance.value.begin(), bands_, values.begin() + kLight);
   struct Share {
     std::size_t pixel;
-    float weight, right, down;
+    float weight;
   };
   std::array<Share, kReach * kReach> shares;
   std::size_t count = 0;
@@ -66,40 +71,37 @@ void SharedRays::Add(int column, int row, const SeenRay& ray) {
       const float weight =
           across.of[static_cast<std::size_t>(i)] * along.of[static_cast<std::size_t>(j)];
       if (weight <= 0.0F) continue;
-      const int u = across.first + i, v = along.first + j;
-      shares[count++] = {Index(u, v), weight, static_cast<float>(x - u), static_cast<float>(y - v)};
-      density += weight * expected_[Index(u, v)];
+      shares[count++] = {Index(across.first + i, along.first + j), weight};
+      density += weight * expected_[shares[count - 1].pixel];
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const Share& of = shares[i];
-    const float weight = of.weight / density;
-    weights_[of.pixel] += weight;
-    right_[of.pixel] += weight * of.right;
-    down_[of.pixel] += weight * of.down;
-    for (std::size_t band = 0; band < bands_; ++band)
-      light_[of.pixel * bands_ + band] += weight * ray.radiance[band];
+    const float weight = shares[i].weight / density;
+    float* sums = &sums_[shares[i].pixel * stride_];
+    for (std::size_t block = 0; block < stride_; block += 4) {
+      for (std::size_t k = 0; k < 4; ++k) sums[block + k] += weight * values[block + k];
+    }
   }
 }
 
 BandLight SharedRays::Light(int column, int row) const {
   constexpr float kMostOff = 0.25F;  // that both together leave light positive
   const std::size_t here = Index(column, row);
-  const auto off = [&](float sum) { return std::clamp(sum / weights_[here], -kMostOff, kMostOff); };
+  const auto off = [&](std::size_t sum, int middle) {
+    return std::clamp(Mean(here, sum) - static_cast<float>(middle), -kMostOff, kMostOff);
+  };
   const bool has_sides = column > 0 && column + 1 < columns_;
   const bool has_ends = row > 0 && row + 1 < rows_;
+  const float right = has_sides ? off(kColumn, column) : 0.0F;
+  const float down = has_ends ? off(kRow, row) : 0.0F;
   BandLight light(bands_);
   for (std::size_t band = 0; band < bands_; ++band) {
-    const float mean = Mean(here, band);
-    light[band] = mean;
-    if (has_sides) {
-      light[band] -=
-          off(right_[here]) * LimitedSlope(Mean(here - 1, band), mean, Mean(here + 1, band));
-    }
-    if (has_ends) {
-      light[band] -= off(down_[here]) * LimitedSlope(Mean(Index(column, row - 1), band), mean,
-                                                     Mean(Index(column, row + 1), band));
-    }
+    const auto mean = [&](std::size_t pixel) { return Mean(pixel, kLight + band); };
+    light[band] = mean(here);
+    if (has_sides) light[band] -= right * LimitedSlope(mean(here - 1), mean(here), mean(here + 1));
+    if (!has_ends) continue;
+    const float above = mean(Index(column, row - 1)), below = mean(Index(column, row + 1));
+    light[band] -= down * LimitedSlope(above, mean(here), below);
   }
   return light;
 }

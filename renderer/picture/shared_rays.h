@@ -56,17 +56,19 @@ class SharedRays {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
   }
-  [[nodiscard]] float Mean(std::size_t pixel, std::size_t band) const {
-    return light_[pixel * bands_ + band] / weights_[pixel];
+  [[nodiscard]] float Mean(std::size_t pixel, std::size_t sum) const {
+    return sums_[pixel * stride_ + sum] / sums_[pixel * stride_];
   }
 
+  // Sums of a pixel: of g, of g times the ray's column and row, and from kLight on of g times its
+  // light, in blocks of four for vector instructions.
+  static constexpr std::size_t kColumn = 1, kRow = 2, kLight = 4;
   int columns_, rows_;
-  std::size_t bands_;
+  std::size_t bands_, stride_;
   double radius_;
   std::vector<float> filter_;  // over the distance, up to its radius
   std::vector<float> expected_;
-  std::vector<float> weights_, right_, down_;  // sums of g, and of g times the distance
-  std::vector<float> light_;                   // bands of a pixel together
+  std::vector<float> sums_;
 };
 
 }  // namespace alpenglow
