@@ -37,12 +37,22 @@ constexpr char kExposure[] = "alpenglow.exposure";
 constexpr char kExposureRule[] = "alpenglow.exposure_rule";
 constexpr char kToneCurve[] = "alpenglow.tone_curve";
 constexpr char kWhiteBalance[] = "alpenglow.white_balance";
+constexpr char kWhite_k[] = "alpenglow.white_k";
+constexpr char kWhiteRule[] = "alpenglow.white_balance_rule";
+constexpr double kPerMired = 1e6;  // of kelvins
 
 /// How a frame is developed.
 struct Development {
   Look look;  // settled
   double ev100;
-  std::string rule;  // of the exposure, in words
+  std::string rule;        // of the exposure, in words
+  std::string white_rule;  // of a white balance that is smooth over the series
+};
+
+/// What a meter says of a small picture of a frame.
+struct Reading {
+  double ev100;
+  std::optional<double> white_mired;  // of auto
 };
 
 std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
@@ -139,6 +149,10 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
   metadata[kExposureRule] = development.rule;
   metadata[kToneCurve] = NameOf(development.look);
   metadata[kWhiteBalance] = NameOf(development.look.white);
+  if (!development.white_rule.empty()) {
+    metadata[kWhiteRule] = development.white_rule;
+    metadata[kWhite_k] = fmt::format("{:.0f}", development.look.white.kelvin.value());
+  }
   if (output.glare) metadata["alpenglow.glare"] = "eye, in the developed picture only";
   if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
@@ -149,14 +163,18 @@ class Series {
  public:
   Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
       : source_(source), frames_(frames), output_(output) {
-    const ExposureRule::Kind kind = output.exposure.kind;
-    if (kind != ExposureRule::Kind::kMetered && kind != ExposureRule::Kind::kEye) return;
     const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
     if (!source.pilot || !per_node) return;
-    smooth_.emplace(frames, *per_node, [this](const Frame& frame) {
-      const Image pilot = source_.pilot(frame);
-      return Metered(frame, pilot, Settled(output_.look, pilot, ViewOf(frame, pilot)));
-    });
+    const ExposureRule::Kind kind = output.exposure.kind;
+    if (kind == ExposureRule::Kind::kMetered || kind == ExposureRule::Kind::kEye) {
+      smooth_ev100_.emplace(frames, *per_node,
+                            [this](const Frame& frame) { return ReadingOf(frame).ev100; });
+    }
+    if (output.look.white.kind == WhiteBalance::Kind::kAuto) {
+      smooth_mired_.emplace(frames, *per_node, [this](const Frame& frame) {
+        return ReadingOf(frame).white_mired.value();
+      });
+    }
   }
 
   /// @return whether the frame had to be rendered.
@@ -167,7 +185,7 @@ class Series {
     if (output_.resume) picture = KeptPicture(exr, wanted);
     const bool rendered = !picture;
     if (rendered) picture = source_.render(frame, progress);
-    const Look look = Settled(output_.look, picture->image, ViewOf(frame, picture->image));
+    const Look look = LookOf(frame, picture->image, rendered);
     const Development development = DevelopmentOf(frame, picture->image, look, rendered);
     Write(frame, *picture, development, rendered);
     if (output_.video || output_.keogram) developments_.emplace(frame.number, development);
@@ -241,6 +259,35 @@ class Series {
     return {projection, across / image.width};
   }
 
+  /// Of a node of the splines, whose picture is small and rendered once for both.
+  [[nodiscard]] const Reading& ReadingOf(const Frame& frame) {
+    const auto known = readings_.find(frame.number);
+    if (known != readings_.end()) return known->second;
+    const Image pilot = source_.pilot(frame);
+    const Look look = Settled(output_.look, pilot, ViewOf(frame, pilot));
+    Reading reading{Metered(frame, pilot, look), std::nullopt};
+    if (look.white.kelvin) reading.white_mired = kPerMired / *look.white.kelvin;
+    return readings_[frame.number] = reading;
+  }
+
+  /// Settled: white by the picture itself or, in a film, by the spline over mireds, in which steps
+  /// of colour look alike. A frame that is there says which white it has: it takes no pilots.
+  [[nodiscard]] Look LookOf(const Frame& frame, const Image& image, bool rendered) {
+    if (!smooth_mired_) return Settled(output_.look, image, ViewOf(frame, image));
+    Look look = output_.look;
+    if (!rendered) look.white.kelvin = KeptWhite(frame);
+    if (!look.white.kelvin) look.white.kelvin = std::round(kPerMired / smooth_mired_->At(frame));
+    return look;
+  }
+
+  [[nodiscard]] std::optional<double> KeptWhite(const Frame& frame) const {
+    const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
+    const auto rule = kept.find(kWhiteRule), kelvin = kept.find(kWhite_k);
+    if (rule == kept.end() || rule->second != smooth_mired_->InWords() || kelvin == kept.end())
+      return std::nullopt;
+    return std::stod(kelvin->second);
+  }
+
   [[nodiscard]] double Metered(const Frame& frame, const Image& image, const Look& look) const {
     const PictureView view = ViewOf(frame, image);
     return MeterEv100(Seen(image, look, view), kSunDiskLuminance_cd_per_m2, view.projection);
@@ -250,22 +297,24 @@ class Series {
                                           bool rendered) {
     const ExposureRule& rule = output_.exposure;
     std::string words = RuleInWords(rule);
+    const std::string white = smooth_mired_ ? smooth_mired_->InWords() : "";
     switch (rule.kind) {
       case ExposureRule::Kind::kFixed:
-        return {look, rule.ev100, words};
+        return {look, rule.ev100, words, white};
       case ExposureRule::Kind::kIncident:
-        return {look, IncidentEv100(source_.illuminance(frame)), words};
+        return {look, IncidentEv100(source_.illuminance(frame)), words, white};
       case ExposureRule::Kind::kMetered:
       case ExposureRule::Kind::kEye:
         break;
     }
-    if (!smooth_) return {look, Ev100By(rule, Metered(frame, image, look), look), words};
-    words += "; " + smooth_->InWords();
+    if (!smooth_ev100_)
+      return {look, Ev100By(rule, Metered(frame, image, look), look), words, white};
+    words += "; " + smooth_ev100_->InWords();
     if (!rendered) {
       if (const std::optional<double> known = KeptEv100(frame, look, words))
-        return {look, *known, words};
+        return {look, *known, words, white};
     }
-    return {look, Ev100By(rule, smooth_->At(frame), look), words};
+    return {look, Ev100By(rule, smooth_ev100_->At(frame), look), words, white};
   }
 
   /// Of a frame that is there, where it was exposed and developed as this run would: it takes no
@@ -380,7 +429,8 @@ class Series {
   const std::vector<Frame>& frames_;
   const SeriesOutput& output_;
   SeriesSummary summary_;
-  std::optional<SmoothMeter> smooth_;
+  std::optional<SmoothMeter> smooth_ev100_, smooth_mired_;
+  std::map<int, Reading> readings_;
   std::map<int, FoundFrame> found_;
   std::map<int, Development> developments_;
   std::vector<Thumbnail> thumbnails_;

@@ -61,12 +61,12 @@ double SmoothMeter::At(const Frame& frame) {
   const int node = index / frames_per_node_;
   const std::array<double, 4> weights =
       WeightsAt(static_cast<double>(index % frames_per_node_) / frames_per_node_);
-  double ev100 = 0.0;
+  double value = 0.0;
   for (int i = 0; i < 4; ++i) {
     const double weight = weights[static_cast<std::size_t>(i)];
-    if (weight > 0.0) ev100 += weight * Node(node - 1 + i);
+    if (weight > 0.0) value += weight * Node(node - 1 + i);
   }
-  return std::round(1e4 * ev100) / 1e4;
+  return std::round(1e4 * value) / 1e4;
 }
 
 std::string SmoothMeter::InWords() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Exposure of a series: smooth from frame to frame, and the same whichever frames are rendered.
+// Exposure and white balance of a series: smooth from frame to frame, and the same whichever frames
+// are rendered.
 //
 // Frames 0, n, 2n ... are the nodes of a uniform cubic B-spline, whose coefficients are what the
 // meter says of a small picture of each. Beyond the ends nodes go on in a straight line, so that light
@@ -26,11 +27,12 @@ namespace alpenglow {
 class SmoothMeter {
  public:
   /// @param frames  of the whole series; outlives this.
-  /// @param metered  EV100 of a frame by itself; asked once for each node that is needed.
+  /// @param metered  EV100 of a frame by itself, or mireds of its white; asked once for each node that
+  /// is needed.
   SmoothMeter(const std::vector<Frame>& frames, int frames_per_node,
               std::function<double(const Frame&)> metered);
 
-  /// EV100 of a frame of the series, to four digits behind the point.
+  /// The same of a frame of the series, to four digits behind the point.
   [[nodiscard]] double At(const Frame& frame);
 
   /// For the files: "smoothed by a B-spline over frames 0, 4, 8 ... of 97 until

@@ -197,6 +197,49 @@ TEST_F(SeriesRun, WhiteBalanceIsOfTheDevelopedPictureAndTheHeaderHasItsTemperatu
             "auto, 4000 K, CAT16");
 }
 
+TEST_F(SeriesRun, AnAutomaticWhiteBalanceIsSmoothOverAFilmAndKeptWithoutPilots) {
+  // A lamp of 3500 K goes on, to the meter, from one frame to the next.
+  const auto light = [](const Frame& frame) {
+    Image image(16, 9);
+    const auto white =
+        LinearSrgbFromXyz() * WhiteOfTemperature(frame.number < 24 ? 6500.0 : 3500.0);
+    for (auto& pixel : image.rgb) {
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(800.0 * white[c]);
+    }
+    return image;
+  };
+  int pilots = 0;
+  SeriesSource source = Source();
+  source.render = [&](const Frame& frame, Progress&) { return light(frame); };
+  source.pilot = [&](const Frame& frame) {
+    ++pilots;
+    return light(frame);
+  };
+  SeriesOutput output = Output();
+  output.look.white.kind = WhiteBalance::Kind::kAuto;
+  output.exposure = {ExposureRule::Kind::kFixed, 9.0};
+  std::vector<Frame> frames;
+  for (int i = 0; i < 49; ++i) frames.push_back({i, UtcInstant{61212, 40000.0 + 30.0 * i}});
+  RunSeries(source, frames, frames, output);
+  EXPECT_EQ(pilots, 13) << "a node every four frames";
+  std::vector<double> mireds;
+  for (const Frame& frame : frames) {
+    const Metadata header = ReadExrMetadata(output.name.Exr(frame.number));
+    mireds.push_back(1e6 / std::stod(header.at("alpenglow.white_k")));
+  }
+  EXPECT_NEAR(mireds.front(), 1e6 / 6500.0, 0.1);
+  EXPECT_NEAR(mireds.back(), 1e6 / 3500.0, 0.1);
+  constexpr double kStep = 1e6 / 3500.0 - 1e6 / 6500.0;
+  for (std::size_t i = 1; i < mireds.size(); ++i) {
+    EXPECT_GE(mireds[i] - mireds[i - 1], -0.1) << "whole kelvins";
+    EXPECT_LE(mireds[i] - mireds[i - 1], 0.75 * kStep / 4.0 + 0.1) << "3 s / (4 n)";
+  }
+  pilots = 0;
+  output.resume = true;
+  EXPECT_EQ(RunSeries(source, frames, frames, output).kept, 49);
+  EXPECT_EQ(pilots, 0);
+}
+
 TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
   SeriesSource source = Source();
   source.render = [](const Frame&, Progress&) {
