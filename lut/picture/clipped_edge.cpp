@@ -10,8 +10,13 @@ namespace alpenglow {
 namespace {
 
 constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // of white
-constexpr float kEven = 0.4F;  // of the light, in its square: the limb is half as bright
-constexpr int kToLight = 4, kToBeside = 4;  // pixels: filters spread an edge over four
+constexpr float kEven = 0.4F;         // of the light, in its square: the limb is half as bright
+constexpr float kDarkestLimb = 0.3F;  // of the light two pixels farther in
+// Pixels: filters spread an edge over three or four.
+constexpr int kToLight = 4, kToBeside = 4;
+// Squares of 2 and 4 pixels, and of the knight's move that is nearest to each: in all directions
+// some pixel is about as far.
+constexpr int kToLimb2 = 5, kToLight2 = 20;
 
 float LuminanceAt(const Image& image, int x, int y) {
   const auto& rgb = image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1));
@@ -43,21 +48,64 @@ void Around(const Image& image, const Pixel& at, int reach, const Visit& visit) 
   }
 }
 
-/// The mean colour of what is not clipped, by nearness; nothing where all is.
+struct Light {
+  Pixel at;
+  float luminance;
+};
+
+/// Within the root of `reach2`.
+Light BrightestAround(const Image& image, const Pixel& at, int reach2) {
+  Light light{at, LuminanceAt(image, at.x, at.y)};
+  Around(image, at, kToLight, [&](const Pixel& pixel) {
+    const int dx = pixel.x - at.x, dy = pixel.y - at.y;
+    const float luminance = LuminanceAt(image, pixel.x, pixel.y);
+    if (dx * dx + dy * dy <= reach2 && luminance > light.luminance) light = {pixel, luminance};
+  });
+  return light;
+}
+
+struct Direction {
+  float x, y;
+};
+
+/// Away from the light around a pixel, unit; zero where it lies on all sides alike.
+Direction AwayFromLight(const Image& image, const Pixel& at) {
+  Direction away{0.0F, 0.0F};
+  Around(image, at, kToBeside, [&](const Pixel& pixel) {
+    const float luminance = LuminanceAt(image, pixel.x, pixel.y);
+    away.x -= luminance * static_cast<float>(pixel.x - at.x);
+    away.y -= luminance * static_cast<float>(pixel.y - at.y);
+  });
+  const float length = std::hypot(away.x, away.y);
+  return length > 0.0F ? Direction{away.x / length, away.y / length} : Direction{0.0F, 0.0F};
+}
+
+/// The mean colour of what is not clipped, by nearness and, to the fourth power, by the cosine with
+/// the way from the light; by nearness alone where nothing lies that way; nothing where all is
+/// clipped.
 std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, float white) {
-  std::array<float, 3> sum{};
-  float weights = 0.0F;
+  const Direction away = AwayFromLight(image, at);
+  struct Mean {
+    std::array<float, 3> sum{};
+    float weights = 0.0F;
+    void Add(const std::array<float, 3>& rgb, float weight) {
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * rgb[c];
+      weights += weight;
+    }
+  };
+  Mean behind, around;
   Around(image, at, kToBeside, [&](const Pixel& pixel) {
     if (LuminanceAt(image, pixel.x, pixel.y) > white) return;
-    const int dx = pixel.x - at.x, dy = pixel.y - at.y;
-    const float weight = 1.0F / static_cast<float>(dx * dx + dy * dy + 1);
-    const auto& rgb = image.at(pixel.x, pixel.y);
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * rgb[c];
-    weights += weight;
+    const auto dx = static_cast<float>(pixel.x - at.x), dy = static_cast<float>(pixel.y - at.y);
+    const float near = 1.0F / (dx * dx + dy * dy + 1.0F);
+    const float cosine = std::max(away.x * dx + away.y * dy, 0.0F) / std::hypot(dx, dy);
+    around.Add(image.at(pixel.x, pixel.y), near);
+    behind.Add(image.at(pixel.x, pixel.y), near * cosine * cosine * cosine * cosine);
   });
-  if (weights == 0.0F) return std::nullopt;
-  for (float& channel : sum) channel /= weights;
-  return sum;
+  Mean& mean = behind.weights > 0.0F ? behind : around;
+  if (mean.weights == 0.0F) return std::nullopt;
+  for (float& channel : mean.sum) channel /= mean.weights;
+  return mean.sum;
 }
 
 }  // namespace
@@ -65,23 +113,19 @@ std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, 
 std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float white) {
   const float here = LuminanceAt(image, x, y);
   if (here <= white) return std::nullopt;
-  Pixel brightest{x, y};
-  float light = here;
-  Around(image, {x, y}, kToLight, [&](const Pixel& pixel) {
-    const float luminance = LuminanceAt(image, pixel.x, pixel.y);
-    if (luminance <= light) return;
-    light = luminance;
-    brightest = pixel;
-  });
-  if (light <= kLeastLight * white || !IsEven(image, brightest.x, brightest.y, light)) {
+  const Light light = BrightestAround(image, {x, y}, kToLight2);
+  if (light.luminance <= kLeastLight * white ||
+      !IsEven(image, light.at.x, light.at.y, light.luminance)) {
     return std::nullopt;
   }
   const std::optional<std::array<float, 3>> beside = Beside(image, {x, y}, white);
   if (!beside) return std::nullopt;
   const float dark = shared::Luminance((*beside)[0], (*beside)[1], (*beside)[2]);
-  const float stops = std::log2(light / (kLeastLight * white));
-  return ClippedEdge{image.at(brightest.x, brightest.y), *beside,
-                     std::clamp((here - dark) / (light - dark), 0.0F, 1.0F),
+  const float within = BrightestAround(image, {x, y}, kToLimb2).luminance;
+  const float full = std::max(3.0F * within - 2.0F * light.luminance, kDarkestLimb * within);
+  const float stops = std::log2(light.luminance / (kLeastLight * white));
+  return ClippedEdge{image.at(light.at.x, light.at.y), *beside,
+                     std::clamp((here - dark) / (full - dark), 0.0F, 1.0F),
                      std::min(stops / std::log2(kFullLight / kLeastLight), 1.0F)};
 }
 

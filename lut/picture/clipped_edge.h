@@ -4,9 +4,12 @@
 // A display that shows the share of each pixel that the disk covers has a smooth edge:
 //
 //   shown = w [s D(light) + (1 - s) D(beside)] + (1 - w) D(pixel),
-//   s = (L - L_beside) / (L_light - L_beside),
+//   s = (L - L_beside) / (L_full - L_beside),       L_full = 3 L_2 - 2 L_4,
 //
 // D the tone curve, L luminances of the linear picture, in which the pixel is that mixture of light.
+// L_2 and L_4 are the brightest within two and four pixels: from there the light that grows darker
+// towards its edge, as the sun does, goes on to where the pixel is. Over the limb it falls as the
+// root of the distance x from the edge: (3 sqrt(2) - 2 sqrt(4)) L' = 0.2 L' instead of 0 there.
 // A light that a curve still holds needs none of it: w rises from 0 at 16 times white to 1 at 256, so
 // that nothing jumps while the sun sets.
 #pragma once
@@ -27,9 +30,10 @@ struct ClippedEdge {
 
 /// The mixture, where there is one: a light of over 16 times white lies within four pixels, as
 /// bright in a square of 2x2 pixels (sparkles of water and lamps, which are smaller, are left as
-/// they are), and light that is not clipped does so, too. Nothing for all other pixels. Where sky and
-/// land are beside the light, `beside` is both; a disk that is darker at its limb counts as covering
-/// less there.
+/// they are), and light that is not clipped does so, too. Nothing for all other pixels. `beside` is
+/// what lies away from the light: land along a ridge that cuts the disk, sky elsewhere. Of a disk
+/// as dark at its limb as the sun and over 8 pixels in radius the share is right to 0.16; of smaller
+/// ones, of which four pixels see the middle, it is less than the share covered by up to 0.3.
 /// @param white  luminance that a display shows as white, in the picture's unit, > 0.
 [[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y,
                                                        float white);

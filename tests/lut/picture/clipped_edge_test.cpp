@@ -58,6 +58,50 @@ TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
   }
 }
 
+TEST(ClippedEdge, BesideADiskThatARidgeCutsIsTheLandAlongTheRidgeAndTheSkyElsewhere) {
+  constexpr std::array<float, 3> kLand{400.0F, 300.0F, 200.0F};
+  constexpr int kRidge = 18;  // land from this row on, which is half in the sky
+  Image image = DiskBeforeSky(32, 9.0);
+  for (int x = 0; x < 32; ++x) {
+    for (std::size_t c = 0; c < 3; ++c)
+      image.at(x, kRidge)[c] = 0.5F * (image.at(x, kRidge)[c] + kLand[c]);
+    for (int y = kRidge + 1; y < 32; ++y) image.at(x, y) = kLand;
+  }
+  for (const int x : {13, 15, 16, 18}) {
+    const auto on_ridge = ClippedEdgeAt(image, x, kRidge, kWhite);
+    ASSERT_TRUE(on_ridge.has_value());
+    EXPECT_NEAR(on_ridge->beside[2], kLand[2], 0.01F * kLand[2]) << x;
+    EXPECT_NEAR(on_ridge->share, 0.5F, 1e-3F) << x;
+  }
+  const auto on_top = ClippedEdgeAt(image, 15, 7, kWhite);
+  ASSERT_TRUE(on_top.has_value());
+  EXPECT_NEAR(on_top->beside[2], kSky[2], 1e-5F * kSky[2]);
+}
+
+TEST(ClippedEdge, ADarkLimbIsNoMissingCover) {
+  // 0.3 + 0.93 mu - 0.23 mu^2, the sun in green light (Allen 1973), at the middle of each pixel.
+  for (const double radius : {8.3, 11.7, 15.2}) {
+    Image image = DiskBeforeSky(36, radius);
+    for (int y = 0; y < 36; ++y) {
+      for (int x = 0; x < 36; ++x) {
+        const double rho = std::min(std::hypot(x - 17.5, y - 17.5) / radius, 0.99);
+        const double mu = std::sqrt(1.0 - rho * rho);
+        for (float& channel : image.at(x, y)) {
+          if (channel > kWhite) channel *= static_cast<float>(0.3 + 0.93 * mu - 0.23 * mu * mu);
+        }
+      }
+    }
+    for (int y = 0; y < 36; ++y) {
+      for (int x = 0; x < 36; ++x) {
+        const auto edge = ClippedEdgeAt(image, x, y, kWhite);
+        if (!edge) continue;
+        EXPECT_NEAR(edge->share, CoveredShare(x, y, 18.0, radius), 0.16F)
+            << "a limb that is not followed is off by 0.35: " << radius << ' ' << x << ' ' << y;
+      }
+    }
+  }
+}
+
 TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
   const Image image = DiskBeforeSky(32, 7.5);
   const DisplayImage shown = Develop(image, 15.0, ToneCurve::kAgx);
