@@ -34,7 +34,8 @@ PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x
       y_(y),
       through_middle_(most_rays == 1),
       around_(around),
-      samples_(x, y, most_rays) {}
+      samples_(x, y, most_rays),
+      glow_(scene.medium.wavelengths_nm.size()) {}
 
 PixelLight::Ray PixelLight::Traced(int sample) {
   glm::dvec2 offset(0.0);
@@ -74,7 +75,9 @@ void PixelLight::TakeUpTo(int rays) {
     const Shaded shaded = scene_->Shade(seen.hit, airs_[seen.air], seen.ray, *frame_, near,
                                         samples_.Point(sum_.rays, SampleOf::kSunDisk));
     spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
-    new_rays_.push_back({seen.offset.x, seen.offset.y, shaded.radiance});
+    const BandLight glow = shaded.lamps + shaded.volumes;
+    new_rays_.push_back({seen.offset.x, seen.offset.y, shaded.radiance + -1.0F * glow});
+    glow_ = glow_ + glow;
     sum_.Add(shaded);
   }
 }

@@ -33,11 +33,12 @@ class PixelLight {
   [[nodiscard]] const PixelSum& sum() const { return sum_; }
   [[nodiscard]] const RaySpread& spread() const { return spread_; }
 
-  /// The rays since it was last asked.
+  /// The rays since it was last asked, without light from lamps and volumes: its glow in the air is
+  /// one value for all rays of a pixel, and near lamps very another one for the next.
   [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
-  /// What is known of the mean radiance better than from its rays alone.
+  /// What is known of the mean radiance without that better than from its rays alone.
   void SetMeanRadiance(const BandLight& mean) {
-    sum_.sum.radiance = static_cast<float>(sum_.rays) * mean;
+    sum_.sum.radiance = static_cast<float>(sum_.rays) * mean + glow_;
   }
 
  private:
@@ -60,6 +61,7 @@ class PixelLight {
   PixelSum sum_;
   RaySpread spread_;
   std::vector<SeenRay> new_rays_;
+  BandLight glow_;  // sum of what new_rays_ are without
 };
 
 }  // namespace alpenglow

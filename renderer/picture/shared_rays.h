@@ -14,7 +14,7 @@
 // the limited difference of van Leer (1977), J. Comput. Phys. 23, 276, which is 0 at crests and never
 // over twice the difference to either neighbour, so that light does not become negative.
 //
-// The same rays have a half to two thirds of the error of means of each pixel's own.
+// The same rays have 0.6 times the error of means of each pixel's own.
 #pragma once
 
 #include <array>
