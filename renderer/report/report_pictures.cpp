@@ -117,7 +117,7 @@ class PicturesTopic {
     topic_.notes =
         "Fewer air nodes and what is left out are rendered with 4 samples. Rays as noise asks: 4 "
         "for every pixel, more, up to 256, where the neighbours' 4 say that the pixel's error is "
-        "larger than that, and air that is shared between pixels. Most of the error of "
+        "larger than that, and air and rays that are shared between pixels. Most of the error of "
         "few samples is at edges of terrain, which are thinner than a pixel: "
         "a sample sees one side of them. Time is the processor time of all threads for a pixel; "
         "build is loading the scene and what a picture prepares once (shadow heights, tree of "
