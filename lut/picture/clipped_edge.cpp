@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // of white
 constexpr float kEven = 0.4F;         // of the light, in its square: the limb is half as bright
-constexpr float kDarkestLimb = 0.3F;  // of the light two pixels farther in
+constexpr float kDarkestLimb = 0.4F;  // of the light four pixels farther in
 // Pixels: filters spread an edge over three or four.
 constexpr int kToLight = 4, kToBeside = 4;
 // Squares of 2 and 4 pixels, and of the knight's move that is nearest to each: in all directions
@@ -122,7 +122,8 @@ std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float
   if (!beside) return std::nullopt;
   const float dark = shared::Luminance((*beside)[0], (*beside)[1], (*beside)[2]);
   const float within = BrightestAround(image, {x, y}, kToLimb2).luminance;
-  const float full = std::max(3.0F * within - 2.0F * light.luminance, kDarkestLimb * within);
+  const float full =
+      std::max(3.0F * within - 2.0F * light.luminance, kDarkestLimb * light.luminance);
   const float stops = std::log2(light.luminance / (kLeastLight * white));
   return ClippedEdge{image.at(light.at.x, light.at.y), *beside,
                      std::clamp((here - dark) / (full - dark), 0.0F, 1.0F),
