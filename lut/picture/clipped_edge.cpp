@@ -17,6 +17,9 @@ constexpr int kToLight = 4, kToBeside = 4;
 // Squares of 2 and 4 pixels, and of the knight's move that is nearest to each: in all directions
 // some pixel is about as far.
 constexpr int kToLimb2 = 5, kToLight2 = 20;
+// The far ends of a filter let a pixel that is not clipped have a little of the light, too: there it
+// is so much brighter than what lies behind.
+constexpr float kTouched = 1.25F;
 
 float LuminanceAt(const Image& image, int x, int y) {
   const auto& rgb = image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1));
@@ -97,8 +100,11 @@ std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, 
   Around(image, at, kToBeside, [&](const Pixel& pixel) {
     if (LuminanceAt(image, pixel.x, pixel.y) > white) return;
     const auto dx = static_cast<float>(pixel.x - at.x), dy = static_cast<float>(pixel.y - at.y);
-    const float near = 1.0F / (dx * dx + dy * dy + 1.0F);
-    const float cosine = std::max(away.x * dx + away.y * dy, 0.0F) / std::hypot(dx, dy);
+    const float distance2 = dx * dx + dy * dy;
+    if (distance2 == 0.0F) return;
+    // What a filter mixes with the light counts only where nothing farther off is there.
+    const float near = (distance2 < static_cast<float>(kToLimb2) ? 1e-6F : 1.0F) / distance2;
+    const float cosine = std::max(away.x * dx + away.y * dy, 0.0F) / std::sqrt(distance2);
     around.Add(image.at(pixel.x, pixel.y), near);
     behind.Add(image.at(pixel.x, pixel.y), near * cosine * cosine * cosine * cosine);
   });
@@ -112,7 +118,10 @@ std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, 
 
 std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float white) {
   const float here = LuminanceAt(image, x, y);
-  if (here <= white) return std::nullopt;
+  const auto clips = [&](int dx, int dy) { return LuminanceAt(image, x + dx, y + dy) > white; };
+  if (!clips(0, 0) && !clips(-2, 0) && !clips(2, 0) && !clips(0, -2) && !clips(0, 2)) {
+    return std::nullopt;
+  }
   const Light light = BrightestAround(image, {x, y}, kToLight2);
   if (light.luminance <= kLeastLight * white ||
       !IsEven(image, light.at.x, light.at.y, light.luminance)) {
@@ -121,6 +130,7 @@ std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float
   const std::optional<std::array<float, 3>> beside = Beside(image, {x, y}, white);
   if (!beside) return std::nullopt;
   const float dark = shared::Luminance((*beside)[0], (*beside)[1], (*beside)[2]);
+  if (here <= white && here < kTouched * dark) return std::nullopt;
   const float within = BrightestAround(image, {x, y}, kToLimb2).luminance;
   const float full =
       std::max(3.0F * within - 2.0F * light.luminance, kDarkestLimb * light.luminance);

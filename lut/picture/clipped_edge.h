@@ -30,7 +30,8 @@ struct ClippedEdge {
 
 /// The mixture, where there is one: a light of over 16 times white lies within four pixels, as
 /// bright in a square of 2x2 pixels (sparkles of water and lamps, which are smaller, are left as
-/// they are), and light that is not clipped does so, too. Nothing for all other pixels. `beside` is
+/// they are), and light that is not clipped does so, too. Nothing for all other pixels, but those that
+/// are not clipped and yet 1.25 times as bright as what lies behind, which filters mix. `beside` is
 /// what lies away from the light: land along a ridge that cuts the disk, sky elsewhere. Of a disk
 /// as dark at its limb as the sun and over 8 pixels in radius the share is right to 0.16; of smaller
 /// ones, of which four pixels see the middle, it is less than the share covered by up to 0.3.
