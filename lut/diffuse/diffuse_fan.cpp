@@ -43,6 +43,8 @@ DiffuseFan::DiffuseFan(const DiffuseLight& light)
         static_cast<float>(DiffuseLight::SunCoordinate(mu_s) * (light.options().sun_angles - 1)));
     twilight_of_mu_s_.push_back(TwilightOf(light.grid(), mu_s));
   }
+  for (std::size_t sun = 0; sun < light.grid().suns; ++sun)
+    sun_sine_.push_back(SunSine(MuSOfNode(light.grid(), sun)));
 }
 
 const float* DiffuseFan::Values() const {
@@ -119,7 +121,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
     kernel.contract(contraction);
     for (std::size_t sun = 0; sun < contraction.suns; ++sun) {
       const float twilight = twilight_[static_cast<std::size_t>(low) + sun];
-      const float sine = SunSine(MuSOfNode(light_.grid(), static_cast<std::size_t>(low) + sun));
+      const float sine = sun_sine_[static_cast<std::size_t>(low) + sun];
       float* row = contraction.rows + sun * orders * kLanes;
       for (std::size_t k = 0; k < orders * kLanes; ++k)
         row[k] /= twilight * SinePowerOf(light_.grid(), k / kLanes, sine);

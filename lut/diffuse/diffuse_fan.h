@@ -42,6 +42,7 @@ class DiffuseFan {
   std::vector<float> position_of_mu_s_;  // over [-1, 1]: among the nodes of the sun's angle
   std::vector<float> twilight_of_mu_s_;  // TwilightOf at the same places
   std::vector<float> twilight_;          // and at the nodes
+  std::vector<float> sun_sine_;          // of the nodes' zenith angles
 };
 
 }  // namespace alpenglow

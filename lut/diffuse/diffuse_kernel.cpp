@@ -639,54 +639,81 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
                chunk.sun_weight);
 }
 
-// Moments from vector kBegin on, summed over 16 nodes:
-// spelled out, so that the sums stay in registers.
-template <std::size_t... kIndex>
+// The first kRows vectors of a node and then those from vector kFrom on, summed over 16 nodes: spelled
+// out, so that the sums stay in registers.
+template <std::size_t kRows, std::size_t kFrom, std::size_t... kIndex>
 void SumTaps(const float* const* node, const float* weight, float* moments,
              std::index_sequence<kIndex...>) {
   Eight sum[sizeof...(kIndex)] = {(static_cast<void>(kIndex), Zero())...};
   for (std::size_t tap = 0; tap < 16; ++tap) {
     const V w(weight[tap]);
     const float* at = node[tap];
-    (Add(sum[kIndex], w, LoadEight(at + kIndex * 8)), ...);
+    (Add(sum[kIndex], w, LoadEight(at + (kIndex < kRows ? kIndex : kFrom + kIndex - kRows) * 8)),
+     ...);
   }
   (StoreEight(moments + kIndex * 8, sum[kIndex]), ...);
 }
 
-// Adds light that moments of rows 0 to kLast scatter at a sample.
-template <std::size_t kLast, std::size_t kStep>
-void AddRows(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
-             const Eight* chi, const Eight& rayleigh_chi2, Eight& rayleigh, Eight& mie) {
-  constexpr std::size_t kCount = kPackedRow[kLast + 1];
-  alignas(64) float moments[kCount * 8];
-  SumTaps(node, weight, moments, std::make_index_sequence<kCount>{});
-  for (std::size_t l = 0; l <= kLast; l += kStep) {
-    Eight light = Zero();
-    for (std::size_t p = 0; p <= l / 2; ++p) {
-      const std::size_t m = l * (l + 1) / 2 + 2 * p;
-      Add(light, Pair(chunk.harmonic[m][s], 2 * p < l ? chunk.harmonic[m + 1][s] : 0.0F),
-          LoadEight(moments + (kPackedRow[l] + p) * 8));
-    }
-    if (l == 0) Add(rayleigh, V(1.0F), light);
-    if (l == 2) Add(rayleigh, rayleigh_chi2, light);
-    Add(mie, chi[l], light);
+// What a degree of the moments sends along the ray at a sample, before phase functions.
+Eight LightOfDegree(const Chunk& chunk, std::size_t s, std::size_t l, const float* moments) {
+  Eight light = Zero();
+  for (std::size_t p = 0; p <= l / 2; ++p) {
+    const std::size_t m = l * (l + 1) / 2 + 2 * p;
+    Add(light, Pair(chunk.harmonic[m][s], 2 * p < l ? chunk.harmonic[m + 1][s] : 0.0F),
+        LoadEight(moments + (kPackedRow[l] + p) * 8));
   }
+  return light;
 }
 
-// Adds light that molecules scatter of polarised light at a sample; `first` is where the tensor
-// begins in a node.
-void AddTensor(const Chunk& chunk, std::size_t s, const float* const* node, const float* weight,
-               std::size_t first, const Eight& rayleigh_chi2, Eight& rayleigh) {
-  const float* tensor[16];
-  for (std::size_t tap = 0; tap < 16; ++tap) tensor[tap] = node[tap] + first;
-  alignas(64) float sums[2 * 8];
-  SumTaps(tensor, weight, sums, std::make_index_sequence<2>{});
-  const Eight second = LoadEight(sums + 8);
-  Eight degree2 = Zero();
-  Add(degree2, Pair(chunk.harmonic[3][s], chunk.harmonic[4][s]), LoadEight(sums));
+// What molecules send of polarised light; `tensor` is two vectors (PackedVectors).
+Eight LightOfTensor(const Chunk& chunk, std::size_t s, const float* tensor,
+                    const Eight& rayleigh_chi2) {
+  const Eight second = LoadEight(tensor + 8);
+  Eight degree2 = Zero(), light = Zero();
+  Add(degree2, Pair(chunk.harmonic[3][s], chunk.harmonic[4][s]), LoadEight(tensor));
   Add(degree2, Pair(chunk.harmonic[5][s], 0.0F), second);
-  Add(rayleigh, rayleigh_chi2, degree2);
-  Add(rayleigh, Pair(0.0F, chunk.harmonic[0][s]), second);
+  Add(light, rayleigh_chi2, degree2);
+  Add(light, Pair(0.0F, chunk.harmonic[0][s]), second);
+  return light;
+}
+
+/// What molecules and aerosol scatter of the moments at a sample, per unit coefficient.
+struct Scattered {
+  Eight rayleigh, mie;
+};
+
+// Of the moments of rows 0 to kLast. All that a node holds of them is read in one pass.
+template <std::size_t kDegree, std::size_t kLast, std::size_t kStep, bool kPolarised>
+Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const float* const* node,
+                          const float* weight, const Eight* chi, const Eight& rayleigh_chi2) {
+  constexpr std::size_t kRows = kPackedRow[kLast + 1];
+  constexpr std::size_t kMore =
+      kPolarised ? PackedVectors(kDegree, true) - kPackedRow[kDegree + 1] : 0;
+  alignas(64) float moments[(kRows + kMore) * 8];
+  SumTaps<kRows, kPackedRow[kDegree + 1]>(node, weight, moments,
+                                          std::make_index_sequence<kRows + kMore>{});
+  Scattered light{Zero(), Zero()};
+  for (std::size_t l = 0; l <= kLast; l += kStep) {
+    const Eight of_degree = LightOfDegree(chunk, s, l, moments);
+    if (!kPolarised && l == 0) Add(light.rayleigh, V(1.0F), of_degree);
+    if (!kPolarised && l == 2) Add(light.rayleigh, rayleigh_chi2, of_degree);
+    Add(light.mie, chi[l], of_degree);
+  }
+  if (kPolarised) light.rayleigh = LightOfTensor(chunk, s, moments + kRows * 8, rayleigh_chi2);
+  return light;
+}
+
+// Where molecules alone scatter.
+template <std::size_t kDegree, bool kPolarised>
+Scattered ScatteredByMolecules(const Chunk& chunk, std::size_t s, const float* const* node,
+                               const float* weight, const Eight* chi, const Eight& rayleigh_chi2) {
+  if constexpr (kPolarised) {
+    alignas(64) float tensor[2 * 8];
+    SumTaps<0, kPackedRow[kDegree + 1]>(node, weight, tensor, std::make_index_sequence<2>{});
+    return {LightOfTensor(chunk, s, tensor, rayleigh_chi2), Zero()};
+  } else {
+    return ScatteredByRows<kDegree, 2, 2, false>(chunk, s, node, weight, chi, rayleigh_chi2);
+  }
 }
 
 /// Legendre coefficients of a block, for both halves of eight lanes.
@@ -732,21 +759,15 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
     aerosol = aerosol || mie_share[band] > kNoAerosol * rayleigh_share[band];
     fine = fine || mie_share[band] > kCoarseAerosol * rayleigh_share[band];
   }
-  Eight rayleigh = Zero(), mie = Zero();
-  if (fine) {
-    AddRows<kDegree, 1>(chunk, s, node, weight, chi.mie, chi.rayleigh2, rayleigh, mie);
-  } else if (aerosol) {
-    AddRows<kCoarseDegree, 1>(chunk, s, node, weight, chi.mie, chi.rayleigh2, rayleigh, mie);
-  } else if (!kPolarised) {
-    AddRows<2, 2>(chunk, s, node, weight, chi.mie, chi.rayleigh2, rayleigh, mie);
-  }
-  if (kPolarised) {
-    rayleigh = Zero();
-    AddTensor(chunk, s, node, weight, kPackedRow[kDegree + 1] * 8, chi.rayleigh2, rayleigh);
-  }
+  const Scattered scattered = fine ? ScatteredByRows<kDegree, kDegree, 1, kPolarised>(
+                                         chunk, s, node, weight, chi.mie, chi.rayleigh2)
+                              : aerosol ? ScatteredByRows<kDegree, kCoarseDegree, 1, kPolarised>(
+                                              chunk, s, node, weight, chi.mie, chi.rayleigh2)
+                                        : ScatteredByMolecules<kDegree, kPolarised>(
+                                              chunk, s, node, weight, chi.mie, chi.rayleigh2);
   alignas(64) float of_rayleigh[8], of_mie[8];
-  StoreEight(of_rayleigh, rayleigh);
-  StoreEight(of_mie, mie);
+  StoreEight(of_rayleigh, scattered.rayleigh);
+  StoreEight(of_mie, scattered.mie);
   for (std::size_t band = 0; band < kBlockBands; ++band) {
     const float r = of_rayleigh[band] + of_rayleigh[band + 4];
     const float m = of_mie[band] + of_mie[band + 4];

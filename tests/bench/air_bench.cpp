@@ -82,8 +82,10 @@ void SingleScatteringByTheJudge(benchmark::State& state) {
 }
 BENCHMARK(SingleScatteringByTheJudge)->Unit(benchmark::kMicrosecond);
 
+// Argument: 1 polarised light, 0 scalar.
 void DiffuseLightOfOneRay(benchmark::State& state) {
-  const Medium medium = MediumPreset("earth");
+  const Medium earth = MediumPreset("earth");
+  const Medium medium = state.range(0) == 1 ? earth : InScalarLight(earth);
   const AirIntegrator<float> air(medium);
   const DiffuseLight light(medium);
   int i = 0;
@@ -93,7 +95,7 @@ void DiffuseLightOfOneRay(benchmark::State& state) {
         light.InscatterAlong(air.Sample(ray, {.nodes = 12, .dark_samples = true}), ray.nu));
   }
 }
-BENCHMARK(DiffuseLightOfOneRay);
+BENCHMARK(DiffuseLightOfOneRay)->Arg(0)->Arg(1)->ArgName("polarised");
 
 void BuildOfDiffuseLight(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
