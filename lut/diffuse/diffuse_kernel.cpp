@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/batch.h"
 #include "atmosphere/ray/optical_depth.h"
 #include "lut/diffuse/tensor_moments.h"
@@ -440,8 +441,12 @@ void OfDegree(std::size_t degree, const Run& run) {
       return run(std::integral_constant<std::size_t, 4>{});
     case 5:
       return run(std::integral_constant<std::size_t, 5>{});
-    default:
+    case 6:
       return run(std::integral_constant<std::size_t, 6>{});
+    case 8:
+      return run(std::integral_constant<std::size_t, 8>{});
+    default:
+      return run(std::integral_constant<std::size_t, kLargestDegree>{});
   }
 }
 
@@ -543,7 +548,7 @@ constexpr std::size_t kChunk = BatchOf<float>::kLanes;
 struct Chunk {
   alignas(64) float altitude_cell[kChunk], sun_cell[kChunk];
   alignas(64) float altitude_weight[4][kChunk], sun_weight[4][kChunk];
-  alignas(64) float harmonic[28][kChunk];
+  alignas(64) float harmonic[kLargestMoments][kChunk];
 };
 
 // Weights at the ends of an axis, where the node beyond continues the line through the last two.
@@ -582,13 +587,30 @@ void StoreTaps(const T& position, std::size_t nodes, const T& factor, float* cel
   Lanes::Store(weight[3], w.w3 * factor);
 }
 
+constexpr double Root(double square) {
+  double root = square < 1.0 ? 1.0 : square;
+  for (double next = 0.5 * (root + square / root); next < root; next = 0.5 * (root + square / root))
+    root = next;
+  return root;
+}
+
+struct Norms {
+  float of[kLargestMoments];
+};
+
 // norm_lm of the real harmonics, l major (spherical_harmonics.h).
-constexpr float kNorm[28] = {
-    0.282094792F,   0.488602512F,   0.488602512F,    0.630783131F,   0.36418281F,  0.182091405F,
-    0.746352665F,   0.3046972F,     0.0963537148F,   0.0393362393F,  0.846284375F, 0.267618617F,
-    0.0630783131F,  0.0168583883F,  0.00596034034F,  0.93560258F,    0.241571547F, 0.0456527313F,
-    0.00931882475F, 0.00219646806F, 0.000694584187F, 1.01710724F,    0.221950995F, 0.0350935337F,
-    0.00584892228F, 0.00106786222F, 0.000227668991F, 6.57223766e-05F};
+constexpr Norms FindNorms() {
+  Norms norms{};
+  for (std::size_t l = 0, i = 0; l <= kLargestDegree; ++l) {
+    for (std::size_t m = 0; m <= l; ++m, ++i) {
+      double square = (m == 0 ? 1.0 : 2.0) * static_cast<double>(2 * l + 1) / (4.0 * kPi);
+      for (std::size_t k = l - m + 1; k <= l + m; ++k) square /= static_cast<double>(k);
+      norms.of[i] = static_cast<float>(Root(square));
+    }
+  }
+  return norms;
+}
+constexpr Norms kNorm = FindNorms();
 
 template <std::size_t kDegree, typename T, typename Visit>
 void VisitHarmonics(const T& mu, const T& sine, const T& cosine, const Visit& visit) {
@@ -597,7 +619,7 @@ void VisitHarmonics(const T& mu, const T& sine, const T& cosine, const Visit& vi
     T lower(0.0F), value = diagonal;
     for (std::size_t l = m; l <= kDegree; ++l) {
       const std::size_t i = l * (l + 1) / 2 + m;
-      visit(i, T(T(kNorm[i]) * value * cos_now));
+      visit(i, T(T(kNorm.of[i]) * value * cos_now));
       const T next =
           (T(static_cast<float>(2 * l + 1)) * mu * value - T(static_cast<float>(l + m)) * lower) *
           T(1.0F / static_cast<float>(l + 1 - m));
@@ -639,19 +661,29 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
                chunk.sun_weight);
 }
 
-// The first kRows vectors of a node and then those from vector kFrom on, summed over 16 nodes: spelled
-// out, so that the sums stay in registers.
-template <std::size_t kRows, std::size_t kFrom, std::size_t... kIndex>
-void SumTaps(const float* const* node, const float* weight, float* moments,
-             std::index_sequence<kIndex...>) {
+// Some vectors of a node, summed over 16 nodes: the first kRows of those that are wanted and, after
+// them, the ones from kFrom on. Spelled out, so that the sums stay in registers.
+template <std::size_t kRows, std::size_t kFrom, std::size_t kFirst, std::size_t... kIndex>
+void SumTapsAt(const float* const* node, const float* weight, float* moments,
+               std::index_sequence<kIndex...>) {
+  const auto place = [](std::size_t i) { return (i < kRows ? i : kFrom + i - kRows) * 8; };
   Eight sum[sizeof...(kIndex)] = {(static_cast<void>(kIndex), Zero())...};
   for (std::size_t tap = 0; tap < 16; ++tap) {
     const V w(weight[tap]);
     const float* at = node[tap];
-    (Add(sum[kIndex], w, LoadEight(at + (kIndex < kRows ? kIndex : kFrom + kIndex - kRows) * 8)),
-     ...);
+    (Add(sum[kIndex], w, LoadEight(at + place(kFirst + kIndex))), ...);
   }
-  (StoreEight(moments + kIndex * 8, sum[kIndex]), ...);
+  (StoreEight(moments + (kFirst + kIndex) * 8, sum[kIndex]), ...);
+}
+
+// All kCount of them, as many at a time as there are registers for.
+template <std::size_t kRows, std::size_t kFrom, std::size_t kCount, std::size_t kFirst = 0>
+void SumTaps(const float* const* node, const float* weight, float* moments) {
+  constexpr std::size_t kMost = 18;
+  constexpr std::size_t kHere = kCount - kFirst < kMost ? kCount - kFirst : kMost;
+  SumTapsAt<kRows, kFrom, kFirst>(node, weight, moments, std::make_index_sequence<kHere>{});
+  if constexpr (kFirst + kHere < kCount)
+    SumTaps<kRows, kFrom, kCount, kFirst + kHere>(node, weight, moments);
 }
 
 // What a degree of the moments sends along the ray at a sample, before phase functions.
@@ -690,8 +722,7 @@ Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const float* const*
   constexpr std::size_t kMore =
       kPolarised ? PackedVectors(kDegree, true) - kPackedRow[kDegree + 1] : 0;
   alignas(64) float moments[(kRows + kMore) * 8];
-  SumTaps<kRows, kPackedRow[kDegree + 1]>(node, weight, moments,
-                                          std::make_index_sequence<kRows + kMore>{});
+  SumTaps<kRows, kPackedRow[kDegree + 1], kRows + kMore>(node, weight, moments);
   Scattered light{Zero(), Zero()};
   for (std::size_t l = 0; l <= kLast; l += kStep) {
     const Eight of_degree = LightOfDegree(chunk, s, l, moments);
@@ -709,7 +740,7 @@ Scattered ScatteredByMolecules(const Chunk& chunk, std::size_t s, const float* c
                                const float* weight, const Eight* chi, const Eight& rayleigh_chi2) {
   if constexpr (kPolarised) {
     alignas(64) float tensor[2 * 8];
-    SumTaps<0, kPackedRow[kDegree + 1]>(node, weight, tensor, std::make_index_sequence<2>{});
+    SumTaps<0, kPackedRow[kDegree + 1], 2>(node, weight, tensor);
     return {LightOfTensor(chunk, s, tensor, rayleigh_chi2), Zero()};
   } else {
     return ScatteredByRows<kDegree, 2, 2, false>(chunk, s, node, weight, chi, rayleigh_chi2);
@@ -832,9 +863,10 @@ void Inscatter(const DiffuseGrid& grid, const RaySamples<float>& samples, float 
   });
 }
 
-// pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64: the clamped cosine's zonal coefficients.
+// The clamped cosine's zonal coefficients: pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64 ...
 constexpr float kClampedCosine[kLargestDegree + 1] = {
-    3.14159265F, 2.09439510F, 0.785398163F, 0.0F, -0.130899694F, 0.0F, 0.0490873852F};
+    3.14159265F,    2.09439510F, 0.785398163F,  0.0F, -0.130899694F,  0.0F, 0.0490873852F, 0.0F,
+    -0.0245436926F, 0.0F,        0.0143171540F, 0.0F, -0.00920388473F};
 
 // P_l(x), the first even l that moments to this degree lack.
 template <std::size_t kDegree>
@@ -878,13 +910,13 @@ void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std:
   const float mu = point.normal_mu;
   const float missing = FirstMissingLegendre<kDegree>(mu);
   const float sine2 = (1.0F - mu) * (1.0F + mu);
-  float of_moment[28];
+  float of_moment[kLargestMoments];
   VisitHarmonics<kDegree, float>(mu, std::sqrt(sine2 > 0.0F ? sine2 : 0.0F), point.normal_azimuth,
                                  [&](std::size_t i, float y) { of_moment[i] = y; });
   Eight factor[kPackedRow[kDegree + 1]];
   for (std::size_t l = 0; l <= kDegree; ++l) {
     const std::size_t first = l * (l + 1) / 2;
-    of_moment[first] -= missing * kNorm[first];  // the harmonic of the vertical
+    of_moment[first] -= missing * kNorm.of[first];  // the harmonic of the vertical
     if (grid.polarised) {
       for (std::size_t m = 1; m <= l; ++m) of_moment[first + m] *= SinePower(m, point.sun_sine);
     }

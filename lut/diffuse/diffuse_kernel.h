@@ -17,9 +17,11 @@
 namespace alpenglow {
 
 inline constexpr std::size_t kBlockBands = 4;
-inline constexpr std::size_t kLargestDegree = 6;
+inline constexpr std::size_t kLargestDegree = 12;
+inline constexpr std::size_t kLargestMoments = (kLargestDegree + 1) * (kLargestDegree + 2) / 2;
 /// Vectors of eight floats before the row l of a node; of a whole node: [degree + 1].
-constexpr std::size_t kPackedRow[kLargestDegree + 2] = {0, 1, 2, 4, 6, 9, 12, 16};
+constexpr std::size_t kPackedRow[kLargestDegree + 2] = {0,  1,  2,  4,  6,  9,  12,
+                                                        16, 20, 25, 30, 36, 42, 49};
 
 /// Floats that begin at a multiple of 64 bytes.
 class AlignedFloats {
@@ -62,7 +64,7 @@ struct MarchPoint {
   std::array<float, 4> altitude_weight;
   float mu, sine, distance_km, inverse_radius;  // 1 / distance from the planet's centre [1/km]
   bool only_molecules;                          // too little aerosol to matter
-  std::array<float, 28> legendre;
+  std::array<float, kLargestMoments> legendre;
 };
 
 /// What a point scatters into the ray for four bands: transmittance, weight and coefficient.

@@ -28,8 +28,10 @@ bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float
 
 }  // namespace
 
-DiffuseMarches::DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options)
+DiffuseMarches::DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options,
+                               const std::vector<double>& chi)
     : air_(&air),
+      chi_(&chi),
       grid_(GridOf(air.medium(), options)),
       radius_km_(air.medium().planet_radius_m / 1000.0),
       azimuths_(static_cast<std::size_t>(options.azimuth_nodes)) {

@@ -14,7 +14,7 @@ namespace alpenglow {
 struct March {
   float mu = 0.0F, sine = 0.0F;
   float solid_angle = 0.0F;  // of the direction and its mirror image, one azimuth of half a turn
-  std::array<float, 28> legendre{};
+  std::array<float, kLargestMoments> legendre{};
   std::vector<MarchPoint> points;
   std::vector<std::array<float, 6>>
       air;                     // of points: weight [km], densities, columns from the node
@@ -27,10 +27,13 @@ struct March {
 
 class DiffuseMarches {
  public:
-  DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options);
+  /// @param chi  of what aerosol scatters: degree l of a band at [l * bands + band].
+  DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options,
+                 const std::vector<double>& chi);
 
   [[nodiscard]] const AirIntegrator<float>& air() const { return *air_; }
   [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<double>& chi() const { return *chi_; }
   [[nodiscard]] std::size_t azimuths() const { return azimuths_; }
   [[nodiscard]] double altitude_km(std::size_t i) const { return altitude_km_[i]; }
   [[nodiscard]] double mu_s(std::size_t sun) const { return mu_s_[sun]; }
@@ -58,6 +61,7 @@ class DiffuseMarches {
   void AddGround(std::size_t altitude, March& march) const;
 
   const AirIntegrator<float>* air_;
+  const std::vector<double>* chi_;
   DiffuseGrid grid_;
   double radius_km_;
   std::size_t azimuths_;

@@ -8,6 +8,7 @@
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
+#include "lut/diffuse/spherical_harmonics.h"
 
 namespace alpenglow {
 namespace {
@@ -84,13 +85,13 @@ std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float alti
 class PieceScatterer {
  public:
   PieceScatterer(const DiffuseMarches& marches, std::size_t altitude, const March& march,
-                 int ray_nodes)
+                 const DiffuseLightOptions& options)
       : marches_(marches),
         air_(marches.air().constants()),
         altitude_km_(static_cast<float>(marches.altitude_km(altitude))),
         march_(march),
         ends_(OriginAndPerigee(air_, altitude_km_, march)) {
-    const GaussRule& rule = GaussLegendre(ray_nodes);
+    const GaussRule& rule = GaussLegendre(options.ray_nodes);
     node_.assign(rule.node.begin(), rule.node.end());
     weight_.assign(rule.weight.begin(), rule.weight.end());
     const Medium& medium = marches.air().medium();
@@ -100,8 +101,12 @@ class PieceScatterer {
         for (const double depolarisation : medium.rayleigh_depolarisation) {
           rayleigh_phase_.push_back(static_cast<float>(shared::PhaseMolecules(nu, depolarisation)));
         }
-        for (const PhaseFunction& phase : medium.mie_phase)
-          mie_phase_.push_back(static_cast<float>(Phase(phase, nu)));
+        if (options.forward_peak) {
+          AddSeries(nu);
+        } else {
+          for (const PhaseFunction& phase : medium.mie_phase)
+            mie_phase_.push_back(static_cast<float>(Phase(phase, nu)));
+        }
       }
     }
   }
@@ -128,6 +133,18 @@ class PieceScatterer {
   }
 
  private:
+  // Of the aerosol at an angle, from its Legendre coefficients.
+  void AddSeries(double nu) {
+    const std::vector<double> legendre =
+        LegendreSeries(static_cast<int>(marches_.grid().degree), nu);
+    for (std::size_t phase = 0; phase < marches_.air().medium().mie_phase.size(); ++phase) {
+      double sum = 0.0;
+      for (std::size_t l = 0; l < legendre.size(); ++l)
+        sum += legendre[l] * marches_.chi()[l * air_.bands + phase];
+      mie_phase_.push_back(static_cast<float>(sum));
+    }
+  }
+
   void Scatter(const Pieces& pieces, const LitPieces& lit, SunlightOfMarch& light) const {
     const std::size_t points = lit.count * lit.nodes;
     AlignedFloats weight(points), altitude(points), mu(points), absolute_mu(points), mu_s(points);
@@ -191,10 +208,10 @@ void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const 
 }  // namespace
 
 SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches, std::size_t altitude,
-                                      const March& march, int ray_nodes) {
+                                      const March& march, const DiffuseLightOptions& options) {
   const std::size_t values = marches.air().bands() * marches.grid().suns * marches.azimuths();
   SunlightOfMarch light{std::vector<float>(values, 0.0F), std::vector<float>(values, 0.0F)};
-  const PieceScatterer scatterer(marches, altitude, march, ray_nodes);
+  const PieceScatterer scatterer(marches, altitude, march, options);
   for (std::size_t panel = 0; panel + 1 < march.panels.size(); ++panel) {
     for (const Pieces& pieces :
          SunlitPieces(marches, altitude, march, march.panels[panel], march.panels[panel + 1])) {

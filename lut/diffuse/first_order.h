@@ -17,6 +17,6 @@ struct SunlightOfMarch {
 
 [[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches,
                                                     std::size_t altitude, const March& march,
-                                                    int ray_nodes);
+                                                    const DiffuseLightOptions& options);
 
 }  // namespace alpenglow

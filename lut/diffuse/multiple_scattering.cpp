@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/number/constants.h"
+#include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/diffuse/successive_orders.h"
@@ -31,6 +33,10 @@ const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) 
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
   RequireInRange(options.degree, 2, kMaxDegree, "degree");
+  if (std::find(kDegrees.begin(), kDegrees.end(), options.degree) == kDegrees.end())
+    throw InputError(fmt::format("degree is {}; there are 2 to 6, 8 and 12", options.degree));
+  if (options.forward_peak && options.exact_orders)
+    throw InputError("forward_peak sums all orders; exact_orders wants some");
   RequireInRange(options.azimuth_nodes, 1, static_cast<double>(kMostAzimuths), "azimuth_nodes");
   RequireInRange(options.exact_orders.value_or(1), 1, 1000, "exact_orders");
   Validate(medium);
@@ -42,10 +48,73 @@ const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) 
   return medium;
 }
 
+// Adds so many times the beam's light at a node to values there.
+void AddBeam(const DiffuseLightOptions& options, const Bands<float>& beam, double mu_s, float times,
+             bool polarised, float* value) {
+  const Moments towards = LegendreTerms(options.degree, static_cast<float>(mu_s));
+  const auto add = [&](float share) {
+    for (std::size_t band = 0; band < beam.count; ++band, ++value)
+      *value += times * share * beam[band];
+  };
+  for (std::size_t i = 0; i < MomentCount(options.degree); ++i) add(towards[i]);
+  // Light without polarisation has T2m = L2m.
+  for (std::size_t m = 0; polarised && m < kTensorMoments; ++m)
+    add(towards[MomentIndex(2, static_cast<int>(m))]);
+  add(static_cast<float>(std::max(mu_s, 0.0)));
+}
+
+// The values at all nodes with so many times the beam more.
+std::vector<float> WithBeam(const Medium& medium, const DiffuseLightOptions& options, float times,
+                            std::vector<float> values) {
+  const ForwardPeak peak(medium, options.degree);
+  const DiffuseGrid grid = GridOf(medium, options);
+  const std::size_t floats = values.size() / (grid.altitudes * grid.suns);
+  for (std::size_t node = 0; node < grid.altitudes * grid.suns; ++node) {
+    const double u =
+        static_cast<double>(node / grid.suns) / static_cast<double>(grid.altitudes - 1);
+    const double mu_s = MuSOfNode(grid, node % grid.suns);
+    AddBeam(options, peak.Beam(medium.atmosphere_height_m * u * u, mu_s), mu_s, times,
+            medium.polarised, &values[node * floats]);
+  }
+  return values;
+}
+
+SolvedOrders Solved(const Medium& medium, const DiffuseLightOptions& options) {
+  SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
+  if (options.forward_peak)
+    solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
+  return solved;
+}
+
 }  // namespace
 
+DiffuseLightOptions OptionsFor(const Medium& medium) {
+  const auto thickest = [](const std::vector<double>& per_m, double scale_height_m) {
+    return scale_height_m * *std::max_element(per_m.begin(), per_m.end());
+  };
+  const double aerosol = thickest(medium.mie_scattering_per_m, medium.mie_scale_height_m);
+  const double molecules =
+      thickest(medium.rayleigh_scattering_per_m, medium.rayleigh_scale_height_m);
+  DiffuseLightOptions options;
+  if (aerosol > 0.03) {
+    options.degree = kMaxDegree;
+    options.forward_peak = true;
+    // More azimuths than degrees, or the last of them pass for others.
+    options.zenith_nodes = options.azimuth_nodes = 16;
+    options.later_zenith_nodes = 12;
+    options.later_azimuth_nodes = 14;
+  }
+  if (aerosol + molecules > 0.9) {
+    options.altitudes = 24;
+    options.ray_nodes = 12;
+    options.later_ray_nodes = 12;
+    options.later_zenith_nodes = std::max(options.later_zenith_nodes, 8);
+  }
+  return options;
+}
+
 DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options)
-    : DiffuseLight(medium, options, SolveSuccessiveOrders(Checked(medium, options), options)) {}
+    : DiffuseLight(medium, options, Solved(medium, options)) {}
 
 DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options,
                            SolvedOrders solved)
@@ -66,14 +135,22 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
     if (!std::isfinite(value)) throw InputError("diffuse light: a value is not finite");
   }
   grid_ = GridOf(medium_, options_);
+  if (options_.forward_peak) {
+    peak_.emplace(medium_, options_.degree);
+    smooth_ = WithBeam(medium_, options_, -1.0F, values_);
+  }
   blocks_ = BlocksOf();
   packed_ = Packed();
   packed_sky_ = PackedSky();
 }
 
 std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
-  const AirConstants<float> air = AirIntegrator<float>(medium_).constants();
-  const std::vector<double> chi = MieLegendreCoefficients(medium_, options_.degree);
+  const AirWithoutPeak scattering =
+      options_.forward_peak
+          ? WithoutPeak(medium_, options_.degree)
+          : AirWithoutPeak{medium_, {}, MieLegendreCoefficients(medium_, options_.degree)};
+  const AirConstants<float> air = AirIntegrator<float>(scattering.medium).constants();
+  const std::vector<double>& chi = scattering.chi;
   std::vector<DiffuseBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);
   for (std::size_t band = 0; band < bands_; ++band) {
     DiffuseBlock& block = blocks[band / kBlockBands];
@@ -95,7 +172,7 @@ AlignedFloats DiffuseLight::Packed() const {
   const std::vector<float> twilight = TwilightAtNodes(grid_);
   AlignedFloats packed(blocks_.size() * nodes * stride);
   for (std::size_t node = 0; node < nodes; ++node) {
-    const float* value = &values_[node * channels() * bands_];
+    const float* value = &smooth()[node * channels() * bands_];
     const std::size_t sun = node % grid_.suns;
     const float sine = SunSine(MuSOfNode(grid_, sun));
     const auto store = [&](std::size_t index, std::size_t m, const float* of_bands) {
@@ -121,7 +198,7 @@ std::vector<float> DiffuseLight::PackedSky() const {
   for (std::size_t node = 0; node < nodes; ++node) {
     for (std::size_t band = 0; band < bands_; ++band) {
       packed[(band / kBlockBands * nodes + node) * kBlockBands + band % kBlockBands] =
-          values_[(node * channels() + channels() - 1) * bands_ + band] /
+          smooth()[(node * channels() + channels() - 1) * bands_ + band] /
           twilight[node % grid_.suns];
     }
   }
@@ -140,19 +217,84 @@ void DiffuseLight::VisitNodes(double altitude_coordinate, double mu_s, const Vis
     for (std::size_t s = 0; s < 4; ++s) {
       const float weight = row.weight[a] * column.weight[s];
       if (weight != 0.0F)
-        visit(&values_[(row.node[a] * grid_.suns + column.node[s]) * channels() * bands_], weight,
+        visit(&smooth()[(row.node[a] * grid_.suns + column.node[s]) * channels() * bands_], weight,
               column.node[s]);
     }
   }
 }
 
-Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu) const {
+Bands<float> DiffuseLight::InscatterByMoments(const RaySamples<float>& samples, double nu) const {
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
   Kernel<DiffuseKernel>().inscatter(grid_, samples, static_cast<float>(nu), blocks_.data(),
                                     blocks_.size(), packed_.data(), light.data());
   Bands<float> sum(bands_);
   std::copy_n(light.begin(), bands_, sum.value.begin());
   return sum;
+}
+
+Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu) const {
+  Bands<float> light = InscatterByMoments(samples, nu);
+  if (!peak_ || samples.count == 0) return light;
+  const Bands<float> more = peak_->Along(samples, nu), behind = PeakBehind(samples, nu);
+  for (std::size_t band = 0; band < bands_; ++band)
+    light[band] = std::max(light[band] + more[band] + behind[band], 0.0F);
+  return light;
+}
+
+Bands<float> DiffuseLight::GroundLight(double mu_s) const {
+  Bands<float> light = SkyIrradiance(0.0, mu_s);
+  const Bands<float> sun =
+      mu_s > 0.0 ? peak_->air().TransmittanceToSpace(0.0, mu_s) : Bands<float>(bands_);
+  for (std::size_t band = 0; band < bands_; ++band) {
+    light[band] = static_cast<float>(medium_.ground_albedo[band] / kPi) *
+                  (light[band] + static_cast<float>(std::max(mu_s, 0.0)) * sun[band]);
+  }
+  return light;
+}
+
+// Where the ray goes on: at its end, by the last of its samples.
+ViewRay DiffuseLight::RayBehind(const RaySamples<float>& samples, double nu) const {
+  const std::size_t last = samples.count - 1;
+  const double radius_m = medium_.planet_radius_m;
+  const double from_m = 1000.0 * static_cast<double>(samples.altitude[last]);
+  const double mu = static_cast<double>(samples.mu[last]);
+  const double on_m = std::max(samples.extent.end_m - samples.extent.begin_m -
+                                   1000.0 * static_cast<double>(samples.distance[last]),
+                               0.0);
+  const double altitude_m =
+      std::max(shared::AltitudeAlongRay<double>(from_m, mu, on_m, radius_m), 0.0);
+  const auto there = [&](double cosine, double along) {
+    return std::clamp(((radius_m + from_m) * cosine + on_m * along) / (radius_m + altitude_m), -1.0,
+                      1.0);
+  };
+  return {altitude_m, there(mu, 1.0), there(static_cast<double>(samples.mu_s[last]), nu), nu};
+}
+
+// Of the light behind the end of samples, what the peak brings: from the ground, or, where they end
+// before, from the air and the ground that follow.
+Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double nu) const {
+  Bands<float> light(bands_), closed(bands_);
+  if (samples.extent.end == RayEnd::kSpace) return light;
+  const ForwardPeak::Way way = peak_->WayTo(samples);
+  const ViewRay ray = RayBehind(samples, nu);
+  if (samples.extent.end == RayEnd::kGround) {
+    light = GroundLight(ray.mu_s);
+  } else {
+    const RaySamples<float> after =
+        peak_->air().Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});
+    if (after.count == 0) return light;
+    light = InscatterByMoments(after, nu);
+    closed = peak_->Behind(way, after, nu);
+    if (after.extent.end == RayEnd::kGround) {
+      const ForwardPeak::Way further = peak_->WayTo(after);
+      const Bands<float> ground = GroundLight(RayBehind(after, nu).mu_s);
+      for (std::size_t band = 0; band < bands_; ++band)
+        light[band] += (further.clear[band] + further.more[band]) * ground[band];
+    }
+  }
+  for (std::size_t band = 0; band < bands_; ++band)
+    light[band] = way.more[band] * light[band] + closed[band];
+  return light;
 }
 
 Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double normal_mu,
@@ -176,6 +318,14 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
                                      packed_sky_.data(), light.data());
   Bands<float> irradiance(bands_);
   std::copy_n(light.begin(), bands_, irradiance.value.begin());
+  if (peak_) {
+    const double sines =
+        static_cast<double>(SunSine(mu_s)) * static_cast<double>(SunSine(normal_mu));
+    const double facing = std::max(normal_mu * mu_s + sines * normal_cos_azimuth, 0.0);
+    const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
+    for (std::size_t band = 0; band < bands_; ++band)
+      irradiance[band] += static_cast<float>(facing) * beam[band];
+  }
   return irradiance;
 }
 
@@ -186,6 +336,11 @@ Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
                for (std::size_t band = 0; band < bands_; ++band)
                  irradiance[band] += weight * node[(channels() - 1) * bands_ + band];
              });
+  if (peak_) {
+    const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
+    for (std::size_t band = 0; band < bands_; ++band)
+      irradiance[band] += static_cast<float>(std::max(mu_s, 0.0)) * beam[band];
+  }
   for (std::size_t band = 0; band < bands_; ++band)
     irradiance[band] = std::max(irradiance[band], 0.0F);
   return irradiance;
@@ -204,6 +359,11 @@ std::vector<float> DiffuseLight::ValuesAt(double altitude_coordinate, double sun
         sum[i] += share * node[i];
     }
   });
+  if (peak_) {
+    const double altitude_m =
+        medium_.atmosphere_height_m * altitude_coordinate * altitude_coordinate;
+    AddBeam(options_, peak_->Beam(altitude_m, mu_s), mu_s, 1.0F, medium_.polarised, sum.data());
+  }
   return sum;
 }
 

@@ -31,6 +31,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/diffuse_kernel.h"
+#include "lut/diffuse/forward_peak.h"
 #include "lut/diffuse/polarised_light.h"
 #include "lut/diffuse/spherical_harmonics.h"
 #include "lut/diffuse/tensor_moments.h"
@@ -41,7 +42,7 @@ namespace alpenglow {
 struct DiffuseLightOptions {
   int altitudes = 18;     // nodes, quadratic in altitude, >= 4
   int sun_angles = 32;    // nodes, dense around the terminator, >= 4
-  int degree = 6;         // largest l, in [2, kMaxDegree]
+  int degree = 6;         // largest l: 2 to 6, 8 or 12
   int zenith_nodes = 14;  // directions above and below the horizon, each
   int azimuth_nodes = 8;  // over half a turn, in [1, 32]
   int ray_nodes = 10;     // Gauss nodes along each direction
@@ -55,7 +56,16 @@ struct DiffuseLightOptions {
   /// Exactly so many orders of the diffuse light (1: scattered or reflected once), no rest summed:
   /// InscatterAlong then gives orders 2 to exact_orders + 1. For tables that are defined so.
   std::optional<int> exact_orders = std::nullopt;
+  /// Light that aerosol throws forward is found in closed form (forward_peak.h), for hazy and thick
+  /// air; not with exact_orders.
+  bool forward_peak = false;
 };
+
+/// The usual ones in clear air. Where aerosol scatters more than 3 % of a vertical beam, degree 12
+/// with the forward peak in closed form; where all scattering takes more than 60 %, more nodes.
+/// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol's optical depth
+/// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
+[[nodiscard]] DiffuseLightOptions OptionsFor(const Medium& medium);
 
 /// What the table is made of.
 struct SolvedOrders {
@@ -126,6 +136,12 @@ class DiffuseLight {
 
  private:
   [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
+  [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
+  [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu) const;
+  /// What is interpolated: values(), or without the beam that peak_ knows in closed form.
+  [[nodiscard]] const std::vector<float>& smooth() const { return peak_ ? smooth_ : values_; }
   [[nodiscard]] AlignedFloats Packed() const;
   [[nodiscard]] std::vector<float> PackedSky() const;
   /// Calls visit(node, weight, sun) with the 16 nodes around a point; `sun` is the node's own.
@@ -143,6 +159,8 @@ class DiffuseLight {
   bool converged_ = false;
   std::vector<float> values_;
   DiffuseGrid grid_;
+  std::optional<ForwardPeak> peak_;
+  std::vector<float> smooth_;
   std::vector<DiffuseBlock> blocks_;
   AlignedFloats packed_;           // the moments again, as kernels read them
   std::vector<float> packed_sky_;  // and SkyIrradiance

@@ -98,6 +98,18 @@ std::vector<double> PanelEdges(const PhaseFunction& phase) {
 
 }  // namespace
 
+std::vector<double> LegendreSeries(int degree, double nu) {
+  std::vector<double> value(static_cast<std::size_t>(degree) + 1);
+  double before = 0.0, now = 1.0;
+  for (int l = 0; l <= degree; ++l) {
+    value[static_cast<std::size_t>(l)] = (2.0 * l + 1.0) / (4.0 * kPi) * now;
+    const double next = ((2.0 * l + 1.0) * nu * now - l * before) / (l + 1.0);
+    before = now;
+    now = next;
+  }
+  return value;
+}
+
 std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
   std::vector<double> chi(static_cast<std::size_t>(degree) + 1, 0.0);
   const GaussRule& rule = GaussLegendre(phase.kind == PhaseKind::kTable ? 4 : 32);

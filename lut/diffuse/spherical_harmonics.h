@@ -18,7 +18,9 @@
 
 namespace alpenglow {
 
-inline constexpr int kMaxDegree = 6;
+inline constexpr int kMaxDegree = 12;
+/// What light is kept to.
+inline constexpr std::array kDegrees{2, 3, 4, 5, 6, 8, kMaxDegree};
 
 [[nodiscard]] constexpr std::size_t MomentCount(int degree) {
   return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2);
@@ -35,8 +37,19 @@ using Moments = std::array<float, kMaxMoments>;
 
 /// 2 pi integral of max(x, 0) P_l(x) dx: what a surface makes
 /// of moments of degree l (Ramamoorthi, Hanrahan 2001).
-inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{
-    kPi, 2.0 * kPi / 3.0, kPi / 4.0, 0.0, -kPi / 24.0, 0.0, kPi / 64.0};
+inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{kPi,
+                                                                   2.0 * kPi / 3.0,
+                                                                   kPi / 4.0,
+                                                                   0.0,
+                                                                   -kPi / 24.0,
+                                                                   0.0,
+                                                                   kPi / 64.0,
+                                                                   0.0,
+                                                                   -kPi / 128.0,
+                                                                   0.0,
+                                                                   7.0 * kPi / 1536.0,
+                                                                   0.0,
+                                                                   -3.0 * kPi / 1024.0};
 
 /// norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
 [[nodiscard]] Moments LegendreTerms(int degree, float mu);
@@ -50,6 +63,9 @@ inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{
 /// Cosine of the azimuth between two directions of zenith cosines mu and mu_s with cosine nu
 /// between them; some value in [-1, 1] where one of them is vertical.
 [[nodiscard]] float AzimuthCosine(float mu, float mu_s, float nu);
+
+/// (2 l + 1) / (4 pi) P_l(nu) for l = 0 ... degree: what the coefficients below are multiplied by.
+[[nodiscard]] std::vector<double> LegendreSeries(int degree, double nu);
 
 /// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
 /// Error below 1e-6 for |g| <= 0.999 and for tables.

@@ -104,8 +104,7 @@ Transport::Transport(const DiffuseMarches& marches, std::size_t first_band)
       albedo_(Of(marches.air().medium().ground_albedo, first_band)),
       twilight_(TwilightAtNodes(marches.grid())) {
   const AirConstants<float>& air = marches.air().constants();
-  const std::vector<double> chi =
-      MieLegendreCoefficients(marches.air().medium(), static_cast<int>(layout_.degree));
+  const std::vector<double>& chi = marches.chi();
   for (std::size_t l = 0; l <= layout_.degree; ++l) {
     for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane)
       shape_.mie[l][lane] = static_cast<float>(chi[l * air.bands + first_band + lane]);
@@ -517,9 +516,13 @@ DiffuseLightOptions OfLaterOrders(DiffuseLightOptions options) {
 }  // namespace
 
 SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptions& options) {
-  const AirIntegrator<float> air(medium);
-  const DiffuseMarches marches(air, options);
-  const DiffuseMarches later(air, OfLaterOrders(options));
+  const AirWithoutPeak rest =
+      options.forward_peak
+          ? WithoutPeak(medium, options.degree)
+          : AirWithoutPeak{medium, {}, MieLegendreCoefficients(medium, options.degree)};
+  const AirIntegrator<float> air(rest.medium);
+  const DiffuseMarches marches(air, options, rest.chi);
+  const DiffuseMarches later(air, OfLaterOrders(options), rest.chi);
   const std::size_t bands = medium.wavelengths_nm.size();
   std::vector<Block> blocks;
   std::vector<Field> first;
@@ -527,13 +530,13 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptio
     blocks.emplace_back(marches, later, options, band);
     first.push_back(blocks.back().Empty());
   }
-  const MissedPeak peak(marches);
+  std::optional<MissedPeak> peak;
+  if (!options.forward_peak) peak.emplace(marches);
   tbb::parallel_for(std::size_t{0}, marches.grid().altitudes, [&](std::size_t altitude) {
     for (std::size_t block = 0; block < blocks.size(); ++block)
-      peak.Add(altitude, block * kBlockBands, first[block]);
+      if (peak) peak->Add(altitude, block * kBlockBands, first[block]);
     for (const March& march : marches.At(altitude)) {
-      const SunlightOfMarch sunlight =
-          SunlightScatteredOnce(marches, altitude, march, options.ray_nodes);
+      const SunlightOfMarch sunlight = SunlightScatteredOnce(marches, altitude, march, options);
       for (std::size_t block = 0; block < blocks.size(); ++block)
         blocks[block].transport().Project(march, altitude, sunlight, first[block]);
     }

@@ -56,6 +56,11 @@ constexpr DiffuseLightOptions kMiddlingLight{.altitudes = 12,
 constexpr double kShareOfDifferences = 0.6;
 constexpr double kFloorOfHigherOrders = 3e-3;
 
+DiffuseLightOptions With(bool forward_peak, DiffuseLightOptions options) {
+  options.forward_peak = forward_peak;
+  return options;
+}
+
 double Sum(const Estimate& a) { return std::abs(a.value) + a.error; }
 
 /// Product of two estimates; errors add to first order, and beyond it where they are large.
@@ -128,10 +133,11 @@ class IntegralEvaluator final : public Evaluator {
         })) {
       return;
     }
-    fine_light_.emplace(medium());
-    coarse_light_.emplace(medium(), kCoarseLight);
-    middling_light_.emplace(medium(), kMiddlingLight);
-    missing_degrees_.emplace(medium(), fine_light_->options().degree);
+    fine_light_.emplace(medium(), OptionsFor(medium()));
+    const bool forward_peak = fine_light_->options().forward_peak;
+    coarse_light_.emplace(medium(), With(forward_peak, kCoarseLight));
+    middling_light_.emplace(medium(), With(forward_peak, kMiddlingLight));
+    if (!forward_peak) missing_degrees_.emplace(medium(), fine_light_->options().degree);
   }
 
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
@@ -273,6 +279,7 @@ class IntegralEvaluator final : public Evaluator {
         Differences(fine_light_->InscatterAlong(samples, ray.nu),
                     middling_light_->InscatterAlong(samples, ray.nu),
                     coarse_light_->InscatterAlong(samples, ray.nu), kShareOfDifferences);
+    if (!missing_degrees_) return result;
     const std::vector<double> missing =
         missing_degrees_->Along(quick_air_.constants(), samples, ray.nu);
     for (std::size_t band = 0; band < result.size(); ++band)

@@ -11,9 +11,20 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kDegree4 = 0, kIsotropic = 1, kDegree2 = 2, kScalar = 3, kNothing = 5, kDegree6 = 6 };
+enum Style {
+  kDegree4 = 0,
+  kIsotropic = 1,
+  kDegree2 = 2,
+  kScalar = 3,
+  kForwardPeak = 4,
+  kNothing = 5,
+  kDegree6 = 6
+};
 
-int StyleOf(int degree) { return degree == 2 ? kDegree2 : degree == 4 ? kDegree4 : kDegree6; }
+int StyleOf(const DiffuseLightOptions& options) {
+  if (options.forward_peak) return kForwardPeak;
+  return options.degree == 2 ? kDegree2 : options.degree == 4 ? kDegree4 : kDegree6;
+}
 
 // What a renderer takes: one set of samples for all orders.
 constexpr Sampling kSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
@@ -62,12 +73,13 @@ class Topic : public TopicWork {
 
   void AddDiffuse(const DiffuseLightOptions& options) {
     const DiffuseLightOptions usual;
-    const bool in_summary = options.degree == usual.degree &&
-                            options.altitudes == usual.altitudes &&
-                            options.sun_angles == usual.sun_angles;
-    AddMoments({.series = fmt::format("moments to degree {}", options.degree),
+    const bool in_summary = options.forward_peak || (options.degree == usual.degree &&
+                                                     options.altitudes == usual.altitudes &&
+                                                     options.sun_angles == usual.sun_angles);
+    AddMoments({.series = fmt::format("moments to degree {}{}", options.degree,
+                                      options.forward_peak ? ", forward peak apart" : ""),
                 .parameter = "",
-                .style = StyleOf(options.degree),
+                .style = StyleOf(options),
                 .in_summary = in_summary},
                medium_, options);
   }
@@ -117,6 +129,8 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
     if (usual && !effort.quick) topic.AddDiffuse(options);
   }
   if (!effort.quick) topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
+  if (const DiffuseLightOptions needed = OptionsFor(medium); needed.forward_peak)
+    topic.AddDiffuse(needed);
   return std::move(topic).Finished(
       {.key = "all_orders",
        .title = "All orders: the light of the sky as a whole",
@@ -131,7 +145,9 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
                 "and sun; the "
                 "largest is the quality fine of skylut build, which also has more directions. "
                 "Where the medium's light is polarised, so is the judge's, and scalar light is "
-                "what neglects it: the same single scattering, and moments of scalar light.",
+                "what neglects it: the same single scattering, and moments of scalar light. In "
+                "hazy air the forward peak of the aerosol is set apart and found in closed form "
+                "(delta-M); only then do more degrees pay, and skylut eval and build take it.",
        .wanted = 0.02,
        .cost = CostAxis::kTimeToBuild});
 }

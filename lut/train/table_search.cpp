@@ -72,7 +72,7 @@ struct Grid {
 
 std::vector<Grid> GridsBySize() {
   std::vector<Grid> grids;
-  for (int degree = 2; degree <= kMaxDegree; ++degree) {
+  for (const int degree : kDegrees) {
     for (const int altitudes : kAltitudes) {
       for (const int sun_angles : kSunAngles) grids.push_back({altitudes, sun_angles, degree});
     }

@@ -129,7 +129,17 @@ std::string_view NameOf(ViewKind kind) {
   throw InternalError("an unknown kind of view");
 }
 
-DiffuseLight FinestDiffuseLight(const Medium& medium) { return DiffuseLight(medium, kFinest); }
+DiffuseLight FinestDiffuseLight(const Medium& medium) {
+  const DiffuseLightOptions needed = OptionsFor(medium);
+  DiffuseLightOptions options = kFinest;
+  options.forward_peak = needed.forward_peak;
+  options.degree = needed.degree;
+  options.azimuth_nodes = std::max(options.azimuth_nodes, needed.azimuth_nodes);
+  options.later_zenith_nodes = std::max(options.later_zenith_nodes, needed.later_zenith_nodes);
+  options.later_azimuth_nodes = std::max(options.later_azimuth_nodes, needed.later_azimuth_nodes);
+  options.later_ray_nodes = std::max(options.later_ray_nodes, needed.later_ray_nodes);
+  return DiffuseLight(medium, options);
+}
 
 JudgedViews::JudgedViews(const Medium& medium, const DiffuseLight& finest,
                          std::size_t views_of_a_kind, std::size_t first)

@@ -91,12 +91,12 @@ Moments HarmonicsOf(const glm::dvec3& normal, const glm::dvec3& towards, const g
   const double lengths = glm::length(lift) * glm::length(aside);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(lift, aside) / lengths, -1.0, 1.0) : 1.0;
-  return SphericalHarmonics(kMaxDegree, static_cast<float>(mu), static_cast<float>(azimuth));
+  return SphericalHarmonics(LampGlow::kDegree, static_cast<float>(mu), static_cast<float>(azimuth));
 }
 
 double Facing(const Moments& lobe, const Moments& harmonics) {
   float sum = 0.0F;
-  for (std::size_t k = 0; k < MomentCount(kMaxDegree); ++k) sum += lobe[k] * harmonics[k];
+  for (std::size_t k = 0; k < MomentCount(LampGlow::kDegree); ++k) sum += lobe[k] * harmonics[k];
   return static_cast<double>(sum);
 }
 

@@ -27,6 +27,9 @@ class LampGlow {
  public:
   /// @param layers  densities as of altitude 0.
   /// @param ground_altitude_m  at the lamp's foot, not above it.
+  /// Of the moments.
+  static constexpr int kDegree = 6;
+
   LampGlow(const std::vector<LampLayer>& layers, double lamp_altitude_m, double ground_altitude_m);
 
   /// Irradiance [m^-2], in every band.
@@ -39,7 +42,6 @@ class LampGlow {
                                  const glm::dvec3& up) const;
 
  private:
-  static constexpr int kDegree = kMaxDegree;
   /// Of one place, a band: logarithm of the moment 00 times the distance, and all moments relative
   /// to 00, times those of the clamped cosine.
   struct Light {

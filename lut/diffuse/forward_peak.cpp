@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "lut/diffuse/forward_peak.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "atmosphere/air/phase_text.h"
+#include "atmosphere/number/constants.h"
+#include "lut/diffuse/spherical_harmonics.h"
+
+namespace alpenglow {
+namespace {
+
+// Beyond it the peak of any dust or haze is narrower than half a degree of arc times its share.
+constexpr int kLastDegree = 160;
+
+// Angles s in [0, 1], angle = pi s^2: dense where the peak is.
+constexpr std::size_t kAngles = 256;
+// Depths y = kDeepest u^2: light behind more has turned anywhere.
+constexpr std::size_t kDepths = 32;
+constexpr double kDeepest = 40.0;
+
+double AngleAt(std::size_t i) {
+  const double s = static_cast<double>(i) / static_cast<double>(kAngles - 1);
+  return kPi * s * s;
+}
+
+double DepthAt(std::size_t i) {
+  const double u = static_cast<double>(i) / static_cast<double>(kDepths - 1);
+  return kDeepest * u * u;
+}
+
+// exp(-y) [(exp(chi y) - 1) / y - chi].
+double HigherOrders(double chi, double y) {
+  if (y * std::abs(chi) < 1e-4) return 0.5 * chi * chi * y * std::exp(-y);
+  return (std::exp((chi - 1.0) * y) - std::exp(-y)) / y - chi * std::exp(-y);
+}
+
+/// Where a value stands between the nodes of a table.
+struct Place {
+  std::size_t cell;
+  float share;
+};
+
+Place PlaceOfAngle(double nu) {
+  const double s = std::sqrt(std::acos(std::clamp(nu, -1.0, 1.0)) / kPi);
+  const double at = s * static_cast<double>(kAngles - 1);
+  const auto cell = std::min(static_cast<std::size_t>(at), kAngles - 2);
+  return {cell, static_cast<float>(at - static_cast<double>(cell))};
+}
+
+Place PlaceOfDepth(float y) {
+  constexpr auto kLast = static_cast<float>(kDepths - 1);
+  constexpr float kScale = kLast * kLast / static_cast<float>(kDeepest);
+  const float squared = std::min(y * kScale, kLast * kLast);
+  const auto cell = std::min(static_cast<std::size_t>(std::sqrt(squared)), kDepths - 2);
+  const auto low = static_cast<float>(cell);
+  return {cell, (squared - low * low) / (2.0F * low + 1.0F)};
+}
+
+}  // namespace
+
+AirWithoutPeak WithoutPeak(const Medium& medium, int degree) {
+  const std::size_t bands = medium.wavelengths_nm.size();
+  const auto last = static_cast<std::size_t>(degree) + 1;
+  AirWithoutPeak air{medium, {}, MieLegendreCoefficients(medium, degree + 1)};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double share = std::max(air.chi[last * bands + band], 0.0);
+    const double peak_per_m = share * medium.mie_scattering_per_m[band];
+    air.share.push_back(share);
+    air.medium.mie_scattering_per_m[band] -= peak_per_m;
+    air.medium.mie_extinction_per_m[band] -= peak_per_m;
+    for (std::size_t l = 0; l <= last; ++l) {
+      double& chi = air.chi[l * bands + band];
+      chi = (chi - share) / (1.0 - share);
+    }
+  }
+  return air;
+}
+
+ForwardPeak::ForwardPeak(const Medium& medium, int degree) : air_(medium), degree_(degree) {
+  const std::vector<double> share = WithoutPeak(medium, degree).share;
+  share_.assign(share.begin(), share.end());
+  for (const PhaseFunction& phase : medium.mie_phase) shapes_.push_back(ShapeOf(phase, degree));
+}
+
+ForwardPeak::Shape ForwardPeak::ShapeOf(const PhaseFunction& phase, int degree) {
+  const std::vector<double> chi = LegendreCoefficients(phase, kLastDegree);
+  const auto first = static_cast<std::size_t>(degree) + 1;
+  std::vector<std::array<double, kDepths>> above(chi.size());
+  for (std::size_t l = first; l < chi.size(); ++l) {
+    for (std::size_t y = 0; y < kDepths; ++y) above[l][y] = HigherOrders(chi[l], DepthAt(y));
+  }
+  Shape shape{std::vector<float>(kAngles), std::vector<float>(kAngles * kDepths)};
+  for (std::size_t angle = 0; angle < kAngles; ++angle) {
+    const std::vector<double> series = LegendreSeries(kLastDegree, std::cos(AngleAt(angle)));
+    double low = 0.0;
+    for (std::size_t l = 0; l < first; ++l) low += series[l] * chi[l];
+    std::array<double, kDepths> high{};
+    for (std::size_t l = first; l < chi.size(); ++l) {
+      for (std::size_t y = 0; y < kDepths; ++y) high[y] += series[l] * above[l][y];
+    }
+    shape.low[angle] = static_cast<float>(low);
+    for (std::size_t y = 0; y < kDepths; ++y)
+      shape.high[angle * kDepths + y] = static_cast<float>(high[y]);
+  }
+  return shape;
+}
+
+Bands<float> ForwardPeak::Beam(double altitude_m, double mu_s) const {
+  const Medium& medium = air_.medium();
+  const RayExtent extent =
+      ExtentOf({altitude_m, mu_s, 1.0, 1.0}, medium.planet_radius_m, medium.atmosphere_height_m);
+  if (extent.end == RayEnd::kGround || altitude_m >= medium.atmosphere_height_m)
+    return Bands<float>(air_.bands());
+  Bands<float> beam = air_.TransmittanceToSpace(altitude_m, mu_s);
+  const auto aerosol_m = static_cast<double>(air_.ColumnsToSpace(altitude_m, mu_s)[1]);
+  for (std::size_t band = 0; band < beam.count; ++band) {
+    const double depth = medium.mie_scattering_per_m[band] * aerosol_m;
+    beam[band] *= static_cast<float>(std::expm1(static_cast<double>(share_[band]) * depth));
+  }
+  return beam;
+}
+
+float ForwardPeak::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
+                            float ahead, float base) const {
+  const AirConstants<float>& air = air_.constants();
+  const Place angle = PlaceOfAngle(nu);
+  const Shape& shape = shapes_[shapes_.size() > 1 ? band : 0];
+  const auto at_angle = [&](const std::vector<float>& table, std::size_t stride,
+                            std::size_t column) {
+    const float low = table[angle.cell * stride + column];
+    return low + angle.share * (table[(angle.cell + 1) * stride + column] - low);
+  };
+  const float low = at_angle(shape.low, 1, 0);
+  std::array<float, kDepths> high;
+  for (std::size_t y = 0; y < kDepths; ++y) high[y] = at_angle(shape.high, kDepths, y);
+  const std::vector<double> series = LegendreSeries(degree_, nu);
+  const auto narrow = static_cast<float>(std::accumulate(series.begin(), series.end(), 0.0));
+  const auto gas =
+      static_cast<float>(shared::PhaseMolecules(nu, Depolarisation(air_.medium(), band))) *
+      air.rayleigh[band];
+  const float mie = air.mie_scattering[band], f = share_[band];
+  // The formula less its value at y = 0, times exp(-depth).
+  const auto formula = [&](float y, float depth, float of_gas, float of_aerosol) {
+    const float more = std::expm1(f * y);
+    const float once = (y > 1e-4F ? more / y : f) - f * (1.0F + more);
+    const Place place = PlaceOfDepth(y);
+    const float above = high[place.cell] + place.share * (high[place.cell + 1] - high[place.cell]);
+    return std::exp(-depth) * (more * (of_gas + of_aerosol * low) + once * of_aerosol * narrow) +
+           std::exp(y - depth) * of_aerosol * above;
+  };
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    const float lit = samples.weight[i] * samples.lit[i];
+    if (!(lit > 0.0F)) continue;
+    const float y = mie * (samples.sun_mie[i] + samples.view_mie[i]);
+    const float depth =
+        OpticalDepthOf(ExtinctionAt(air, band), {samples.view_rayleigh[i] + samples.sun_rayleigh[i],
+                                                 samples.view_mie[i] + samples.sun_mie[i],
+                                                 samples.view_ozone[i] + samples.sun_ozone[i]});
+    const float of_gas = gas * samples.rayleigh_density[i];
+    const float of_aerosol = mie * samples.mie_density[i];
+    sum += lit * formula(y + ahead, depth, of_gas, of_aerosol);
+    if (base != 0.0F) sum -= lit * formula(base * y, depth, of_gas, of_aerosol);
+  }
+  return sum;
+}
+
+Bands<float> ForwardPeak::Along(const RaySamples<float>& samples, double nu) const {
+  Bands<float> light(air_.bands());
+  for (std::size_t band = 0; band < light.count; ++band)
+    light[band] = SumAlong(band, samples, nu, 0.0F, 0.0F);
+  return light;
+}
+
+Bands<float> ForwardPeak::Behind(const Way& way, const RaySamples<float>& samples,
+                                 double nu) const {
+  Bands<float> light(air_.bands());
+  for (std::size_t band = 0; band < light.count; ++band)
+    light[band] = way.clear[band] * SumAlong(band, samples, nu, way.scattering[band], 1.0F);
+  return light;
+}
+
+ForwardPeak::Way ForwardPeak::WayTo(const RaySamples<float>& samples) const {
+  const AirConstants<float>& air = air_.constants();
+  float rayleigh = 0.0F, mie = 0.0F;
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    rayleigh += samples.weight[i] * samples.rayleigh_density[i];
+    mie += samples.weight[i] * samples.mie_density[i];
+  }
+  const float ozone = samples.count > 0 ? samples.view_ozone[samples.count - 1] : 0.0F;
+  const Bands<float> none(air_.bands());
+  Way way{none, none, none};
+  for (std::size_t band = 0; band < none.count; ++band) {
+    way.clear[band] = std::exp(-OpticalDepthOf(ExtinctionAt(air, band), {rayleigh, mie, ozone}));
+    way.scattering[band] = air.mie_scattering[band] * mie;
+    way.more[band] = way.clear[band] * std::expm1(share_[band] * way.scattering[band]);
+  }
+  return way;
+}
+
+}  // namespace alpenglow

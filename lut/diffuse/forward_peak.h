@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Light that aerosol throws forward, in closed form beside moments of few degrees.
+//
+// Delta-M (Wiscombe 1977, J. Atmos. Sci. 34, 1408): of every scattering by aerosol the share f =
+// chi of degree L + 1 counts as unscattered. Successive orders are solved in the air that is left,
+//
+//   extinction' = extinction - f scattering, scattering' = (1 - f) scattering,
+//   chi'_l = (chi_l - f) / (1 - f),
+//
+// whose phase function ends at degree L: nothing is truncated. The sun's beam of that air is
+// brighter than the true one by light that has turned little, T' - T = T (exp(f x) - 1) with x the
+// optical depth of scattering by aerosol towards the sun. DiffuseLight::values() hold it as diffuse
+// light from the sun's direction, so that they mean the same with and without this.
+//
+// Rays are gathered in that air too. Light scattered once then has the exact phase function and, in
+// closed form, the peak of all orders (Nakajima, Tanaka 1988, J. Quant. Spectrosc. Radiat. Transf.
+// 40, 51, with the peak of all orders in small-angle approximation: Wentzel 1922; van de Hulst 1980,
+// Multiple Light Scattering, ch. 14): a path of n scatterings may have its large turn at any of
+// them. With y the optical depth of scattering from the sun to the point and on to the eye degree l
+// of the aerosol's light is, where the first order has chi_l,
+//
+//   (chi_l - f) exp(f y) + (exp(f y) - 1) / y    l <= L
+//   (exp(chi_l y) - 1) / y                       l > L       times T sigma_M (2 l + 1)/(4 pi) P_l(nu)
+//
+// and that of molecules p_R exp(f y) instead of p_R. What is behind the end of the ray, seen through
+// that air, is brighter than through the true by T (exp(f y) - 1), y along the ray.
+#pragma once
+
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/ray/single_scattering.h"
+
+namespace alpenglow {
+
+/// The air that delta-M leaves.
+struct AirWithoutPeak {
+  Medium medium;
+  std::vector<double> share;  // f of a band, in [0, 1)
+  std::vector<double> chi;    // chi'_l at [l * bands + band], l = 0 ... degree
+};
+
+[[nodiscard]] AirWithoutPeak WithoutPeak(const Medium& medium, int degree);
+
+/// Ready for look-ups. Immutable.
+class ForwardPeak {
+ public:
+  ForwardPeak(const Medium& medium, int degree);
+
+  /// T' - T from a point to the sun; 0 where the ground hides it.
+  [[nodiscard]] Bands<float> Beam(double altitude_m, double mu_s) const;
+
+  /// From the observer to the end of samples of the true air.
+  struct Way {
+    Bands<float> clear;       // T
+    Bands<float> more;        // T' - T
+    Bands<float> scattering;  // optical depth of scattering by aerosol
+  };
+  [[nodiscard]] Way WayTo(const RaySamples<float>& samples) const;
+
+  /// The sum of the formulas above along samples less what is scattered once [1/sr].
+  [[nodiscard]] Bands<float> Along(const RaySamples<float>& samples, double nu) const;
+
+  /// The same of samples behind the end of a way, seen from its beginning, less the sum as seen
+  /// from its end: what the peak brings from there.
+  [[nodiscard]] Bands<float> Behind(const Way& way, const RaySamples<float>& samples,
+                                    double nu) const;
+
+  [[nodiscard]] const AirIntegrator<float>& air() const { return air_; }
+
+ private:
+  /// One phase function: its degrees up to L, and light of higher degrees by depth.
+  struct Shape {
+    std::vector<float> low;   // [angle]: of the phase function
+    std::vector<float> high;  // [angle * depths + depth], times exp(-y)
+  };
+  /// Sum of formula(y + ahead) - formula(base y) along samples.
+  [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
+                               float ahead, float base) const;
+  [[nodiscard]] static Shape ShapeOf(const PhaseFunction& phase, int degree);
+
+  AirIntegrator<float> air_;
+  int degree_;
+  std::vector<float> share_;   // f of a band
+  std::vector<Shape> shapes_;  // one, or one a band
+};
+
+}  // namespace alpenglow
