@@ -38,6 +38,12 @@ double HigherOrders(double chi, double y) {
   return (std::exp((chi - 1.0) * y) - std::exp(-y)) / y - chi * std::exp(-y);
 }
 
+// exp(-depth) (exp(peak) - 1), peak < depth: neither digits are lost nor does it overflow.
+float Gain(float peak, float depth) {
+  if (peak < 1.0F) return std::exp(-depth) * std::expm1(peak);
+  return std::exp(peak - depth) - std::exp(-depth);
+}
+
 /// Where a value stands between the nodes of a table.
 struct Place {
   std::size_t cell;
@@ -115,11 +121,12 @@ Bands<float> ForwardPeak::Beam(double altitude_m, double mu_s) const {
       ExtentOf({altitude_m, mu_s, 1.0, 1.0}, medium.planet_radius_m, medium.atmosphere_height_m);
   if (extent.end == RayEnd::kGround || altitude_m >= medium.atmosphere_height_m)
     return Bands<float>(air_.bands());
-  Bands<float> beam = air_.TransmittanceToSpace(altitude_m, mu_s);
-  const auto aerosol_m = static_cast<double>(air_.ColumnsToSpace(altitude_m, mu_s)[1]);
+  const std::array<float, 3> columns_m = air_.ColumnsToSpace(altitude_m, mu_s);
+  const auto km = [&](std::size_t i) { return 1e-3F * columns_m[i]; };
+  Bands<float> beam(air_.bands());
   for (std::size_t band = 0; band < beam.count; ++band) {
-    const double depth = medium.mie_scattering_per_m[band] * aerosol_m;
-    beam[band] *= static_cast<float>(std::expm1(static_cast<double>(share_[band]) * depth));
+    const float depth = OpticalDepthOf(ExtinctionAt(air_.constants(), band), {km(0), km(1), km(2)});
+    beam[band] = Gain(share_[band] * air_.constants().mie_scattering[band] * km(1), depth);
   }
   return beam;
 }
@@ -145,11 +152,11 @@ float ForwardPeak::SumAlong(std::size_t band, const RaySamples<float>& samples, 
   const float mie = air.mie_scattering[band], f = share_[band];
   // The formula less its value at y = 0, times exp(-depth).
   const auto formula = [&](float y, float depth, float of_gas, float of_aerosol) {
-    const float more = std::expm1(f * y);
-    const float once = (y > 1e-4F ? more / y : f) - f * (1.0F + more);
+    const float clear = std::exp(-depth), more = Gain(f * y, depth);
+    const float once = (y > 1e-4F ? more / y : f * clear) - f * (clear + more);
     const Place place = PlaceOfDepth(y);
     const float above = high[place.cell] + place.share * (high[place.cell + 1] - high[place.cell]);
-    return std::exp(-depth) * (more * (of_gas + of_aerosol * low) + once * of_aerosol * narrow) +
+    return more * (of_gas + of_aerosol * low) + once * of_aerosol * narrow +
            std::exp(y - depth) * of_aerosol * above;
   };
   float sum = 0.0F;
@@ -195,9 +202,10 @@ ForwardPeak::Way ForwardPeak::WayTo(const RaySamples<float>& samples) const {
   const Bands<float> none(air_.bands());
   Way way{none, none, none};
   for (std::size_t band = 0; band < none.count; ++band) {
-    way.clear[band] = std::exp(-OpticalDepthOf(ExtinctionAt(air, band), {rayleigh, mie, ozone}));
+    const float depth = OpticalDepthOf(ExtinctionAt(air, band), {rayleigh, mie, ozone});
+    way.clear[band] = std::exp(-depth);
     way.scattering[band] = air.mie_scattering[band] * mie;
-    way.more[band] = way.clear[band] * std::expm1(share_[band] * way.scattering[band]);
+    way.more[band] = Gain(share_[band] * way.scattering[band], depth);
   }
   return way;
 }
