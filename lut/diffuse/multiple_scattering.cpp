@@ -100,15 +100,16 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
     options.degree = kMaxDegree;
     options.forward_peak = true;
     // More azimuths than degrees, or the last of them pass for others.
-    options.zenith_nodes = options.azimuth_nodes = 16;
-    options.later_zenith_nodes = 12;
-    options.later_azimuth_nodes = 14;
+    options.azimuth_nodes = 14;
+    options.later_azimuth_nodes = 13;
   }
   if (aerosol + molecules > 0.9) {
     options.altitudes = 24;
-    options.ray_nodes = 12;
-    options.later_ray_nodes = 12;
-    options.later_zenith_nodes = std::max(options.later_zenith_nodes, 8);
+    options.later_ray_nodes = 8;
+  }
+  if (molecules > 0.9) {
+    options.ray_nodes = options.later_ray_nodes = 12;
+    options.later_zenith_nodes = 8;
   }
   return options;
 }

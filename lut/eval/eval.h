@@ -5,8 +5,8 @@
 //             difference between two numbers of nodes and what closed forms leave (bounds below).
 //             For errors below what these can do, the judge. Of light of higher orders: the
 //             differences to two coarser solutions (one alone can be small by luck), and what the
-//             degrees of the aerosol that moments do not keep would hold (missing_degrees.h), times
-//             0.6, and 0.3 % of it. Of 384 values in air unseen by the calibration (clear, haze,
+//             degrees of the aerosol that moments do not keep would hold (missing_degrees.h; in
+//             hazy air forward_peak.h gives that light itself), times 0.6, and 0.3 % of it. Of 384 values in air unseen by the calibration (clear, haze,
 //             dust, molecules, thick, over snow) 98 % are within it, at least 97 % in each; it is 3
 //             times the true error in the median.
 //   table     look-ups in stored tables; what they leave out, integrated on their number of nodes.
