@@ -96,7 +96,7 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
   const double molecules =
       thickest(medium.rayleigh_scattering_per_m, medium.rayleigh_scale_height_m);
   DiffuseLightOptions options;
-  if (aerosol > 0.03) {
+  if (aerosol > 0.08) {
     options.degree = kMaxDegree;
     options.forward_peak = true;
     // More azimuths than degrees, or the last of them pass for others.

@@ -61,7 +61,7 @@ struct DiffuseLightOptions {
   bool forward_peak = false;
 };
 
-/// The usual ones in clear air. Where aerosol scatters more than 3 % of a vertical beam, degree 12
+/// The usual ones in clear air. Where aerosol scatters more than 8 % of a vertical beam, degree 12
 /// with the forward peak in closed form; where all scattering takes more than 60 %, more nodes.
 /// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol's optical depth
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
