@@ -14,15 +14,14 @@
 //
 // Rays are gathered in that air too. Light scattered once then has the exact phase function and, in
 // closed form, the peak of all orders (Nakajima, Tanaka 1988, J. Quant. Spectrosc. Radiat. Transf.
-// 40, 51, with the peak of all orders in small-angle approximation: Wentzel 1922; van de Hulst 1980,
-// Multiple Light Scattering, ch. 14): a path of n scatterings may have its large turn at any of
-// them. With y the optical depth of scattering from the sun to the point and on to the eye degree l
+// 40, 51, in small-angle approximation: Wentzel 1922; van de Hulst 1980, Multiple Light Scattering,
+// ch. 14): a path of n scatterings may have its large turn at any of them. With y the optical depth of scattering from the sun to the point and on to the eye degree l
 // of the aerosol's light is, where the first order has chi_l,
 //
 //   (chi_l - f) exp(f y) + (exp(f y) - 1) / y    l <= L
-//   (exp(chi_l y) - 1) / y                       l > L       times T sigma_M (2 l + 1)/(4 pi) P_l(nu)
+//   (exp(chi_l y) - 1) / y                       l > L
 //
-// and that of molecules p_R exp(f y) instead of p_R. What is behind the end of the ray, seen through
+// times T sigma_M (2 l + 1)/(4 pi) P_l(nu), and that of molecules p_R exp(f y) instead of p_R. What is behind the end of the ray, seen through
 // that air, is brighter than through the true by T (exp(f y) - 1), y along the ray.
 #pragma once
 
