@@ -33,7 +33,8 @@ Star StarOf(double right_deg, double up_deg, double right_mas, double up_mas, do
 
 const std::vector<Star>& Catalogue() {
   static const std::vector<Star> kStars = [] {
-    const auto columns = atmosphere::ReadColumns("atmosphere/data/bright_stars.csv", {1, 2, 3, 4, 5, 6});
+    const auto columns =
+        atmosphere::ReadColumns("atmosphere/data/bright_stars.csv", {1, 2, 3, 4, 5, 6});
     std::vector<Star> stars;
     for (std::size_t i = 0; i < columns[0].size(); ++i) {
       stars.push_back(StarOf(columns[0][i], columns[1][i], columns[2][i], columns[3][i],
