@@ -76,7 +76,11 @@ void PixelLight::TakeUpTo(int rays) {
                                         samples_.Point(sum_.rays, SampleOf::kSunDisk));
     spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
     const BandLight glow = shaded.lamps + shaded.volumes;
-    new_rays_.push_back({seen.offset.x, seen.offset.y, shaded.radiance + -1.0F * glow});
+    const bool sees_sky = seen.hit.kind == HitKind::kSky;
+    if (sees_sky && !sky_) sky_ = shaded.inscatter;
+    BandLight shared = shaded.radiance + -1.0F * glow;
+    if (sees_sky) shared = shared + -1.0F * *sky_;
+    new_rays_.push_back({seen.offset.x, seen.offset.y, shared, sees_sky});
     glow_ = glow_ + glow;
     sum_.Add(shaded);
   }

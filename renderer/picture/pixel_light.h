@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,8 @@ class PixelLight {
   /// The rays since it was last asked, without light from lamps and volumes: its glow in the air is
   /// one value for all rays of a pixel, and near lamps very another one for the next.
   [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
+  /// The light of the air of rays that see the sky, to which the radiance of these is added.
+  [[nodiscard]] const std::optional<BandLight>& sky() const { return sky_; }
   /// What is known of the mean radiance without that better than from its rays alone.
   void SetMeanRadiance(const BandLight& mean) {
     sum_.sum.radiance = static_cast<float>(sum_.rays) * mean + glow_;
@@ -61,6 +64,7 @@ class PixelLight {
   PixelSum sum_;
   RaySpread spread_;
   std::vector<SeenRay> new_rays_;
+  std::optional<BandLight> sky_;
   BandLight glow_;  // sum of what new_rays_ are without
 };
 

@@ -234,6 +234,7 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
     share();
     pixel.TakeUpTo(wanted[asked.Index(x, y)]);
     share();
+    if (pixel.sky()) shared.SetSky(x - asked.x0, y - asked.y0, *pixel.sky());
   });
   if (stopped()) return;
   tile.Visit([&](int x, int y) {

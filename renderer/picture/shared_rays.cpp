@@ -33,6 +33,7 @@ SharedRays::SharedRays(const PixelFilter& filter, int columns, int rows, std::si
   filter_.push_back(filter_.back());  // a box ends at its full height
   expected_.assign(Index(0, rows), 0.0F);
   sums_.assign(expected_.size() * stride_, 0.0F);
+  skies_.resize(expected_.size());
 }
 
 void SharedRays::Expect(int column, int row, int rays) {
@@ -56,8 +57,8 @@ SharedRays::Weights SharedRays::Around(double at, int end) const {
 void SharedRays::Add(int column, int row, const SeenRay& ray) {
   const double x = column + ray.right, y = row + ray.down;
   const Weights across = Around(x, columns_), along = Around(y, rows_);
-  alignas(16) std::array<float, kLight + kMaxBands> values{1.0F, static_cast<float>(x),
-                                                           static_cast<float>(y)};
+  alignas(16) std::array<float, kLight + kMaxBands> values{
+      1.0F, static_cast<float>(x), static_cast<float>(y), ray.sees_sky ? 1.0F : 0.0F};
   std::copy_n(ray.radiance.value.begin(), bands_, values.begin() + kLight);
   struct Share {
     std::size_t pixel;
@@ -84,6 +85,25 @@ void SharedRays::Add(int column, int row, const SeenRay& ray) {
   }
 }
 
+void SharedRays::SetSky(int column, int row, const BandLight& sky) {
+  skies_[Index(column, row)] = sky;
+}
+
+BandLight SharedRays::SkyAt(int column, int row) const {
+  if (const auto& own = skies_[Index(column, row)]) return *own;
+  BandLight sum(bands_);
+  float skies = 0.0F;
+  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
+    for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
+      const auto& sky = skies_[Index(x, y)];
+      if (!sky) continue;
+      sum = sum + *sky;
+      skies += 1.0F;
+    }
+  }
+  return skies > 0.0F ? (1.0F / skies) * sum : sum;
+}
+
 BandLight SharedRays::Light(int column, int row) const {
   constexpr float kMostOff = 0.25F;  // that both together leave light positive
   const std::size_t here = Index(column, row);
@@ -94,9 +114,12 @@ BandLight SharedRays::Light(int column, int row) const {
   const bool has_ends = row > 0 && row + 1 < rows_;
   const float right = has_sides ? off(kColumn, column) : 0.0F;
   const float down = has_ends ? off(kRow, row) : 0.0F;
+  const BandLight sky = SkyAt(column, row);
   BandLight light(bands_);
   for (std::size_t band = 0; band < bands_; ++band) {
-    const auto mean = [&](std::size_t pixel) { return Mean(pixel, kLight + band); };
+    const auto mean = [&](std::size_t pixel) {
+      return Mean(pixel, kLight + band) + Mean(pixel, kSky) * sky[band];
+    };
     light[band] = mean(here);
     if (has_sides) light[band] -= right * LimitedSlope(mean(here - 1), mean(here), mean(here + 1));
     if (!has_ends) continue;

@@ -14,11 +14,18 @@
 // the limited difference of van Leer (1977), J. Comput. Phys. 23, 276, which is 0 at crests and never
 // over twice the difference to either neighbour, so that light does not become negative.
 //
+// All rays of a pixel that meet the sky see one sky, that of the pixel (SharedAir), wherever they go:
+// what they say to a neighbour is that there is sky, not which. So L_r is the light beside that of
+// the sky of the ray's own pixel, and a pixel adds its own sky as often as there is one:
+// sum_r g(r) [r sees sky] / sum_r g(r). Else a sky that brightens from row to row by a quarter would
+// come out up to a fifth too bright above a ridge, whose pixels have many rays.
+//
 // The same rays have 0.6 times the error of means of each pixel's own.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "renderer/camera/pixel_filter.h"
@@ -29,7 +36,8 @@ namespace alpenglow {
 /// What a ray saw, and where it went [pixels from the middle of its pixel].
 struct SeenRay {
   double right, down;
-  BandLight radiance;
+  BandLight radiance;  // beside the sky of its pixel, where it sees the sky
+  bool sees_sky = false;
 };
 
 /// Of a rectangle of pixels. First it is told how many rays each will take, then the rays; then it
@@ -41,8 +49,10 @@ class SharedRays {
 
   void Expect(int column, int row, int rays);
   void Add(int column, int row, const SeenRay& ray);
+  /// The sky of a pixel with rays that see it.
+  void SetSky(int column, int row, const BandLight& sky);
 
-  /// The mean of a pixel that has rays.
+  /// The mean of a pixel that has rays. Where only those of its neighbours see the sky, it is theirs.
   [[nodiscard]] BandLight Light(int column, int row) const;
 
  private:
@@ -60,15 +70,19 @@ class SharedRays {
     return sums_[pixel * stride_ + sum] / sums_[pixel * stride_];
   }
 
-  // Sums of a pixel: of g, of g times the ray's column and row, and from kLight on of g times its
-  // light, in blocks of four for vector instructions.
-  static constexpr std::size_t kColumn = 1, kRow = 2, kLight = 4;
+  /// The pixel's, else the mean of those around it, else none.
+  [[nodiscard]] BandLight SkyAt(int column, int row) const;
+
+  // Sums of a pixel: of g, of g times the ray's column and row and whether it sees the sky, and from
+  // kLight on of g times its light, in blocks of four for vector instructions.
+  static constexpr std::size_t kColumn = 1, kRow = 2, kSky = 3, kLight = 4;
   int columns_, rows_;
   std::size_t bands_, stride_;
   double radius_;
   std::vector<float> filter_;  // over the distance, up to its radius
   std::vector<float> expected_;
   std::vector<float> sums_;
+  std::vector<std::optional<BandLight>> skies_;
 };
 
 }  // namespace alpenglow

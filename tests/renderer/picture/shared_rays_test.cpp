@@ -76,6 +76,34 @@ TEST(SharedRays, AreNearlyTheFilterOfABentLightWhereManyCome) {
   EXPECT_NEAR(shared.Light(2, 3)[0], 1.0 + variance, 0.03);
 }
 
+TEST(SharedRays, ShareWhereTheSkyIsButNotWhichSky) {
+  // Each row has its own sky, a quarter brighter than the row above, and the lowest rows many rays.
+  const auto sky_of = [](int row) { return static_cast<float>(std::pow(1.25, row)); };
+  const auto rays_of = [](int row) { return row < 4 ? 4 : 256; };
+  const PixelFilter filter(PixelFilter::Kind::kBlackmanHarris);
+  SharedRays shared(filter, kSide, kSide, 1);
+  std::minstd_rand random(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) shared.Expect(x, y, rays_of(y));
+  }
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      for (int i = 0; i < rays_of(y); ++i) {
+        shared.Add(
+            x, y,
+            {filter.Offset(uniform(random)), filter.Offset(uniform(random)), BandLight(1), true});
+      }
+      BandLight sky(1);
+      sky[0] = sky_of(y);
+      if (x != 3 || y != 5) shared.SetSky(x, y, sky);
+    }
+  }
+  for (int y = 0; y < kSide; ++y) EXPECT_NEAR(shared.Light(2, y)[0], sky_of(y), 1e-5F * sky_of(y));
+  const float around = (sky_of(4) * 3.0F + sky_of(5) * 2.0F + sky_of(6) * 3.0F) / 8.0F;
+  EXPECT_NEAR(shared.Light(3, 5)[0], around, 1e-5F) << "has no sky of its own";
+}
+
 TEST(SharedRays, StayPositiveBesideALightAMillionTimesAsBright) {
   const SharedRays shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
                                  [](double x, double) { return x > 3.2 ? 1e6 : 1.0; });
