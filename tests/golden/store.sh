@@ -9,6 +9,6 @@ sed 1d "$folder/pictures.csv" | while IFS=, read -r name scene time; do
   case " $* " in *" $name "*) ;; *) [ $# -eq 0 ] || continue ;; esac
   "$program" "$folder/$scene" --quiet --at "$time" --size 48x27 --samples 16 \
     --out "$folder/$name.exr"
-  rm -f "$folder/$name.manifest.csv"
+  rm -f "$folder/$name.manifest.csv" "$folder/$name.manifest.json"
   echo "$name: $(wc -c < "$folder/$name.exr") bytes"
 done
