@@ -18,6 +18,15 @@ constexpr double kNearMiddle = 0.4;
 // moves by 5 m over level ground.
 constexpr double kSunMoves = 0.2;
 
+// What was made higher up is kept until the eye is that much lower.
+constexpr double kLower = 1.25;
+
+// Whether a site for an eye at one height is, kept or made anew, as one for the other would be.
+bool AreAlikeWide(const GroundExtent& extent, double a_m, double b_m) {
+  return extent.HalfWidthUnder(a_m) == extent.HalfWidthUnder(b_m) &&
+         extent.HalfWidthUnder(kLower * a_m) == extent.HalfWidthUnder(kLower * b_m);
+}
+
 double DistanceBetween(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
                        const GeodeticPosition& b) {
   GeodeticPosition foot_a = a, foot_b = b;
@@ -30,6 +39,13 @@ glm::dvec3 Direction(const SunPosition& sun) {
 }
 
 }  // namespace
+
+double GroundExtent::HalfWidthUnder(double height_m) const {
+  constexpr double kHeights = 7.0;
+  double width_m = half_width_m;
+  for (int doubled = 0; doubled < 2 && width_m < kHeights * height_m; ++doubled) width_m *= 2.0;
+  return width_m;
+}
 
 /// Keeps the site between positions of the sun.
 class GroundFollower::Maker {
@@ -76,12 +92,13 @@ class GroundFollower::Maker {
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {
     if (site_ && air_ == request.air && ground_ == request.ground &&
         DistanceBetween(site_->ground().frame.ellipsoid(), site_->ground().frame.origin(),
-                        request.view.eye) < 2.0 * kNearMiddle * extent_.half_width_m &&
-        IsNearMiddle(request.view.eye)) {
+                        request.view.eye) < 2.0 * kNearMiddle * half_width_m_ &&
+        IsNearMiddle(request.view.eye) && IsAsWide(request.view.eye.height_m)) {
       return site_;
     }
+    half_width_m_ = extent_.HalfWidthUnder(request.view.eye.height_m);
     const std::optional<ElevationGrid> grid =
-        (*request.ground)(request.view.eye, extent_.half_width_m, extent_.samples);
+        (*request.ground)(request.view.eye, half_width_m_, extent_.samples);
     if (!grid) return nullptr;
     GeodeticPosition foot = request.view.eye;
     foot.height_m = 0.0;
@@ -100,12 +117,18 @@ class GroundFollower::Maker {
 
   [[nodiscard]] bool IsNearMiddle(const GeodeticPosition& eye) const {
     return DistanceBetween(site_->ground().frame.ellipsoid(), middle_, eye) <
-           kNearMiddle * extent_.half_width_m;
+           kNearMiddle * half_width_m_;
+  }
+
+  [[nodiscard]] bool IsAsWide(double height_m) const {
+    return half_width_m_ >= extent_.HalfWidthUnder(height_m) &&
+           half_width_m_ <= extent_.HalfWidthUnder(kLower * height_m);
   }
 
   GroundCover cover_;
   std::shared_ptr<const ColourDrape> drape_;
   GroundExtent extent_;
+  double half_width_m_ = 0.0;  // of the site
   std::shared_ptr<const GroundSite> site_;
   std::shared_ptr<const SolvedAir> air_;
   std::shared_ptr<const GroundSampler> ground_;
@@ -126,9 +149,10 @@ bool GroundFollower::Suits(const Request& asked, const Request& wanted) const {
   if (asked.air != wanted.air || asked.ground != wanted.ground) return false;
   const double turned = std::acos(
       std::clamp(glm::dot(Direction(asked.view.sun), Direction(wanted.view.sun)), -1.0, 1.0));
+  const double width_m = extent_.HalfWidthUnder(wanted.view.eye.height_m);
   return turned < kSunMoves * wanted.view.sun.angular_radius_rad &&
-         DistanceBetween(kWgs84, asked.view.eye, wanted.view.eye) <
-             kNearMiddle * extent_.half_width_m;
+         AreAlikeWide(extent_, asked.view.eye.height_m, wanted.view.eye.height_m) &&
+         DistanceBetween(kWgs84, asked.view.eye, wanted.view.eye) < kNearMiddle * width_m;
 }
 
 bool GroundFollower::Take() {

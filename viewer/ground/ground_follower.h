@@ -17,10 +17,16 @@
 
 namespace alpenglow {
 
-/// The land whose light is made: as much as stands over its own valleys.
+/// The land whose light is made: as much as stands over its own valleys, and from high up as far as
+/// an eye sees it well.
 struct GroundExtent {
   double half_width_m = 40e3;
   int samples = 1024;  // a side, at most
+
+  /// [m] Under an eye at a height over the ellipsoid: at least 7 heights, as far as land that is seen
+  /// 8 degrees under the horizon, but at most four times the least, lest samples be too far apart.
+  /// In doublings, so that an eye that climbs needs other land but twice.
+  [[nodiscard]] double HalfWidthUnder(double height_m) const;
 };
 
 class GroundFollower {

@@ -93,9 +93,14 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
   const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
   const double half_columns = half_width_m / size.column_m, half_rows = half_width_m / size.row_m;
-  const double most = std::max({half_columns, half_rows, 1.0});
+  // Of the land that there is: the lattice may end before.
+  const auto within = [](double middle, double half, int last_sample) {
+    return std::min(middle + half, static_cast<double>(last_sample)) - std::max(middle - half, 0.0);
+  };
+  const double most = std::max(within(at.column, half_columns, lattice.last_column),
+                               within(at.row, half_rows, lattice.last_row));
   int level = 0;
-  while (2.0 * most / (1 << level) + 1.0 > most_samples) ++level;
+  while (most / (1 << level) + 1.0 > most_samples) ++level;
   const double step = 1 << level;
   const auto first = [&](double from) {
     return std::max(static_cast<int>(std::ceil(from / step)), 0);

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/ray/shell.h"
+#include "renderer/camera/pixel_samples.h"
 
 namespace alpenglow {
 namespace {
@@ -44,12 +45,11 @@ LandView LandViewOf(const PaintedView& view, int samples) {
   return {half.x * axes.right, half.y * axes.up, axes.forward, samples};
 }
 
-// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences".
+// The same for all pixels.
 glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view) {
   if (ray.of == 1) return glm::dvec2(0.0);
-  const double x = 0.5 + 0.7548776662466927 * ray.number, y = 0.5 + 0.5698402909980532 * ray.number;
-  return {(2.0 * (x - std::floor(x)) - 1.0) / view.width,
-          (2.0 * (y - std::floor(y)) - 1.0) / view.height};
+  const auto [x, y] = PixelSamples(0, 0, ray.of).Point(ray.number, SampleOf::kPixel);
+  return {(2.0 * x - 1.0) / view.width, (2.0 * y - 1.0) / view.height};
 }
 
 std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,

@@ -89,6 +89,25 @@ TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
 }
 
+TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
+  EXPECT_EQ(kSmall.HalfWidthUnder(0.0), 8e3);
+  EXPECT_EQ(kSmall.HalfWidthUnder(8e3 / 7.0), 8e3);
+  EXPECT_EQ(kSmall.HalfWidthUnder(1.01 * 8e3 / 7.0), 16e3);
+  EXPECT_EQ(kSmall.HalfWidthUnder(400e3), 32e3) << "no further";
+  std::vector<double> widths_m;
+  GroundFollower follower({}, nullptr, {8e3, 32});
+  follower.SetGround([&](const GeodeticPosition& place, double half_width_m, int most_samples) {
+    widths_m.push_back(half_width_m);
+    return RangeAround(place, half_width_m, most_samples);
+  });
+  auto view = ViewFrom(kPlace, 30.0);
+  for (const double height_m : {1000.0, 1200.0, 1100.0, 800.0}) {
+    view.eye.height_m = height_m;
+    static_cast<void>(follower.Settle(Air(), view));
+  }
+  EXPECT_EQ(widths_m, (std::vector{8e3, 16e3, 8e3})) << "at 1100 m that of 1200 m is kept";
+}
+
 TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);

@@ -146,6 +146,10 @@ TEST_F(LandSourceFiles, ASampledGridIsTheLandAroundAPlace) {
   ASSERT_TRUE(all);
   EXPECT_LE(std::max(all->columns, all->rows), 64);
   EXPECT_GT(all->columns * all->step_lon_rad, 0.9 * 0.2 * kRadiansPerDegree);
+  const auto whole = heights.SampledGrid(place, 1e6, 512);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->columns, heights.tiles().lattice().last_column + 1)
+      << "where the land ends before, its samples count";
   EXPECT_FALSE(heights.SampledGrid({0.0, 0.0, 0.0}, 30e3, 64));
 }
 
