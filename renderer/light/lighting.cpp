@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/sun/moon.h"
+#include "atmosphere/sun/moon_reflectance.h"
 #include "atmosphere/sun/sun_disk.h"
 
 namespace alpenglow {
@@ -38,6 +40,22 @@ Lighting Lighting::By(const DistantLight& light) const {
   alone.night = nullptr;
   alone.on_terrain = nullptr;
   return alone;
+}
+
+BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm) {
+  const double phase_rad = std::acos(std::clamp(-glm::dot(moon.to_moon, moon.to_sun), -1.0, 1.0));
+  const double grey = MoonReflectance(phase_rad, 550.0);
+  BandLight colour(wavelengths_nm.size());
+  for (std::size_t band = 0; band < colour.count; ++band)
+    colour[band] = static_cast<float>(MoonReflectance(phase_rad, wavelengths_nm[band]) / grey);
+  return colour;
+}
+
+DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
+                         const UtcInstant& instant, double earth_sun_au, const BandLight& colour,
+                         const BandLight& sun) {
+  const double share = MoonIrradiance(MoonAt(place, instant), earth_sun_au, 550.0);
+  return {disk.to_moon, disk.radius_rad, static_cast<float>(share) * (colour * sun)};
 }
 
 LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,

@@ -60,6 +60,15 @@ struct Lighting {
                                   const GeodeticPosition& place, const Medium& medium,
                                   double wetness = 0.0);
 
+/// Of the moon's reflectance at the phase that the disk has, relative to that at 550 nm.
+[[nodiscard]] BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);
+
+/// The moon as it stands over a place, as a light. @param disk  its direction counts.
+/// @param sun  irradiance of the sun there. @param earth_sun_au  distance of the place from it.
+[[nodiscard]] DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
+                                       const UtcInstant& instant, double earth_sun_au,
+                                       const BandLight& colour, const BandLight& sun);
+
 /// The sun over a point, terrain aside.
 struct LocalSun {
   double altitude_m;

@@ -7,7 +7,6 @@
 
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/moon_reflectance.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
@@ -89,20 +88,12 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
 
 void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
                           Lighting& light) const {
-  const double phase_rad =
-      std::acos(std::clamp(-glm::dot(light.moon->to_moon, light.moon->to_sun), -1.0, 1.0));
-  light.moon_colour = BandLight(medium.wavelengths_nm.size());
-  const double grey = MoonReflectance(phase_rad, 550.0);
-  for (std::size_t band = 0; band < light.moon_colour.count; ++band) {
-    light.moon_colour[band] =
-        static_cast<float>(MoonReflectance(phase_rad, medium.wavelengths_nm[band]) / grey);
-  }
+  light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
   const double sun_lux = Illuminance(stand.eye, light);
   if (sun_lux > kDaylight_lux) return;
   const GeodeticPosition eye = EyeOf(shot);
-  const double share = MoonIrradiance(MoonAt(eye, shot.instant), earth_sun_au, 550.0);
-  const DistantLight moonlight{light.moon->to_moon, light.moon->radius_rad,
-                               static_cast<float>(share) * (light.moon_colour * light.irradiance)};
+  const DistantLight moonlight = MoonlightOf(*light.moon, eye, shot.instant, earth_sun_au,
+                                             light.moon_colour, light.irradiance);
   if (IlluminanceBy(moonlight, stand.eye, light) > kUnseenShare * (sun_lux + kNightSky_lux))
     light.moonlight = moonlight;
   if (kNightSky_lux < kUnseenShare * sun_lux) return;

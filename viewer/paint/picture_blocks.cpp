@@ -84,19 +84,17 @@ void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
 }
 
 void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
-                               const SunPosition& sun, const PixelRay& ray) const {
+                               const KeyLight& key, const PixelRay& ray) const {
   const Medium& medium = scene.air().air()->medium;
   const LandView axes = LandViewOf(view);
   const glm::dvec2 shift = ShiftOf(ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
-  glm::vec4 irradiance = GpuBandsOf(medium.solar_irradiance);
-  irradiance /= static_cast<float>(sun.distance_au * sun.distance_au);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   const ViewBlock block{{glm::vec3(axes.right), 0.0F},
                         {glm::vec3(axes.up), 0.0F},
                         {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)},
-                        {glm::vec3(DirectionToSun(sun)), sun.angular_radius_rad},
-                        irradiance,
+                        {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad},
+                        key.irradiance,
                         {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)}};
   Upload(view_, kViewBinding, block);
 }

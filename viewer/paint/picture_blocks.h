@@ -9,6 +9,7 @@
 #include "atmosphere/sun/sun.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/paint/key_light.h"
 #include "viewer/paint/painted_scene.h"
 #include "viewer/paint/painted_view.h"
 #include "viewer/shaders/uniform_blocks.h"
@@ -20,7 +21,7 @@ class PictureBlocks {
  public:
   void UploadAir(const PaintedScene& scene, const Eye& eye);
   /// @param ray  that is painted of each pixel.
-  void UploadView(const PaintedScene& scene, const PaintedView& view, const SunPosition& sun,
+  void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
                   const PixelRay& ray) const;
   void UploadGround(const PaintedScene& scene, const PaintedView& view,
                     const SunPosition& sun) const;

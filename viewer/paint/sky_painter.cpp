@@ -59,20 +59,25 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
   CheckGl("SkyPainter");
 }
 
-const SunPosition& SkyPainter::SunOf(const PaintedView& view) {
-  const bool is_known = sun_ && sun_->first.now == view.now && sun_->first.eye == view.eye;
-  if (!is_known) sun_.emplace(view, ApparentSunAt(view.eye.place, view.now));
-  return sun_->second;
+const SkyPainter::Shining& SkyPainter::LightsOf(const PaintedView& view) {
+  const std::shared_ptr<const SolvedAir>& air = scene_.air().air();
+  const bool is_known = shining_ && shining_->view.now == view.now &&
+                        shining_->view.eye == view.eye && shining_->air == air;
+  if (!is_known) {
+    const SunPosition sun = ApparentSunAt(view.eye.place, view.now);
+    shining_ = {view, sun, air, KeyLightAt(view.eye.place, view.now, sun, *air)};
+  }
+  return *shining_;
 }
 
 void SkyPainter::Update(const PaintedView& view, double seconds) {
-  const SunPosition& sun = SunOf(view);
+  const KeyLight& key = LightsOf(view).key;
   Begin("update");
-  scene_.Update(view, sun, seconds);
+  scene_.Update(view, key.disk, seconds);
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
-  scene_.Settle(view, SunOf(view), samples);
+  scene_.Settle(view, LightsOf(view).key.disk, samples);
   lamps_.SettlePlans();
 }
 
@@ -170,7 +175,11 @@ std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
   return boxes;
 }
 
-void SkyPainter::PaintDisks(const PaintedView& view, double share) {
+// The disk of the sun is the sun's, whatever lights the air.
+void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
+  const KeyLight sun = SunAsKey(LightsOf(view).sun, scene_.air().air()->medium);
+  blocks_.UploadView(scene_, view, sun, ray);
+  const double share = 1.0 / ray.of;
   const BesideLand beside;
   const Adding adding(share);
   for (const PixelBox& box : DisksSeen(view)) {
@@ -181,10 +190,9 @@ void SkyPainter::PaintDisks(const PaintedView& view, double share) {
 
 void SkyPainter::PaintDisksOver(const RenderTarget& target, const LandOutline& outline,
                                 const PaintedView& view) {
-  blocks_.UploadView(scene_, view, SunOf(view), {});
   target.Bind();
   target.UseDepthOf(outline);
-  PaintDisks(view, 1.0);
+  PaintDisks(view, {});
   CheckGl("SkyPainter::PaintDisksOver");
 }
 
@@ -193,7 +201,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
-  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, SunOf(view));
+  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, LightsOf(view).key.disk);
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
@@ -206,16 +214,17 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
   lamp_painter_.PaintOver(PixelAngle(view));
 }
 
-void SkyPainter::PaintSample(const PaintedView& view, Disks disks, double share) {
+void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray) {
+  blocks_.UploadView(scene_, view, LightsOf(view).key, ray);
   PaintLand(view);
   PaintShafts(view);
   PaintLamps(view);
-  PaintPicture(view, share);
-  if (disks == Disks::kPainted) PaintDisks(view, share);
+  PaintPicture(view, 1.0 / ray.of);
+  if (disks == Disks::kPainted) PaintDisks(view, ray);
 }
 
 SkyPainter::Bodies SkyPainter::BodiesOf(const PaintedView& view) {
-  const SunPosition& sun = SunOf(view);
+  const SunPosition& sun = LightsOf(view).sun;
   return {sun, ApparentMoonDisk(view.eye.place, view.now, sun.distance_au)};
 }
 
@@ -223,7 +232,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   const Bodies bodies = BodiesOf(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
-  blocks_.UploadGround(scene_, view, bodies.sun);
+  blocks_.UploadGround(scene_, view, LightsOf(view).key.disk);
   DescribeMoon(bodies.moon);
   PrepareLamps(view);
   scene_.air().textures().Bind(kAirUnit, kTablesBinding);
@@ -231,8 +240,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
   for (int sample = 0; sample < samples; ++sample) {
-    blocks_.UploadView(scene_, view, bodies.sun, {sample, samples});
-    PaintSample(view, disks, 1.0 / samples);
+    PaintSample(view, disks, {sample, samples});
   }
   PaintLampsOver(view);
   EndTime();

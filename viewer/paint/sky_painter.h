@@ -9,8 +9,8 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
-#include <utility>
 
 #include "atmosphere/sun/moon_disk.h"
 #include "lut/picture/image.h"
@@ -21,6 +21,7 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_outline.h"
 #include "viewer/land/surface_map.h"
+#include "viewer/paint/key_light.h"
 #include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_scene.h"
 #include "viewer/paint/painted_view.h"
@@ -90,11 +91,18 @@ class SkyPainter {
     SunPosition sun;
     MoonDisk moon;
   };
-  [[nodiscard]] const SunPosition& SunOf(const PaintedView& view);
+  /// What shines on a view.
+  struct Shining {
+    PaintedView view;
+    SunPosition sun;
+    std::shared_ptr<const SolvedAir> air;
+    KeyLight key;
+  };
+  [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
   [[nodiscard]] Bodies BodiesOf(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
   void DescribeMoon(const MoonDisk& moon);
-  void PaintSample(const PaintedView& view, Disks disks, double share);
+  void PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
@@ -102,7 +110,7 @@ class SkyPainter {
   void MakeOneReady(bool has_shade, bool has_lamps);
   void PaintSky(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintLandAndSky(const PaintedView& view, double share);
-  void PaintDisks(const PaintedView& view, double share);
+  void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
@@ -116,7 +124,7 @@ class SkyPainter {
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
-  std::optional<std::pair<PaintedView, SunPosition>> sun_;  // of the view asked for last
+  std::optional<Shining> shining_;  // on the view asked for last
   PassTimer* timer_ = nullptr;
 };
 

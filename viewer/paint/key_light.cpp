@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/key_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "renderer/light/lighting.h"
+#include "viewer/shaders/uniform_blocks.h"
+
+namespace alpenglow {
+namespace {
+
+// The brightest moon brings less than the sun over this elevation, whatever the air.
+constexpr double kBrighterThanMoon_rad = -4.0 * kRadiansPerDegree;
+
+std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
+  const auto off = [](double nm) { return std::abs(nm - 555.0); };
+  return static_cast<std::size_t>(
+      std::min_element(wavelengths_nm.begin(), wavelengths_nm.end(),
+                       [&](double a, double b) { return off(a) < off(b); }) -
+      wavelengths_nm.begin());
+}
+
+// Of unit irradiance above the air, on a level place.
+double LevelLight(const SolvedAir& air, double altitude_m, double elevation_rad) {
+  const std::size_t green = GreenBand(air.medium.wavelengths_nm);
+  const double mu = std::sin(elevation_rad);
+  auto light = static_cast<double>(air.diffuse.SkyIrradiance(altitude_m, mu)[green]);
+  if (mu > 0.0) {
+    const AirIntegrator<float> integrator(air.medium);
+    light += mu * static_cast<double>(integrator.TransmittanceToSpace(altitude_m, mu)[green]);
+  }
+  return light;
+}
+
+SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
+  SunPosition position{};
+  position.elevation_rad = std::asin(std::clamp(moon.to_light.z, -1.0, 1.0));
+  position.azimuth_rad = std::atan2(moon.to_light.x, moon.to_light.y);
+  if (position.azimuth_rad < 0.0) position.azimuth_rad += 2.0 * kPi;
+  position.distance_au = earth_sun_au;
+  position.angular_radius_rad = moon.radius_rad;
+  return position;
+}
+
+glm::vec4 Four(const BandLight& light) {
+  return GpuBandsOf(
+      {light.value.begin(), light.value.begin() + static_cast<std::ptrdiff_t>(light.count)});
+}
+
+}  // namespace
+
+KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
+  const auto at_1_au = static_cast<float>(1.0 / (sun.distance_au * sun.distance_au));
+  return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};
+}
+
+KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now, const SunPosition& sun,
+                    const SolvedAir& air) {
+  const KeyLight by_sun = SunAsKey(sun, air.medium);
+  if (!air.medium.follows_wgs84 || sun.elevation_rad > kBrighterThanMoon_rad) return by_sun;
+  const MoonDisk disk = ApparentMoonDisk(eye, now, sun.distance_au);
+  BandLight solar(air.medium.wavelengths_nm.size());
+  for (std::size_t band = 0; band < solar.count; ++band)
+    solar[band] = by_sun.irradiance[static_cast<glm::length_t>(band)];
+  const DistantLight moon = MoonlightOf(disk, eye, now, sun.distance_au,
+                                        MoonColour(disk, air.medium.wavelengths_nm), solar);
+  const KeyLight by_moon{AsPosition(moon, sun.distance_au), Four(moon.irradiance), true};
+  const double altitude_m = std::max(eye.height_m, 0.0);
+  const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
+  const auto brings = [&](const KeyLight& key) {
+    return static_cast<double>(key.irradiance[green]) *
+           LevelLight(air, altitude_m, key.disk.elevation_rad);
+  };
+  return brings(by_moon) > brings(by_sun) ? by_moon : by_sun;
+}
+
+}  // namespace alpenglow

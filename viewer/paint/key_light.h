@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// What lights air and land of a picture: the sun or, once that brings less, the moon.
+//
+// One light at a time. Where both count, with the sun 7 to 11 degrees down and a bright moon up, the
+// lesser is left out: at the change, half of the light. By day and in moonlight less than a
+// thousandth is.
+#pragma once
+
+#include <glm/vec4.hpp>
+
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/sun/time.h"
+#include "viewer/air/solved_air.h"
+
+namespace alpenglow {
+
+struct KeyLight {
+  SunPosition disk;      // where it is seen from the eye, and how wide
+  glm::vec4 irradiance;  // above the air, one value a band [W m^-2 nm^-1]
+  bool is_moon = false;
+};
+
+/// @param sun  apparent.
+[[nodiscard]] KeyLight SunAsKey(const SunPosition& sun, const Medium& medium);
+
+/// The one of sun and moon that brings more light to a level place at the eye, in the band next to
+/// 555 nm. No other planet has this moon: there it is the sun.
+[[nodiscard]] KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now,
+                                  const SunPosition& sun, const SolvedAir& air);
+
+}  // namespace alpenglow
