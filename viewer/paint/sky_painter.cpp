@@ -59,25 +59,25 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
   CheckGl("SkyPainter");
 }
 
-const SkyPainter::Shining& SkyPainter::LightsOf(const PaintedView& view) {
+const Shining& SkyPainter::LightsOf(const PaintedView& view) {
   const std::shared_ptr<const SolvedAir>& air = scene_.air().air();
-  const bool is_known = shining_ && shining_->view.now == view.now &&
-                        shining_->view.eye == view.eye && shining_->air == air;
+  const bool is_known =
+      lit_ && lit_->view.now == view.now && lit_->view.eye == view.eye && lit_->air == air;
   if (!is_known) {
     const SunPosition sun = ApparentSunAt(view.eye.place, view.now);
-    shining_ = {view, sun, air, KeyLightAt(view.eye.place, view.now, sun, *air)};
+    lit_ = {view, air, {sun, KeyLightAt(view.eye.place, view.now, sun, *air)}};
   }
-  return *shining_;
+  return lit_->lights;
 }
 
 void SkyPainter::Update(const PaintedView& view, double seconds) {
-  const KeyLight& key = LightsOf(view).key;
+  const Shining& lights = LightsOf(view);
   Begin("update");
-  scene_.Update(view, key.disk, seconds);
+  scene_.Update(view, lights, seconds);
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
-  scene_.Settle(view, LightsOf(view).key.disk, samples);
+  scene_.Settle(view, LightsOf(view), samples);
   lamps_.SettlePlans();
 }
 
@@ -139,7 +139,7 @@ void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
   for (const PictureStage& stage :
        {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOpenSky, has_shade, has_lamps},
         PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}})
+        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight}})
     if (programs_.MakeReady(stage)) return;
 }
 
@@ -206,6 +206,13 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
   PaintLandAndSky(view, share);
+  PaintNight(share);
+}
+
+void SkyPainter::PaintNight(double share) {
+  if (scene_.night() == nullptr) return;
+  const Adding adding(share);
+  programs_.Paint({PictureStage::Pass::kNight});
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {

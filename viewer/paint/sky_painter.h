@@ -91,13 +91,6 @@ class SkyPainter {
     SunPosition sun;
     MoonDisk moon;
   };
-  /// What shines on a view.
-  struct Shining {
-    PaintedView view;
-    SunPosition sun;
-    std::shared_ptr<const SolvedAir> air;
-    KeyLight key;
-  };
   [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
   [[nodiscard]] Bodies BodiesOf(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
@@ -110,6 +103,7 @@ class SkyPainter {
   void MakeOneReady(bool has_shade, bool has_lamps);
   void PaintSky(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintLandAndSky(const PaintedView& view, double share);
+  void PaintNight(double share);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {
@@ -124,7 +118,13 @@ class SkyPainter {
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
-  std::optional<Shining> shining_;  // on the view asked for last
+  /// On the view asked for last.
+  struct Lit {
+    PaintedView view;
+    std::shared_ptr<const SolvedAir> air;
+    Shining lights;
+  };
+  std::optional<Lit> lit_;
   PassTimer* timer_ = nullptr;
 };
 
