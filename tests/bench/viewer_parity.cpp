@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Pictures of the graphics card against the renderer's in seven views, edges aside. Run by hand;
+// Pictures of the graphics card against the renderer's in eight views, edges aside. Run by hand;
 // results are in README.md.
 //   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]
-// VIEWS are digits, of the views to be drawn: 1234567. Pictures of both go into the folder, those of
+// VIEWS are digits, of the views to be drawn: 12345678. Pictures of both go into the folder, those of
 // the renderer that are there already are read; and of the difference, white for a tenth.
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 
 #include "renderer/effect/picture_change.h"
 #include "renderer/picture/render.h"
-#include "tests/fixtures/seven_views.h"
+#include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/paint/sky_painter.h"
 #include "viewer/paint/view_difference.h"
@@ -35,7 +35,7 @@ Image DifferencePicture(const Image& judge, const Image& painted) {
   return picture;
 }
 
-Image JudgeOf(const SevenView& view, const RenderSettings& settings,
+Image JudgeOf(const ParityView& view, const RenderSettings& settings,
               const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) return ReadExr(file);
   Image judge = SceneRenderer(view.scene).Render(view.instant, settings);
@@ -43,7 +43,7 @@ Image JudgeOf(const SevenView& view, const RenderSettings& settings,
   return judge;
 }
 
-Image PaintedOf(const SevenView& view, const RenderSettings& settings) {
+Image PaintedOf(const ParityView& view, const RenderSettings& settings) {
   const SceneGround ground = LoadGround(view.scene);
   Eye eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad,
           view.scene.camera.roll_rad, view.scene.camera.fov_rad};
@@ -68,7 +68,7 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
          const std::string& views) {
   std::filesystem::create_directories(folder);
   int number = 0;
-  for (const SevenView& view : SevenViews()) {
+  for (const ParityView& view : ParityViews()) {
     ++number;
     if (views.find(std::to_string(number)) == std::string::npos) continue;
     const std::filesystem::path file = folder / fmt::format("judge-{}.exr", number);
@@ -104,6 +104,6 @@ int main(int count, char** arguments) {
   settings.filter = alpenglow::PixelFilter::Kind::kBox;
   settings.layers = alpenglow::LayersOfEdges();
   const alpenglow::HeadlessContext context;
-  alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "1234567");
+  alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "12345678");
   return 0;
 }

@@ -32,6 +32,12 @@ std::vector<ShaderPiece> AirTexts() {
   return texts;
 }
 
+std::vector<ShaderPiece> StarTexts(const std::optional<PhaseKind>& fog) {
+  std::vector<ShaderPiece> texts = AirTexts();
+  for (ShaderPiece& piece : fog ? FogTexts(*fog) : NoFogTexts()) texts.push_back(std::move(piece));
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/air_block.glsl"});
+}
+
 std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStage& stage) {
   std::vector<ShaderPiece> texts = AirTexts();
   const auto add = [&](std::vector<ShaderPiece> pieces) {

@@ -34,6 +34,9 @@ struct PictureKind {
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
                                                     const PictureStage& stage);
 
+/// The texts of a star's fragments, but for star.frag.glsl itself. @param fog  its phase function.
+[[nodiscard]] std::vector<ShaderPiece> StarTexts(const std::optional<PhaseKind>& fog);
+
 /// Those that they begin with: the view and the air.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();
 

@@ -6,6 +6,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
+#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -15,6 +16,19 @@ ShaftPass ConnectedShafts() {
   pass.program().BindBlock("View", kViewBinding);
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
   return pass;
+}
+
+ShaderProgram ConnectedStars(const PaintedScene& scene) {
+  ShaderProgram program(
+      WithViewerPieces(SharedTexts(),
+                       {"viewer/shaders/view_block.glsl", "viewer/shaders/star.vert.glsl"}),
+      WithViewerPieces(StarTexts(scene.fog_phase()), {"viewer/shaders/star.frag.glsl"}),
+      {{0, "star_direction"}, {1, "star_irradiance"}});
+  program.BindBlock("Air", kAirBinding);
+  program.BindBlock("View", kViewBinding);
+  AirTextures::Prepare(program, kAirUnit, kTablesBinding);
+  if (scene.fog() != nullptr) scene.fog()->Connect(program);
+  return program;
 }
 
 // Draws are tested against depth and leave it: land over land, sky and disks beside it.
@@ -55,7 +69,9 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts()),
-      programs_(scene_, lamp_painter_, shaft_pass_) {
+      programs_(scene_, lamp_painter_, shaft_pass_),
+      stars_(ConnectedStars(scene_)) {
+  stars_.PrepareNone();
   CheckGl("SkyPainter");
 }
 
@@ -215,6 +231,21 @@ void SkyPainter::PaintNight(double share) {
   programs_.Paint({PictureStage::Pass::kNight});
 }
 
+// Once a picture, whatever its rays: they are spread over pixels already. Drivers finish a program
+// when it is drawn with: by day once, for the night.
+void SkyPainter::PaintStars(const PaintedView& view) {
+  const Shining& lights = LightsOf(view);
+  const SolvedAir& air = *scene_.air().air();
+  const bool shows = lights.ShowsNight(air.medium);
+  if (!shows && stars_.HasPainted()) return;
+  Begin("stars");
+  if (shows) stars_.Prepare(view, BodiesOf(view).moon, air);
+  blocks_.UploadView(scene_, view, lights.key, {});
+  const BesideLand beside;
+  const Adding adding(1.0);
+  stars_.Paint(view.width, view.height);
+}
+
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
   if (lamp_painter_.IsDark()) return;
   Begin("lamps over");
@@ -249,6 +280,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   for (int sample = 0; sample < samples; ++sample) {
     PaintSample(view, disks, {sample, samples});
   }
+  PaintStars(view);
   PaintLampsOver(view);
   EndTime();
   CheckGl("SkyPainter::Paint");

@@ -27,6 +27,7 @@
 #include "viewer/paint/painted_view.h"
 #include "viewer/paint/picture_blocks.h"
 #include "viewer/paint/picture_programs.h"
+#include "viewer/paint/star_painter.h"
 #include "viewer/shade/shaft_pass.h"
 
 namespace alpenglow {
@@ -104,6 +105,7 @@ class SkyPainter {
   void PaintSky(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintLandAndSky(const PaintedView& view, double share);
   void PaintNight(double share);
+  void PaintStars(const PaintedView& view);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {
@@ -115,6 +117,7 @@ class SkyPainter {
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
   PicturePrograms programs_;  // of all above
+  StarPainter stars_;
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;

@@ -45,8 +45,7 @@ vec4 GroundSeen(vec3 direction, vec4 surface, vec4 sky) {
   GroundPlace at = GroundPlaceAt(point);
   sky = FogSkyLeft(at.altitude) * sky + FogOnSurface(at.altitude, dot(normal, at.up));
 #endif
-  return GroundRadiance(point, normal, surface.z, sky + (0.5 + 0.5 * normal.z) * night_level,
-                        -direction);
+  return GroundRadiance(point, normal, surface.z, sky, -direction);
 }
 
 // Of lamps, on the ground there.

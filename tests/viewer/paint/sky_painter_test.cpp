@@ -10,7 +10,7 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/seven_views.h"
+#include "tests/fixtures/parity_views.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/paint/view_difference.h"
@@ -55,7 +55,7 @@ class Both {
     painter_.Paint(view, kSamples);
     return DifferenceOf(judge_.Render(shot, JudgeSettings()), painter_.picture().Read());
   }
-  ViewDifference Difference(const SevenView& view) {
+  ViewDifference Difference(const ParityView& view) {
     return Difference(ViewOf(view.scene, ground_->eye_height_m, view.instant));
   }
 
@@ -75,8 +75,8 @@ void ExpectWithin(const ViewDifference& is, const Bounds& bounds, const char* wh
   EXPECT_LT(is.edge_share, 0.6) << "there is enough left to compare";
 }
 
-SevenView ViewNamed(const std::string& name) {
-  for (const SevenView& view : SevenViews()) {
+ParityView ViewNamed(const std::string& name) {
+  for (const ParityView& view : ParityViews()) {
     if (view.name == name) return view;
   }
   throw InternalError("no view is named " + name);
@@ -85,7 +85,7 @@ SevenView ViewNamed(const std::string& name) {
 using SkyPainterTest = tests::Headless;
 
 TEST_F(SkyPainterTest, TheRangeAtSunsetAndInTwilightIsTheRenderers) {
-  const SevenView sunset = ViewNamed("ground, sunset, shafts"), twilight = ViewNamed("twilight");
+  const ParityView sunset = ViewNamed("ground, sunset, shafts"), twilight = ViewNamed("twilight");
   Both both(sunset.scene, sunset.instant);
   ExpectWithin(both.Difference(sunset), {0.0027, 0.011},
                "noise of thirty-two rays a pixel over rough ground, and tables between nodes");
@@ -94,7 +94,7 @@ TEST_F(SkyPainterTest, TheRangeAtSunsetAndInTwilightIsTheRenderers) {
 }
 
 TEST_F(SkyPainterTest, TheRangeByDayIsTheRenderersFromTheGroundAndFromAnAeroplane) {
-  const SevenView noon = ViewNamed("ground, noon"), high = ViewNamed("10 km");
+  const ParityView noon = ViewNamed("ground, noon"), high = ViewNamed("10 km");
   Both both(noon.scene, noon.instant);
   ExpectWithin(both.Difference(noon), {0.0044, 0.036},
                "noise of thirty-two rays a pixel where materials meet on rough ground");
@@ -103,7 +103,7 @@ TEST_F(SkyPainterTest, TheRangeByDayIsTheRenderersFromTheGroundAndFromAnAeroplan
 }
 
 TEST_F(SkyPainterTest, TheRangeInFogIsTheRenderers) {
-  const SevenView fog = ViewNamed("fog");
+  const ParityView fog = ViewNamed("fog");
   ExpectWithin(
       Both(fog.scene, fog.instant).Difference(fog), {0.0045, 0.013},
       "light of the fog is a map, and light of the air before it is weighed in a few stretches");
