@@ -195,7 +195,10 @@ int Run(const SkyseriesOptions& options) {
             fmt::format("{:.6g}", renderer(nullptr).Illuminance(shot(frame)));
         return picture;
       },
-      [&](const Frame& frame) { return renderer(nullptr).Illuminance(shot(frame)); },
+      [&](const Frame& frame) {
+        const double behind_filter = scene.camera.polariser_rad ? 0.5 : 1.0;
+        return behind_filter * renderer(nullptr).Illuminance(shot(frame));
+      },
       MetadataOf(scene, path, settings, options),
       scene.place,
       scene.zone,

@@ -376,6 +376,32 @@ std::size_t DiffuseLight::OrderOf(std::size_t channel) const {
   return channel - l * (l + 1) / 2;
 }
 
+std::array<Bands<float>, kTensorMoments> DiffuseLight::TensorAt(double altitude_m,
+                                                                double mu_s) const {
+  std::array<Bands<float>, kTensorMoments> tensor;
+  tensor.fill(Bands<float>(bands_));
+  const float here = SunSine(mu_s);
+  VisitNodes(
+      AltitudeCoordinate(altitude_m), mu_s, [&](const float* node, float weight, std::size_t sun) {
+        const float there = SunSine(MuSOfNode(grid_, sun));
+        for (std::size_t m = 0; m < kTensorMoments; ++m) {
+          const float share = weight * SinePowerOf(grid_, m, here) / SinePowerOf(grid_, m, there);
+          const float* of_bands = node + (moments_ + m) * bands_;
+          for (std::size_t band = 0; band < bands_; ++band)
+            tensor[m][band] += share * of_bands[band];
+        }
+      });
+  if (!peak_) return tensor;
+  // Light without polarisation has T2m = L2m.
+  const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
+  const Moments towards = LegendreTerms(2, static_cast<float>(mu_s));
+  for (std::size_t m = 0; m < kTensorMoments; ++m) {
+    for (std::size_t band = 0; band < bands_; ++band)
+      tensor[m][band] += towards[MomentIndex(2, static_cast<int>(m))] * beam[band];
+  }
+  return tensor;
+}
+
 PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples, double nu) const {
   PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
   if (!medium_.polarised) return light;
@@ -386,11 +412,11 @@ PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples,
     const auto cosine = static_cast<float>(AzimuthCosineOrAhead(double{mu}, double{mu_s}, nu));
     const float across = SunSine(static_cast<double>(cosine));
     const TensorStokes<float> stokes = TensorStokesAlong<float>(mu, sine);
-    const std::vector<float> here =
-        ValuesAt(AltitudeCoordinate(1000.0 * static_cast<double>(samples.altitude[s])),
-                 SunCoordinate(static_cast<double>(mu_s)));
+    const std::array<Bands<float>, kTensorMoments> here =
+        TensorAt(1000.0 * static_cast<double>(samples.altitude[s]),
+                 MuSFromCoordinate(SunCoordinate(static_cast<double>(mu_s))));
     for (std::size_t band = 0; band < bands_; ++band) {
-      const auto tensor = [&](std::size_t m) { return here[(moments_ + m) * bands_ + band]; };
+      const auto tensor = [&](std::size_t m) { return here[m][band]; };
       const float depth =
           OpticalDepthOf(ExtinctionAt(air, band),
                          {samples.view_rayleigh[s], samples.view_mie[s], samples.view_ozone[s]});

@@ -147,6 +147,9 @@ class DiffuseLight {
   /// Calls visit(node, weight, sun) with the 16 nodes around a point; `sun` is the node's own.
   template <typename Visit>
   void VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const;
+  /// T2m of polarised light.
+  [[nodiscard]] std::array<Bands<float>, kTensorMoments> TensorAt(double altitude_m,
+                                                                  double mu_s) const;
   /// Order m of a channel.
   [[nodiscard]] std::size_t OrderOf(std::size_t channel) const;
   [[nodiscard]] double AltitudeCoordinate(double altitude_m) const;

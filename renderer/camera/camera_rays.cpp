@@ -15,7 +15,8 @@ CameraRays::CameraRays(const Camera& camera, int width, int height, const Camera
       height_(height),
       panorama_(camera.IsPanorama()),
       tangent_(std::tan(0.5 * camera.fov_rad)),
-      eye_(stand.eye) {
+      eye_(stand.eye),
+      polariser_rad_(camera.polariser_rad) {
   const double heading = camera.heading_rad, pitch = camera.pitch_rad, roll = camera.roll_rad;
   const glm::dvec3 forward{std::cos(pitch) * std::sin(heading), std::cos(pitch) * std::cos(heading),
                            std::sin(pitch)};
@@ -68,6 +69,22 @@ std::optional<std::array<double, 2>> CameraRays::PlaceOf(const glm::dvec3& direc
   if (ahead <= 0.0) return std::nullopt;
   const double scale = 2.0 * tangent_ / width_;
   return std::array{0.5 * width_ + right / (ahead * scale), 0.5 * height_ - up / (ahead * scale)};
+}
+
+PictureAxes CameraRays::AxesAt(const glm::dvec3& direction) const {
+  const glm::dvec3 level = panorama_ ? glm::cross(direction, up_) : right_;
+  const glm::dvec3 up = glm::normalize(glm::cross(level, direction));
+  return {up, glm::cross(direction, up)};
+}
+
+std::optional<glm::dvec3> CameraRays::PassedBy(const glm::dvec3& direction) const {
+  if (!polariser_rad_) return std::nullopt;
+  const double cosine = std::cos(*polariser_rad_), sine = std::sin(*polariser_rad_);
+  if (panorama_) {
+    const PictureAxes axes = AxesAt(direction);
+    return cosine * axes.up + sine * axes.right;
+  }
+  return glm::normalize(glm::cross(cosine * right_ - sine * up_, direction));
 }
 
 double CameraRays::PixelAngle() const {

@@ -12,6 +12,11 @@
 // which on a sensor v = f s / (s - f) behind the lens is the circle of confusion of diameter
 // A |z - s| / z f / (s - f). The field of view is that of the picture at v: a sensor of width
 // 2 v tan(fov / 2). How bright the picture is does not depend on the lens: exposure is set in EV.
+//
+// A polariser before the lens is an ideal sheet that absorbs light along an axis b of its plane. Of
+// a ray d it passes what vibrates along b x d, which for oblique rays is not its transmission axis
+// seen in perspective (Korger et al. 2013, Opt. Express 21, 27032). A panorama has none that could
+// stand before all of it: there each direction is seen through its own, square to it.
 #pragma once
 
 #include <array>
@@ -29,6 +34,12 @@ struct CameraRay {
   glm::dvec3 origin{0.0};     // on the lens
   glm::dvec3 direction{0.0};  // unit
   glm::dvec3 through{0.0};    // unit, from the middle of the lens to the same point in focus
+};
+
+/// Unit vectors across a direction of view, as seen in the picture there.
+struct PictureAxes {
+  glm::dvec3 up{0.0};
+  glm::dvec3 right{0.0};
 };
 
 /// Where a camera stands in a frame. Columns of `frame_from_enu`: east, north and up there.
@@ -59,11 +70,19 @@ class CameraRays {
   /// direction; nothing for directions behind a perspective.
   [[nodiscard]] std::optional<std::array<double, 2>> PlaceOf(const glm::dvec3& direction) const;
 
+  /// The picture's vertical across a direction, and what is square to both.
+  [[nodiscard]] PictureAxes AxesAt(const glm::dvec3& direction) const;
+
+  /// Along what light vibrates that the polariser passes, unit, of a direction; nothing without
+  /// one.
+  [[nodiscard]] std::optional<glm::dvec3> PassedBy(const glm::dvec3& direction) const;
+
   /// Angle between neighbouring pixels at the centre of the picture [rad].
   [[nodiscard]] double PixelAngle() const;
 
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
   [[nodiscard]] bool HasLens() const { return lens_.has_value(); }
+  [[nodiscard]] bool HasPolariser() const { return polariser_rad_.has_value(); }
 
   /// Radius of the blur of a point in front of a lens, in the plane one metre ahead; 0 of a pinhole
   /// and of points behind it. @param offset  of the point from the eye [m].
@@ -98,6 +117,7 @@ class CameraRays {
   glm::dvec3 eye_;
   glm::dvec3 forward_, right_, up_;
   std::optional<Lens> lens_;
+  std::optional<double> polariser_rad_;
 };
 
 }  // namespace alpenglow

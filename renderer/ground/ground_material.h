@@ -36,6 +36,10 @@ class GroundPatch {
 
   /// Radiance over irradiance from one direction [1/sr].
   [[nodiscard]] BandLight Brdf(const ReflectionAngles& at) const;
+  /// Of water, the part of it that the surface mirrors.
+  [[nodiscard]] double Glitter(const ReflectionAngles& at) const {
+    return Water::Glitter(at, waves_.slope_variance);
+  }
   /// Share of an even sky that is sent to an eye, but for what is mirrored.
   [[nodiscard]] BandLight BodyAlbedo(double mu_eye) const;
   /// Empty for what is not glossy.

@@ -49,6 +49,10 @@ double FresnelReflectance(double cosine, double refractive_index) {
   return shared::FresnelReflectance(cosine, refractive_index);
 }
 
+double FresnelPolarisation(double cosine, double refractive_index) {
+  return shared::FresnelPolarisation(cosine, refractive_index);
+}
+
 Bands<float> Wetted(Bands<float> albedo, double wetness) {
   for (std::size_t band = 0; band < albedo.count; ++band)
     albedo[band] = shared::WetAlbedo(albedo[band], static_cast<float>(wetness));
@@ -183,6 +187,10 @@ Water::Water(double wind_m_per_s, std::span<const double> wavelengths_nm)
 
 double Water::Glitter(const ReflectionAngles& at, double variance) {
   return shared::WaveGlitter(at.mu_light, at.mu_eye, at.cos_between, variance, kRefractiveIndex);
+}
+
+double Water::Polarisation(double cos_between) {
+  return FresnelPolarisation(shared::HalfCosLight(cos_between), kRefractiveIndex);
 }
 
 Bands<float> Water::Brdf(const ReflectionAngles& at, double variance) const {

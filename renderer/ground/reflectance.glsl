@@ -7,13 +7,36 @@ SHARED Number FifthPower(Number x) {
   return x2 * x2 * x;
 }
 
-// Of unpolarised light (Fresnel).
-SHARED Number FresnelReflectance(Number cosine, Number index) {
-  Number sine2 = (Number(1.0) - cosine * cosine) / (index * index);  // Snell, inside
-  Number inside = sqrt(max(Number(1.0) - sine2, Number(0.0)));
+// Cosine of the angle behind a surface (Snell).
+SHARED Number RefractedCosine(Number cosine, Number index) {
+  Number sine2 = (Number(1.0) - cosine * cosine) / (index * index);
+  return sqrt(max(Number(1.0) - sine2, Number(0.0)));
+}
+
+// Of light that vibrates across the plane of incidence (Fresnel).
+SHARED Number FresnelAcross(Number cosine, Number index) {
+  Number inside = RefractedCosine(cosine, index);
   Number across = (cosine - index * inside) / (cosine + index * inside);
+  return across * across;
+}
+
+// Of light that vibrates in the plane of incidence.
+SHARED Number FresnelAlong(Number cosine, Number index) {
+  Number inside = RefractedCosine(cosine, index);
   Number along = (index * cosine - inside) / (index * cosine + inside);
-  return Number(0.5) * (across * across + along * along);
+  return along * along;
+}
+
+// Of unpolarised light.
+SHARED Number FresnelReflectance(Number cosine, Number index) {
+  return Number(0.5) * (FresnelAcross(cosine, index) + FresnelAlong(cosine, index));
+}
+
+// How far unpolarised light is polarised by it, across the plane of incidence.
+SHARED Number FresnelPolarisation(Number cosine, Number index) {
+  Number across = FresnelAcross(cosine, index);
+  Number along = FresnelAlong(cosine, index);
+  return (across - along) / (across + along);
 }
 
 SHARED Number SchlickReflectance(Number cosine, Number f0) {

@@ -59,6 +59,10 @@ struct MirroredRays {
 /// @param cosine  of the angle of incidence, in [0, 1].
 [[nodiscard]] double FresnelReflectance(double cosine, double refractive_index);
 
+/// Degree of polarisation, across the plane of incidence, of unpolarised light that such a surface
+/// reflects: 1 at Brewster's angle, 0 at both ends.
+[[nodiscard]] double FresnelPolarisation(double cosine, double refractive_index);
+
 /// f0 + (1 - f0) (1 - cosine)^5: Schlick (1994), Computer Graphics Forum 13, 233.
 [[nodiscard]] double SchlickReflectance(double cosine, double f0);
 
@@ -141,6 +145,9 @@ class Water {
   /// Distribution of the glitter [1/sr].
   /// @param variance  of the slopes that the normal does not show.
   [[nodiscard]] static double Glitter(const ReflectionAngles& at, double variance);
+  /// Q over radiance of the glitter or of a mirrored ray, in the plane across that of light and
+  /// eye: that of unpolarised light.
+  [[nodiscard]] static double Polarisation(double cos_between);
   /// Of glitter and light from under the surface.
   [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at) const { return Brdf(at, variance_); }
   [[nodiscard]] Bands<float> Brdf(const ReflectionAngles& at, double variance) const;

@@ -227,12 +227,28 @@ RaySamples<float> AerialPerspective::Sample(const ViewRay& ray, const SunlitPath
   return samples;
 }
 
-AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu,
-                                   bool higher_orders) const {
+PolarisedLight AerialPerspective::Polarised(const RaySamples<float>& samples, const ViewRay& ray,
+                                            const ScatteredOnce<float>& once,
+                                            bool higher_orders) const {
+  PolarisedLight light{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
+  if (!air_.medium().polarised) return light;
+  light = PolarisedOnce(air_.medium(), once, ray);
+  if (!higher_orders) return light;
+  const PolarisedLight more = diffuse_.PolarisationAlong(samples, ray.nu);
+  for (std::size_t band = 0; band < air_.bands(); ++band) {
+    light.q[band] += more.q[band];
+    light.u[band] += more.u[band];
+  }
+  return light;
+}
+
+AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, const ViewRay& ray,
+                                   const Nodes& nodes) const {
   const AirConstants<float>& air_per_km = air_.constants();
-  const auto direct = air_.Inscatter(air_.Scatter(samples), nu);
+  const ScatteredOnce<float> once = air_.Scatter(samples);
+  const auto direct = air_.Inscatter(once, ray.nu);
   const auto diffuse =
-      higher_orders ? diffuse_.InscatterAlong(samples, nu) : Bands<float>(air_.bands());
+      nodes.higher_orders ? diffuse_.InscatterAlong(samples, ray.nu) : Bands<float>(air_.bands());
   AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
@@ -242,16 +258,17 @@ AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, double nu,
         {samples.view_rayleigh[last], samples.view_mie[last], samples.view_ozone[last]});
     air.transmittance[band] = std::exp(-std::max(depth, 0.0F));
   }
+  if (nodes.polarised) air.polarised = Polarised(samples, ray, once, nodes.higher_orders);
   return air;
 }
 
 AirAlongRay AerialPerspective::Along(const ViewRay& ray, const Nodes& nodes) const {
-  return Sum(Sample(ray, nullptr, nodes), ray.nu, nodes.higher_orders);
+  return Sum(Sample(ray, nullptr, nodes), ray, nodes);
 }
 
 AirAlongRay AerialPerspective::Along(const ViewRay& ray, const SunlitPath& sunlit,
                                      const Nodes& nodes) const {
-  return Sum(Sample(ray, &sunlit, nodes), ray.nu, nodes.higher_orders);
+  return Sum(Sample(ray, &sunlit, nodes), ray, nodes);
 }
 
 }  // namespace alpenglow

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "atmosphere/ray/single_scattering.h"
@@ -28,6 +29,8 @@ namespace alpenglow {
 struct AirAlongRay {
   Bands<float> inscatter;      // [1/sr], all orders
   Bands<float> transmittance;  // [1]
+  /// Q and U of `inscatter` [1/sr], where they are asked for.
+  std::optional<PolarisedLight> polarised = std::nullopt;
 };
 
 /// Immutable, safe to share between threads. Refers to what it was made from.
@@ -43,6 +46,7 @@ class AerialPerspective {
   struct Nodes {
     int sky = 12;               // rays that end in space or at the planet's own ground, in [2, 16]
     bool higher_orders = true;  // light scattered more than once
+    bool polarised = false;     // AirAlongRay::polarised, with the signs of PolarisedLight
   };
 
   /// A ray in unbroken sunlight.
@@ -64,8 +68,11 @@ class AerialPerspective {
   /// b of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.
   [[nodiscard]] double StretchOf(const ViewRay& ray, double length_m, double at_low_m,
                                  double low_m) const;
-  [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, double nu,
-                                bool higher_orders) const;
+  [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, const ViewRay& ray,
+                                const Nodes& nodes) const;
+  [[nodiscard]] PolarisedLight Polarised(const RaySamples<float>& samples, const ViewRay& ray,
+                                         const ScatteredOnce<float>& once,
+                                         bool higher_orders) const;
 
   const AirIntegrator<float>& air_;
   const DiffuseLight& diffuse_;

@@ -24,9 +24,13 @@ float SeenThrough(const AirAlongRay& air, HitKind kind, std::size_t band) {
 
 bool Agree(const AirAlongRay& a, const AirAlongRay& b, HitKind kind) {
   for (std::size_t band = 0; band < a.inscatter.count; ++band) {
-    if (!(std::abs(a.inscatter[band] - b.inscatter[band]) <=
-          kSameLight * SeenThrough(a, kind, band)) ||
+    const float same = kSameLight * SeenThrough(a, kind, band);
+    if (!(std::abs(a.inscatter[band] - b.inscatter[band]) <= same) ||
         !(std::abs(a.transmittance[band] - b.transmittance[band]) <= kSameLight)) {
+      return false;
+    }
+    if (a.polarised && !(std::abs(a.polarised->q[band] - b.polarised->q[band]) <= same &&
+                         std::abs(a.polarised->u[band] - b.polarised->u[band]) <= same)) {
       return false;
     }
   }
@@ -41,7 +45,12 @@ std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
       return std::nullopt;
     const float then = std::pow(left, static_cast<float>(ratio));
     const float hidden = 1.0F - left;
-    air.inscatter[band] *= hidden > 1e-4F ? (1.0F - then) / hidden : static_cast<float>(ratio);
+    const float grown = hidden > 1e-4F ? (1.0F - then) / hidden : static_cast<float>(ratio);
+    air.inscatter[band] *= grown;
+    if (air.polarised) {
+      air.polarised->q[band] *= grown;
+      air.polarised->u[band] *= grown;
+    }
     air.transmittance[band] = then;
   }
   return air;
@@ -80,6 +89,7 @@ std::optional<AirAlongRay> AirLattice::Between(int column, int row, double x, do
   const std::array<double, 4> share{(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
   const std::size_t bands = scene_->medium.wavelengths_nm.size();
   AirAlongRay sum{BandLight(bands), BandLight(bands)};
+  if (frame_->polarised) sum.polarised = {BandLight(bands), BandLight(bands)};
   double corners_m = 0.0;
   for (int i = 0; i < 4; ++i) {
     const Corner& corner = At(column + i % 2, row + i / 2);
@@ -87,6 +97,10 @@ std::optional<AirAlongRay> AirLattice::Between(int column, int row, double x, do
     const auto weight = static_cast<float>(share.at(static_cast<std::size_t>(i)));
     sum.inscatter = sum.inscatter + weight * corner.air.inscatter;
     sum.transmittance = sum.transmittance + weight * corner.air.transmittance;
+    if (sum.polarised) {
+      sum.polarised->q = sum.polarised->q + weight * corner.air.polarised->q;
+      sum.polarised->u = sum.polarised->u + weight * corner.air.polarised->u;
+    }
     corners_m += share.at(static_cast<std::size_t>(i)) * corner.distance_m;
   }
   return kind == HitKind::kSky ? sum : Reaching(sum, distance_m / corners_m);

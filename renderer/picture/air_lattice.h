@@ -12,6 +12,7 @@
 //
 //   |dI| <= 2e-3 I before the sky, 2e-3 min(I / (1 - T), 4 I) before ground,      |dT| <= 2e-3,
 //
+// (and Q and U, where they are asked for, as I),
 // where I / (1 - T) is the brightness of air without an end; and ground in it where
 // |r - 1| (1 - T) <= 4e-3, so that what the last stretch of air has more or less than the rest of
 // it is less than 4e-3 of that. Everything else is computed for each pixel, as

@@ -124,15 +124,17 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const gl
 BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
                                 const Lighting& light, const LocalSun& sun) const {
   BandLight sum(air_.bands());
-  const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
   const auto rays = patch.Mirrored(hit.normal, to_eye);
-  for (const MirroredRay& ray : rays.All()) {
-    const BandLight seen = SeesTerrain(hit, light)
-                               ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
-                               : light.on_terrain->SkyRadiance(at, ray.direction);
-    sum = sum + static_cast<float>(ray.weight) * seen;
-  }
+  for (const MirroredRay& ray : rays.All())
+    sum = sum + static_cast<float>(ray.weight) * SeenIn(ray, hit, light, sun);
   return sum;
+}
+
+BandLight GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
+                              const LocalSun& sun) const {
+  const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
+  return SeesTerrain(hit, light) ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
+                                 : light.on_terrain->SkyRadiance(at, ray.direction);
 }
 
 std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
@@ -176,6 +178,36 @@ BandLight GroundLight::Natural(const Seen& seen, const glm::dvec3& to_eye,
       radiance = radiance + Mirrored(seen.patch, seen.hit, to_eye, light, seen.sun);
   }
   return light.irradiance * radiance;
+}
+
+PolarisedLight GroundLight::PolarisedTowards(const Hit& hit, const glm::dvec3& to_eye,
+                                             const GroundSources& from, const PictureAxes& axes,
+                                             std::array<double, 2> disk_sample) const {
+  const Lighting& light = from.light;
+  const Seen seen = SeenFrom(hit, to_eye, light);
+  PolarisedLight sum{BandLight(air_.bands()), BandLight(air_.bands())};
+  if (!seen.patch.IsWater()) return sum;
+  const auto add = [&](const glm::dvec3& to_light, const BandLight& mirrored) {
+    const glm::dvec3 across = glm::cross(to_light, to_eye);
+    const double sine = glm::length(across);
+    if (sine < 1e-9) return;
+    const Analyser analyser = AnalyserAlong(across / sine, axes);
+    const auto degree = static_cast<float>(Water::Polarisation(glm::dot(to_light, to_eye)));
+    sum.q = sum.q + degree * analyser.q * mirrored;
+    sum.u = sum.u + degree * analyser.u * mirrored;
+  };
+  if (const auto direct = SunIrradiance(seen.hit, from, seen.sun, disk_sample)) {
+    const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+    const double glitter = seen.patch.Glitter(AnglesBetween(seen.hit.normal, to_disk, to_eye));
+    add(to_disk, static_cast<float>(glitter) * *direct);
+  }
+  if (light.effects.Has(Effect::kSkylight) && light.on_terrain) {
+    const auto rays = seen.patch.Mirrored(seen.hit.normal, to_eye);
+    for (const MirroredRay& ray : rays.All()) {
+      add(ray.direction, static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, light, seen.sun));
+    }
+  }
+  return light.irradiance * sum;
 }
 
 BandLight GroundLight::NaturalTowards(const Hit& hit, const glm::dvec3& to_eye,

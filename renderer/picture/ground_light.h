@@ -14,6 +14,7 @@
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
+#include "renderer/light/picture_stokes.h"
 #include "renderer/light/terrain_light.h"
 #include "renderer/media/media_light.h"
 
@@ -65,6 +66,14 @@ class GroundLight {
                                          const GroundSources& from,
                                          std::array<double, 2> disk_sample) const;
 
+  /// Q and U of what water mirrors of sun and sky, in the axes of the picture: as of unpolarised
+  /// light, which that of the sky is not. A part p of it that is polarised changes what a wave near
+  /// Brewster's angle shows of it by up to p. Everything else that the ground sends counts as
+  /// unpolarised.
+  [[nodiscard]] PolarisedLight PolarisedTowards(const Hit& hit, const glm::dvec3& to_eye,
+                                                const GroundSources& from, const PictureAxes& axes,
+                                                std::array<double, 2> disk_sample) const;
+
   [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
 
  private:
@@ -101,6 +110,9 @@ class GroundLight {
   [[nodiscard]] BandLight Mirrored(const GroundPatch& patch, const Hit& hit,
                                    const glm::dvec3& to_eye, const Lighting& light,
                                    const LocalSun& sun) const;
+  /// What is seen of it in a mirrored ray.
+  [[nodiscard]] BandLight SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
+                                 const LocalSun& sun) const;
 
   GroundParts parts_;
   const AirIntegrator<float>& air_;

@@ -92,6 +92,7 @@ void PixelSum::Add(const Shaded& ray) {
                           &Shaded::albedo, &Shaded::lamps, &Shaded::volumes}) {
     sum.*part = is_first ? ray.*part : sum.*part + ray.*part;
   }
+  if (ray.polarised) sum.polarised = is_first ? *ray.polarised : *sum.polarised + *ray.polarised;
   sum.sun_visibility += ray.sun_visibility;
 }
 
@@ -107,6 +108,8 @@ const std::vector<std::string>& LayerNames() {
 const LayerKind& KindOf(PictureLayer layer) {
   return LayerKinds().at(static_cast<std::size_t>(layer));
 }
+
+bool IsOfPolarisation(PictureLayer) { return false; }
 
 std::string NameOf(PictureLayer layer) { return KindOf(layer).name; }
 

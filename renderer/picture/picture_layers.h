@@ -4,10 +4,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer/ground/band_light.h"
+#include "renderer/light/picture_stokes.h"
 
 namespace alpenglow {
 
@@ -27,6 +29,9 @@ enum class PictureLayer {
   kRays,           // how many the pixel took
 };
 
+/// Whether the layer is made of Shaded::polarised.
+[[nodiscard]] bool IsOfPolarisation(PictureLayer layer);
+
 /// Names of all layers, in their order.
 [[nodiscard]] const std::vector<std::string>& LayerNames();
 [[nodiscard]] std::string NameOf(PictureLayer layer);
@@ -40,6 +45,8 @@ struct Shaded {
   BandLight inscatter, transmittance, albedo;
   BandLight lamps;    // of radiance, what comes from lamps
   BandLight volumes;  // of radiance, what volumes and fog send of sun, sky and their own
+  /// Of radiance, Q and U before any polariser, in the axes of the picture; where asked for.
+  std::optional<PolarisedLight> polarised = std::nullopt;
   float sun_visibility = 0.0F;
 };
 

@@ -83,9 +83,53 @@ PixelSum SceneState::WithStars(const PictureFrame& frame, int x, int y, PixelSum
   return rays;
 }
 
+PolarisedLight SceneState::PolarisedGround(const Hit& hit, const CameraRay& ray,
+                                           const PictureFrame& frame,
+                                           std::array<double, 2> disk_sample) const {
+  const GroundLight& ground_light = frame.model->ground_light;
+  const PictureAxes axes = frame.camera().AxesAt(ray.through);
+  const PolarisedLight of_sun =
+      ground_light.PolarisedTowards(hit, -ray.direction, frame.ground_sources(), axes, disk_sample);
+  if (!frame.moonlit) return of_sun;
+  return of_sun + ground_light.PolarisedTowards(hit, -ray.direction,
+                                                frame.moonlit->ground_sources(), axes, disk_sample);
+}
+
+namespace {
+
+/// Behind the camera's polariser.
+Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
+                 const PolarisedLight& inscatter, Shaded shaded) {
+  const std::optional<glm::dvec3> passed = camera.PassedBy(direction);
+  if (!passed) return shaded;
+  const Analyser analyser = AnalyserAlong(*passed, camera.AxesAt(direction));
+  shaded.radiance = Passed(analyser, shaded.radiance, &*shaded.polarised);
+  shaded.inscatter = Passed(analyser, shaded.inscatter, &inscatter);
+  shaded.lamps = Passed(analyser, shaded.lamps, nullptr);
+  shaded.volumes = Passed(analyser, shaded.volumes, nullptr);
+  return shaded;
+}
+
+}  // namespace
+
 Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                          const PictureFrame& frame, const LampTile& near,
                          std::array<double, 2> disk_sample) const {
+  Shaded shaded = ShadedWithoutPolariser(hit, through, ray, frame, near, disk_sample);
+  if (!frame.polarised) return shaded;
+  const PolarisedLight inscatter = (through.fog * frame.light.irradiance) * *through.air.polarised;
+  shaded.polarised = inscatter;
+  if (hit.kind != HitKind::kSky) {
+    shaded.polarised =
+        inscatter + shaded.transmittance * PolarisedGround(hit, ray, frame, disk_sample);
+  }
+  return Polarised(frame.camera(), ray.through, inscatter, std::move(shaded));
+}
+
+Shaded SceneState::ShadedWithoutPolariser(const Hit& hit, const SharedAir& through,
+                                          const CameraRay& ray, const PictureFrame& frame,
+                                          const LampTile& near,
+                                          std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;

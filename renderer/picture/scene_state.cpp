@@ -115,6 +115,8 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
                      std::make_shared<LampPlan>(),
                      nullptr};
   frame.light.effects = settings.effects;
+  frame.polarised = camera.middle().HasPolariser() ||
+                    std::any_of(settings.layers.begin(), settings.layers.end(), IsOfPolarisation);
   if (frame.Has(Effect::kShafts)) {
     Prepare(settings.progress, "shadows");
     const Stopwatch watch;
@@ -161,7 +163,8 @@ std::optional<BandLight> SceneState::LeftOfSpace(const PictureFrame& frame, doub
   AddAir(frame, geometry, medium, air);
   const BandLight fog =
       frame.lamps->FogTransmittance(ray.through, frame.HasLitFog() ? 0.0 : air.length_m());
-  return fog * air.air.transmittance;
+  const BandLight left = fog * air.air.transmittance;
+  return frame.camera().HasPolariser() ? 0.5F * left : left;
 }
 
 std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,

@@ -56,7 +56,7 @@ struct SceneState {
   void LightNight(PictureFrame& frame) const;
   [[nodiscard]] std::shared_ptr<const StarPixels> StarsIn(const PictureFrame& frame,
                                                           const Shot& shot) const;
-  /// What air and fog leave of light from space at a place of the picture; nothing behind ground.
+  /// What air, fog and a polariser leave of light from space at a place of the picture; nothing behind ground.
   [[nodiscard]] std::optional<BandLight> LeftOfSpace(const PictureFrame& frame, double x,
                                                      double y) const;
   [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
@@ -79,6 +79,15 @@ struct SceneState {
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                              const PictureFrame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
+  /// Shade() of a camera without a polariser, and without Shaded::polarised.
+  [[nodiscard]] Shaded ShadedWithoutPolariser(const Hit& hit, const SharedAir& through,
+                                              const CameraRay& ray, const PictureFrame& frame,
+                                              const LampTile& near,
+                                              std::array<double, 2> disk_sample) const;
+  /// Q and U of what the ground there sends, of sun and moon.
+  [[nodiscard]] PolarisedLight PolarisedGround(const Hit& hit, const CameraRay& ray,
+                                               const PictureFrame& frame,
+                                               std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const Lighting& light) const;
   /// With the stars at the pixel, which rays do not meet.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "renderer/light/picture_stokes.h"
+
 namespace alpenglow {
 namespace {
 
@@ -14,11 +16,15 @@ class AirTo {
   AirTo(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
         const SharedAir& rays, const glm::dvec3& direction, const Lighting& light,
         const TerrainSunlight& sunlight)
-      : frame_(frame), sunlight_(sunlight), kind_(rays.kind) {
+      : frame_(frame),
+        sunlight_(sunlight),
+        kind_(rays.kind),
+        direction_(direction),
+        to_sun_(light.to_sun),
+        up_(geometry.UpAt(frame.camera().eye())) {
     const glm::dvec3& from = frame.camera().eye();
-    const glm::dvec3 up = geometry.UpAt(from);
-    ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up), -1.0, 1.0),
-            std::clamp(glm::dot(light.to_sun, up), -1.0, 1.0),
+    ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up_), -1.0, 1.0),
+            std::clamp(glm::dot(light.to_sun, up_), -1.0, 1.0),
             std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)};
     // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
     if (kind_ == HitKind::kTerrain) ray_.length_m = rays.length_m();
@@ -34,23 +40,32 @@ class AirTo {
     ViewRay ray = ray_;
     ray.length_m = std::min(ray.length_m, length_m);
     AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
+    if (frame_.polarised) none.polarised = {none.inscatter, none.inscatter};
     std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
     if (kind_ != HitKind::kSky && !frame_.Has(Effect::kAerial)) return none;
     if (kind_ == HitKind::kSky && !frame_.Has(Effect::kSky)) {
-      return {none.inscatter, in.air.TransmittanceAlong(ray)};
+      none.transmittance = in.air.TransmittanceAlong(ray);
+      return none;
     }
     const int nodes = frame_.settings.air_nodes;
     const AerialPerspective::Nodes sampling{
         .sky = frame_.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
-        .higher_orders = frame_.Has(Effect::kMultipleScattering)};
-    return sunlight_.IsBroken() ? in.aerial.Along(ray, path_, sampling)
-                                : in.aerial.Along(ray, sampling);
+        .higher_orders = frame_.Has(Effect::kMultipleScattering),
+        .polarised = frame_.polarised};
+    AirAlongRay air = sunlight_.IsBroken() ? in.aerial.Along(ray, path_, sampling)
+                                           : in.aerial.Along(ray, sampling);
+    if (air.polarised) {
+      air.polarised =
+          InAxes(*air.polarised, direction_, up_, to_sun_, frame_.camera().AxesAt(direction_));
+    }
+    return air;
   }
 
  private:
   const PictureFrame& frame_;
   const TerrainSunlight& sunlight_;
   HitKind kind_;
+  glm::dvec3 direction_, to_sun_, up_;
   ViewRay ray_;
   SunlitPath path_;
 };
@@ -84,20 +99,40 @@ std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFra
 
 namespace {
 
+/// What of the light of the air arrives through media.
+AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& air,
+                         const AirAlongRay& whole) {
+  AirAlongRay left = whole;
+  left.inscatter = DimmedByMedia(
+      pieces, [&](double m) { return air(m).inscatter; }, whole.inscatter, Behind::kAll);
+  if (!whole.polarised) return left;
+  // Q and U may fall with distance; what an analyser passes, I + Q and I + U, rises.
+  const auto dimmed = [&](BandLight PolarisedLight::*part) {
+    const auto passed = [&](const AirAlongRay& lit) {
+      return lit.inscatter + *lit.polarised.*part;
+    };
+    return DimmedByMedia(
+               pieces, [&](double m) { return passed(air(m)); }, passed(whole), Behind::kAll) +
+           -1.0F * left.inscatter;
+  };
+  left.polarised = {dimmed(&PolarisedLight::q), dimmed(&PolarisedLight::u)};
+  return left;
+}
+
 /// Of a second light, in air and media. After the sun's.
 void AddSecondLight(const PictureFrame& frame, const SecondLight& second,
                     const SceneGeometry& geometry, const Medium& medium,
                     const glm::dvec3& direction, SharedAir& rays) {
   const AirTo air(frame, geometry, medium, rays, direction, second.light, *second.sunlight);
-  BandLight inscatter = air(std::numeric_limits<double>::infinity()).inscatter;
+  AirAlongRay lit = air(std::numeric_limits<double>::infinity());
   if (second.media) {
     const MarchedLight marched =
         second.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
-    inscatter = DimmedByMedia(
-        marched.pieces, [&](double m) { return air(m).inscatter; }, inscatter, Behind::kAll);
+    lit = ThroughMedia(marched.pieces, air, lit);
     rays.media = rays.media + marched.radiance;
   }
-  rays.air.inscatter = rays.air.inscatter + second.by_sun * inscatter;
+  rays.air.inscatter = rays.air.inscatter + second.by_sun * lit.inscatter;
+  if (lit.polarised) rays.air.polarised = *rays.air.polarised + second.by_sun * *lit.polarised;
 }
 
 }  // namespace
@@ -112,10 +147,8 @@ void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medi
   if (frame.media) {
     MarchedLight marched =
         frame.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
-    rays.air = {DimmedByMedia(
-                    marched.pieces, [&](double m) { return air(m).inscatter; }, rays.air.inscatter,
-                    Behind::kAll),
-                rays.air.transmittance * marched.transmittance};
+    rays.air = ThroughMedia(marched.pieces, air, rays.air);
+    rays.air.transmittance = rays.air.transmittance * marched.transmittance;
     rays.media = marched.radiance;
     rays.pieces = std::move(marched.pieces);
   }

@@ -45,6 +45,7 @@ struct PictureFrame {
   std::shared_ptr<const SecondLight> moonlit = nullptr;  // null: the moon lights nothing
   std::shared_ptr<const NightLight> night = nullptr;     // null: the sky of the night does not show
   std::shared_ptr<const StarPixels> stars = nullptr;     // null: none are seen
+  bool polarised = false;  // Stokes parameters are asked for, by a polariser or a layer
   double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
@@ -62,7 +63,7 @@ struct SharedAir {
   double distance_sum_m;
   int rays;
   // Along the mean of their directions, to their mean distance:
-  AirAlongRay air{};
+  AirAlongRay air{};       // Q and U in the axes of the picture
   BandLight fog{};         // what fog leaves of light from the end, unless `air` says so
   BandLight lamp_light{};  // of lamps in the air, W m^-2 sr^-1 nm^-1
   BandLight media{};       // of volumes and fog in sun and sky, W m^-2 sr^-1 nm^-1

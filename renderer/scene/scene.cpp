@@ -139,7 +139,8 @@ Camera CameraOf(const TomlTable& document) {
   const std::optional<TomlTable> table = document.Table("camera");
   if (!table) return {};
   table->AllowOnly({"height_m", "above_ground_m", "heading", "pitch", "roll", "fov", "f_number",
-                    "focal_length_mm", "focus_m", "sensor_width_mm", "blades", "blade_rotation"});
+                    "focal_length_mm", "focus_m", "sensor_width_mm", "blades", "blade_rotation",
+                    "polariser_deg"});
   const double heading = table->Number("heading", -360.0, 360.0).value_or(0.0);
   const double pitch = table->Number("pitch", -90.0, 90.0).value_or(0.0);
   const double roll = table->Number("roll", -180.0, 180.0).value_or(0.0);
@@ -149,6 +150,8 @@ Camera CameraOf(const TomlTable& document) {
   Camera camera =
       At(*table, "fov", [&] { return CameraFromDegrees(height, heading, pitch, roll, fov); });
   camera.lens = lens;
+  if (const auto polariser = table->Number("polariser_deg", -180.0, 180.0))
+    camera.polariser_rad = Radians(*polariser);
   return camera;
 }
 

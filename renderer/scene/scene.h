@@ -42,6 +42,9 @@ struct Camera {
   double roll_rad = 0.0;                // clockwise seen from behind
   double fov_rad = 1.0471975511965976;  // horizontal, 60 degrees; over 179 degrees: see below
   std::optional<ThinLens> lens;
+  /// A linear polariser before the lens: its transmission axis, clockwise from the picture's
+  /// vertical as seen from behind.
+  std::optional<double> polariser_rad;
 
   /// 2 pi: a panorama, all directions; else a perspective of at most 179 degrees.
   [[nodiscard]] bool IsPanorama() const;

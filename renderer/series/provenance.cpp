@@ -113,6 +113,7 @@ Metadata SceneMetadata(const Scene& scene) {
         fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
                     lens.focus_m, lens.blades, Degrees(lens.blade_rotation_rad));
   }
+  if (camera.polariser_rad) metadata["alpenglow.polariser_deg"] = Degrees(*camera.polariser_rad);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
   }

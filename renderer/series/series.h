@@ -37,7 +37,8 @@ inline constexpr const char* kIlluminanceNote = "alpenglow.note.illuminance_lx";
 struct SeriesSource {
   /// Tells the progress what it prepares, and how much of the picture is done.
   std::function<NotedPicture(const Frame&, Progress&)> render;
-  /// Of sun and sky on a horizontal plane at the eye [lux], for ExposureRule::Kind::kIncident.
+  /// Of sun and sky on a horizontal plane at the eye, behind the camera's polariser [lux], for
+  /// ExposureRule::Kind::kIncident.
   std::function<double(const Frame&)> illuminance;
   /// Everything that the pixels depend on but the instant and the pose (SceneMetadata, size,
   /// samples, layers).

@@ -42,6 +42,29 @@ TEST(CameraRays, RollOfNinetyDegreesLaysTheHorizonUpright) {
   ExpectDirection(rolled.Direction(200.0, 50.0), {0.0, half, -half});
 }
 
+TEST(CameraRays, APolariserTurnsWithTheCameraAndAbsorbsAlongOneAxisOfItsSheet) {
+  const auto camera = [](double roll, double polariser) {
+    Camera with = CameraFromDegrees({}, 0.0, 0.0, roll, 90.0);
+    with.polariser_rad = polariser * kRadiansPerDegree;
+    return CameraRays(with, 200, 100);
+  };
+  EXPECT_FALSE(CameraRays(CameraFromDegrees({}, 0.0, 0.0, 0.0, 90.0), 2, 2).PassedBy({0, 1, 0}));
+  const glm::dvec3 north{0.0, 1.0, 0.0};
+  ExpectDirection(*camera(0.0, 0.0).PassedBy(north), {0.0, 0.0, 1.0});
+  ExpectDirection(*camera(0.0, 90.0).PassedBy(north), {1.0, 0.0, 0.0});
+  const double half = std::sqrt(0.5);
+  ExpectDirection(*camera(0.0, 45.0).PassedBy(north), {half, 0.0, half});
+  ExpectDirection(*camera(45.0, 0.0).PassedBy(north), {half, 0.0, half});
+  const CameraRays rays = camera(0.0, 30.0);
+  const glm::dvec3 absorbed(std::cos(30.0 * kRadiansPerDegree), 0.0, -0.5);
+  const glm::dvec3 oblique = rays.Direction(190.0, 5.0);
+  EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), oblique), 0.0, kTolerance);
+  EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), absorbed), 0.0, kTolerance);
+  const PictureAxes axes = rays.AxesAt(oblique);
+  EXPECT_NEAR(glm::dot(axes.up, oblique), 0.0, kTolerance);
+  ExpectDirection(glm::cross(oblique, axes.up), axes.right);
+}
+
 TEST(CameraRays, PanoramaHasTheHeadingInItsCentreAndTheZenithOnTop) {
   const CameraRays all(CameraFromDegrees({}, 0.0, 0.0, 0.0, 360.0), 360, 180);
   ExpectDirection(all.Direction(180.0, 90.0), {0.0, 1.0, 0.0});

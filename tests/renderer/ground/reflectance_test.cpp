@@ -183,6 +183,9 @@ TEST(Fresnel, ReflectanceHasItsKnownValues) {
   const double across = std::pow((1.34 * 1.34 - 1.0) / (1.34 * 1.34 + 1.0), 2);
   EXPECT_NEAR(FresnelReflectance(brewster, 1.34), 0.5 * across, 1e-9)
       << "no light of one polarisation is reflected at Brewster's angle";
+  EXPECT_NEAR(FresnelPolarisation(brewster, 1.34), 1.0, 1e-12);
+  EXPECT_NEAR(FresnelPolarisation(1.0, 1.34), 0.0, 1e-12);
+  EXPECT_NEAR(FresnelPolarisation(0.0, 1.34), 0.0, 1e-12);
   EXPECT_NEAR(SchlickReflectance(0.5, 0.02111), 0.0517, 1e-4) << "f0 + (1 - f0) / 32";
 }
 

@@ -84,6 +84,7 @@ height_m = 2500.0
 heading = 270.0
 pitch = -2.0
 roll = 1.5
+polariser_deg = -30.0
 fov = 45.0
 f_number = 2.8
 focal_length_mm = 50.0
@@ -117,6 +118,7 @@ intensity_cd = 0
   EXPECT_DOUBLE_EQ(scene.camera.heading_rad, 1.5 * kPi);
   EXPECT_DOUBLE_EQ(scene.camera.pitch_rad, -2.0 * kRadiansPerDegree);
   EXPECT_DOUBLE_EQ(scene.camera.roll_rad, 1.5 * kRadiansPerDegree);
+  EXPECT_DOUBLE_EQ(scene.camera.polariser_rad.value(), -30.0 * kRadiansPerDegree);
   EXPECT_DOUBLE_EQ(scene.camera.fov_rad, 0.25 * kPi);
   ASSERT_TRUE(scene.camera.lens.has_value());
   EXPECT_DOUBLE_EQ(scene.camera.lens->focal_length_m, 0.05);
@@ -363,6 +365,7 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 0.05\n", "beyond the"},
       {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
       {kPlace + "[camera]\nblades = 2\n", "camera.blades is 2"},
+      {kPlace + "[camera]\npolariser_deg = 200\n", "camera.polariser_deg is 200"},
       {kPlace + "[camera]\nblades = 5.5\n", "camera.blades is 5.5"},
       {kPlace + "[camera]\nsensor_width_mm = 36\n", "camera.focal_length_mm is missing"},
       {kPlace + "[camera]\nfov = 60\nsensor_width_mm = 36\nfocal_length_mm = 50\n",
