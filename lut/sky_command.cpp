@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/sun/sun.h"
@@ -22,6 +24,7 @@ struct SkyOptions {
   std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx",
                    look = "photo", white_balance = "daylight";
   std::optional<double> sun_elevation, latitude, longitude;
+  std::vector<std::string> layers;
   double sun_azimuth = 180.0, altitude = 2.0;
   bool sun_disk = false, night_vision = false, compass = false;
 };
@@ -58,6 +61,11 @@ SkyJob JobFrom(const SkyOptions& options) {
   job.settings.orientation = PanoramaOrientationFromName(options.orientation);
   job.settings.sun_disk = options.sun_disk;
   job.settings.compass = options.compass;
+  for (const std::string& name : options.layers) {
+    const StokesLayer layer = StokesLayerFromName(name);
+    auto& layers = job.settings.layers;
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
+  }
   if (options.sun_elevation) {
     job.settings.sun = SunFromAngles(options);
   } else {
@@ -87,6 +95,9 @@ void Describe(SkyJob& job) {
   metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance);
   metadata["alpenglow.sun_disk"] = settings.sun_disk ? "drawn" : "left out";
   if (settings.compass) metadata["alpenglow.compass"] = "painted";
+  std::vector<std::string> layers;
+  for (const StokesLayer layer : settings.layers) layers.push_back(NameOf(layer));
+  if (!layers.empty()) metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
   metadata["alpenglow.orientation"] = NameOf(settings.orientation);
   metadata["alpenglow.centre_azimuth_deg"] = Degrees(CentreAzimuth(settings.orientation));
 }
@@ -193,6 +204,12 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
                "Draw the sun's disk: pixels of some 1e9 cd/m^2 that bring its whole light");
   sky.add_flag("--compass", options.compass,
                "Paint N, E, S and W on the horizon, to see how a program turns the picture");
+  sky.add_option("--aov", options.layers,
+                 "More layers in the EXR, separated by commas: stokes_q, stokes_u (linear sRGB in "
+                 "cd/m^2), polarisation (degree 0 to 1, and angle in degrees clockwise from the "
+                 "vertical, of luminance)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"stokes_q", "stokes_u", "polarisation"}));
   sky.add_option("--exposure", options.exposure,
                  "auto (the picture is metered), eye (dusk is darker than day, night darker), "
                  "incident (the light on a horizontal plane is "

@@ -177,7 +177,11 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
                  "gaussian the fewest")
       ->check(CLI::IsMember(PixelFilterNames()))
       ->capture_default_str();
-  app.add_option("--aov", options.layers, "More layers in the EXR, separated by commas")
+  app.add_option(
+         "--aov", options.layers,
+         "More layers in the EXR, separated by commas; of polarised light stokes_q, stokes_u "
+         "(linear sRGB in cd/m^2) and polarisation (degree 0 to 1, and angle in degrees "
+         "clockwise from the picture's vertical, of luminance)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(LayerNames()));

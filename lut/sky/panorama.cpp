@@ -12,7 +12,9 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun_disk.h"
 #include "atmosphere/text/error.h"
+#include "lut/picture/tone_curve.h"
 #include "lut/program/program.h"
+#include "lut/sky/polarised_row.h"
 
 namespace alpenglow {
 namespace {
@@ -61,6 +63,41 @@ std::array<float, 3> Srgb(const std::vector<float>& matrix, const float* bands, 
       rgb[c] += matrix[c * count + band] * bands[band];
   }
   return rgb;
+}
+
+double Luminance(const std::array<float, 3>& rgb) {
+  return shared::Luminance<double>(rgb[0], rgb[1], rgb[2]);
+}
+
+/// Where the values of a layer stand in a picture.
+struct LayerPlace {
+  StokesLayer layer;
+  std::size_t first_channel;
+};
+
+std::vector<LayerPlace> AddLayers(const std::vector<StokesLayer>& layers, Image& image) {
+  std::vector<LayerPlace> places;
+  for (const StokesLayer layer : layers) {
+    places.push_back({layer, image.layers.size()});
+    for (const std::string& channel : ChannelsOf(layer))
+      image.layers.push_back({channel, std::vector<float>(image.rgb.size(), 0.0F)});
+  }
+  return places;
+}
+
+/// Values of the layers in a pixel. @param q, u  linear sRGB.
+void SetLayers(const std::vector<LayerPlace>& places, std::size_t pixel,
+               const std::array<float, 3>& q, const std::array<float, 3>& u, Image& image) {
+  for (const LayerPlace& place : places) {
+    Channel* channel = &image.layers[place.first_channel];
+    if (place.layer == StokesLayer::kPolarisation) {
+      const auto values = DegreeAndAngle(Luminance(image.rgb[pixel]), Luminance(q), Luminance(u));
+      for (std::size_t i = 0; i < values.size(); ++i) channel[i].values[pixel] = values[i];
+    } else {
+      const auto& values = place.layer == StokesLayer::kQ ? q : u;
+      for (std::size_t i = 0; i < values.size(); ++i) channel[i].values[pixel] = values[i];
+    }
+  }
 }
 
 /// A piece of a pixel that lies on the disk.
@@ -225,6 +262,16 @@ Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffus
     from_sun.push_back(grid.Azimuth(x + 0.5) - settings.sun.azimuth_rad);
   const SkyAzimuths azimuths(view, from_sun);
   const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance);
+  const std::vector<LayerPlace> layers = AddLayers(settings.layers, image);
+  const auto add_polarisation = [&](int y) {
+    const PolarisedRow row(air, diffuse, settings.altitude_m, mu_s, grid.ZenithAngle(y + 0.5));
+    for (int x = 0; x < grid.width; ++x) {
+      const PolarisedLight light = row.At(from_sun[static_cast<std::size_t>(x)]);
+      SetLayers(layers, static_cast<std::size_t>(y) * from_sun.size() + static_cast<std::size_t>(x),
+                Srgb(srgb, light.q.value.data(), light.q.count),
+                Srgb(srgb, light.u.value.data(), light.u.count), image);
+    }
+  };
   oneapi::tbb::parallel_for(0, grid.height, [&](int y) {
     if (Interrupted()) return;
     std::vector<float> row(azimuths.count() * view.stride());
@@ -232,6 +279,7 @@ Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffus
     for (int x = 0; x < grid.width; ++x) {
       image.at(x, y) = Srgb(srgb, &row[static_cast<std::size_t>(x) * view.stride()], view.bands());
     }
+    if (!layers.empty()) add_polarisation(y);
     row_done();
   });
   ThrowIfInterrupted();

@@ -18,11 +18,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/picture/image.h"
+#include "lut/picture/stokes_layer.h"
 #include "lut/sky/sky_view.h"
 
 namespace alpenglow {
@@ -52,6 +54,8 @@ struct PanoramaSettings {
   PanoramaOrientation orientation = PanoramaOrientation::kNorth;
   bool sun_disk = false;  // draw the sun itself: a few pixels of some 1e9 cd/m^2
   bool compass = false;   // paint N, E, S and W on the horizontal
+  /// How the light is polarised, the sun's disk and the compass aside; none twice.
+  std::vector<StokesLayer> layers = {};
   /// Of the sky view; when not given, finer than SkyViewSizeFor.
   std::optional<SkyViewSize> view_size;
 };

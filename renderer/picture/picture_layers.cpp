@@ -9,6 +9,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/image.h"
 #include "lut/picture/night_vision.h"
+#include "lut/picture/stokes_layer.h"
 #include "renderer/ground/scene_geometry.h"
 
 namespace alpenglow {
@@ -54,6 +55,24 @@ LayerValues RayCount(const BandColour&, const PixelSum& rays) {
   return {static_cast<float>(rays.rays)};
 }
 
+template <BandLight PolarisedLight::*kPart>
+LayerValues StokesOf(const BandColour& colour, const PixelSum& rays) {
+  return Rgb(colour, (1.0F / static_cast<float>(rays.rays)) * (*rays.sum.polarised.*kPart));
+}
+
+LayerValues Polarisation(const BandColour& colour, const PixelSum& rays) {
+  const auto luminance = [&](const BandLight& light) { return colour.Xyz(InDouble(light))[1]; };
+  const auto [degree, angle] =
+      DegreeAndAngle(luminance(rays.sum.radiance), luminance(rays.sum.polarised->q),
+                     luminance(rays.sum.polarised->u));
+  return {degree, angle};
+}
+
+LayerKind InStokes(PictureLayer layer, StokesLayer stokes,
+                   LayerValues (*of_rays)(const BandColour&, const PixelSum&)) {
+  return {layer, NameOf(stokes), ChannelsOf(stokes), nullptr, of_rays};
+}
+
 LayerValues Depth(const Hit& hit) { return {static_cast<float>(hit.distance_m)}; }
 
 LayerValues Normal(const Hit& hit) {
@@ -80,7 +99,10 @@ const std::vector<LayerKind>& LayerKinds() {
       InColour(kLamps, "lamps", LightOf<&Shaded::lamps>),
       InColour(kVolumes, "volumes", LightOf<&Shaded::volumes>),
       {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic},
-      {kRays, "rays", {"rays.Y"}, nullptr, RayCount}};
+      {kRays, "rays", {"rays.Y"}, nullptr, RayCount},
+      InStokes(kStokesQ, StokesLayer::kQ, StokesOf<&PolarisedLight::q>),
+      InStokes(kStokesU, StokesLayer::kU, StokesOf<&PolarisedLight::u>),
+      InStokes(kPolarisation, StokesLayer::kPolarisation, Polarisation)};
   return kKinds;
 }
 
@@ -109,7 +131,10 @@ const LayerKind& KindOf(PictureLayer layer) {
   return LayerKinds().at(static_cast<std::size_t>(layer));
 }
 
-bool IsOfPolarisation(PictureLayer) { return false; }
+bool IsOfPolarisation(PictureLayer layer) {
+  return layer == PictureLayer::kStokesQ || layer == PictureLayer::kStokesU ||
+         layer == PictureLayer::kPolarisation;
+}
 
 std::string NameOf(PictureLayer layer) { return KindOf(layer).name; }
 

@@ -27,9 +27,13 @@ enum class PictureLayer {
   kVolumes,        // in fog and volumes, and what these emit [cd/m^2]
   kScotopic,       // what rods see [scotopic cd/m^2]
   kRays,           // how many the pixel took
+  // Of the mean radiance of the pixel's rays (stokes_layer.h); behind a polariser, what it passes.
+  kStokesQ,
+  kStokesU,
+  kPolarisation,
 };
 
-/// Whether the layer is made of Shaded::polarised.
+/// Whether the layer is one of stokes_layer.h, made of Shaded::polarised.
 [[nodiscard]] bool IsOfPolarisation(PictureLayer layer);
 
 /// Names of all layers, in their order.
@@ -45,7 +49,7 @@ struct Shaded {
   BandLight inscatter, transmittance, albedo;
   BandLight lamps;    // of radiance, what comes from lamps
   BandLight volumes;  // of radiance, what volumes and fog send of sun, sky and their own
-  /// Of radiance, Q and U before any polariser, in the axes of the picture; where asked for.
+  /// Of radiance, Q and U in the axes of the picture; where asked for.
   std::optional<PolarisedLight> polarised = std::nullopt;
   float sun_visibility = 0.0F;
 };

@@ -107,6 +107,7 @@ Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
   shaded.inscatter = Passed(analyser, shaded.inscatter, &inscatter);
   shaded.lamps = Passed(analyser, shaded.lamps, nullptr);
   shaded.volumes = Passed(analyser, shaded.volumes, nullptr);
+  shaded.polarised = {analyser.q * shaded.radiance, analyser.u * shaded.radiance};
   return shaded;
 }
 

@@ -34,6 +34,7 @@ TEST_F(SkylutSky, AWrongCommandLineIsStatus2) {
         "--out a.exr --latitude 46 --time 2026-06-21T12:00:00Z",
         "--out a.exr --sun-elevation 10 --orient maya", "--out a.exr --sun-elevation 10 --size 5",
         "--out a.exr --sun-elevation 10 --tone-map agx",
+        "--out a.exr --sun-elevation 10 --aov depth",
         "--out a.exr --sun-elevation 10 --exposure bright",
         "--out a.exr --sun-elevation 10 --white-balance 5600",
         "--out a.exr --sun-elevation 10 --altitude 1e10",
@@ -134,6 +135,15 @@ TEST_F(SkylutSky, APlaceAndATimeGiveTheSunThere) {
   EXPECT_NEAR(std::stod(metadata.at("alpenglow.sun_azimuth_deg")), 180.0, 1.0);
   EXPECT_EQ(metadata.at("alpenglow.utc"), "2026-06-21T11:30:00.000Z");
   EXPECT_EQ(ContentOf(folder_ / "a.exr"), ContentOf(folder_ / "b.exr")) << "the same instant";
+}
+
+TEST_F(SkylutSky, LayersOfPolarisationAreChannelsOfTheFile) {
+  const Outcome outcome = Run(
+      "--quiet --size 16x8 --out a.exr --sun-elevation 10 --aov polarisation,stokes_q,stokes_q");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(ReadExr(folder_ / "a.exr").layers.size(), 5U)
+      << "degree, angle, and Q in three colours";
+  EXPECT_EQ(ReadExrMetadata(folder_ / "a.exr").at("alpenglow.layers"), "polarisation,stokes_q");
 }
 
 TEST_F(SkylutSky, ProgressIsJsonLinesOnRequest) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun.h"
@@ -198,6 +199,37 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
       EXPECT_LT(std::sqrt(squares / kPixels), elevation_deg >= 10.0 ? 0.001 : 0.003)
           << altitude_m << " m, sun at " << elevation_deg;
     }
+  }
+}
+
+TEST(Panorama, LayersSayHowItsLightIsPolarisedAndLeaveItAsItIs) {
+  PanoramaSettings settings = SunAtDegrees(10.0, 0.0);
+  settings.width = 64;
+  settings.height = 32;
+  const Image bare = Panorama(settings);
+  settings.layers = {StokesLayer::kPolarisation, StokesLayer::kQ, StokesLayer::kU};
+  const Image image = Panorama(settings);
+  EXPECT_EQ(image.rgb, bare.rgb) << "to the last bit";
+  ASSERT_EQ(image.layers.size(), 8U);
+  EXPECT_EQ(image.layers[1].name, "polarisation.angle");
+  EXPECT_EQ(image.layers[2].name, "stokes_q.R");
+  EXPECT_FALSE(FaultyValue(image).has_value());
+  const auto at = [&](std::size_t layer, std::size_t x, std::size_t y) {
+    return image.layers[layer].values[y * 64 + x];
+  };
+  const auto luminance = [&](std::size_t layer, std::size_t x, std::size_t y) {
+    return Luminance({at(layer, x, y), at(layer + 1, x, y), at(layer + 2, x, y)});
+  };
+  // The sun is in the middle. East of it light vibrates from the lower left to the upper right, the
+  // sun being up and to the left, west of it as in a mirror; level where the sun is below.
+  for (const auto& [x, y, angle] :
+       {std::tuple{48U, 14U, 10.0F}, std::tuple{15U, 14U, -10.0F}, std::tuple{31U, 1U, 90.0F}}) {
+    const double whole = Luminance(image.at(static_cast<int>(x), static_cast<int>(y)));
+    const double q = luminance(2, x, y), u = luminance(5, x, y);
+    EXPECT_NEAR(at(0, x, y), std::hypot(q, u) / whole, 1e-5);
+    EXPECT_GT(at(0, x, y), 0.4) << "far from the sun";
+    const double off = std::remainder(static_cast<double>(at(1, x, y) - angle), 180.0);
+    EXPECT_NEAR(off, 0.0, 5.0) << "across the plane of the sun, but for pixels of 6 degrees";
   }
 }
 

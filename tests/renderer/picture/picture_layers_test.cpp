@@ -17,7 +17,7 @@ namespace alpenglow {
 namespace {
 
 TEST(PictureLayers, EveryLayerHasItsNameChannelsAndOneWayToItsValues) {
-  ASSERT_EQ(LayerNames().size(), 10U);
+  ASSERT_EQ(LayerNames().size(), 13U);
   for (const std::string& name : LayerNames()) {
     const PictureLayer layer = LayerFromName(name);
     const LayerKind& kind = KindOf(layer);

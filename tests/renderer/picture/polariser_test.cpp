@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "atmosphere/number/constants.h"
 #include "renderer/light/aerial_perspective.h"
@@ -21,15 +22,14 @@ using tests::Luminance;
 
 const UtcInstant kMorning = ParseInstant("2026-06-21T06:00:00Z");
 
-Image PictureOf(const Scene& scene, int width, int height) {
-  return SceneRenderer(scene).Render(
-      kMorning,
-      {.width = width, .height = height, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}});
-}
-
-Image Through(Scene scene, std::optional<double> polariser_deg, int width, int height) {
+Image Through(Scene scene, std::optional<double> polariser_deg, int width, int height,
+              const std::vector<PictureLayer>& layers = {}) {
   if (polariser_deg) scene.camera.polariser_rad = *polariser_deg * kRadiansPerDegree;
-  return PictureOf(scene, width, height);
+  return SceneRenderer(scene).Render(kMorning, {.width = width,
+                                                .height = height,
+                                                .samples_per_pixel = 1,
+                                                .air_nodes = 12,
+                                                .layers = layers});
 }
 
 TEST(Polariser, HalvesLightThatIsNotPolarisedToTheLastBit) {
@@ -77,8 +77,14 @@ TEST(Polariser, SkyVibratesAcrossThePlaneOfTheSunAndSeaAsFresnelHasIt) {
   const auto through = [&](std::optional<double> angle) {
     return Through(scene, angle, kWidth, kHeight);
   };
-  const Image bare = through(std::nullopt), upright = through(0.0), level = through(90.0),
-              right = through(45.0), left = through(-45.0);
+  const Image upright = through(0.0), level = through(90.0), right = through(45.0),
+              left = through(-45.0);
+  const Image bare =
+      Through(scene, std::nullopt, kWidth, kHeight,
+              {PictureLayer::kStokesQ, PictureLayer::kStokesU, PictureLayer::kPolarisation});
+  const auto layer = [&](std::size_t channel, int x, int y) {
+    return bare.layers[channel].values[static_cast<std::size_t>(y * kWidth + x)];
+  };
   const SunPosition sun = ApparentSunAt(scene.place, kMorning);
   const glm::dvec3 to_sun{std::cos(sun.elevation_rad) * std::sin(sun.azimuth_rad),
                           std::cos(sun.elevation_rad) * std::cos(sun.azimuth_rad),
@@ -94,9 +100,13 @@ TEST(Polariser, SkyVibratesAcrossThePlaneOfTheSunAndSeaAsFresnelHasIt) {
       EXPECT_NEAR(Luminance(right.at(x, y)) + Luminance(left.at(x, y)), whole, 1e-6 * whole);
       const double degree = std::hypot(q, u) / whole;
       EXPECT_LT(degree, 1.0);
+      EXPECT_NEAR(Luminance({layer(0, x, y), layer(1, x, y), layer(2, x, y)}), q, 1e-5 * whole);
+      EXPECT_NEAR(Luminance({layer(3, x, y), layer(4, x, y), layer(5, x, y)}), u, 1e-5 * whole);
+      EXPECT_NEAR(static_cast<double>(layer(6, x, y)), degree, 1e-4);
       const Seen seen = SeenAt(x, y, kWidth, kHeight);
       if (seen.view.z < 0.2 || std::abs(glm::dot(seen.view, to_sun)) > 0.5) continue;
-      const double angle = 0.5 * std::atan2(u, q);
+      const double angle = static_cast<double>(layer(7, x, y)) * kRadiansPerDegree;
+      EXPECT_NEAR(std::remainder(angle - 0.5 * std::atan2(u, q), kPi), 0.0, 1e-3);
       const glm::dvec3 vibrates = std::cos(angle) * seen.up + std::sin(angle) * seen.right;
       EXPECT_LT(std::abs(glm::dot(vibrates, to_sun)), std::sin(5.0 * kRadiansPerDegree))
           << "pixel " << x << ", " << y
