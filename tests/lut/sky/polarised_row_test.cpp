@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Polarised skies: rows of panoramas, and where the sky is not polarised.
+#include "lut/sky/polarised_row.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/halton.h"
+#include "tests/fixtures/lit_air.h"
+
+namespace alpenglow {
+namespace {
+
+using tests::LitAir;
+
+RaySamples<float> SamplesOf(const LitAir& lit, const ViewRay& ray) {
+  return lit.air.Sample(ray, {.nodes = 24, .dark_samples = true});
+}
+
+double RadianceOf(const LitAir& lit, const ViewRay& ray, std::size_t band) {
+  const RaySamples<float> samples = SamplesOf(lit, ray);
+  return double{lit.air.Inscatter(lit.air.Scatter(samples), ray.nu)[band]} +
+         double{lit.diffuse.InscatterAlong(samples, ray.nu)[band]};
+}
+
+/// Q or U of all orders, of a view to the right of the sun.
+double Evaluated(const LitAir& lit, const ViewRay& ray, std::size_t band,
+                 Bands<float> PolarisedLight::*part) {
+  const RaySamples<float> samples = SamplesOf(lit, ray);
+  const PolarisedLight once = PolarisedOnce(lit.medium, lit.air.Scatter(samples), ray);
+  const PolarisedLight more = lit.diffuse.PolarisationAlong(samples, ray.nu);
+  return double{(once.*part)[band]} + double{(more.*part)[band]};
+}
+
+TEST(PolarisedRow, GoesThroughTheLightOfItsDirectionsOnBothSidesOfTheSun) {
+  const LitAir& lit = tests::Earth();
+  for (const double altitude_m : {2.0, 10e3}) {
+    for (const double sun_deg : {60.0, 10.0, 0.0, -4.0}) {
+      const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
+      double worst = 0.0;
+      for (int i = 1; i <= 24; ++i) {
+        const double zenith = kPi * Halton(i, 2), azimuth = kPi * Halton(i, 3);
+        const PolarisedRow row(lit.air, lit.diffuse, altitude_m, mu_s, zenith);
+        const double nu = std::cos(zenith) * mu_s +
+                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(azimuth);
+        const ViewRay ray{altitude_m, std::cos(zenith), mu_s, nu};
+        const PolarisedLight right = row.At(azimuth), left = row.At(2.0 * kPi - azimuth);
+        for (const std::size_t band : {std::size_t{0}, lit.air.bands() - 1}) {
+          const double whole = RadianceOf(lit, ray, band);
+          const double q = Evaluated(lit, ray, band, &PolarisedLight::q);
+          const double u = Evaluated(lit, ray, band, &PolarisedLight::u);
+          worst = std::max({worst, std::abs(double{right.q[band]} - q) / whole,
+                            std::abs(double{right.u[band]} - u) / whole,
+                            std::abs(double{left.q[band]} - q) / whole,
+                            std::abs(double{left.u[band]} + u) / whole});
+        }
+      }
+      EXPECT_LT(worst, sun_deg > 5.0 ? 1e-3 : 3e-3) << altitude_m << " m, sun at " << sun_deg;
+    }
+  }
+}
+
+/// The meridian of the sun, by degrees over the horizon under it: beyond 90 on the other side.
+class Meridian {
+ public:
+  Meridian(const LitAir& lit, double sun_deg, std::size_t band) : sun_deg_(sun_deg) {
+    const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
+    for (int degree = 1; degree < 180; ++degree) {
+      const double zenith = std::abs(90.0 - degree) * kRadiansPerDegree;
+      const double nu = std::cos((degree - sun_deg) * kRadiansPerDegree);
+      const ViewRay ray{2.0, std::cos(zenith), mu_s, nu};
+      q_.push_back(Evaluated(lit, ray, band, &PolarisedLight::q) / RadianceOf(lit, ray, band));
+    }
+  }
+
+  /// Degrees from the sun, upwards, of where light is not polarised.
+  [[nodiscard]] std::vector<double> NeutralPoints() const {
+    std::vector<double> points;
+    for (std::size_t i = 0; i + 1 < q_.size(); ++i) {
+      if ((q_[i] < 0.0) == (q_[i + 1] < 0.0)) continue;
+      points.push_back(static_cast<double>(i + 1) + q_[i] / (q_[i] - q_[i + 1]) - sun_deg_);
+    }
+    return points;
+  }
+  [[nodiscard]] double Strongest() const { return -*std::min_element(q_.begin(), q_.end()); }
+  /// Degrees from the sun.
+  [[nodiscard]] double StrongestAt() const {
+    return static_cast<double>(std::min_element(q_.begin(), q_.end()) - q_.begin()) + 1.0 -
+           sun_deg_;
+  }
+
+ private:
+  double sun_deg_;
+  std::vector<double> q_;  // Q / I
+};
+
+// Observed distances: Coulson (1988), Polarization and Intensity of Light in the Atmosphere; Horvath,
+// Varju (2004), Polarized Light in Animal Vision: Babinet's point over the sun and Brewster's below
+// it by 10 to 25 degrees, nearer to a high sun, Arago's 18 to 25 degrees over the antisolar point of
+// a low sun, farther in the blue than in the red and after sunset than before.
+TEST(PolarisedSky, NeutralPointsOfAragoBabinetAndBrewsterStandWhereTheyAreObserved) {
+  for (const char* air : {"clear-mountain", "hazy"}) {
+    const LitAir lit(MediumPreset(air, {450.0, 550.0, 650.0}));
+    const std::vector<double> low = Meridian(lit, 0.0, 0).NeutralPoints(),
+                              low_green = Meridian(lit, 0.0, 1).NeutralPoints(),
+                              low_red = Meridian(lit, 0.0, 2).NeutralPoints(),
+                              dusk = Meridian(lit, -4.0, 0).NeutralPoints(),
+                              day = Meridian(lit, 30.0, 0).NeutralPoints(),
+                              noon = Meridian(lit, 60.0, 0).NeutralPoints();
+    for (const std::vector<double>& points : {low, low_green, low_red, dusk, day, noon})
+      ASSERT_EQ(points.size(), 2U) << air << ": Babinet with Arago at a low sun, else Brewster";
+    const auto arago = [](const std::vector<double>& points) { return 180.0 - points[1]; };
+    EXPECT_GT(arago(low), 18.0) << air;
+    EXPECT_LT(arago(low), 25.0) << air;
+    EXPECT_GT(arago(low), arago(low_green));
+    EXPECT_GT(arago(low_green), arago(low_red));
+    EXPECT_GT(arago(dusk), arago(low) + 1.0) << air;
+    EXPECT_LT(arago(dusk), 27.0) << air;
+    for (const std::vector<double>& points : {low, low_green, dusk}) {
+      EXPECT_GT(points[0], 10.0) << air << ", Babinet";
+      EXPECT_LT(points[0], 25.0) << air << ", Babinet";
+    }
+    EXPECT_GT(-day[0], 10.0) << air << ", Brewster";
+    EXPECT_LT(-day[0], 25.0) << air << ", Brewster";
+    EXPECT_GT(day[1], 10.0) << air << ", Babinet";
+    EXPECT_LT(day[1], 25.0) << air << ", Babinet";
+    EXPECT_LT(-noon[0], 0.7 * -day[0]) << air << ", Brewster";
+    EXPECT_LT(noon[1], 0.7 * day[1]) << air << ", Babinet";
+  }
+}
+
+TEST(PolarisedSky, IsMostPolarisedAtRightAnglesToTheSunAndLessInHaze) {
+  const LitAir clear(MediumPreset("clear-mountain", {450.0, 550.0, 650.0}));
+  const LitAir hazy(MediumPreset("hazy", {450.0, 550.0, 650.0}));
+  for (const double sun_deg : {30.0, 10.0, 0.0, -4.0}) {
+    const Meridian meridian(clear, sun_deg, 1);
+    EXPECT_NEAR(meridian.StrongestAt(), 90.0, 2.0) << sun_deg;
+    EXPECT_GT(meridian.Strongest(), Meridian(hazy, sun_deg, 1).Strongest() + 0.1) << sun_deg;
+    EXPECT_GT(meridian.Strongest(), sun_deg < 20.0 ? 0.75 : 0.65) << sun_deg;
+    EXPECT_LT(meridian.Strongest(), 0.85) << sun_deg << ": Coulson (1988), Mauna Loa: to 0.85";
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
