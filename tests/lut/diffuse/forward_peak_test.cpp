@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -126,6 +127,23 @@ TEST(ForwardPeak, DustOfMarsAgreesWithPathsToTwoPercent) {
        {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.2709998, 0.3192811, 0.3431749, 0.3703000}},
        {2.0, 88.0, 0.0, 75.0, 5000.0, {0.0419125, 0.0502959, 0.0546645, 0.0593626}}});
   EXPECT_LT(Rms(errors), 2e-2);
+}
+
+TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
+  Medium molecules = Haze(0.0, 0.0);
+  for (std::size_t band = 0; band < 3; ++band) {
+    molecules.rayleigh_scattering_per_m[band] =
+        std::array{0.5, 2.0, 5.0}[band] / molecules.rayleigh_scale_height_m;
+  }
+  const std::vector<double> errors =
+      ErrorsOf(molecules, WithFewSuns(OptionsFor(molecules)),
+               {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.09159932, 0.04034134, 0.02075372}},
+                {3000.0, 52.0, 72.0, 71.25, kToSpace_m, {0.03382878, 0.04194107, 0.03368006}},
+                {2.0, 82.8889, 144.0, 78.125, kToSpace_m, {0.03936788, 0.009450284, 0.005408709}},
+                {2.0, 20.0, 90.0, 30.0, kToSpace_m, {0.05234051, 0.1042153, 0.08256036}},
+                {10000.0, 120.0, 60.0, 60.0, 30000.0, {0.04138997, 0.07301351, 0.08362427}},
+                {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.0395654, 0.0103269, 0.005680471}}});
+  EXPECT_LT(Rms(errors), 1e-2);
 }
 
 TEST(ForwardPeak, ComesBackFromStoredValues) {
