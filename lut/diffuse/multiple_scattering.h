@@ -52,7 +52,9 @@ struct DiffuseLightOptions {
   int later_azimuth_nodes = 5;
   int later_ray_nodes = 6;
   int max_orders = 200;
-  double tolerance = 1e-2;  // share of the light that is summed as a geometric series, not computed
+  // Share of the light that is summed as a geometric series, not computed; or, in thick air, what is
+  // not known of that, ten times over.
+  double tolerance = 1e-2;
   /// Exactly so many orders of the diffuse light (1: scattered or reflected once), no rest summed:
   /// InscatterAlong then gives orders 2 to exact_orders + 1. For tables that are defined so.
   std::optional<int> exact_orders = std::nullopt;

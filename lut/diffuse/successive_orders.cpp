@@ -344,6 +344,9 @@ void Block::AddTail(const Field& last, const Field& before, Field& total) const 
   }
 }
 
+// Light of clear and hazy air is summed with fewer.
+constexpr int kOrdersOfThinAir = 16;
+
 void Accumulate(const Field& part, Field& total) {
   for (std::size_t i = 0; i < total.moments.size(); ++i)
     total.moments.data()[i] += part.moments.data()[i];
@@ -355,7 +358,7 @@ Block::Sum Block::Solve(Field first_order) const {
   Field total = order;
   Field before = order;
   int orders = 1;
-  double share = 1.0, rest = 1.0;
+  double share = 1.0, rest = 1.0, ratio = 0.0;
   const auto goes_on = [&] {
     if (options_.exact_orders) return orders < *options_.exact_orders;
     return rest > options_.tolerance && share > 0.0 && orders < options_.max_orders;
@@ -371,8 +374,13 @@ Block::Sum Block::Solve(Field first_order) const {
     ++orders;
     const double share_before = share;
     share = LargestShare(order, total);
-    const double ratio = std::clamp(share / share_before, 0.0, 0.999);
+    const double ratio_before = ratio;
+    ratio = std::clamp(share / share_before, 0.0, 0.999);
     rest = share * ratio / (1.0 - ratio);
+    // In thick air all nodes soon fade alike, long before little is left: then what is not known of
+    // the rest is how far its ratio still moves.
+    if (orders > kOrdersOfThinAir)
+      rest *= std::min(10.0 * std::abs(ratio - ratio_before) / (1.0 - ratio), 1.0);
   }
   if (options_.exact_orders) return {std::move(total), orders, true};
   AddTail(order, before, total);
