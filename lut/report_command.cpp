@@ -19,10 +19,11 @@ struct ReportCommandOptions {
 };
 
 void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOptions& common) {
-  const Report report =
-      MeasureReport({.mediums = MediumsOfReport(options.atmosphere, options.quick),
-                     .quick = options.quick,
-                     .progress = common.progress_style()});
+  const Report report = MeasureReport(
+      {.mediums = MediumsOfReport(options.atmosphere, options.quick),
+       .hard_mediums = options.atmosphere || options.quick ? std::vector<Medium>{} : HardMediums(),
+       .quick = options.quick,
+       .progress = common.progress_style()});
   WriteReport(report, options.out);
   if (!common.quiet) Print(SummaryOf(report));
 }
@@ -38,8 +39,10 @@ Subcommand AddReportCommand(CLI::App& app) {
   report.add_option("--out", options->out, "Folder for the report; made when missing")
       ->check(FaultOfFolderName)
       ->required();
-  report.add_option("--atmosphere", options->atmosphere,
-                    "Atmosphere file (TOML); without it the presets earth and hazy");
+  report.add_option(
+      "--atmosphere", options->atmosphere,
+      "Atmosphere file (TOML); without it the presets earth and hazy, and, for light of all "
+      "orders, dust, thick haze and thick air");
   report.add_flag("--quick", options->quick,
                   "Few rays and methods, one atmosphere: a test of the report, not of the methods");
   report.footer("Example: skylut report --out report");

@@ -89,8 +89,8 @@ ReportWords Words() {
           "(transmittance) start in the lower half of the air, dense near the ground; in twilight "
           "their lowest points are drawn so. Errors of radiance are relative to the radiance; what "
           "is darker than a hundredth of the singly scattered light of the zenith, same place and "
-          "sun, counts as if it were that bright. Light is scalar, the sun a point, rays are "
-          "straight."};
+          "sun, counts as if it were that bright. Molecules polarise light where the atmosphere "
+          "says so, the sun is a point, rays are straight."};
 }
 
 }  // namespace
@@ -120,11 +120,14 @@ std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere
 Report MeasureReport(const ReportOptions& options) {
   const ReportEffort effort = options.quick ? ReportEffort::Quick() : ReportEffort{};
   std::vector<MeasureTopic> topics;
-  for (const auto measure :
-       {MeasureTransmittance, MeasureSingleScattering, MeasureAllOrders, MeasurePanoramas}) {
-    for (const Medium& medium : options.mediums)
+  const auto add = [&](const auto& measure, const std::vector<Medium>& mediums) {
+    for (const Medium& medium : mediums)
       topics.emplace_back([measure, &medium, &effort] { return measure(medium, effort); });
-  }
+  };
+  for (const auto measure : {MeasureTransmittance, MeasureSingleScattering, MeasureAllOrders})
+    add(measure, options.mediums);
+  add(MeasureHardAir, options.hard_mediums);
+  add(MeasurePanoramas, options.mediums);
   return MeasureTopics(Words(), options.quick, options.progress, topics);
 }
 

@@ -109,8 +109,9 @@ struct ReportTopic {
 };
 
 struct ReportOptions {
-  std::vector<Medium> mediums;  // one section each
-  bool quick = false;           // few rays, few methods, little care: for tests
+  std::vector<Medium> mediums;            // one section each
+  std::vector<Medium> hard_mediums = {};  // one section each of light of all orders
+  bool quick = false;                     // few rays, few methods, little care: for tests
   ProgressStyle progress = ProgressStyle::kQuiet;
 };
 
@@ -118,6 +119,10 @@ struct ReportOptions {
 /// (unless it is quick) hazy. Throws what ReadMedium does.
 [[nodiscard]] std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file,
                                                   bool quick);
+
+/// The dust of Mars, haze of optical depth 1 and molecules of optical depth 5: what a report that is
+/// neither quick nor of a file looks at besides.
+[[nodiscard]] std::vector<Medium> HardMediums();
 
 /// The machine and the program, in words.
 struct ReportMaker {

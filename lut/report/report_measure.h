@@ -157,6 +157,8 @@ class TopicWork {
 [[nodiscard]] ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort);
+/// Where light of all orders is hard: with fewer rays and methods, for paths are long there.
+[[nodiscard]] ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort);
 
 }  // namespace alpenglow

@@ -2,6 +2,9 @@
 // Topic of the report: light of all orders along a view.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
@@ -72,10 +75,12 @@ class Topic : public TopicWork {
   }
 
   void AddDiffuse(const DiffuseLightOptions& options) {
-    const DiffuseLightOptions usual;
-    const bool in_summary = options.forward_peak || (options.degree == usual.degree &&
-                                                     options.altitudes == usual.altitudes &&
-                                                     options.sun_angles == usual.sun_angles);
+    const DiffuseLightOptions usual, needed = OptionsFor(medium_);
+    const auto is_like = [&](const DiffuseLightOptions& other) {
+      return options.forward_peak == other.forward_peak && options.degree == other.degree &&
+             options.altitudes == other.altitudes && options.sun_angles == other.sun_angles;
+    };
+    const bool in_summary = is_like(usual) || is_like(needed);
     AddMoments({.series = fmt::format("moments to degree {}{}", options.degree,
                                       options.forward_peak ? ", forward peak apart" : ""),
                 .parameter = "",
@@ -107,6 +112,29 @@ class Topic : public TopicWork {
   AirIntegrator<float> air_;
 };
 
+ReportTopic WordsOfAllOrders() {
+  return {.key = "all_orders",
+          .title = "All orders: the light of the sky as a whole",
+          .what =
+              "The same views; the question is the radiance that the air on the way sends to "
+              "the eye after any number of scatterings and reflections by the ground. Every "
+              "method takes single scattering from the same 12 Gauss nodes; only light of "
+              "orders two and up differs.",
+          .error_unit = "parts of the whole radiance",
+          .notes =
+              "The isotropic table is the one of Hillaire (2020), its integrals taken as "
+              "published (64 directions, 20 steps) and with four times the directions. Moments "
+              "are this library's spherical-harmonic moments of the diffuse light over altitude "
+              "and sun; the "
+              "largest is the quality fine of skylut build, which also has more directions. "
+              "Where the medium's light is polarised, so is the judge's, and scalar light is "
+              "what neglects it: the same single scattering, and moments of scalar light. In "
+              "hazy air the forward peak of the aerosol is set apart and found in closed form "
+              "(delta-M); only then do more degrees pay, and skylut eval and build take it.",
+          .wanted = 0.02,
+          .cost = CostAxis::kTimeToBuild};
+}
+
 }  // namespace
 
 ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
@@ -131,25 +159,35 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   if (!effort.quick) topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
   if (const DiffuseLightOptions needed = OptionsFor(medium); needed.forward_peak)
     topic.AddDiffuse(needed);
-  return std::move(topic).Finished(
-      {.key = "all_orders",
-       .title = "All orders: the light of the sky as a whole",
-       .what = "The same views; the question is the radiance that the air on the way sends to "
-               "the eye after any number of scatterings and reflections by the ground. Every "
-               "method takes single scattering from the same 12 Gauss nodes; only light of "
-               "orders two and up differs.",
-       .error_unit = "parts of the whole radiance",
-       .notes = "The isotropic table is the one of Hillaire (2020), its integrals taken as "
-                "published (64 directions, 20 steps) and with four times the directions. Moments "
-                "are this library's spherical-harmonic moments of the diffuse light over altitude "
-                "and sun; the "
-                "largest is the quality fine of skylut build, which also has more directions. "
-                "Where the medium's light is polarised, so is the judge's, and scalar light is "
-                "what neglects it: the same single scattering, and moments of scalar light. In "
-                "hazy air the forward peak of the aerosol is set apart and found in closed form "
-                "(delta-M); only then do more degrees pay, and skylut eval and build take it.",
-       .wanted = 0.02,
-       .cost = CostAxis::kTimeToBuild});
+  return std::move(topic).Finished(WordsOfAllOrders());
+}
+
+std::vector<Medium> HardMediums() {
+  Medium haze = MediumPreset("bruneton2017");
+  haze.name = "haze of optical depth 1";
+  haze.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  Medium molecules = MediumPreset("bruneton2017");
+  molecules.name = "molecules of optical depth 0.5, 2 and 5";
+  for (std::size_t band = 0; band < haze.wavelengths_nm.size(); ++band) {
+    haze.mie_extinction_per_m[band] = 1.0 / haze.mie_scale_height_m;
+    haze.mie_scattering_per_m[band] = 0.9 / haze.mie_scale_height_m;
+    molecules.rayleigh_scattering_per_m[band] =
+        std::array{0.5, 2.0, 5.0}[band] / molecules.rayleigh_scale_height_m;
+    molecules.mie_scattering_per_m[band] = molecules.mie_extinction_per_m[band] = 0.0;
+  }
+  return {MediumPreset("mars"), haze, molecules};
+}
+
+ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort) {
+  ReportEffort fewer = effort;
+  fewer.traced_rays = std::min(effort.traced_rays, 12);
+  fewer.paths = std::min<std::size_t>(effort.paths, 10000);
+  Topic topic(medium, fewer);
+  topic.AddNothing();
+  topic.AddIsotropic({}, true);
+  topic.AddDiffuse({});
+  topic.AddDiffuse(OptionsFor(medium));
+  return std::move(topic).Finished(WordsOfAllOrders());
 }
 
 }  // namespace alpenglow
