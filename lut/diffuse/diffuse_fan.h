@@ -25,7 +25,8 @@ class DiffuseFan {
   /// @param samples  of a ray as `ray`, taken under a sun in the zenith (no part of it is dark).
   /// @param ray      altitude, zenith cosine and the sun's at the observer; its nu is not used.
   /// @param nus      of every direction, cosine between it and the sun.
-  /// As DiffuseLight::InscatterAlong of the same samples, to 1e-4 of the brightest.
+  /// As DiffuseLight::InscatterAlong of the same samples, to 1e-4 of the brightest, where that has
+  /// no forward peak apart; else of the degrees that it keeps.
   [[nodiscard]] std::vector<float> InscatterAlong(const RaySamples<float>& samples,
                                                   const ViewRay& ray,
                                                   std::span<const float> nus) const;

@@ -233,10 +233,13 @@ Bands<float> DiffuseLight::InscatterByMoments(const RaySamples<float>& samples, 
   return sum;
 }
 
-Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu) const {
+Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu,
+                                          SegmentEnd end) const {
   Bands<float> light = InscatterByMoments(samples, nu);
   if (!peak_ || samples.count == 0) return light;
-  const Bands<float> more = peak_->Along(samples, nu), behind = PeakBehind(samples, nu);
+  const bool is_hidden = end == SegmentEnd::kOpaque && samples.extent.end == RayEnd::kLength;
+  const Bands<float> more = peak_->Along(samples, nu),
+                     behind = is_hidden ? Bands<float>(bands_) : PeakBehind(samples, nu);
   for (std::size_t band = 0; band < bands_; ++band)
     light[band] = std::max(light[band] + more[band] + behind[band], 0.0F);
   return light;

@@ -69,6 +69,9 @@ struct DiffuseLightOptions {
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
 [[nodiscard]] DiffuseLightOptions OptionsFor(const Medium& medium);
 
+/// What is at the end of a ray that ends in the air: more air, or something that hides it.
+enum class SegmentEnd { kOpen, kOpaque };
+
 /// What the table is made of.
 struct SolvedOrders {
   std::vector<float> values;  // as DiffuseLight::values()
@@ -98,8 +101,10 @@ class DiffuseLight {
 
   /// In-scattered light of orders two and up along a sampled ray [1/sr].
   /// The samples must include the dark ones (Sampling::dark_samples).
-  /// Does not include light from the ground at the end of the ray.
-  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu) const;
+  /// Does not include light from the ground at the end of the ray. Of what is behind an open end it
+  /// includes what aerosol throws on towards the eye (forward_peak.h), not of what stands there.
+  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
+                                            SegmentEnd end = SegmentEnd::kOpen) const;
 
   /// Q and U of the same light, with signs as in PolarisedLight; 0 where light is not polarised.
   [[nodiscard]] PolarisedLight PolarisationAlong(const RaySamples<float>& samples, double nu) const;

@@ -247,8 +247,9 @@ AirAlongRay AerialPerspective::Sum(const RaySamples<float>& samples, const ViewR
   const AirConstants<float>& air_per_km = air_.constants();
   const ScatteredOnce<float> once = air_.Scatter(samples);
   const auto direct = air_.Inscatter(once, ray.nu);
-  const auto diffuse =
-      nodes.higher_orders ? diffuse_.InscatterAlong(samples, ray.nu) : Bands<float>(air_.bands());
+  const auto diffuse = nodes.higher_orders
+                           ? diffuse_.InscatterAlong(samples, ray.nu, SegmentEnd::kOpaque)
+                           : Bands<float>(air_.bands());
   AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {

@@ -14,10 +14,13 @@
 
 namespace alpenglow {
 
-/// Air and what its light reaches. Refers to the parts of the ground.
+/// Air and what its light reaches, of all orders as hazy and thick air needs it (OptionsFor). Refers to the parts of the ground.
 struct AirModel {
   AirModel(const Medium& medium, const GroundParts& parts)
-      : air(medium), diffuse(medium), aerial(air, diffuse), ground_light(parts, air, diffuse) {}
+      : air(medium),
+        diffuse(medium, OptionsFor(medium)),
+        aerial(air, diffuse),
+        ground_light(parts, air, diffuse) {}
 
   AirIntegrator<float> air;
   DiffuseLight diffuse;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -271,6 +272,43 @@ TEST(AerialPerspective, IsContinuousInTheDistanceFromNothingToTheEndOfTheAir) {
     EXPECT_EQ(Sum(at(1e9).inscatter), all) << "beyond the end of the air";
     EXPECT_NEAR(Sum(air.aerial.Along({1500.0, mu, 0.3, 0.5}, {}).inscatter) / all, 1.0, 2e-3);
   }
+}
+
+// Radiances of paths, as in forward_peak_test.cpp.
+TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBehindItsEnd) {
+  Medium haze = MediumPreset("bruneton2017");
+  haze.mie_scattering_per_m.assign(3, 7.992e-5);
+  haze.mie_extinction_per_m.assign(3, 8.88e-5);
+  haze.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  const AirIntegrator<float> air(haze);
+  const DiffuseLight diffuse(haze, OptionsFor(haze));
+  ASSERT_TRUE(diffuse.options().forward_peak);
+  const AerialPerspective aerial(air, diffuse);
+  struct Traced {
+    ViewRay ray;
+    std::array<double, 3> radiance;
+  };
+  const std::array<Traced, 4> traced{
+      {{RayFromAngles(2.0, 81.6667, 36.0, 57.5), {0.09896458, 0.08325672, 0.07381091}},
+       {RayFromAngles(2.0, 82.8889, 144.0, 78.125), {0.04227244, 0.03291204, 0.02312036}},
+       {RayFromAngles(2.0, 80.0, 5.07718, 80.0), {0.262923, 0.4881752, 0.7311241}},
+       {RayFromAngles(2.0, 70.0, 0.0, 80.0), {0.1260689, 0.1947047, 0.2745973}}}};
+  double squares = 0.0;
+  for (const Traced& view : traced) {
+    const AirAlongRay seen = aerial.Along(view.ray, AerialPerspective::Nodes{});
+    for (std::size_t band = 0; band < 3; ++band)
+      squares += std::pow(double{seen.inscatter[band]} / view.radiance[band] - 1.0, 2);
+    ViewRay to_a_mountain = view.ray;
+    to_a_mountain.length_m = 3000.0;
+    const RaySamples<float> way = aerial.Sample(to_a_mountain, nullptr, AerialPerspective::Nodes{});
+    const Bands<float> open = diffuse.InscatterAlong(way, view.ray.nu);
+    const Bands<float> hidden = diffuse.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
+    for (std::size_t band = 0; band < 3; ++band) {
+      EXPECT_LT(hidden[band], open[band]);
+      EXPECT_GT(hidden[band], 0.0F);
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / 12.0), 5e-3);
 }
 
 }  // namespace
