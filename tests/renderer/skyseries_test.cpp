@@ -97,6 +97,22 @@ TEST_F(Skyseries, AStillIsASeriesOfOne) {
   EXPECT_EQ(outcome.out, "") << "standard output is for results only";
 }
 
+TEST_F(Skyseries, AMeterOfIncidentLightStandsBehindThePolariser) {
+  WriteText(folder_ / "p.toml", std::string(kBareSceneText) + "[camera]\npolariser_deg = 30.0\n");
+  const auto metadata = [&](const char* scene) {
+    const Outcome outcome = Run(InFolder(scene) + " --size 16x9 --samples 1 --quiet --png " +
+                                "--exposure incident --out " + InFolder("i.exr"));
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return ReadExrMetadata(folder_ / "i.exr");
+  };
+  const Metadata bare = metadata("s.toml"), through = metadata("p.toml");
+  EXPECT_NEAR(std::stod(bare.at("alpenglow.ev100")) - std::stod(through.at("alpenglow.ev100")), 1.0,
+              1e-3)
+      << "light that is not polarised loses a stop";
+  EXPECT_EQ(bare.count("alpenglow.polariser_deg"), 0U);
+  EXPECT_NEAR(std::stod(through.at("alpenglow.polariser_deg")), 30.0, 1e-6);
+}
+
 TEST_F(Skyseries, APictureIsHeldToANoiseUnlessEqualRaysAreAskedForAndSaysWhatItTook) {
   const std::string scene = InFolder("s.toml") + " --size 16x9 --quiet --out ";
   ASSERT_EQ(Run(scene + InFolder("held.exr")).status, 0);
