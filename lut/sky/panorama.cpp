@@ -66,7 +66,7 @@ std::array<float, 3> Srgb(const std::vector<float>& matrix, const float* bands, 
 }
 
 double Luminance(const std::array<float, 3>& rgb) {
-  return shared::Luminance<double>(rgb[0], rgb[1], rgb[2]);
+  return shared::Luminance<double>(double{rgb[0]}, double{rgb[1]}, double{rgb[2]});
 }
 
 /// Where the values of a layer stand in a picture.
