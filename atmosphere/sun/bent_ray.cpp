@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/sun/bent_ray.h"
+
+#include <algorithm>
+
+#include "atmosphere/number/root.h"
+
+namespace alpenglow {
+namespace {
+
+/// n r less that at the ground [m].
+double OverGround(const BendingAir& air, double height_m) {
+  const double main = std::expm1(-height_m / air.scale_height_m);
+  const double deficit = std::expm1(-height_m / air.deficit_scale_height_m);
+  const double more =
+      air.refractivity * ((1.0 + air.deficit_share) * main - air.deficit_share * deficit);
+  return height_m * (1.0 + RefractivityAt(air, height_m)) + air.planet_radius_m * more;
+}
+
+}  // namespace
+
+double RefractivityAt(const BendingAir& air, double height_m) {
+  const double main = std::exp(-height_m / air.scale_height_m);
+  if (air.deficit_share == 0.0) return air.refractivity * main;
+  return air.refractivity * ((1.0 + air.deficit_share) * main -
+                             air.deficit_share * std::exp(-height_m / air.deficit_scale_height_m));
+}
+
+double RefractivitySlopeAt(const BendingAir& air, double height_m) {
+  const double main = std::exp(-height_m / air.scale_height_m) / air.scale_height_m;
+  if (air.deficit_share == 0.0) return -air.refractivity * main;
+  const double deficit =
+      std::exp(-height_m / air.deficit_scale_height_m) / air.deficit_scale_height_m;
+  return -air.refractivity * ((1.0 + air.deficit_share) * main - air.deficit_share * deficit);
+}
+
+bool GentlyBends(const BendingAir& air) {
+  // A bound of -r n'; between the ground and the top r grows by less than a third.
+  const double steepest = air.refractivity * (1.0 + air.deficit_share) / air.scale_height_m;
+  return steepest * air.planet_radius_m < 0.8;
+}
+
+BentRay::BentRay(const BendingAir& air, double elevation_rad, double height_m)
+    : air_(air),
+      elevation_rad_(elevation_rad),
+      height_m_(std::max(height_m, 0.0)),
+      invariant_m_((1.0 + RefractivityAt(air, height_m_)) * (air.planet_radius_m + height_m_) *
+                   std::cos(elevation_rad)) {}
+
+double BentRay::OverInvariant(double height_m) const {
+  const double here_m =
+      (1.0 + RefractivityAt(air_, height_m_)) * (air_.planet_radius_m + height_m_);
+  const double half_sine = std::sin(0.5 * elevation_rad_);
+  return OverGround(air_, height_m) - OverGround(air_, height_m_) +
+         2.0 * here_m * half_sine * half_sine;
+}
+
+// By Newton's method: n r grows by at least a fifth of r.
+double BentRay::HeightWhere(double elevation_rad) const {
+  const double q = invariant_m_ / std::cos(elevation_rad);
+  const double over_radius_m = q - air_.planet_radius_m;
+  double height_m = over_radius_m;
+  for (int step = 0; step < 20; ++step) {
+    const double refractivity = RefractivityAt(air_, height_m);
+    const double radius_m = air_.planet_radius_m + height_m;
+    const double excess_m = (height_m - over_radius_m) + refractivity * radius_m;
+    const double correction_m =
+        excess_m / (1.0 + refractivity + RefractivitySlopeAt(air_, height_m) * radius_m);
+    height_m -= correction_m;
+    if (std::abs(correction_m) < 1e-6) break;
+  }
+  return height_m;
+}
+
+double BentRay::ElevationAt(double height_m) const {
+  const double q = (1.0 + RefractivityAt(air_, height_m)) * (air_.planet_radius_m + height_m);
+  return 2.0 * std::asin(std::sqrt(std::clamp(0.5 * OverInvariant(height_m) / q, 0.0, 1.0)));
+}
+
+double BentRay::Bending(double low_rad, double high_rad) const {
+  if (!(low_rad < high_rad)) return 0.0;
+  const GaussRule& rule = GaussLegendre(32);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double height_m = HeightWhere(low_rad + (high_rad - low_rad) * rule.node[i]);
+    const double slope =
+        RefractivitySlopeAt(air_, height_m) * (air_.planet_radius_m + height_m);  // r n'
+    sum += rule.weight[i] * -slope / (1.0 + RefractivityAt(air_, height_m) + slope);
+  }
+  return sum * (high_rad - low_rad);
+}
+
+double BentRay::MetresPerRadian(double elevation_rad) const {
+  const double height_m = HeightWhere(elevation_rad);
+  const double growth = 1.0 + RefractivityAt(air_, height_m) +
+                        RefractivitySlopeAt(air_, height_m) * (air_.planet_radius_m + height_m);
+  const double cosine = std::cos(elevation_rad);
+  return invariant_m_ / (cosine * cosine * growth);
+}
+
+std::optional<double> BentRay::AngleToGround() const {
+  if (elevation_rad_ >= 0.0 || OverInvariant(0.0) < 0.0) return std::nullopt;
+  const double at_ground = ElevationAt(0.0);
+  const double at_eye = -elevation_rad_;
+  const double enters = std::min(at_eye, ElevationAt(air_.top_m));
+  return at_eye - at_ground + Bending(at_ground, enters);
+}
+
+double GrazingElevation(const BendingAir& air, double height_m) {
+  const double height = std::max(height_m, 0.0);
+  const double here_m = (1.0 + RefractivityAt(air, height)) * (air.planet_radius_m + height);
+  // acos(at the ground / here), without its cancellation near 1.
+  return -2.0 * std::asin(std::sqrt(0.5 * std::max(OverGround(air, height), 0.0) / here_m));
+}
+
+double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad, double height_m) {
+  const double elevation = std::max(apparent_elevation_rad, GrazingElevation(air, height_m));
+  return BentRay(air, elevation, height_m).BendingToSpace();
+}
+
+std::optional<double> ApparentElevation(const BendingAir& air, double true_elevation_rad,
+                                        double height_m) {
+  const double grazing = GrazingElevation(air, height_m);
+  const double largest = RefractionSeenAt(air, grazing, height_m);
+  if (true_elevation_rad < grazing - largest) return std::nullopt;
+  const auto error = [&](double apparent) {
+    return apparent - RefractionSeenAt(air, apparent, height_m) - true_elevation_rad;
+  };
+  const double low = std::max(true_elevation_rad, grazing);
+  return BracketedRoot(error, low, true_elevation_rad + largest + 1e-9, 1e-12);
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Rays in air whose density falls off with height over a sphere: Bouguer's law.
+//
+//   n(h) - 1 = N [(1 + d) exp(-h / H) - d exp(-h / H_D)]      as the molecules of a medium
+//   q cos(e) = b,  q = n r                                    along a ray of the elevation e
+//   bending  = integral of -r n' / (n + r n') over e          Auer and Standish (2000)
+//   column   = integral of density b / (cos^2(e) (n + r n')) over e
+//
+// with r = R + h and n' = dn/dr. Elevations of rays are those that an eye at the place sees; light
+// comes the other way. Auer, L. H. and Standish, E. M. (2000), Astron. J. 119, 2472-2474: with the
+// zenith angle, or here the elevation, as the variable both integrands are smooth even where the
+// ray is horizontal; the column follows from dr = q sin(e) / (cos(e) (n + r n')) de.
+//
+// What asks for a height takes one below 0 as 0.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/quadrature.h"
+
+namespace alpenglow {
+
+/// Air that bends rays, over a sphere. GentlyBends must be true of it.
+struct BendingAir {
+  double refractivity;    // n - 1 at altitude 0, >= 0
+  double scale_height_m;  // H
+  double deficit_share = 0.0;
+  double deficit_scale_height_m = 4000.0;
+  double top_m;  // nothing bends above
+  double planet_radius_m = kEarthMeanRadius_m;
+};
+
+/// n - 1 [1], and how it changes with height [1/m].
+[[nodiscard]] double RefractivityAt(const BendingAir& air, double height_m);
+[[nodiscard]] double RefractivitySlopeAt(const BendingAir& air, double height_m);
+
+/// Whether n r grows with height by at least a fifth of r everywhere: where it falls, air traps
+/// rays, the ground seems hollow, and nothing here holds.
+[[nodiscard]] bool GentlyBends(const BendingAir& air);
+
+/// A ray by where it is seen from.
+class BentRay {
+ public:
+  /// @param elevation_rad  apparent, of the eye's line of sight, at the height.
+  BentRay(const BendingAir& air, double elevation_rad, double height_m);
+
+  /// Where it has the (positive) elevation, on its way up: height [m], to a micrometre.
+  [[nodiscard]] double HeightWhere(double elevation_rad) const;
+  /// Elevation [rad], >= 0, where it passes a height; 0 where it does not get so low.
+  [[nodiscard]] double ElevationAt(double height_m) const;
+
+  /// Bending [rad] between two elevations of its rising part.
+  [[nodiscard]] double Bending(double low_rad, double high_rad) const;
+
+  /// Bending on the way from the eye out of the air, once past its lowest point if it looks down.
+  /// That point must not be below the ground.
+  [[nodiscard]] double BendingToSpace() const {
+    double sum = 0.0;
+    VisitParts([&](double low_rad, double high_rad) { sum += Bending(low_rad, high_rad); });
+    return sum;
+  }
+
+  /// Column on that way [m], of what has a density relative to somewhere: double(double height_m).
+  /// Within 1e-3 for layers from 1 km in scale height, from the horizon to 20 degrees.
+  template <typename Density>
+  [[nodiscard]] double ColumnToSpace(const Density& density) const {
+    double sum = 0.0;
+    const GaussRule& rule = GaussLegendre(64);
+    VisitParts([&](double low_rad, double high_rad) {
+      for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        // Nodes crowd where the ray is low and most of the air is.
+        const double t = rule.node[i];
+        const double elevation = low_rad + (high_rad - low_rad) * t * t;
+        sum += rule.weight[i] * 2.0 * t * (high_rad - low_rad) * density(HeightWhere(elevation)) *
+               MetresPerRadian(elevation);
+      }
+    });
+    return sum;
+  }
+
+  /// Angle at the planet's centre [rad] between the eye and where a ray that looks down meets the
+  /// ground; nothing where it does not.
+  [[nodiscard]] std::optional<double> AngleToGround() const;
+
+ private:
+  /// visit(low_rad, high_rad) for each rising part of the way to space: one, or two where the way
+  /// goes through its lowest point.
+  template <typename Visit>
+  void VisitParts(const Visit& visit) const {
+    const double exit_rad = ElevationAt(air_.top_m);
+    if (elevation_rad_ >= 0.0) {
+      if (height_m_ < air_.top_m) visit(elevation_rad_, exit_rad);
+      return;
+    }
+    visit(0.0, exit_rad);
+    visit(0.0, height_m_ < air_.top_m ? -elevation_rad_ : exit_rad);
+  }
+  [[nodiscard]] double MetresPerRadian(double elevation_rad) const;
+  /// n r at a height, less the ray's invariant [m], without cancelling.
+  [[nodiscard]] double OverInvariant(double height_m) const;
+
+  BendingAir air_;
+  double elevation_rad_, height_m_;
+  double invariant_m_;  // b
+};
+
+/// Elevation [rad] of the ray that grazes the ground, at an eye; <= 0.
+[[nodiscard]] double GrazingElevation(const BendingAir& air, double height_m);
+
+/// Apparent minus true elevation [rad] of light that arrives under an apparent one, or, below the
+/// horizon, of the light that grazes the ground. Within 0.01' of the ray equation.
+[[nodiscard]] double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad,
+                                      double height_m);
+
+/// The apparent elevation [rad] of what stands at a true one; nothing behind the ground. Some ten
+/// microseconds times ten.
+[[nodiscard]] std::optional<double> ApparentElevation(const BendingAir& air,
+                                                      double true_elevation_rad, double height_m);
+
+}  // namespace alpenglow
