@@ -32,6 +32,10 @@ constexpr std::array<EffectText, kEffects> kTexts{{
     {Effect::kMoonlight, "moonlight", "the moon is seen and lights nothing", false, false},
     {Effect::kNightSky, "night-sky", "no airglow, zodiacal light and Milky Way", false, false},
     {Effect::kStars, "stars", "neither stars nor planets", false, false},
+    {Effect::kRefraction, "refraction",
+     "the disk of a low sun is round, the sea where it would be "
+     "without air",
+     false, false},
     {Effect::kMolecules, "molecules", "air without molecules", true, true},
     {Effect::kAerosol, "aerosol", "air without aerosol", true, true},
     {Effect::kOzone, "ozone", "air without ozone", true, true},

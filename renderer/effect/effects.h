@@ -34,6 +34,7 @@ enum class Effect : std::size_t {
   kMoonlight,
   kNightSky,
   kStars,
+  kRefraction,
   kMolecules,
   kAerosol,
   kOzone,

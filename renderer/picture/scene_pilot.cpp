@@ -43,6 +43,7 @@ EffectSet SceneState::Present(const PictureFrame& frame) const {
   present = without(present, frame.moonlit != nullptr, {Effect::kMoonlight});
   present = without(present, frame.night != nullptr, {Effect::kNightSky});
   present = without(present, frame.stars != nullptr, {Effect::kStars});
+  present = without(present, frame.bent != nullptr, {Effect::kRefraction});
   return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
 }
 

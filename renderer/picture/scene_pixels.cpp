@@ -52,10 +52,30 @@ double VarianceAround(const std::vector<double>& variances, const Tile& tile, in
   return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
 }
 
+/// Each band of the disk stands where the air lifts it to, and shines through the bent ray's air.
+BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
+                      const Lighting& light, const BentSight& bent, const Medium& medium) {
+  BandLight disk(light.irradiance.count);
+  const double elevation = bent.ElevationOf(direction);
+  const double per_sr = 1.0 / DiskSolidAngle(light.sun_radius_rad);
+  for (std::size_t band = 0; band < disk.count; ++band) {
+    const double chord = glm::length(bent.TrueDirection(direction, band) - bent.to_sun);
+    const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
+    if (rho >= 1.0) continue;
+    const double left = std::exp(-bent.view.MoreOpticalDepth(elevation, band));
+    disk[band] =
+        static_cast<float>(per_sr * left * LimbDarkening(rho, medium.wavelengths_nm[band])) *
+        light.irradiance[band] * through.transmittance[band];
+  }
+  return disk;
+}
+
 }  // namespace
 
 BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                              const Lighting& light) const {
+                              const PictureFrame& frame) const {
+  const Lighting& light = frame.light;
+  if (frame.bent) return BentSunDisk(direction, through, light, *frame.bent, medium);
   // Angle from the chord: the arc cosine of a number near 1 has no digits left.
   const double chord = glm::length(direction - light.to_sun);
   const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
@@ -150,7 +170,7 @@ Shaded SceneState::ShadedWithoutPolariser(const Hit& hit, const SharedAir& throu
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
     shaded.radiance =
-        shaded.radiance + through.fog * (SunDisk(ray.direction, through.air, frame.light) +
+        shaded.radiance + through.fog * (SunDisk(ray.direction, through.air, frame) +
                                          MoonSeen(ray.direction, through.air, frame.light));
     if (frame.night) {
       shaded.radiance = shaded.radiance + shaded.transmittance * frame.night->Above(ray.direction);

@@ -117,6 +117,7 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
   frame.light.effects = settings.effects;
   frame.polarised = camera.middle().HasPolariser() ||
                     std::any_of(settings.layers.begin(), settings.layers.end(), IsOfPolarisation);
+  if (frame.Has(Effect::kRefraction)) frame.bent = BentSightOf(frame, shot);
   if (frame.Has(Effect::kShafts)) {
     Prepare(settings.progress, "shadows");
     const Stopwatch watch;
@@ -240,6 +241,7 @@ PictureFrame SceneState::Reduced(PictureFrame frame, EffectSet effects) const {
   if (!effects.Has(Effect::kShafts)) frame.sunlight = std::make_shared<TerrainSunlight>();
   if (!effects.Has(Effect::kNightSky)) frame.night = nullptr;
   if (!effects.Has(Effect::kStars)) frame.stars = nullptr;
+  if (!effects.Has(Effect::kRefraction)) frame.bent = nullptr;
   if (frame.moonlit) {
     SecondLight moon = *frame.moonlit;
     moon.light.effects = effects;

@@ -73,9 +73,15 @@ struct SceneState {
   /// Of what is darker, noise counts as if it were so bright (picture_change.h) [cd/m^2].
   [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
   [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
+    if (frame.bent && !geometry.HasTerrain()) return OnBentSea(ray, frame);
     return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
         .Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
   }
+  /// What a bent ray meets where there is no terrain.
+  [[nodiscard]] Hit OnBentSea(const CameraRay& ray, const PictureFrame& frame) const;
+  /// Where it moves something in the picture by more than half a pixel; else null.
+  [[nodiscard]] std::shared_ptr<const BentSight> BentSightOf(const PictureFrame& frame,
+                                                             const Shot& shot) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                              const PictureFrame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
@@ -89,7 +95,7 @@ struct SceneState {
                                                const PictureFrame& frame,
                                                std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                                  const Lighting& light) const;
+                                  const PictureFrame& frame) const;
   /// With the stars at the pixel, which rays do not meet.
   [[nodiscard]] static PixelSum WithStars(const PictureFrame& frame, int x, int y, PixelSum rays);
   [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,

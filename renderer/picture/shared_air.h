@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "atmosphere/ray/bent_view.h"
 #include "renderer/camera/moving_camera.h"
 #include "renderer/camera/pixel_samples.h"
 #include "renderer/ground/scene_geometry.h"
@@ -31,6 +32,17 @@ struct SecondLight {
   [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
 };
 
+/// What bent rays show of the sun and of a sea without terrain.
+struct BentSight {
+  BentView view;
+  glm::dvec3 up;      // at the eye, unit
+  glm::dvec3 to_sun;  // unit, as if there were no air
+
+  [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
+  /// Where light of a band that is seen in a direction comes from, unit.
+  [[nodiscard]] glm::dvec3 TrueDirection(const glm::dvec3& direction, std::size_t band) const;
+};
+
 /// What all pixels of a picture share. Copies share what took time to prepare.
 struct PictureFrame {
   RenderSettings settings;
@@ -46,6 +58,7 @@ struct PictureFrame {
   std::shared_ptr<const NightLight> night = nullptr;     // null: the sky of the night does not show
   std::shared_ptr<const StarPixels> stars = nullptr;     // null: none are seen
   bool polarised = false;  // Stokes parameters are asked for, by a polariser or a layer
+  std::shared_ptr<const BentSight> bent = nullptr;       // null: it would move nothing
   double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }

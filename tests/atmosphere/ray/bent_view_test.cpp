@@ -195,8 +195,7 @@ TEST(BentView, GroundNearByIsWhereStraightRaysFindIt) {
   const BentView view(medium, 2.0);
   for (const double degrees : {-10.0, -45.0, -89.0}) {
     const double range_m = view.ToGround(degrees * kDegree)->angle_rad * medium.planet_radius_m;
-    EXPECT_NEAR(range_m * std::tan(-degrees * kDegree) / 2.0, 1.0, 1e-4)
-        << degrees << ": what the bending of 1e-6 rad is interpolated to";
+    EXPECT_NEAR(range_m, 2.0 / std::tan(-degrees * kDegree), 1e-3) << degrees << ": a millimetre";
   }
   EXPECT_FALSE(view.ToGround(0.01)) << "the sky";
 }

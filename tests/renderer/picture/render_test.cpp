@@ -10,6 +10,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/judge/judge.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/picture/night_vision.h"
@@ -186,6 +187,7 @@ TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
                           .height = 400,
                           .samples_per_pixel = 1,
                           .air_nodes = 8,
+                          .effects = EffectSet::All().Without(Effect::kRefraction),
                           .layers = {PictureLayer::kDepth}};
   const Scene scene = BareScene(kHeight_m, 0.0, -3.0, 2.0);
   const CameraRays camera(scene.camera, settings.width, settings.height);
@@ -196,6 +198,25 @@ TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
     const double elevation = std::asin(camera.Direction(4.5, y + 0.5).z);
     const float depth = image.layers[0].values[static_cast<std::size_t>(y) * 8 + 4];
     EXPECT_EQ(std::isinf(depth), elevation > -dip) << "row " << y;
+  }
+}
+
+TEST(Render, AirLiftsTheHorizonOfTheSeaToWhereBentRaysMeetIt) {
+  constexpr double kHeight_m = 10000.0;
+  const Scene scene = BareScene(kHeight_m, 0.0, -3.0, 2.0);
+  const SceneRenderer renderer(scene);
+  const RenderSettings settings{.width = 8,
+                                .height = 400,
+                                .samples_per_pixel = 1,
+                                .air_nodes = 8,
+                                .layers = {PictureLayer::kDepth}};
+  const CameraRays camera(scene.camera, settings.width, settings.height);
+  const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), settings);
+  const double horizon_rad = BentView(renderer.medium(), kHeight_m).horizon_rad();
+  for (int y = 0; y < settings.height; ++y) {
+    const double elevation = std::asin(camera.Direction(4.5, y + 0.5).z);
+    const float depth = image.layers[0].values[static_cast<std::size_t>(y) * 8 + 4];
+    EXPECT_EQ(std::isinf(depth), elevation > horizon_rad) << "row " << y;
   }
 }
 
