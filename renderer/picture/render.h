@@ -4,7 +4,8 @@
 // Frame: ENU at the foot of the eye on the ellipsoid. The atmosphere is a shell on the sphere that
 // osculates the ellipsoid there, so the altitude of a point is its distance from that sphere. The
 // sun stands where refraction shows it: disk, light on the ground and light in the air use the
-// same, apparent direction.
+// same, apparent direction. Where the effect of refraction shows, the disk and the horizon of a sea
+// without terrain are those of bent rays instead (BentSight).
 //
 // Per pixel: rays against the terrain, spread as PixelFilter and PixelSamples say (a single one
 // goes through the middle; with RenderSettings::noise, as many as pixel_noise.h says), then the air

@@ -220,6 +220,45 @@ TEST(Render, AirLiftsTheHorizonOfTheSeaToWhereBentRaysMeetIt) {
   }
 }
 
+TEST(Render, TheDiskOfASettingSunIsFlat) {
+  const UtcInstant evening = ParseInstant("2026-06-21T19:20:30Z");
+  Scene scene = BareScene(20.0, 0.0, 0.0, 1.2);
+  const SunPosition sun = SceneRenderer(scene).ApparentSun(evening);
+  scene.camera =
+      CameraFromDegrees({20.0, false}, sun.azimuth_rad / kRadiansPerDegree, 0.3, 0.0, 1.2);
+  const SceneRenderer renderer(scene);
+  const auto height_by_width = [&](EffectSet effects) {
+    const RenderSettings settings{.width = 72,
+                                  .height = 72,
+                                  .samples_per_pixel = 4,
+                                  .filter = PixelFilter::Kind::kBox,
+                                  .air_nodes = 4,
+                                  .effects = effects,
+                                  .layers = {}};
+    const Image image = renderer.Render(evening, settings);
+    double brightest = 0.0, area = 0.0;
+    for (const auto& rgb : image.rgb) brightest = std::max(brightest, Luminance(rgb));
+    int left = settings.width, right = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+      if (Luminance(image.rgb[i]) < 0.1 * brightest) continue;
+      const int x = static_cast<int>(i) % settings.width;
+      left = std::min(left, x);
+      right = std::max(right, x + 1);
+      area += 1.0;
+    }
+    return area / (0.25 * kPi * (right - left) * (right - left));  // of an ellipse
+  };
+  const BentView view(renderer.medium(), 20.0);
+  const double limb = sun.elevation_rad - 16.0 * kRadiansPerDegree / 60.0;
+  const double flat =
+      (view.ApparentElevationOf(limb + 0.01) - view.ApparentElevationOf(limb)) / 0.01;
+  const EffectSet straight = EffectSet::All().Without(Effect::kRefraction);
+  EXPECT_NEAR(height_by_width(straight), 1.0, 0.03) << "pixels of a thirtieth of the disk";
+  EXPECT_LT(flat, 0.93);
+  EXPECT_NEAR(height_by_width(EffectSet::All()), flat, 0.04)
+      << "pixels, and a disk that is an ellipse only nearly";
+}
+
 // Hard case 32.
 TEST(Render, SunIrradianceInThePictureOfTheDiskIsThatOfTheSun) {
   // Radiance over the disk's pixels sums to the direct normal illuminance.
