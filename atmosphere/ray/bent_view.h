@@ -48,7 +48,7 @@ class BentView {
   [[nodiscard]] double horizon_rad() const { return horizon_rad_; }
   [[nodiscard]] const BendingAir& air() const { return air_; }
 
-  /// True elevation [rad] of what is seen in a band, within 0.02' of RefractionSeenAt.
+  /// True elevation [rad] of what is seen in a band, within 0.1' of the ray equation.
   [[nodiscard]] double TrueElevation(double elevation_rad, std::size_t band) const;
   /// The same at kHorizonWavelength_nm.
   [[nodiscard]] double TrueElevation(double elevation_rad) const;

@@ -63,7 +63,7 @@ class BentRay {
   }
 
   /// Column on that way [m], of what has a density relative to somewhere: double(double height_m).
-  /// Within 1e-3 for layers from 1 km in scale height, from the horizon to 20 degrees.
+  /// Of molecules within 2e-3 of the ray equation's from the horizon to 6 degrees over it.
   template <typename Density>
   [[nodiscard]] double ColumnToSpace(const Density& density) const {
     double sum = 0.0;
@@ -110,12 +110,12 @@ class BentRay {
 [[nodiscard]] double GrazingElevation(const BendingAir& air, double height_m);
 
 /// Apparent minus true elevation [rad] of light that arrives under an apparent one, or, below the
-/// horizon, of the light that grazes the ground. Within 0.01' of the ray equation.
+/// horizon, of the light that grazes the ground. Within 0.1' of the ray equation.
 [[nodiscard]] double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad,
                                       double height_m);
 
-/// The apparent elevation [rad] of what stands at a true one; nothing behind the ground. Some ten
-/// microseconds times ten.
+/// The apparent elevation [rad] of what stands at a true one; nothing behind the ground. About ten times
+/// RefractionSeenAt, of some ten microseconds.
 [[nodiscard]] std::optional<double> ApparentElevation(const BendingAir& air,
                                                       double true_elevation_rad, double height_m);
 
