@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
+#include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
@@ -177,12 +178,32 @@ std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
   const double angle = frame.camera().PixelAngle();
   const double faintest = MagnitudeOf(kUnseenStar * angle * angle / kPi * lux);
   const GeodeticPosition eye = EyeOf(shot);
+  const LocalFrame local(kWgs84, eye);
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
-  MoonDisk moon = *frame.light.moon;
-  moon.to_moon = glm::transpose(frame_from_enu) * moon.to_moon;
-  std::vector<StarLight> lights =
-      StarLightsOver(eye, shot.instant, faintest, moon, medium.wavelengths_nm, colour);
-  for (StarLight& light : lights) light.direction = frame_from_enu * light.direction;
+  std::vector<StarLight> lights;
+  const auto add = [&](const PointLight& point) {
+    if (point.magnitude > faintest) return;
+    const glm::dvec3 enu = local.EnuFromEcef(point.direction).xyz;
+    const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
+    const glm::dvec3 seen =
+        DirectionFromAngles(elevation + RefractionFromHeight(elevation, eye.height_m),
+                            std::atan2(enu.x, enu.y))
+            .xyz;
+    if (glm::length(frame_from_enu * seen - frame.light.moon->to_moon) <
+        frame.light.moon->radius_rad) {
+      return;
+    }
+    BandLight spectrum(medium.wavelengths_nm.size());
+    for (std::size_t band = 0; band < spectrum.count; ++band) {
+      spectrum[band] = static_cast<float>(
+          1e6 * BlackBodyRadiance(medium.wavelengths_nm[band], TemperatureOf(point.colour_index)));
+    }
+    const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
+    lights.push_back({frame_from_enu * seen,
+                      static_cast<float>(IlluminanceOf(point.magnitude) / of_spectrum) * spectrum});
+  };
+  for (const PointLight& planet : PlanetsAt(eye, shot.instant)) add(planet);
+  for (const PointLight& star : StarsAt(shot.instant, faintest)) add(star);
   if (lights.empty()) return nullptr;
   return std::make_shared<StarPixels>(frame.camera(), frame.settings.width, frame.settings.height,
                                       lights,

@@ -14,9 +14,14 @@
 
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/band_light.h"
-#include "renderer/light/star_light.h"
 
 namespace alpenglow {
+
+/// A point of light as it arrives at the top of the air.
+struct StarLight {
+  glm::dvec3 direction;  // unit, refracted, in the frame of the picture
+  BandLight irradiance;  // W m^-2 nm^-1
+};
 
 /// Of one picture. Immutable.
 class StarPixels {

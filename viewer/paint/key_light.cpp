@@ -52,10 +52,6 @@ glm::vec4 Four(const BandLight& light) {
 
 }  // namespace
 
-bool Shining::ShowsNight(const Medium& medium) const {
-  return medium.follows_wgs84 && sun.elevation_rad < kBrighterThanMoon_rad;
-}
-
 KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
   const auto at_1_au = static_cast<float>(1.0 / (sun.distance_au * sun.distance_au));
   return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};

@@ -20,16 +20,6 @@ struct KeyLight {
   bool is_moon = false;
 };
 
-/// What shines on a view.
-struct Shining {
-  SunPosition sun;  // apparent
-  KeyLight key;
-
-  /// Whether the sky of the night and stars are more than a ten-thousandth of the light: from about 5
-  /// degrees of the sun under the horizon on, when it brings less than 10 lux.
-  [[nodiscard]] bool ShowsNight(const Medium& medium) const;
-};
-
 /// @param sun  apparent.
 [[nodiscard]] KeyLight SunAsKey(const SunPosition& sun, const Medium& medium);
 

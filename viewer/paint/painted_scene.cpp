@@ -79,20 +79,16 @@ void PaintedScene::TakeLight() {
   ground_textures_.SetSeaMirror(ground_.sea_mirror());
 }
 
-void PaintedScene::Update(const PaintedView& view, const Shining& lights, double seconds) {
-  const SunPosition& sun = lights.key.disk;
+void PaintedScene::Update(const PaintedView& view, const SunPosition& sun, double seconds) {
   air_.Follow(AirViewOf(view.eye, sun));
   land_.Update(view.eye.place, LandViewOf(view), seconds);
   TakeHeights();
   if (ground_.Follow(air_.air(), {view.eye.place, sun, view.now})) TakeLight();
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, sun, kShadeUnit);
   if (fog_) fog_->Follow(air_.air(), view.eye, sun);
-  is_night_ = lights.ShowsNight(air_.air()->medium);
-  if (is_night_) night_.Follow({view.eye.place, view.now, air_.air()}, kNightUnit);
 }
 
-void PaintedScene::Settle(const PaintedView& view, const Shining& lights, int samples) {
-  const SunPosition& sun = lights.key.disk;
+void PaintedScene::Settle(const PaintedView& view, const SunPosition& sun, int samples) {
   air_.Settle(AirViewOf(view.eye, sun));
   land_.Settle(view.eye.place, LandViewOf(view, samples));
   TakeHeights();
@@ -102,8 +98,6 @@ void PaintedScene::Settle(const PaintedView& view, const Shining& lights, int sa
   }
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, sun, kShadeUnit);
   if (fog_) fog_->Settle(air_.air(), view.eye, sun);
-  is_night_ = lights.ShowsNight(air_.air()->medium);
-  if (is_night_) night_.Settle({view.eye.place, view.now, air_.air()}, kNightUnit);
 }
 
 std::optional<PhaseKind> PaintedScene::fog_phase() const {

@@ -10,13 +10,11 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/air/night_map.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/ground/scene_drape.h"
 #include "viewer/lamps/scene_fog.h"
 #include "viewer/land/landscape.h"
-#include "viewer/paint/key_light.h"
 #include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_view.h"
 #include "viewer/shade/shade_follower.h"
@@ -37,12 +35,12 @@ class PaintedScene {
 
   /// Takes over what has become ready and asks for what is missing. Never waits, but for the first
   /// fog in other air.
-  /// @param lights   on the view.
+  /// @param sun      apparent, seen from the eye.
   /// @param seconds  since the last call.
-  void Update(const PaintedView& view, const Shining& lights, double seconds);
+  void Update(const PaintedView& view, const SunPosition& sun, double seconds);
   /// Waits until all is there that the view needs.
   /// @param samples  rays a pixel that will be painted.
-  void Settle(const PaintedView& view, const Shining& lights, int samples);
+  void Settle(const PaintedView& view, const SunPosition& sun, int samples);
 
   [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
   [[nodiscard]] const GeodeticPosition& place() const { return scene_.place; }
@@ -61,8 +59,6 @@ class PaintedScene {
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
   /// Whether terrain keeps light from the air, and that is painted.
   [[nodiscard]] bool HasShade() const { return sizes_.has_shafts && shade_.shade().Shades(); }
-  /// The sky of the night where it may show; null: it does not.
-  [[nodiscard]] const NightMap* night() const { return is_night_ ? night_.map() : nullptr; }
   /// Null: none.
   [[nodiscard]] const SceneFog* fog() const { return fog_ ? &*fog_ : nullptr; }
   /// Nothing without fog.
@@ -85,8 +81,6 @@ class PaintedScene {
   GroundTextures ground_textures_;
   ShadeFollower shade_;
   std::optional<SceneFog> fog_;
-  NightFollower night_;
-  bool is_night_ = false;
   int heights_version_ = -1;
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 
 #include "renderer/ground/surface.h"
 #include "viewer/ground/ground_block.h"
@@ -74,16 +73,6 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
   return Draped(cover, scene.drape().place, at.x, at.y);
 }
 
-/// The sky of the night per unit of the key light's irradiance.
-struct NightOfKey {
-  glm::vec4 scattered{0.0F}, level{0.0F};
-};
-NightOfKey NightBeside(const KeyLight& key, const NightMap* night) {
-  if (night == nullptr) return {};
-  const glm::vec4 unit = glm::max(key.irradiance, glm::vec4(1e-30F));  // of bands that there are
-  return {night->scattered / unit, night->level / unit};
-}
-
 }  // namespace
 
 void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
@@ -100,16 +89,13 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
   const LandView axes = LandViewOf(view);
   const glm::dvec2 shift = ShiftOf(ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
-  const NightOfKey night = NightBeside(key, scene.night());
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   const ViewBlock block{{glm::vec3(axes.right), 0.0F},
                         {glm::vec3(axes.up), 0.0F},
                         {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)},
                         {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad},
                         key.irradiance,
-                        {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)},
-                        night.scattered,
-                        night.level};
+                        {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)}};
   Upload(view_, kViewBinding, block);
 }
 

@@ -28,7 +28,6 @@ void ConnectMaps(const ShaderProgram& program) {
   program.BindSampler("surface_map", kSurfaceUnit);
   program.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
   program.BindSampler("shaft_map", kShaftUnit);
-  program.BindSampler("night_map", kNightUnit);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
   return {"stage", fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
-                               "#define OPEN_SKY_PASS 3\n#define NIGHT_PASS 4\n"
+                               "#define OPEN_SKY_PASS 3\n"
                                "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
                                "#define HAS_FOG {}\n",
                                static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
@@ -30,12 +30,6 @@ std::vector<ShaderPiece> AirTexts() {
       WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
   for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
   return texts;
-}
-
-std::vector<ShaderPiece> StarTexts(const std::optional<PhaseKind>& fog) {
-  std::vector<ShaderPiece> texts = AirTexts();
-  for (ShaderPiece& piece : fog ? FogTexts(*fog) : NoFogTexts()) texts.push_back(std::move(piece));
-  return WithViewerPieces(std::move(texts), {"viewer/shaders/air_block.glsl"});
 }
 
 std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStage& stage) {

@@ -15,7 +15,7 @@ namespace alpenglow {
 
 /// One of the picture's programs. Sky is open above the horizon, see RowsOfPlanet.
 struct PictureStage {
-  enum class Pass { kLand, kSky, kDisks, kOpenSky, kNight };
+  enum class Pass { kLand, kSky, kDisks, kOpenSky };
   Pass pass;
   bool has_shade = false, has_lamps = false;
 
@@ -33,9 +33,6 @@ struct PictureKind {
 /// The texts that a stage of the picture is made of, but for picture.frag.glsl itself.
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
                                                     const PictureStage& stage);
-
-/// The texts of a star's fragments, but for star.frag.glsl itself. @param fog  its phase function.
-[[nodiscard]] std::vector<ShaderPiece> StarTexts(const std::optional<PhaseKind>& fog);
 
 /// Those that they begin with: the view and the air.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();

@@ -6,7 +6,6 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
-#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
@@ -16,19 +15,6 @@ ShaftPass ConnectedShafts() {
   pass.program().BindBlock("View", kViewBinding);
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
   return pass;
-}
-
-ShaderProgram ConnectedStars(const PaintedScene& scene) {
-  ShaderProgram program(
-      WithViewerPieces(SharedTexts(),
-                       {"viewer/shaders/view_block.glsl", "viewer/shaders/star.vert.glsl"}),
-      WithViewerPieces(StarTexts(scene.fog_phase()), {"viewer/shaders/star.frag.glsl"}),
-      {{0, "star_direction"}, {1, "star_irradiance"}});
-  program.BindBlock("Air", kAirBinding);
-  program.BindBlock("View", kViewBinding);
-  AirTextures::Prepare(program, kAirUnit, kTablesBinding);
-  if (scene.fog() != nullptr) scene.fog()->Connect(program);
-  return program;
 }
 
 // Draws are tested against depth and leave it: land over land, sky and disks beside it.
@@ -69,31 +55,29 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts()),
-      programs_(scene_, lamp_painter_, shaft_pass_),
-      stars_(ConnectedStars(scene_)) {
-  stars_.PrepareNone();
+      programs_(scene_, lamp_painter_, shaft_pass_) {
   CheckGl("SkyPainter");
 }
 
-const Shining& SkyPainter::LightsOf(const PaintedView& view) {
+const SkyPainter::Shining& SkyPainter::LightsOf(const PaintedView& view) {
   const std::shared_ptr<const SolvedAir>& air = scene_.air().air();
-  const bool is_known =
-      lit_ && lit_->view.now == view.now && lit_->view.eye == view.eye && lit_->air == air;
+  const bool is_known = shining_ && shining_->view.now == view.now &&
+                        shining_->view.eye == view.eye && shining_->air == air;
   if (!is_known) {
     const SunPosition sun = ApparentSunAt(view.eye.place, view.now);
-    lit_ = {view, air, {sun, KeyLightAt(view.eye.place, view.now, sun, *air)}};
+    shining_ = {view, sun, air, KeyLightAt(view.eye.place, view.now, sun, *air)};
   }
-  return lit_->lights;
+  return *shining_;
 }
 
 void SkyPainter::Update(const PaintedView& view, double seconds) {
-  const Shining& lights = LightsOf(view);
+  const KeyLight& key = LightsOf(view).key;
   Begin("update");
-  scene_.Update(view, lights, seconds);
+  scene_.Update(view, key.disk, seconds);
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
-  scene_.Settle(view, LightsOf(view), samples);
+  scene_.Settle(view, LightsOf(view).key.disk, samples);
   lamps_.SettlePlans();
 }
 
@@ -155,7 +139,7 @@ void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
   for (const PictureStage& stage :
        {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOpenSky, has_shade, has_lamps},
         PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight}})
+        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}})
     if (programs_.MakeReady(stage)) return;
 }
 
@@ -222,28 +206,6 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
   PaintLandAndSky(view, share);
-  PaintNight(share);
-}
-
-void SkyPainter::PaintNight(double share) {
-  if (scene_.night() == nullptr) return;
-  const Adding adding(share);
-  programs_.Paint({PictureStage::Pass::kNight});
-}
-
-// Once a picture, whatever its rays: they are spread over pixels already. Drivers finish a program
-// when it is drawn with: by day once, for the night.
-void SkyPainter::PaintStars(const PaintedView& view) {
-  const Shining& lights = LightsOf(view);
-  const SolvedAir& air = *scene_.air().air();
-  const bool shows = lights.ShowsNight(air.medium);
-  if (!shows && stars_.HasPainted()) return;
-  Begin("stars");
-  if (shows) stars_.Prepare(view, BodiesOf(view).moon, air);
-  blocks_.UploadView(scene_, view, lights.key, {});
-  const BesideLand beside;
-  const Adding adding(1.0);
-  stars_.Paint(view.width, view.height);
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
@@ -280,7 +242,6 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   for (int sample = 0; sample < samples; ++sample) {
     PaintSample(view, disks, {sample, samples});
   }
-  PaintStars(view);
   PaintLampsOver(view);
   EndTime();
   CheckGl("SkyPainter::Paint");

@@ -27,7 +27,6 @@
 #include "viewer/paint/painted_view.h"
 #include "viewer/paint/picture_blocks.h"
 #include "viewer/paint/picture_programs.h"
-#include "viewer/paint/star_painter.h"
 #include "viewer/shade/shaft_pass.h"
 
 namespace alpenglow {
@@ -92,6 +91,13 @@ class SkyPainter {
     SunPosition sun;
     MoonDisk moon;
   };
+  /// What shines on a view.
+  struct Shining {
+    PaintedView view;
+    SunPosition sun;
+    std::shared_ptr<const SolvedAir> air;
+    KeyLight key;
+  };
   [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
   [[nodiscard]] Bodies BodiesOf(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
@@ -104,8 +110,6 @@ class SkyPainter {
   void MakeOneReady(bool has_shade, bool has_lamps);
   void PaintSky(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintLandAndSky(const PaintedView& view, double share);
-  void PaintNight(double share);
-  void PaintStars(const PaintedView& view);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   void Begin(const char* pass) const {
@@ -117,17 +121,10 @@ class SkyPainter {
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
   PicturePrograms programs_;  // of all above
-  StarPainter stars_;
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
-  /// On the view asked for last.
-  struct Lit {
-    PaintedView view;
-    std::shared_ptr<const SolvedAir> air;
-    Shining lights;
-  };
-  std::optional<Lit> lit_;
+  std::optional<Shining> shining_;  // on the view asked for last
   PassTimer* timer_ = nullptr;
 };
 

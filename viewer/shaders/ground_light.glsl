@@ -71,7 +71,6 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
   vec4 albedo = LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped);
   vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),
                                 SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
-  radiance += albedo / 3.14159265359 * (0.5 + 0.5 * dot(mesh_normal, at.up)) * night_level;
 #if HAS_SEA || HAS_LAND_COVER
   if (IsWater(altitude, draped))
     radiance = WaterRadiance(at.up, at.offset, at.footprint, dot(mesh_normal, to_eye),

@@ -3,8 +3,7 @@
 // the depth of the land tells apart, for software drivers work through both sides of a branch.
 // Defined before this text:
 //   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; OPEN_SKY_PASS:
-//             sky where no planet is; DISK_PASS: what the disks of sun and moon add; NIGHT_PASS: what
-//             the sky of the night adds beside land
+//             sky where no planet is; DISK_PASS: what the disks of sun and moon add
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
 in vec2 screen;
 out vec4 picture;
@@ -72,11 +71,10 @@ void main() {
   vec4 ground =
       air.transmittance * GroundSeen(direction, surface, texelFetch(sky_on_surface, pixel, 0));
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
-  vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
-  radiance += (1.0 - left) * night_scattered;
   float along_m = surface.w * dot(direction, view_forward.xyz);
   picture = vec4(LinearSrgb(sun_irradiance * radiance), Nearness(along_m));
 #if HAS_LAMPS
+  vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
   picture.rgb += LampRgb(left * LampsReflected(direction, surface)) +
                  LampGlowRgb(direction, LampRayEnd(direction, surface.w));
 #endif
@@ -118,29 +116,6 @@ void main() {
 #if HAS_LAMPS
   picture.rgb += LampGlowRgb(direction, LampRayEnd(direction, 0.0));
 #endif
-}
-#endif
-
-#if PASS == NIGHT_PASS
-uniform sampler2D night_map;  // NightMap
-
-vec4 NightAbove(vec3 direction) {
-  const float pi = 3.14159265359;
-  float elevation = atan(direction.z, length(direction.xy));
-  float turned = atan(direction.x, direction.y) / (2.0 * pi);
-  vec2 at = vec2(turned < 0.0 ? turned + 1.0 : turned,
-                 0.5 + 0.5 * sign(elevation) * sqrt(abs(elevation) / (0.5 * pi)));
-  vec2 size = vec2(textureSize(night_map, 0));
-  return textureLod(night_map, (0.5 + at * (size - 1.0)) / size, 0.0);
-}
-
-void main() {
-  vec3 direction = ViewDirection(screen);
-  vec4 left = TransmittanceToSpace(direction) * FogTransmittance(direction, 1e3);
-  bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
-  vec4 behind =
-      planet ? ground_albedo / 3.14159265359 * night_level * sun_irradiance : NightAbove(direction);
-  picture = vec4(LinearSrgb((1.0 - left) * night_scattered * sun_irradiance + left * behind), 0.0);
 }
 #endif
 

@@ -30,9 +30,8 @@ static_assert(offsetof(AirBlock, wavelengths) == 11 * sizeof(glm::vec4));
 struct ViewBlock {
   glm::vec4 view_right, view_up, view_forward;
   glm::vec4 sun, sun_irradiance, eye;
-  glm::vec4 night_scattered, night_level;
 };
-static_assert(sizeof(ViewBlock) == 8 * sizeof(glm::vec4));
+static_assert(sizeof(ViewBlock) == 6 * sizeof(glm::vec4));
 static_assert(offsetof(ViewBlock, eye) == 5 * sizeof(glm::vec4));
 
 /// `block Ground` of ground.glsl.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where the eye is, where it looks, where the sun, or the moon in its place, stands: ViewBlock of uniform_blocks.h. Frame:
+// Where the eye is, where it looks, where the sun stands: ViewBlock of uniform_blocks.h. Frame:
 // east, north, up at the eye.
 layout(std140) uniform View {
   vec4 view_right;      // times the tangent of half the width of the view
@@ -9,9 +9,6 @@ layout(std140) uniform View {
   vec4 sun_irradiance;  // above the air, one value a band [W m^-2 nm^-1]
   vec4 eye;  // altitude of the eye [km]; what is added to a pixel's place, in half widths and
              // heights: rays of a pixel differ by it; radius of the planet [km], 0: none is in sight
-  // Of the sky of the night (night_light.h), per unit of sun_irradiance; 0 by day:
-  vec4 night_scattered;  // what air without an end sends of it
-  vec4 night_level;      // on level ground
 };
 
 #define EYE_ALTITUDE eye.x
