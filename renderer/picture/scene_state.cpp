@@ -5,10 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/refraction.h"
-#include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/ground/terrain_sunlight.h"
@@ -19,9 +16,8 @@ namespace {
 
 // By less than this share of the light that is there nobody sees whether another is.
 constexpr double kUnseenShare = 1e-4;
-// The brightest moon, and the sky without it. By day nothing of the night is asked for.
-constexpr double kBrightestMoon_lux = 0.5, kNightSky_lux = 1e-3;
-constexpr double kDaylight_lux = kBrightestMoon_lux / kUnseenShare;
+// The sky without a moon.
+constexpr double kNightSky_lux = 1e-3;
 
 }  // namespace
 
@@ -171,39 +167,16 @@ std::optional<BandLight> SceneState::LeftOfSpace(const PictureFrame& frame, doub
 
 std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
                                                       const Shot& shot) const {
-  // A star that makes its pixel brighter than an even sky would be by this share is drawn.
-  constexpr double kUnseenStar = 1e-3;
   const double lux = Illuminance(frame.camera().eye(), frame.light);
   if (!frame.light.moon || lux > kDaylight_lux) return nullptr;
-  const double angle = frame.camera().PixelAngle();
-  const double faintest = MagnitudeOf(kUnseenStar * angle * angle / kPi * lux);
-  const GeodeticPosition eye = EyeOf(shot);
-  const LocalFrame local(kWgs84, eye);
+  const MoonDisk& moon = *frame.light.moon;
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   std::vector<StarLight> lights;
-  const auto add = [&](const PointLight& point) {
-    if (point.magnitude > faintest) return;
-    const glm::dvec3 enu = local.EnuFromEcef(point.direction).xyz;
-    const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
-    const glm::dvec3 seen =
-        DirectionFromAngles(elevation + RefractionFromHeight(elevation, eye.height_m),
-                            std::atan2(enu.x, enu.y))
-            .xyz;
-    if (glm::length(frame_from_enu * seen - frame.light.moon->to_moon) <
-        frame.light.moon->radius_rad) {
-      return;
-    }
-    BandLight spectrum(medium.wavelengths_nm.size());
-    for (std::size_t band = 0; band < spectrum.count; ++band) {
-      spectrum[band] = static_cast<float>(
-          1e6 * BlackBodyRadiance(medium.wavelengths_nm[band], TemperatureOf(point.colour_index)));
-    }
-    const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
-    lights.push_back({frame_from_enu * seen,
-                      static_cast<float>(IlluminanceOf(point.magnitude) / of_spectrum) * spectrum});
-  };
-  for (const PointLight& planet : PlanetsAt(eye, shot.instant)) add(planet);
-  for (const PointLight& star : StarsAt(shot.instant, faintest)) add(star);
+  for (StarLight light : StarLightsOver(EyeOf(shot), shot.instant, colour,
+                                        FaintestStar(lux, frame.camera().PixelAngle()))) {
+    light.direction = frame_from_enu * light.direction;
+    if (glm::length(light.direction - moon.to_moon) >= moon.radius_rad) lights.push_back(light);
+  }
   if (lights.empty()) return nullptr;
   return std::make_shared<StarPixels>(frame.camera(), frame.settings.width, frame.settings.height,
                                       lights,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/star_pixels.h"
 
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -15,23 +14,19 @@ double SolidAngle(const CameraRays& camera, double x, double y) {
   return glm::length(glm::cross(across, down));
 }
 
-constexpr int kReach = 2;
-using Weights = std::array<double, 2 * kReach + 1>;
+}  // namespace
 
-/// Of pixels around the one that a place lies in, along one side; their sum is one.
-Weights Bell(double place) {
+StarBell StarBellAround(double place) {
   constexpr double kDeviation = 0.5;
-  Weights weights{};
+  StarBell weights{};
   double sum = 0.0;
-  for (int i = 0; i < 2 * kReach + 1; ++i) {
-    const double off = (std::floor(place) + i - kReach + 0.5 - place) / kDeviation;
+  for (int i = 0; i < 2 * kStarReach + 1; ++i) {
+    const double off = (std::floor(place) + i - kStarReach + 0.5 - place) / kDeviation;
     sum += weights.at(static_cast<std::size_t>(i)) = std::exp(-0.5 * off * off);
   }
   for (double& weight : weights) weight /= sum;
   return weights;
 }
-
-}  // namespace
 
 StarPixels::StarPixels(const CameraRays& camera, int width, int height,
                        const std::vector<StarLight>& lights, const Left& left)
@@ -40,7 +35,8 @@ StarPixels::StarPixels(const CameraRays& camera, int width, int height,
     const auto place = camera.PlaceOf(light.direction);
     if (!place) continue;
     const auto [x, y] = *place;
-    if (!(x > -kReach && x < width + kReach && y > -kReach && y < height + kReach)) continue;
+    if (!(x > -kStarReach && x < width + kStarReach && y > -kStarReach && y < height + kStarReach))
+      continue;
     const std::optional<BandLight> through = left(x, y);
     if (!through) continue;
     directions_.push_back(light.direction);
@@ -49,12 +45,12 @@ StarPixels::StarPixels(const CameraRays& camera, int width, int height,
 }
 
 void StarPixels::Spread(const CameraRays& camera, double x, double y, const BandLight& irradiance) {
-  const Weights across = Bell(x), down = Bell(y);
+  const StarBell across = StarBellAround(x), down = StarBellAround(y);
   const double per_sr = 1.0 / SolidAngle(camera, x, y);
-  for (int j = 0; j < 2 * kReach + 1; ++j) {
-    const int row = static_cast<int>(std::floor(y)) + j - kReach;
-    for (int i = 0; i < 2 * kReach + 1; ++i) {
-      const int column = static_cast<int>(std::floor(x)) + i - kReach;
+  for (int j = 0; j < 2 * kStarReach + 1; ++j) {
+    const int row = static_cast<int>(std::floor(y)) + j - kStarReach;
+    for (int i = 0; i < 2 * kStarReach + 1; ++i) {
+      const int column = static_cast<int>(std::floor(x)) + i - kStarReach;
       if (row < 0 || row >= height_ || column < 0 || column >= width_) continue;
       const double share =
           across.at(static_cast<std::size_t>(i)) * down.at(static_cast<std::size_t>(j)) * per_sr;

@@ -6,6 +6,7 @@
 // picture is that of the light whatever its size, and nothing twinkles as a star moves on.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -14,14 +15,14 @@
 
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/band_light.h"
+#include "renderer/light/star_lights.h"
 
 namespace alpenglow {
 
-/// A point of light as it arrives at the top of the air.
-struct StarLight {
-  glm::dvec3 direction;  // unit, refracted, in the frame of the picture
-  BandLight irradiance;  // W m^-2 nm^-1
-};
+inline constexpr int kStarReach = 2;
+/// Shares of the pixels around the one that a place lies in, along one side; their sum is one.
+using StarBell = std::array<double, 2 * kStarReach + 1>;
+[[nodiscard]] StarBell StarBellAround(double place);
 
 /// Of one picture. Immutable.
 class StarPixels {

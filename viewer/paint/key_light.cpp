@@ -24,15 +24,12 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
 }
 
 // Of unit irradiance above the air, on a level place.
-double LevelLight(const SolvedAir& air, double altitude_m, double elevation_rad) {
-  const std::size_t green = GreenBand(air.medium.wavelengths_nm);
+BandLight LevelLight(const SolvedAir& air, double altitude_m, double elevation_rad) {
   const double mu = std::sin(elevation_rad);
-  auto light = static_cast<double>(air.diffuse.SkyIrradiance(altitude_m, mu)[green]);
-  if (mu > 0.0) {
-    const AirIntegrator<float> integrator(air.medium);
-    light += mu * static_cast<double>(integrator.TransmittanceToSpace(altitude_m, mu)[green]);
-  }
-  return light;
+  const BandLight sky = air.diffuse.SkyIrradiance(altitude_m, mu);
+  if (mu <= 0.0) return sky;
+  const AirIntegrator<float> integrator(air.medium);
+  return sky + static_cast<float>(mu) * integrator.TransmittanceToSpace(altitude_m, mu);
 }
 
 SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
@@ -72,9 +69,18 @@ KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now, const Su
   const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
   const auto brings = [&](const KeyLight& key) {
     return static_cast<double>(key.irradiance[green]) *
-           LevelLight(air, altitude_m, key.disk.elevation_rad);
+           static_cast<double>(LevelLight(air, altitude_m,
+                                          key.disk.elevation_rad)[static_cast<std::size_t>(green)]);
   };
   return brings(by_moon) > brings(by_sun) ? by_moon : by_sun;
+}
+
+double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
+                        const BandColour& colour) {
+  BandLight light = LevelLight(air, altitude_m, key.disk.elevation_rad);
+  for (std::size_t band = 0; band < light.count; ++band)
+    light[band] *= key.irradiance[static_cast<glm::length_t>(band)];
+  return colour.Xyz(InDouble(light))[1];
 }
 
 }  // namespace alpenglow

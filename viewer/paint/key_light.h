@@ -8,6 +8,7 @@
 
 #include <glm/vec4.hpp>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/sun/time.h"
 #include "viewer/air/solved_air.h"
@@ -27,5 +28,9 @@ struct KeyLight {
 /// 555 nm. No other planet has this moon: there it is the sun.
 [[nodiscard]] KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now,
                                   const SunPosition& sun, const SolvedAir& air);
+
+/// Of a light and the sky that it makes, on a level plane [lux]. @param colour  of the air's bands.
+[[nodiscard]] double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
+                                      const BandColour& colour);
 
 }  // namespace alpenglow

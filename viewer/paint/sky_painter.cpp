@@ -74,11 +74,13 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   const KeyLight& key = LightsOf(view).key;
   Begin("update");
   scene_.Update(view, key.disk, seconds);
+  stars_.Follow(view, key, *scene_.air().air());
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
   scene_.Settle(view, LightsOf(view).key.disk, samples);
   lamps_.SettlePlans();
+  stars_.Settle(view, LightsOf(view).key, *scene_.air().air());
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -214,6 +216,12 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
   lamp_painter_.PaintOver(PixelAngle(view));
 }
 
+void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
+  if (!stars_.HasAny()) return;
+  Begin("stars");
+  stars_.Paint(view, moon, scene_.fog(), scene_.fog_phase());
+}
+
 void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray) {
   blocks_.UploadView(scene_, view, LightsOf(view).key, ray);
   PaintLand(view);
@@ -243,6 +251,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
     PaintSample(view, disks, {sample, samples});
   }
   PaintLampsOver(view);
+  PaintStars(view, bodies.moon);
   EndTime();
   CheckGl("SkyPainter::Paint");
 }

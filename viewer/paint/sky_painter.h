@@ -27,6 +27,7 @@
 #include "viewer/paint/painted_view.h"
 #include "viewer/paint/picture_blocks.h"
 #include "viewer/paint/picture_programs.h"
+#include "viewer/paint/star_painter.h"
 #include "viewer/shade/shaft_pass.h"
 
 namespace alpenglow {
@@ -112,6 +113,7 @@ class SkyPainter {
   void PaintLandAndSky(const PaintedView& view, double share);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
+  void PaintStars(const PaintedView& view, const MoonDisk& moon);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
@@ -120,6 +122,7 @@ class SkyPainter {
   SceneLamps lamps_;
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
+  StarPainter stars_;
   PicturePrograms programs_;  // of all above
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/light/star_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/colour/black_body.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/refraction.h"
+#include "atmosphere/sun/stars.h"
+#include "atmosphere/sun/sun.h"
+
+namespace alpenglow {
+namespace {
+
+glm::dvec3 Refracted(const glm::dvec3& enu, double height_m) {
+  const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
+  return DirectionFromAngles(elevation + RefractionFromHeight(elevation, height_m),
+                             std::atan2(enu.x, enu.y))
+      .xyz;
+}
+
+StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const BandColour& colour) {
+  const std::vector<double>& wavelengths_nm = colour.wavelengths_nm();
+  const double temperature = TemperatureOf(point.colour_index);
+  BandLight spectrum(wavelengths_nm.size());
+  for (std::size_t band = 0; band < spectrum.count; ++band)
+    spectrum[band] = static_cast<float>(1e6 * BlackBodyRadiance(wavelengths_nm[band], temperature));
+  const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
+  const double lux = IlluminanceOf(point.magnitude);
+  return {direction, static_cast<float>(lux / of_spectrum) * spectrum, lux};
+}
+
+}  // namespace
+
+double FaintestStar(double lux, double pixel_angle_rad) {
+  constexpr double kUnseenStar = 1e-3;
+  return MagnitudeOf(kUnseenStar * pixel_angle_rad * pixel_angle_rad / kPi * lux);
+}
+
+std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
+                                      const BandColour& colour, double faintest) {
+  const LocalFrame local(kWgs84, eye);
+  std::vector<StarLight> lights;
+  const auto add = [&](const PointLight& point) {
+    if (point.magnitude > faintest) return;
+    const glm::dvec3 enu = local.EnuFromEcef(point.direction).xyz;
+    lights.push_back(LightOf(point, Refracted(enu, eye.height_m), colour));
+  };
+  for (const PointLight& planet : PlanetsAt(eye, instant)) add(planet);
+  for (const PointLight& star : StarsAt(instant, faintest)) add(star);
+  return lights;
+}
+
+}  // namespace alpenglow

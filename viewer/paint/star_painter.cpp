@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/star_painter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/stars.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/lamps/fog_painter.h"
+#include "viewer/paint/picture_texts.h"
+#include "viewer/paint/picture_units.h"
+#include "viewer/shaders/viewer_texts.h"
+
+namespace alpenglow {
+namespace {
+
+// Between two lists the sky turns as a whole, and refraction with it: less than a minute of arc.
+constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-4, kMostRise_m = 200.0;
+
+const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_towards"},
+                                               {2, "star_light"},  {3, "star_across"},
+                                               {4, "star_up"},     {5, "star_last"}};
+
+}  // namespace
+
+StarPainter::StarPainter()
+    : maker_([](const Request& request) {
+        constexpr double kAll = std::numeric_limits<double>::infinity();
+        return Made{request, StarLightsOver(request.place, request.now, *request.colour, kAll)};
+      }) {}
+
+bool StarPainter::IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
+  constexpr double kSureDay_rad = 12.0 * kRadiansPerDegree;
+  constexpr double kNightSky_lux = 1e-3;
+  sky_lux_ = 0.0;
+  if (!air.medium.follows_wgs84) return false;  // another planet's sky has other stars
+  if (!key.is_moon && key.disk.elevation_rad > kSureDay_rad) return false;
+  if (!colour_ || colour_->wavelengths_nm() != air.medium.wavelengths_nm)
+    colour_ = std::make_shared<const BandColour>(air.medium.wavelengths_nm);
+  const double lux =
+      kNightSky_lux + LevelIlluminance(key, air, std::max(view.eye.place.height_m, 0.0), *colour_);
+  if (lux <= kDaylight_lux) sky_lux_ = lux;
+  return sky_lux_ > 0.0;
+}
+
+void StarPainter::Ask(const PaintedView& view) {
+  asked_ = {view.eye.place, view.now, colour_};
+  maker_.Ask(*asked_);
+}
+
+void StarPainter::Follow(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
+  if (!IsNight(view, key, air)) return;
+  if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
+  const GeodeticPosition& place = view.eye.place;
+  const auto suits = [&](const Request& asked) {
+    return asked.colour == colour_ && std::abs(SecondsBetween(asked.now, view.now)) < kMostTurn_s &&
+           std::abs(asked.place.latitude_rad - place.latitude_rad) < kMostWay_rad &&
+           std::abs(asked.place.longitude_rad - place.longitude_rad) < kMostWay_rad &&
+           std::abs(asked.place.height_m - place.height_m) < kMostRise_m;
+  };
+  if (!maker_.Busy() && !(asked_ && suits(*asked_))) Ask(view);
+}
+
+void StarPainter::Settle(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
+  if (!IsNight(view, key, air)) return;
+  maker_.Wait();
+  Ask(view);
+  maker_.Wait();
+  if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
+}
+
+void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+  if (program_) return;
+  std::vector<ShaderPiece> texts = AirTexts();
+  for (ShaderPiece& piece : fog_phase ? FogTexts(*fog_phase) : NoFogTexts())
+    texts.push_back(std::move(piece));
+  program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air_block.glsl",
+                                                       "viewer/shaders/star.vert.glsl"}),
+                   WithViewerPieces({}, {"viewer/shaders/star.frag.glsl"}), kAttributes);
+  program_->BindBlock("Air", kAirBinding);
+  program_->BindBlock("View", kViewBinding);
+  program_->BindSampler("surface_map", kSurfaceUnit);
+  AirTextures::Prepare(*program_, kAirUnit, kTablesBinding);
+  if (fog != nullptr) fog->Connect(*program_);
+}
+
+void StarPainter::Upload(const std::vector<StarPoint>& points) const {
+  glBindVertexArray(vertices_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(StarPoint) * points.size()),
+               points.data(), GL_DYNAMIC_DRAW);
+  for (const VertexAttribute& attribute : kAttributes) {
+    glEnableVertexAttribArray(attribute.location);
+    glVertexAttribPointer(attribute.location, 4, GL_FLOAT, GL_FALSE, sizeof(StarPoint),
+                          reinterpret_cast<const void*>(attribute.location * sizeof(glm::vec4)));
+    glVertexAttribDivisor(attribute.location, 1);
+  }
+}
+
+void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, const SceneFog* fog,
+                        std::optional<PhaseKind> fog_phase) {
+  if (!HasAny()) return;
+  const GeodeticPosition& place = view.eye.place;
+  const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
+  const glm::dmat3 turn =
+      TurnOfSky(place.latitude_rad, SecondsBetween(made_->request.now, view.now));
+  const std::vector<StarPoint> points =
+      StarPointsIn(view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad});
+  if (points.empty()) return;
+  Connect(fog, fog_phase);
+  Upload(points);
+  program_->Use();
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points.size()));
+  glDisable(GL_BLEND);
+  CheckGl("StarPainter::Paint");
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Stars and planets over the picture, as the renderer has them (star_lights.h, star_pixels.h):
+// points whose lux does not depend on the size of the picture, through the air and behind land and
+// moon. Their list is made on a thread beside drawing and turns with the sky until the next; by day
+// there is none.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/sun/moon_disk.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+#include "viewer/job/latest_job.h"
+#include "viewer/lamps/scene_fog.h"
+#include "viewer/paint/key_light.h"
+#include "viewer/paint/star_points.h"
+
+namespace alpenglow {
+
+/// To be used on the thread of the context that is current when it is made.
+class StarPainter {
+ public:
+  StarPainter();
+
+  /// Once a frame: takes over what is ready and asks for what is missing. Never waits.
+  void Follow(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
+  /// The same, but the list of the very instant is there when it returns.
+  void Settle(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
+
+  /// Whether it is dark enough, and they are known.
+  [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
+  /// Adds them to the target that is bound, whose surface map, air and blocks are bound.
+  /// @param fog  null: none.
+  void Paint(const PaintedView& view, const MoonDisk& moon, const SceneFog* fog,
+             std::optional<PhaseKind> fog_phase);
+
+ private:
+  struct Request {
+    GeodeticPosition place;
+    UtcInstant now;
+    std::shared_ptr<const BandColour> colour;
+  };
+  struct Made {
+    Request request;
+    std::vector<StarLight> lights;
+  };
+
+  [[nodiscard]] bool IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
+  void Ask(const PaintedView& view);
+  void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
+  void Upload(const std::vector<StarPoint>& points) const;
+
+  GlBuffer buffer_;
+  GlVertexArray vertices_;
+  std::optional<ShaderProgram> program_;  // made at the first star
+  std::shared_ptr<const BandColour> colour_;
+  double sky_lux_ = 0.0;  // of the sky that they stand in; 0: day
+  std::optional<Request> asked_;
+  std::optional<Made> made_;
+  LatestJob<Request, Made> maker_;
+};
+
+}  // namespace alpenglow

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The pixels that a star's light falls on, unless land hides its middle: StarPoint of
+// star_points.h.
+in vec4 star_corner;
+in vec4 star_towards;
+in vec4 star_light;
+in vec4 star_across;
+in vec4 star_up;
+in vec4 star_last;
+flat out vec3 light;
+flat out vec4 across;
+flat out vec4 up;
+flat out vec4 last;
+flat out vec2 corner;
+
+uniform sampler2D surface_map;  // of land.frag.glsl
+
+bool IsHidden() {
+  bool planet = GroundClearance(EYE_ALTITUDE, star_towards.z, RADIUS) > 0.0;
+  ivec2 middle = clamp(ivec2(star_corner.zw), ivec2(0), textureSize(surface_map, 0) - 1);
+  return planet || texelFetch(surface_map, middle, 0).w > 0.0;
+}
+
+void main() {
+  vec3 towards = star_towards.xyz;
+  light = LinearSrgb(star_light * TransmittanceToSpace(towards) * FogTransmittance(towards, 1e3));
+  across = star_across;
+  up = star_up;
+  last = star_last;
+  corner = star_corner.xy;
+  vec2 at = corner + 5.0 * vec2(gl_VertexID % 2, gl_VertexID / 2);
+  vec2 screen = 2.0 * at / vec2(textureSize(surface_map, 0)) - 1.0;
+  gl_Position = IsHidden() ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(screen, 0.0, 1.0);
+}
