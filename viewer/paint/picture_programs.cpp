@@ -13,6 +13,7 @@ namespace {
 
 // Fragments of depth 0 against that of the land: it is nearer, or there is none.
 GLenum DepthTestOf(PictureStage::Pass pass) {
+  if (pass == PictureStage::Pass::kNight) return GL_ALWAYS;
   return pass == PictureStage::Pass::kLand ? GL_LESS : GL_EQUAL;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
   return {"stage", fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
-                               "#define OPEN_SKY_PASS 3\n"
+                               "#define OPEN_SKY_PASS 3\n#define NIGHT_PASS 4\n"
                                "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
                                "#define HAS_FOG {}\n",
                                static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,

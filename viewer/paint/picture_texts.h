@@ -15,7 +15,7 @@ namespace alpenglow {
 
 /// One of the picture's programs. Sky is open above the horizon, see RowsOfPlanet.
 struct PictureStage {
-  enum class Pass { kLand, kSky, kDisks, kOpenSky };
+  enum class Pass { kLand, kSky, kDisks, kOpenSky, kNight };
   Pass pass;
   bool has_shade = false, has_lamps = false;
 

@@ -32,6 +32,7 @@ enum PictureUnit {
   kGroundUnit = kAirUnit + AirTextures::kUnits,
   kLampUnit = kGroundUnit + 3,
   kFogUnit = kLampUnit + 6,
+  kNightUnit = kFogUnit + 2,
 };
 
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};

@@ -75,12 +75,14 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   Begin("update");
   scene_.Update(view, key.disk, seconds);
   stars_.Follow(view, key, *scene_.air().air());
+  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), false);
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
   scene_.Settle(view, LightsOf(view).key.disk, samples);
   lamps_.SettlePlans();
   stars_.Settle(view, LightsOf(view).key, *scene_.air().air());
+  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), true);
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -216,6 +218,21 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
   lamp_painter_.PaintOver(PixelAngle(view));
 }
 
+// In more light nobody sees a thousandth of a lux.
+bool SkyPainter::HasNightFloor() const {
+  constexpr double kMost_lux = 10.0;
+  return stars_.sky_lux() > 0.0 && stars_.sky_lux() < kMost_lux;
+}
+
+void SkyPainter::PaintNightFloor(double share) {
+  Begin("night sky");
+  const BesideLand any_depth;
+  const Adding adding(share);
+  const PictureStage stage{PictureStage::Pass::kNight};
+  night_floor_.Bind(programs_.Of(stage), kNightUnit);
+  programs_.Paint(stage);
+}
+
 void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
   if (!stars_.HasAny()) return;
   Begin("stars");
@@ -228,6 +245,7 @@ void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRa
   PaintShafts(view);
   PaintLamps(view);
   PaintPicture(view, 1.0 / ray.of);
+  if (HasNightFloor() && night_floor_.HasAny()) PaintNightFloor(1.0 / ray.of);
   if (disks == Disks::kPainted) PaintDisks(view, ray);
 }
 

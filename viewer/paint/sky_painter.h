@@ -22,6 +22,7 @@
 #include "viewer/land/land_outline.h"
 #include "viewer/land/surface_map.h"
 #include "viewer/paint/key_light.h"
+#include "viewer/paint/night_floor.h"
 #include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_scene.h"
 #include "viewer/paint/painted_view.h"
@@ -113,6 +114,8 @@ class SkyPainter {
   void PaintLandAndSky(const PaintedView& view, double share);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
+  [[nodiscard]] bool HasNightFloor() const;
+  void PaintNightFloor(double share);
   void PaintStars(const PaintedView& view, const MoonDisk& moon);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
@@ -123,6 +126,7 @@ class SkyPainter {
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
   StarPainter stars_;
+  NightFloorFollower night_floor_;
   PicturePrograms programs_;  // of all above
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;

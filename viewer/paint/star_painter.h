@@ -30,6 +30,8 @@ class StarPainter {
   /// The same, but the list of the very instant is there when it returns.
   void Settle(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
 
+  /// Of the sky that they stand in, on a level plane; 0 by day.
+  [[nodiscard]] double sky_lux() const { return sky_lux_; }
   /// Whether it is dark enough, and they are known.
   [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
   /// Adds them to the target that is bound, whose surface map, air and blocks are bound.

@@ -3,7 +3,8 @@
 // the depth of the land tells apart, for software drivers work through both sides of a branch.
 // Defined before this text:
 //   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; OPEN_SKY_PASS:
-//             sky where no planet is; DISK_PASS: what the disks of sun and moon add
+//             sky where no planet is; DISK_PASS: what the disks of sun and moon add;
+//             NIGHT_PASS: what the night's own sky adds to land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
 in vec2 screen;
 out vec4 picture;
@@ -129,5 +130,48 @@ void main() {
   radiance *= FogTransmittance(direction, 1e3);
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
+}
+#endif
+
+#if PASS == NIGHT_PASS
+uniform sampler2D night_sky;   // NightFloor of night_floor.h
+uniform vec4 night_scattered;  // what air without an end would send [W m^-2 sr^-1 nm^-1]
+uniform vec4 night_level;      // on level ground [W m^-2 nm^-1]
+
+vec4 NightAbove(vec3 direction) {
+  float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
+  vec2 turns = vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359;
+  return textureLod(night_sky, vec2(turns.x, turns.y + 0.5), 0.0);
+}
+
+// What ground sends back, which sees the part of an even sky that its tilt leaves.
+vec4 NightReflected(vec3 direction, vec4 surface) {
+  vec3 point = surface.w * direction;
+  vec3 mesh_normal = UnitFromOctahedral(surface.xy);
+  GroundPlace at = GroundPlaceAt(point);
+  float footprint = SeenFootprint(at.footprint, -dot(mesh_normal, direction));
+  vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
+  vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
+  vec4 albedo =
+      LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(mesh_normal, at.up), footprint, draped);
+  return albedo / 3.14159265359 * 0.5 * (1.0 + dot(normal, at.up)) * night_level;
+}
+
+void main() {
+  vec3 direction = ViewDirection(screen);
+  vec4 surface = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0);
+  vec4 left = TransmittanceToSpace(direction) * FogTransmittance(direction, 1e3);
+  vec4 behind;
+  if (surface.w > 0.0) {
+    float distance_km = 1e-3 * surface.w;
+    left =
+        AirToPoint(direction, distance_km).transmittance * FogTransmittance(direction, distance_km);
+    behind = NightReflected(direction, surface);
+  } else if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0) {
+    behind = ground_albedo / 3.14159265359 * night_level;
+  } else {
+    behind = NightAbove(direction);
+  }
+  picture = vec4(LinearSrgb((1.0 - left) * night_scattered + left * behind), 0.0);
 }
 #endif

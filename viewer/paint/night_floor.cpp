@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/paint/night_floor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/number/constants.h"
+#include "renderer/light/night_light.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/paint/picture_units.h"
+
+namespace alpenglow {
+namespace {
+
+glm::vec4 FourOf(const BandLight& light) {
+  glm::vec4 four(0.0F);
+  for (std::size_t band = 0; band < light.count; ++band)
+    four[static_cast<glm::length_t>(band)] = light[band];
+  return four;
+}
+
+}  // namespace
+
+NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
+                          const BandColour& colour) {
+  const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
+                         std::max(eye.height_m, 0.0));
+  NightFloor floor{{}, FourOf(night.scattered()), FourOf(night.OnSurface(1.0))};
+  for (int row = 0; row < NightFloor::kRows; ++row) {
+    const double elevation = kPi * ((row + 0.5) / NightFloor::kRows - 0.5);
+    for (int column = 0; column < NightFloor::kColumns; ++column) {
+      const double azimuth = 2.0 * kPi * (column + 0.5) / NightFloor::kColumns;
+      floor.above.push_back(FourOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
+    }
+  }
+  return floor;
+}
+
+NightFloorFollower::NightFloorFollower()
+    : maker_([](const Request& request) {
+        const Medium& medium = request.air->medium;
+        return NightFloorOver(request.place, request.now, medium,
+                              BandColour(medium.wavelengths_nm));
+      }) {}
+
+// The sky may turn by an eighth of a degree: a tenth of a texel.
+bool NightFloorFollower::Suits(const Request& wanted) const {
+  constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
+  return asked_ && asked_->air == wanted.air &&
+         std::abs(SecondsBetween(asked_->now, wanted.now)) < kMostTurn_s &&
+         std::abs(asked_->place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
+         std::abs(asked_->place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
+         std::abs(asked_->place.height_m - wanted.place.height_m) < kMostRise_m;
+}
+
+void NightFloorFollower::Take(int unit) {
+  const std::optional<NightFloor> floor = maker_.Take();
+  if (!floor) return;
+  scattered_ = floor->scattered;
+  level_ = floor->level;
+  has_map_ = true;
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, map_.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, NightFloor::kColumns, NightFloor::kRows, 0, GL_RGBA,
+               GL_FLOAT, floor->above.data());
+  ClampAndFilter(GL_TEXTURE_2D, true);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
+}
+
+void NightFloorFollower::Follow(const PaintedView& view,
+                                const std::shared_ptr<const SolvedAir>& air, bool waits) {
+  const Request wanted{view.eye.place, view.now, air};
+  if (waits) maker_.Wait();
+  Take(kNightUnit);
+  if (waits || (!maker_.Busy() && !Suits(wanted))) {
+    asked_ = wanted;
+    maker_.Ask(wanted);
+  }
+  if (!waits) return;
+  maker_.Wait();
+  Take(kNightUnit);
+}
+
+void NightFloorFollower::Bind(const ShaderProgram& program, int unit) const {
+  program.BindSampler("night_sky", unit);
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, map_.id());
+  program.Use();
+  glUniform4fv(program.Uniform("night_scattered"), 1, &scattered_.x);
+  glUniform4fv(program.Uniform("night_level"), 1, &level_.x);
+}
+
+}  // namespace alpenglow
