@@ -3,8 +3,8 @@
 // as tables, maps and light of vertices, and the card interpolates.
 //
 // The passes of a frame: what the eye sees of the land (Landscape), what shade takes from rays
-// (ShaftPass), the glow of lamps (LampPainter), the linear picture, the lamps over it. Developer
-// shows it. How far it is from SceneRenderer's: tests/bench/README.md, and `skyview --explain` of a
+// (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the sky's own light
+// (NightFloorFollower), the lamps and the stars (StarPainter) over it. Developer shows it. How far it is from SceneRenderer's: tests/bench/README.md, and `skyview --explain` of a
 // view.
 #pragma once
 
