@@ -58,7 +58,7 @@ struct PictureFrame {
   std::shared_ptr<const NightLight> night = nullptr;     // null: the sky of the night does not show
   std::shared_ptr<const StarPixels> stars = nullptr;     // null: none are seen
   bool polarised = false;  // Stokes parameters are asked for, by a polariser or a layer
-  std::shared_ptr<const BentSight> bent = nullptr;       // null: it would move nothing
+  std::shared_ptr<const BentSight> bent = nullptr;        // null: it would move nothing
   double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
