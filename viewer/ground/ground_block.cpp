@@ -7,17 +7,11 @@
 #include <cmath>
 
 #include "viewer/gl/render_target.h"
+#include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
 namespace {
-
-glm::vec4 FourOf(const BandLight& light) {
-  glm::vec4 four(0.0F);
-  for (std::size_t band = 0; band < light.count; ++band)
-    four[static_cast<glm::length_t>(band)] = light[band];
-  return four;
-}
 
 // Lower than any ground.
 constexpr double kNoSea_m = -1e9;
@@ -45,9 +39,9 @@ void Upload(const GlTexture& texture, std::size_t columns, std::size_t rows,
 GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
                                     double pixel_angle_rad) {
   const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
-  return {FourOf(tilt.level),
-          FourOf(tilt.up),
-          FourOf(tilt.sunward),
+  return {GpuBandsOf(tilt.level),
+          GpuBandsOf(tilt.up),
+          GpuBandsOf(tilt.sunward),
           {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0},
           {pixel_angle_rad, 0.0, 0.0, 0.0}};
 }
@@ -57,16 +51,16 @@ GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
   const Glossy& glossy = material.glossy();
   const BandsOfColour& colours = material.bands_of_colour();
   GroundSurfaceBlock block{};
-  block.cover_albedo = FourOf(material.albedo());
+  block.cover_albedo = GpuBandsOf(material.albedo());
   block.rough = {rough.roughness(), rough.scale(), rough.mean_single(), 0.0};
   block.coat = {glossy.exponent(), glossy.f0(), glossy.normalisation(), 0.0};
   block.water = {material.water().slope_variance(), material.WaterLine_m().value_or(kNoSea_m),
                  material.cover().wetness, 0.0};
-  block.under_water = FourOf(material.water().under_surface());
-  block.snow_y = FourOf(material.snow().y());
-  block.drape_red = FourOf(colours.OfPrimary(0));
-  block.drape_green = FourOf(colours.OfPrimary(1));
-  block.drape_blue = FourOf(colours.OfPrimary(2));
+  block.under_water = GpuBandsOf(material.water().under_surface());
+  block.snow_y = GpuBandsOf(material.snow().y());
+  block.drape_red = GpuBandsOf(colours.OfPrimary(0));
+  block.drape_green = GpuBandsOf(colours.OfPrimary(1));
+  block.drape_blue = GpuBandsOf(colours.OfPrimary(2));
   for (std::size_t node = 0; node < Snow::kBalanceNodes; ++node) {
     block.by_root_mu[node / 4][static_cast<glm::length_t>(node % 4)] =
         static_cast<float>(ByRootOfMu(material, node));

@@ -42,11 +42,6 @@ SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
   return position;
 }
 
-glm::vec4 Four(const BandLight& light) {
-  return GpuBandsOf(
-      {light.value.begin(), light.value.begin() + static_cast<std::ptrdiff_t>(light.count)});
-}
-
 }  // namespace
 
 KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
@@ -64,7 +59,7 @@ KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now, const Su
     solar[band] = by_sun.irradiance[static_cast<glm::length_t>(band)];
   const DistantLight moon = MoonlightOf(disk, eye, now, sun.distance_au,
                                         MoonColour(disk, air.medium.wavelengths_nm), solar);
-  const KeyLight by_moon{AsPosition(moon, sun.distance_au), Four(moon.irradiance), true};
+  const KeyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
   const double altitude_m = std::max(eye.height_m, 0.0);
   const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
   const auto brings = [&](const KeyLight& key) {

@@ -8,30 +8,21 @@
 #include "renderer/light/night_light.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/paint/picture_units.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow {
-namespace {
-
-glm::vec4 FourOf(const BandLight& light) {
-  glm::vec4 four(0.0F);
-  for (std::size_t band = 0; band < light.count; ++band)
-    four[static_cast<glm::length_t>(band)] = light[band];
-  return four;
-}
-
-}  // namespace
 
 NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
                           const BandColour& colour) {
   const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
                          std::max(eye.height_m, 0.0));
-  NightFloor floor{{}, FourOf(night.scattered()), FourOf(night.OnSurface(1.0))};
+  NightFloor floor{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
   for (int row = 0; row < NightFloor::kRows; ++row) {
     const double elevation = kPi * ((row + 0.5) / NightFloor::kRows - 0.5);
     for (int column = 0; column < NightFloor::kColumns; ++column) {
       const double azimuth = 2.0 * kPi * (column + 0.5) / NightFloor::kColumns;
-      floor.above.push_back(FourOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
+      floor.above.push_back(GpuBandsOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
     }
   }
   return floor;

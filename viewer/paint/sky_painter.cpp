@@ -135,6 +135,10 @@ void SkyPainter::DescribeMoon(const MoonDisk& moon) {
   glUniform4f(program.Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
               static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
               static_cast<float>(moon.radiance_per_irradiance));
+  const glm::vec4 colour = GpuBandsOf(MoonColour(moon, scene_.air().air()->medium.wavelengths_nm));
+  glUniform4f(program.Uniform("moon_colour"), colour.x, colour.y, colour.z, colour.w);
+  glUniform1f(program.Uniform("moon_earthshine"),
+              static_cast<float>(moon.earthshine_per_irradiance));
 }
 
 // One stage is made ready a frame: each takes tenths of a second.
@@ -143,8 +147,9 @@ void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
   for (const PictureStage& stage :
        {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOpenSky, has_shade, has_lamps},
         PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}})
+        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight}})
     if (programs_.MakeReady(stage)) return;
+  stars_.MakeReady(scene_.fog(), scene_.fog_phase());
 }
 
 // Software drivers work out the planet of every pixel that a program has it for.

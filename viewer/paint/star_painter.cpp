@@ -86,7 +86,7 @@ void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phas
   if (fog != nullptr) fog->Connect(*program_);
 }
 
-void StarPainter::Upload(const std::vector<StarPoint>& points) const {
+void StarPainter::Draw(const std::vector<StarPoint>& points) const {
   glBindVertexArray(vertices_.id());
   glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(StarPoint) * points.size()),
@@ -97,6 +97,18 @@ void StarPainter::Upload(const std::vector<StarPoint>& points) const {
                           reinterpret_cast<const void*>(attribute.location * sizeof(glm::vec4)));
     glVertexAttribDivisor(attribute.location, 1);
   }
+  program_->Use();
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points.size()));
+  glDisable(GL_BLEND);
+}
+
+// With a star without light or width.
+void StarPainter::MakeReady(const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+  if (program_) return;
+  Connect(fog, fog_phase);
+  Draw({StarPoint{}});
 }
 
 void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, const SceneFog* fog,
@@ -110,12 +122,7 @@ void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, const Sce
       StarPointsIn(view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad});
   if (points.empty()) return;
   Connect(fog, fog_phase);
-  Upload(points);
-  program_->Use();
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points.size()));
-  glDisable(GL_BLEND);
+  Draw(points);
   CheckGl("StarPainter::Paint");
 }
 

@@ -34,6 +34,9 @@ class StarPainter {
   [[nodiscard]] double sky_lux() const { return sky_lux_; }
   /// Whether it is dark enough, and they are known.
   [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
+  /// Draws with their program, if nothing has yet: drivers finish it then, which takes tenths of a
+  /// second.
+  void MakeReady(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
   /// Adds them to the target that is bound, whose surface map, air and blocks are bound.
   /// @param fog  null: none.
   void Paint(const PaintedView& view, const MoonDisk& moon, const SceneFog* fog,
@@ -53,11 +56,11 @@ class StarPainter {
   [[nodiscard]] bool IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
   void Ask(const PaintedView& view);
   void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
-  void Upload(const std::vector<StarPoint>& points) const;
+  void Draw(const std::vector<StarPoint>& points) const;
 
   GlBuffer buffer_;
   GlVertexArray vertices_;
-  std::optional<ShaderProgram> program_;  // made at the first star
+  std::optional<ShaderProgram> program_;  // made when it is drawn with first
   std::shared_ptr<const BandColour> colour_;
   double sky_lux_ = 0.0;  // of the sky that they stand in; 0: day
   std::optional<Request> asked_;

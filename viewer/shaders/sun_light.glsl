@@ -3,6 +3,8 @@
 // (sun_disk.h, moon_disk.h).
 
 uniform vec4 moon;      // unit vector to the apparent moon, in the frame of the eye; angular radius
+uniform vec4 moon_colour;      // of its reflectance, relative to that at 550 nm
+uniform float moon_earthshine;  // radiance per irradiance, even over the disk
 uniform vec4 moon_lit;  // unit vector from the moon to the sun; radiance per irradiance, 0: no moon
 
 // The angle of a sine in [-1, 1]: asin() and acos() of
@@ -37,7 +39,7 @@ vec4 SunDiskRadiance(vec3 direction, float width) {
 }
 
 // Radiance of the moon's disk outside the air, per unit of solar irradiance [1/sr], times the share
-// of a pixel that the disk covers; the same in all bands.
+// of a pixel that the disk covers; one value a band.
 vec4 MoonRadiance(vec3 direction, float width) {
   vec3 beside = direction - moon.xyz;
   vec3 at = (beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
@@ -49,5 +51,5 @@ vec4 MoonRadiance(vec3 direction, float width) {
   at *= min(kLimb / max(rho, 1e-6), 1.0);
   float mu_seen = sqrt(1.0 - dot(at, at));
   float mu_lit = dot(at - mu_seen * moon.xyz, moon_lit.xyz);
-  return vec4(covered * moon_lit.w * LommelSeeliger(mu_lit, mu_seen));
+  return covered * (moon_lit.w * LommelSeeliger(mu_lit, mu_seen) + moon_earthshine) * moon_colour;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/common.hpp>
 
 #include "atmosphere/colour/spectrum.h"
@@ -45,6 +46,13 @@ glm::vec4 GpuBandsOf(const std::vector<double>& per_band) {
   return {value[0], value[1], value[2], value[3]};
 }
 
+glm::vec4 GpuBandsOf(const BandLight& light) {
+  ALPENGLOW_ENSURE(light.count, <=, kGpuBands);
+  std::array<float, kGpuBands> value{};
+  std::copy_n(light.value.begin(), light.count, value.begin());
+  return {value[0], value[1], value[2], value[3]};
+}
+
 AirBlock AirBlockOf(const Medium& medium) {
   if (medium.wavelengths_nm.size() > kGpuBands) {
     throw InputError(fmt::format("spectrum: {} wavelengths; the viewer draws with at most {}",
@@ -79,21 +87,17 @@ AirBlock AirBlockOf(const Medium& medium) {
 }
 
 GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye) {
-  const auto bands = [](const Bands<float>& albedo) {
-    return GpuBandsOf(
-        {albedo.value.begin(), albedo.value.begin() + static_cast<std::ptrdiff_t>(albedo.count)});
-  };
   const MountainSurface::Materials& materials = surface.materials();
   const MountainCover& cover = surface.cover();
   GroundBlock block{};
-  block.conifers = bands(materials.conifers);
-  block.leaves = bands(materials.leaves);
-  block.yellow_leaves = bands(materials.yellow_leaves);
-  block.bare_trees = bands(materials.bare_trees);
-  block.meadow = bands(materials.meadow);
-  block.dry_meadow = bands(materials.dry_meadow);
-  block.rock = bands(materials.rock);
-  block.snow = bands(materials.snow);
+  block.conifers = GpuBandsOf(materials.conifers);
+  block.leaves = GpuBandsOf(materials.leaves);
+  block.yellow_leaves = GpuBandsOf(materials.yellow_leaves);
+  block.bare_trees = GpuBandsOf(materials.bare_trees);
+  block.meadow = GpuBandsOf(materials.meadow);
+  block.dry_meadow = GpuBandsOf(materials.dry_meadow);
+  block.rock = GpuBandsOf(materials.rock);
+  block.snow = GpuBandsOf(materials.snow);
   block.cover_lines = {cover.tree_line_m, cover.snow_line_m, 0.0, cover.sun_in_south};
   block.green_lines = {cover.leaf_line_m, cover.bare_line_m, cover.grass_line_m,
                        cover.broadleaf_line_m};

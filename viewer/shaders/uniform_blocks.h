@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "renderer/ground/band_light.h"
 #include "renderer/ground/surface.h"
 
 namespace alpenglow {
@@ -56,5 +57,6 @@ static_assert(offsetof(GroundBlock, mesh_up) == 96 * sizeof(glm::vec4));
 
 /// One value a band, the rest 0.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);
+[[nodiscard]] glm::vec4 GpuBandsOf(const BandLight& light);
 
 }  // namespace alpenglow

@@ -85,7 +85,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
 }
 
 TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
-  MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05};
+  MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05, 0.001};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
       SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
@@ -108,6 +108,8 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
                              glUniform4f(program.Uniform("moon"), 0.6F, 0.0F, 0.8F, 0.0045F);
                              const glm::vec3 lit(moon.to_sun);
                              glUniform4f(program.Uniform("moon_lit"), lit.x, lit.y, lit.z, 0.05F);
+                             glUniform4f(program.Uniform("moon_colour"), 1.0F, 0.0F, 0.0F, 0.0F);
+                             glUniform1f(program.Uniform("moon_earthshine"), 0.001F);
                            });
   int seen = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
