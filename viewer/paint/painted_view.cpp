@@ -7,18 +7,18 @@
 
 #include "atmosphere/ray/shell.h"
 #include "renderer/camera/pixel_samples.h"
+#include "viewer/air/air_rows.h"
 
 namespace alpenglow {
 namespace {
 
-constexpr double kMetresPerKilometre = 1000.0;
-
-// Where a convex function is least between -1 and 1, to a billionth.
+// Where a convex function is least between -1 and 1, to 1e-5: what it is there is then right to 1e-10
+// or so.
 template <typename Function>
 double LeastOf(const Function& function) {
   constexpr double kGolden = 0.6180339887498949;
   double low = -1.0, high = 1.0;
-  while (high - low > 1e-9) {
+  while (high - low > 1e-5) {
     const double width = kGolden * (high - low);
     if (function(high - width) < function(low + width))
       high = low + width;

@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "renderer/ground/surface.h"
+#include "viewer/air/air_rows.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/paint/picture_units.h"
 
 namespace alpenglow {
 namespace {
-
-constexpr double kMetresPerKilometre = 1000.0;
 
 template <typename Block>
 void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) {
