@@ -170,6 +170,7 @@ Share WeighInAir(const LampNode& node, std::uint32_t number, const TileRays& til
 
 /// A place of a surface that lamps may light.
 struct Place {
+  glm::dvec3 point, normal;  // of the shading
   glm::dvec3 smooth_point, geometric_normal;
 };
 
@@ -183,16 +184,18 @@ std::vector<Place> PlacesOf(const TileRays& tile, const LampStage& stage) {
                          ? terrain->Intersect(end.point - kBack_m * end.direction, end.direction)
                          : std::nullopt;
     if (hit && hit->distance_m < 2.0 * kBack_m) {
-      places.push_back({hit->smooth_point, hit->geometric_normal});
+      places.push_back({end.point, hit->normal, hit->smooth_point, hit->geometric_normal});
     } else {
-      places.push_back({end.point, stage.UpAt(end.point)});
+      const glm::dvec3 up = stage.UpAt(end.point);
+      places.push_back({end.point, up, end.point, up});
     }
   }
   return places;
 }
 
-/// What nodes are to the surfaces of a tile, if they faced it and reflected everything: light that
-/// arrives at the places, where terrain may hide a lamp and only its glow is left.
+/// What nodes are to the surfaces of a tile, if these reflected everything: at most as if they faced
+/// the node, at least by how they face it and its beam at the places; terrain may hide a lamp from
+/// these, and only its glow is left.
 class SurfaceWeights {
  public:
   SurfaceWeights(const LampTree& tree, const LampStage& stage, const TileRays& tile)
@@ -217,6 +220,10 @@ class SurfaceWeights {
   [[nodiscard]] Shade ShadeOf(std::uint32_t number);
   /// What a node's air brings to the level of the first place [cd/m^2].
   [[nodiscard]] double GlowOf(std::uint32_t number) const;
+  /// Of a node's light, what a surface that lies as the one at any place does gets at least, of
+  /// what one that faces the lamp in its brightest direction gets: at most kMostRelied, since
+  /// between the places ground may turn away.
+  [[nodiscard]] double FacingOf(std::uint32_t number) const;
 
   const LampTree* tree_;
   const LampStage* stage_;
@@ -276,6 +283,19 @@ double SurfaceWeights::GlowOf(std::uint32_t number) const {
   return light.candela * light.mean_share * glow[glow.count / 2] / kPi;
 }
 
+double SurfaceWeights::FacingOf(std::uint32_t number) const {
+  constexpr double kMostRelied = 0.1, kBetween = 0.5;
+  const Lamp& lamp = tree_->Light(number).lamp;
+  double least = kMostRelied / kBetween;
+  for (const Place& place : places_) {
+    const glm::dvec3 way = lamp.position_m - place.point;
+    const glm::dvec3 towards = way / std::max(glm::length(way), 1e-9);
+    const double cosine = std::max(glm::dot(place.normal, towards), 0.0);
+    least = std::min(least, cosine * RelativeIntensity(lamp, -towards));
+  }
+  return kBetween * least;
+}
+
 Share SurfaceWeights::Of(std::uint32_t number) {
   constexpr double kWall = 0.5;  // of a glow, what is left on a steep surface
   const LampNode& node = tree_->nodes()[number];
@@ -289,7 +309,7 @@ Share SurfaceWeights::Of(std::uint32_t number) {
   const double glow = GlowOf(number);
   const auto [is_lit, is_dark] = ShadeOf(number);
   Share share{number, kWall * glow, glow, 0.0};
-  if (is_lit) share.least += 0.1 * light.mean_share * luminance / (far * far);
+  if (is_lit) share.least += FacingOf(number) * luminance / (far * far);
   if (!is_dark) share.most += luminance / (d * d);
   if (!node.children) return share;
   const double relative = (node.moments[0][0] + node.moments[1][1] + node.moments[2][2]) / (d * d);

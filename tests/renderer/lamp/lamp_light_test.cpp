@@ -343,12 +343,17 @@ void ThinTheAir(Medium& medium) {
   }
 }
 
+/// A row of lamps of these candelas beside the eye, which light the plain before it.
+void AddDimLamps(Scene& scene, double candela) {
+  for (int i = -10; i <= 10; ++i) scene.lights.push_back(LightAt(-10.0, 6.0 * i, 8.0, candela));
+}
+
 TEST_F(LampShadows, ABrightLampBehindTheWallTakesNothingFromDimOnesBeforeIt) {
   Scene scene = WallScene();
   ThinTheAir(scene.medium);
   scene.camera.pitch_rad = -0.3;
   scene.lights = {LightAt(110.0, 0.0, 10.0, 1e4)};
-  for (int i = -10; i <= 10; ++i) scene.lights.push_back(LightAt(-10.0, 6.0 * i, 8.0, 0.03));
+  AddDimLamps(scene, 0.03);
   EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03)
       << "a share of error of 0.5 per cent where lamps shine, of the glow's where they do not";
 }
@@ -359,6 +364,30 @@ TEST_F(LampShadows, ARowOfLampsAcrossTheEndOfTheWallIsNotOneLamp) {
   scene.camera.pitch_rad = -0.3;
   for (int i = -20; i < 40; ++i) scene.lights.push_back(LightAt(130.0, i, 10.0, 100.0));
   EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03) << "where two of sixty lamps shine, too";
+}
+
+TEST_F(LampShadows, ABrightLampThatGrazesTheGroundTakesNothingFromDimOnesBesideIt) {
+  Scene scene = WallScene();
+  ThinTheAir(scene.medium);
+  scene.camera.pitch_rad = -0.3;
+  scene.lights = {LightAt(-500.0, 0.0, 0.1, 1e5)};  // its rays meet the ground at 0.15 mrad
+  AddDimLamps(scene, 0.01);
+  EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03)
+      << "a share of error of what the ground gets, not of what would face the lamp";
+}
+
+TEST_F(LampShadows, ABeamThatShinesElsewhereTakesNothingFromDimLampsBesideIt) {
+  Scene scene = WallScene();
+  ThinTheAir(scene.medium);
+  scene.camera.pitch_rad = -0.3;
+  Light beam = LightAt(-60.0, 0.0, 30.0, 1e5);
+  beam.type = Light::Type::kSpot;
+  beam.pitch_rad = 0.5 * kPi;
+  beam.inner_rad = 0.2;
+  beam.outer_rad = 0.4;
+  scene.lights = {beam};
+  AddDimLamps(scene, 0.005);
+  EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03) << "all of the beam's light goes up";
 }
 
 TEST_F(LampShadows, ALampBehindTheWallIsNotSeen) {
