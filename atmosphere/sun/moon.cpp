@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/sun/moon.h"
 
-#include <erfa.h>
-
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
@@ -10,6 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/root.h"
 #include "atmosphere/sun/apparent_place.h"
+#include "atmosphere/sun/moon_orbit.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/text/error.h"
 
@@ -18,11 +17,9 @@ namespace {
 
 // Geometric, as bodies move about the barycentre.
 BodyState MoonOf(const BodyState& earth, const UtcInstant& instant, double delta_t_s) {
-  const TerrestrialTime time = TerrestrialTimeAt(instant, delta_t_s);
-  double pv[2][3];
-  eraMoon98(time.day, time.part, pv);
-  return {earth.position_au + glm::dvec3(pv[0][0], pv[0][1], pv[0][2]),
-          earth.velocity_au_per_day + glm::dvec3(pv[1][0], pv[1][1], pv[1][2])};
+  const BodyState moon = MoonFromEarth(TerrestrialTimeAt(instant, delta_t_s));
+  return {earth.position_au + moon.position_au,
+          earth.velocity_au_per_day + moon.velocity_au_per_day};
 }
 
 /// Position angle on the sky of a direction, seen from another: from north over east.

@@ -31,9 +31,9 @@ struct MoonPosition {
   [[nodiscard]] double IlluminatedFraction() const;
 };
 
-/// Position of the moon. ERFA's eraMoon98 (Meeus' selection of ELP 2000-82; within 10 arcseconds in
-/// longitude, 4 in latitude and 20 km 1950-2050), IAU 2006/2000A precession-nutation, light time,
-/// aberration and parallax.
+/// Position of the moon. ELP/MPP02 (moon_orbit.h; within an arcsecond and 3 km 1950-2100 where
+/// delta-T is known, of which a second is half an arcsecond), IAU 2006/2000A precession-nutation,
+/// light time, aberration and parallax.
 [[nodiscard]] MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant);
 /// As above with TT - UT1 given [s].
 [[nodiscard]] MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant,

@@ -26,7 +26,7 @@ MoonPosition AtTerrestrial(const char* time) { return MoonAt(kGeocentre, ParseIn
 // Meeus, Astronomical Algorithms, 2nd edition, examples 47.a and 48.a: 1992 April 12, 0h TD.
 TEST(Moon, ExampleOfMeeus) {
   const MoonPosition moon = AtTerrestrial("1992-04-12T00:00:00Z");
-  EXPECT_NEAR(moon.distance_m / 1e3, 368409.7, 20.0) << "what eraMoon98 states";
+  EXPECT_NEAR(moon.distance_m / 1e3, 368409.7, 20.0) << "of Meeus' selection of terms";
   EXPECT_NEAR(std::asin(moon.direction.xyz.z), 13.768368 * kRadiansPerDegree, 10.0 * kArcsecond)
       << "apparent declination";
   const double sidereal =
