@@ -6,6 +6,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "renderer/camera/track.h"
+#include "renderer/ground/camera_stand.h"
 #include "renderer/report_command.h"
 #include "renderer/scene/scene_files.h"
 #include "renderer/series/frame_list.h"

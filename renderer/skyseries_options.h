@@ -82,6 +82,8 @@ inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
   without_file("--atmosphere", scene.atmosphere,
                "Atmosphere file (TOML) or preset: earth, hazy, "
                "clear-mountain, mars, bruneton2017");
+  without_file("--bortle", scene.bortle,
+               "Class of the night sky, 1 to 9: how much light of towns there is in the air");
 }
 
 inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {

@@ -16,7 +16,6 @@ constexpr double kModifiedJulianEpoch = 2400000.5;
 constexpr double kDay_s = 86400.0;
 constexpr double kSpeedOfLight_m_per_s = 299792458.0;  // exact, SI
 constexpr double kLightDaysPerAu = kAstronomicalUnit_m / kSpeedOfLight_m_per_s / kDay_s;
-constexpr double kEarthRotation_rad_per_s = 7.292115e-5;  // WGS84, NIMA TR8350.2 table 3.1
 
 glm::dvec3 Vec(const double* v) { return {v[0], v[1], v[2]}; }
 

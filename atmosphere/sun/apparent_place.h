@@ -13,6 +13,9 @@
 
 namespace alpenglow {
 
+/// WGS84, NIMA TR8350.2 table 3.1.
+inline constexpr double kEarthRotation_rad_per_s = 7.292115e-5;
+
 /// Position and velocity: GCRS axes, origin at the barycentre of the solar system.
 struct BodyState {
   glm::dvec3 position_au;

@@ -9,6 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/apparent_place.h"
+#include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
@@ -83,6 +84,14 @@ Angles AnglesOf(const glm::dvec3& unit) {
 
 double LuminanceOfSurfaceBrightness(double magnitudes) {
   return 10.8e4 * std::pow(10.0, -0.4 * magnitudes);
+}
+
+double ZenithOfBortleClass(int bortle_class) {
+  constexpr std::array<double, 9> kZeniths{kNaturalZenith, kNaturalZenith, 21.4,  20.85, 19.75,
+                                           18.75,          18.25,          17.75, 17.0};
+  ALPENGLOW_ENSURE(bortle_class, >=, 1);
+  ALPENGLOW_ENSURE(bortle_class, <=, 9);
+  return kZeniths.at(static_cast<std::size_t>(bortle_class - 1));
 }
 
 double VanRhijn(double sin_z) {

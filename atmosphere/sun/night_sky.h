@@ -29,6 +29,15 @@ namespace alpenglow {
 /// Light of V magnitudes a square arcsecond [cd/m^2]: 10.8e4 10^(-0.4 V).
 [[nodiscard]] double LuminanceOfSurfaceBrightness(double magnitudes);
 
+/// Of the natural zenith, away from the Milky Way [V magnitudes a square arcsecond].
+inline constexpr double kNaturalZenith = 21.6;
+
+/// The zenith of a moonless night among the lamps of towns [V magnitudes a square arcsecond]. Classes
+/// of Bortle (2001, Sky & Telescope 101, 2, 126) are the middle of the ranges in which readers of sky
+/// quality meters put them; 8 and 9, which have no end, 0.5 and 1.25 magnitudes brighter than 7; 1 and
+/// 2 the natural sky. @param bortle_class  1 to 9.
+[[nodiscard]] double ZenithOfBortleClass(int bortle_class);
+
 /// In S10 [cd/m^2].
 inline constexpr double kS10_cd_per_m2 = 8.29e-7;
 

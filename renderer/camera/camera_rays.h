@@ -81,6 +81,7 @@ class CameraRays {
   [[nodiscard]] double PixelAngle() const;
 
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
+  [[nodiscard]] bool IsPanorama() const { return panorama_; }
   [[nodiscard]] bool HasLens() const { return lens_.has_value(); }
   [[nodiscard]] bool HasPolariser() const { return polariser_rad_.has_value(); }
 

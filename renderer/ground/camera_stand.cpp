@@ -64,6 +64,16 @@ CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
   return stand;
 }
 
+double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
+  if (!ground.terrain) return 0.0;
+  constexpr double kHighest_m = 20000.0;  // over any mountain
+  GeodeticPosition high = place;
+  high.height_m = kHighest_m;
+  const CameraStand stand = StandAt(ground, high);
+  const auto hit = ground.terrain->Intersect(stand.eye, -stand.frame_from_enu[2]);
+  return hit ? kHighest_m - hit->distance_m : 0.0;
+}
+
 MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
                       std::span<const CameraPose> poses, int width, int height) {
   if (poses.empty()) return CameraRays(camera, width, height, StandOfScene(ground));

@@ -17,6 +17,10 @@ namespace alpenglow {
 /// the ground, or more than 500 km from the scene's place.
 [[nodiscard]] CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place);
 
+/// Height over the ellipsoid [m] of a scene's ground under a place: the highest of it, and 0 where
+/// there is none. Throws InputError as StandAt.
+[[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place);
+
 /// The scene's camera, or one with its lens that takes these poses one after the other.
 [[nodiscard]] MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
                                     std::span<const CameraPose> poses, int width, int height);

@@ -40,6 +40,7 @@ struct Lighting {
   double sea_s = 0.0;                           // time of the waves, see SeaTime
   std::optional<MoonDisk> moon = std::nullopt;  // as a thing to see
   BandLight moon_colour = {};                   // of its reflectance, relative to that at 550 nm
+  glm::dvec3 moon_turn{0.0};  // axis and angle [rad] by which it moves while the shutter is open
   /// The moon where it could show beside the sun.
   std::optional<DistantLight> moonlight = std::nullopt;
   /// The sky of the night where it could show beside the sun; null: it could not.

@@ -50,7 +50,8 @@ double AirglowSpectrum(double wavelength_nm) {
 }  // namespace
 
 NightLight::NightLight(const NightSky& sky, const AirIntegrator<float>& air,
-                       const BandColour& colour, const glm::dvec3& up, double altitude_m)
+                       const BandColour& colour, const glm::dvec3& up, double altitude_m,
+                       const std::optional<BandLight>& towns)
     : sky_(sky), up_(up), altitude_m_(altitude_m) {
   constexpr double kStars_k = 5000.0, kGround = 1.0 / 6.0;
   const auto& wavelengths_nm = air.medium().wavelengths_nm;
@@ -79,6 +80,7 @@ NightLight::NightLight(const NightSky& sky, const AirIntegrator<float>& air,
   }
   constexpr auto kShare = static_cast<float>(1.0 / (kRings * kSectors));
   scattered_ = static_cast<float>(0.5 * (1.0 + kGround)) * (kShare * above);
+  if (towns) scattered_ = scattered_ + *towns;
   level_ = BandLight(above.count);
   for (std::size_t band = 0; band < above.count; ++band) {
     const float hidden = 1.0F - kept[band] / static_cast<float>(kRings);

@@ -11,10 +11,11 @@
 // is what molecules, or droplets deep in a cloud, would scatter of light that comes from all sides.
 // It makes the zenith brighter by a tenth than extinction alone, and the horizon by as much as it
 // is: an approximation, for light that itself varies by a factor of two from night to night. What
-// ozone and soot absorb of J is left out.
+// ozone and soot absorb of J is left out. Lamps of towns add to J (town_light.h).
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/ray/single_scattering.h"
@@ -27,8 +28,10 @@ namespace alpenglow {
 class NightLight {
  public:
   /// @param sky  in the frame of the picture. @param up  unit, at the eye.
+  /// @param towns  TownLight; nothing: there are none.
   NightLight(const NightSky& sky, const AirIntegrator<float>& air, const BandColour& colour,
-             const glm::dvec3& up, double altitude_m);
+             const glm::dvec3& up, double altitude_m,
+             const std::optional<BandLight>& towns = std::nullopt);
 
   /// From above the air, W m^-2 sr^-1 nm^-1.
   [[nodiscard]] BandLight Above(const glm::dvec3& direction) const;

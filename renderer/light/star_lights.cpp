@@ -6,6 +6,7 @@
 
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
@@ -31,7 +32,21 @@ StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const Ba
   return {direction, static_cast<float>(lux / of_spectrum) * spectrum, lux};
 }
 
+/// As the earth turns under the stars.
+glm::dvec3 After(const glm::dvec3& ecef, double seconds) {
+  const double turned = -kEarthRotation_rad_per_s * seconds;
+  const double c = std::cos(turned), s = std::sin(turned);
+  return {c * ecef.x - s * ecef.y, s * ecef.x + c * ecef.y, ecef.z};
+}
+
 }  // namespace
+
+OpenShutter OpenFor(double open_s, double pixel_angle_rad) {
+  // An arc of t is t^2 / 8 off its chord.
+  const double step_rad = std::sqrt(8.0 * 0.1 * pixel_angle_rad);
+  const double turned_rad = kEarthRotation_rad_per_s * open_s;
+  return {open_s, static_cast<int>(std::ceil(turned_rad / step_rad))};
+}
 
 double FaintestStar(double lux, double pixel_angle_rad) {
   constexpr double kUnseenStar = 1e-3;
@@ -39,13 +54,19 @@ double FaintestStar(double lux, double pixel_angle_rad) {
 }
 
 std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
-                                      const BandColour& colour, double faintest) {
+                                      const BandColour& colour, double faintest,
+                                      const OpenShutter& shutter) {
   const LocalFrame local(kWgs84, eye);
   std::vector<StarLight> lights;
   const auto add = [&](const PointLight& point) {
     if (point.magnitude > faintest) return;
-    const glm::dvec3 enu = local.EnuFromEcef(point.direction).xyz;
-    lights.push_back(LightOf(point, Refracted(enu, eye.height_m), colour));
+    const auto seen_after = [&](double seconds) {
+      const Vector<Ecef> ecef{After(point.direction.xyz, seconds)};
+      return Refracted(local.EnuFromEcef(ecef).xyz, eye.height_m);
+    };
+    lights.push_back(LightOf(point, seen_after(0.0), colour));
+    for (int i = 0; shutter.steps > 0 && i <= shutter.steps; ++i)
+      lights.back().way.push_back(seen_after(shutter.open_s * (i / double(shutter.steps) - 0.5)));
   };
   for (const PointLight& planet : PlanetsAt(eye, instant)) add(planet);
   for (const PointLight& star : StarsAt(instant, faintest)) add(star);

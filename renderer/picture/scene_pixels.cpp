@@ -88,9 +88,37 @@ BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& th
   return disk;
 }
 
+namespace {
+
+/// @param turn  axis and angle. Rodrigues' formula.
+glm::dvec3 Turned(const glm::dvec3& direction, const glm::dvec3& turn) {
+  const double angle = glm::length(turn);
+  if (angle == 0.0) return direction;
+  const glm::dvec3 axis = turn / angle;
+  return std::cos(angle) * direction + std::sin(angle) * glm::cross(axis, direction) +
+         (1.0 - std::cos(angle)) * glm::dot(axis, direction) * axis;
+}
+
+/// Mean while the shutter is open.
+double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm::dvec3& direction) {
+  const double angle = glm::length(turn);
+  if (angle == 0.0) return MoonRadiance(moon, direction);
+  const double chord = glm::length(direction - moon.to_moon);
+  if (chord > 0.5 * angle + moon.radius_rad) return 0.0;
+  // A twentieth of the disk from step to step.
+  const int steps = 1 + static_cast<int>(angle / (0.1 * moon.radius_rad));
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i)
+    sum += MoonRadiance(moon, Turned(direction, (0.5 - (i + 0.5) / steps) * turn));
+  return sum / steps;
+}
+
+}  // namespace
+
 BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
                                const Lighting& light) const {
-  const double radiance = light.moon ? MoonRadiance(*light.moon, direction) : 0.0;
+  const double radiance =
+      light.moon ? MeanMoonRadiance(*light.moon, light.moon_turn, direction) : 0.0;
   if (radiance == 0.0) return BandLight(light.irradiance.count);
   return static_cast<float>(radiance) *
          (light.moon_colour * (light.irradiance * through.transmittance));

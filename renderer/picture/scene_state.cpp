@@ -6,9 +6,11 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/ground/terrain_sunlight.h"
+#include "renderer/light/town_light.h"
 
 namespace alpenglow {
 
@@ -18,6 +20,15 @@ namespace {
 constexpr double kUnseenShare = 1e-4;
 // The sky without a moon.
 constexpr double kNightSky_lux = 1e-3;
+
+/// With the stars westwards, but for what the moon goes back among them: 13.18 degrees a day
+/// (Meeus 1998, Astronomical Algorithms, chapter 47), here as if along the equator.
+glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand) {
+  constexpr double kBack_rad_per_s = 13.17640 / 86400.0 * kRadiansPerDegree;
+  const glm::dvec3 pole =
+      stand.frame_from_enu * glm::dvec3(0.0, std::cos(latitude_rad), std::sin(latitude_rad));
+  return -(kEarthRotation_rad_per_s - kBack_rad_per_s) * open_s * pole;
+}
 
 }  // namespace
 
@@ -78,8 +89,15 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
   light.moon = ApparentMoonDisk(EyeOf(shot), shot.instant, sun.distance_au);
   light.moon->to_moon = stand.frame_from_enu * light.moon->to_moon;
   light.moon->to_sun = stand.frame_from_enu * light.moon->to_sun;
+  light.moon_turn = MoonTurn(scene.camera.shutter_s, EyeOf(shot).latitude_rad, stand);
   AddNight(shot, stand, sun.distance_au, light);
   return light;
+}
+
+std::optional<BandLight> SceneState::TownsOf() const {
+  if (!scene.town_zenith) return std::nullopt;
+  const double ground_m = std::max(GroundHeightUnder(ground, scene.place), 0.0);
+  return TownLight(*scene.town_zenith, ground_m, models.whole().air, colour);
 }
 
 void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
@@ -92,10 +110,11 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
                                              light.moon_colour, light.irradiance);
   if (IlluminanceBy(moonlight, stand.eye, light) > kUnseenShare * (sun_lux + kNightSky_lux))
     light.moonlight = moonlight;
-  if (kNightSky_lux < kUnseenShare * sun_lux) return;
+  const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // at most
+  if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
       NightSky(eye, shot.instant).InFrame(stand.frame_from_enu), models.whole().air, colour,
-      geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye));
+      geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye), towns);
 }
 
 PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& settings,
@@ -172,15 +191,22 @@ std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
   const MoonDisk& moon = *frame.light.moon;
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   std::vector<StarLight> lights;
-  for (StarLight light : StarLightsOver(EyeOf(shot), shot.instant, colour,
-                                        FaintestStar(lux, frame.camera().PixelAngle()))) {
+  const double pixel_rad = frame.camera().PixelAngle();
+  for (StarLight& light :
+       StarLightsOver(EyeOf(shot), shot.instant, colour, FaintestStar(lux, pixel_rad),
+                      OpenFor(scene.camera.shutter_s, pixel_rad))) {
     light.direction = frame_from_enu * light.direction;
-    if (glm::length(light.direction - moon.to_moon) >= moon.radius_rad) lights.push_back(light);
+    for (glm::dvec3& direction : light.way) direction = frame_from_enu * direction;
+    if (glm::length(light.direction - moon.to_moon) >= moon.radius_rad)
+      lights.push_back(std::move(light));
   }
   if (lights.empty()) return nullptr;
-  return std::make_shared<StarPixels>(frame.camera(), frame.settings.width, frame.settings.height,
-                                      lights,
-                                      [&](double x, double y) { return LeftOfSpace(frame, x, y); });
+  return std::make_shared<StarPixels>(
+      frame.camera(), frame.settings.width, frame.settings.height, lights,
+      [&](double x, double y) { return LeftOfSpace(frame, x, y); },
+      [&](double x, double y) {
+        return Trace(frame.camera().MiddleRay(x, y), frame).kind != HitKind::kSky;
+      });
 }
 
 // The terrain in the light of the sun, and of the moon.

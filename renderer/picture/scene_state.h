@@ -44,7 +44,8 @@ struct SceneState {
         smooth_geometry(ground, medium, false),
         horizons(known ? std::move(known) : std::make_shared<HorizonsOnDemand>(ground, medium)),
         material(scene.ground, ColourDrape::Of(scene, ground), medium.wavelengths_nm),
-        models(medium, {ground, geometry, lamps, *horizons, material}) {}
+        models(medium, {ground, geometry, lamps, *horizons, material}),
+        towns(TownsOf()) {}
 
   /// @param known  sunlight over the terrain at that time, or null.
   [[nodiscard]] PictureFrame FrameAt(
@@ -100,6 +101,7 @@ struct SceneState {
   [[nodiscard]] static PixelSum WithStars(const PictureFrame& frame, int x, int y, PixelSum rays);
   [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
                                    const Lighting& light) const;
+  [[nodiscard]] std::optional<BandLight> TownsOf() const;
   [[nodiscard]] GeodeticPosition EyeOf(const Shot& shot) const;
   [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
   [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
@@ -135,6 +137,7 @@ struct SceneState {
   std::shared_ptr<const HorizonsOnDemand> horizons;
   GroundMaterial material;
   AirModels models;
+  std::optional<BandLight> towns;  // TownLight
   mutable std::once_flag few_bands_asked;
   mutable std::unique_ptr<SceneState> few_bands;
 };

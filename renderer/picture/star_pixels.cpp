@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/star_pixels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -29,22 +30,81 @@ StarBell StarBellAround(double place) {
 }
 
 StarPixels::StarPixels(const CameraRays& camera, int width, int height,
-                       const std::vector<StarLight>& lights, const Left& left)
+                       const std::vector<StarLight>& lights, const Left& left, const Hidden& hidden)
     : width_(width), height_(height) {
   for (const StarLight& light : lights) {
-    const auto place = camera.PlaceOf(light.direction);
-    if (!place) continue;
-    const auto [x, y] = *place;
-    if (!(x > -kStarReach && x < width + kStarReach && y > -kStarReach && y < height + kStarReach))
-      continue;
-    const std::optional<BandLight> through = left(x, y);
-    if (!through) continue;
-    directions_.push_back(light.direction);
-    Spread(camera, x, y, *through * light.irradiance);
+    if (light.way.empty()) {
+      AddPoint(camera, light, left);
+    } else {
+      AddTrail(camera, light, left, hidden);
+    }
   }
 }
 
-void StarPixels::Spread(const CameraRays& camera, double x, double y, const BandLight& irradiance) {
+bool StarPixels::IsNear(const Place& place) const {
+  return place.x > -kStarReach && place.x < width_ + kStarReach && place.y > -kStarReach &&
+         place.y < height_ + kStarReach;
+}
+
+void StarPixels::AddPoint(const CameraRays& camera, const StarLight& light, const Left& left) {
+  const auto at = camera.PlaceOf(light.direction);
+  if (!at) return;
+  const Place place{(*at)[0], (*at)[1]};
+  if (!IsNear(place)) return;
+  const std::optional<BandLight> through = left(place.x, place.y);
+  if (!through) return;
+  directions_.push_back(light.direction);
+  Spread(camera, place, *through * light.irradiance);
+}
+
+void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
+                          const Hidden& hidden) {
+  const std::size_t known = pixels_.size();
+  const auto steps = static_cast<float>(light.way.size() - 1);
+  for (std::size_t i = 0; i + 1 < light.way.size(); ++i) {
+    const auto from = camera.PlaceOf(light.way[i]), to = camera.PlaceOf(light.way[i + 1]);
+    if (!from || !to) continue;
+    // Over the seam of a panorama.
+    if (std::abs((*to)[0] - (*from)[0]) > 0.5 * width_ && camera.IsPanorama()) continue;
+    AddStep(camera, {(*from)[0], (*from)[1]}, {(*to)[0], (*to)[1]},
+            (1.0F / steps) * light.irradiance, left, hidden);
+  }
+  if (pixels_.size() > known) directions_.push_back(light.direction);
+}
+
+// What air leaves changes little from end to end; where ground hides one of them it is asked for
+// everywhere.
+void StarPixels::AddStep(const CameraRays& camera, const Place& from, const Place& to,
+                         const BandLight& irradiance, const Left& left, const Hidden& hidden) {
+  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  const int count = std::max(static_cast<int>(std::ceil(2.0 * length)), 1);
+  const auto place = [&](int i) {
+    const double share = (i + 0.5) / count;
+    return Place{std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)};
+  };
+  std::optional<BandLight> first, last;
+  bool is_asked = false;
+  for (int i = 0; i < count; ++i) {
+    const Place at = place(i);
+    if (!IsNear(at)) continue;
+    if (!is_asked) {
+      first = left(from.x, from.y);
+      last = left(to.x, to.y);
+      is_asked = true;
+    }
+    std::optional<BandLight> through;
+    if (!first || !last) {
+      through = left(at.x, at.y);
+    } else if (!hidden(at.x, at.y)) {
+      const auto share = static_cast<float>((i + 0.5) / count);
+      through = (1.0F - share) * *first + share * *last;
+    }
+    if (through) Spread(camera, at, (1.0F / static_cast<float>(count)) * (*through * irradiance));
+  }
+}
+
+void StarPixels::Spread(const CameraRays& camera, const Place& place, const BandLight& irradiance) {
+  const auto [x, y] = place;
   const StarBell across = StarBellAround(x), down = StarBellAround(y);
   const double per_sr = 1.0 / SolidAngle(camera, x, y);
   for (int j = 0; j < 2 * kStarReach + 1; ++j) {

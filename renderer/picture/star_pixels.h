@@ -3,7 +3,9 @@
 //
 // A light of illuminance E brings a pixel of the solid angle Omega the radiance w E / Omega, with w
 // from a bell of half a pixel's deviation over 5 x 5 pixels, whose sum is one: the illuminance in a
-// picture is that of the light whatever its size, and nothing twinkles as a star moves on.
+// picture is that of the light whatever its size, and nothing twinkles as a star moves on. While a
+// shutter is open long the same light is spread along its way, evenly in time, in steps of half a
+// pixel.
 #pragma once
 
 #include <array>
@@ -31,9 +33,12 @@ class StarPixels {
   /// before it.
   using Left = std::function<std::optional<BandLight>(double x, double y)>;
 
+  /// Whether something stands before a place of the picture; Left knows that too, but asks air.
+  using Hidden = std::function<bool(double x, double y)>;
+
   /// @param lights  brightest first.
   StarPixels(const CameraRays& camera, int width, int height, const std::vector<StarLight>& lights,
-             const Left& left);
+             const Left& left, const Hidden& hidden);
 
   /// Radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing.
   [[nodiscard]] const BandLight* At(int x, int y) const;
@@ -41,7 +46,17 @@ class StarPixels {
   [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
 
  private:
-  void Spread(const CameraRays& camera, double x, double y, const BandLight& irradiance);
+  struct Place {
+    double x, y;
+  };
+  /// What a pixel within reach takes light of; nothing outside the picture.
+  [[nodiscard]] bool IsNear(const Place& place) const;
+  void AddPoint(const CameraRays& camera, const StarLight& light, const Left& left);
+  void AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
+                const Hidden& hidden);
+  void AddStep(const CameraRays& camera, const Place& from, const Place& to,
+               const BandLight& irradiance, const Left& left, const Hidden& hidden);
+  void Spread(const CameraRays& camera, const Place& place, const BandLight& irradiance);
 
   int width_, height_;
   std::unordered_map<int, BandLight> pixels_;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr double kHighestEye_m = 1e9;
 constexpr double kDeepestPlace_m = -12000.0;  // as PlaceFromDegrees
+constexpr double kLongestExposure_s = 43200.0;
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
 
@@ -140,7 +142,7 @@ Camera CameraOf(const TomlTable& document) {
   if (!table) return {};
   table->AllowOnly({"height_m", "above_ground_m", "heading", "pitch", "roll", "fov", "f_number",
                     "focal_length_mm", "focus_m", "sensor_width_mm", "blades", "blade_rotation",
-                    "polariser_deg"});
+                    "polariser_deg", "shutter_s"});
   const double heading = table->Number("heading", -360.0, 360.0).value_or(0.0);
   const double pitch = table->Number("pitch", -90.0, 90.0).value_or(0.0);
   const double roll = table->Number("roll", -180.0, 180.0).value_or(0.0);
@@ -150,6 +152,7 @@ Camera CameraOf(const TomlTable& document) {
   Camera camera =
       At(*table, "fov", [&] { return CameraFromDegrees(height, heading, pitch, roll, fov); });
   camera.lens = lens;
+  camera.shutter_s = table->Number("shutter_s", 0.0, kLongestExposure_s).value_or(0.0);
   if (const auto polariser = table->Number("polariser_deg", -180.0, 180.0))
     camera.polariser_rad = Radians(*polariser);
   return camera;
@@ -337,6 +340,21 @@ Light LightOf(const TomlTable& table, const fs::path& folder) {
   return light;
 }
 
+std::optional<double> TownZenithOf(const TomlTable& document) {
+  const std::optional<TomlTable> table = document.Table("night");
+  if (!table) return std::nullopt;
+  table->AllowOnly({"bortle", "zenith_mag_per_arcsec2"});
+  const std::optional<double> bortle = table->Number("bortle", 1.0, 9.0);
+  const std::optional<double> zenith =
+      table->Number("zenith_mag_per_arcsec2", 14.0, kNaturalZenith);
+  if (bortle.has_value() == zenith.has_value())
+    table->Fail("bortle", "give one of night.bortle and night.zenith_mag_per_arcsec2");
+  if (!bortle) return zenith;
+  if (*bortle != std::floor(*bortle))
+    table->Fail("bortle", fmt::format("night.bortle is {}; it must be a class, 1 to 9", *bortle));
+  return ZenithOfBortleClass(static_cast<int>(*bortle));
+}
+
 // Of drops when nothing is said.
 PhaseFunction DropletPhaseOf(const TomlTable& table) {
   const std::optional<double> g = table.Number("g", -0.99, 0.99);
@@ -477,8 +495,8 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
 
 Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder) {
   const TomlTable document(text, origin);
-  document.AllowOnly(
-      {"place", "time", "camera", "atmosphere", "terrain", "ground", "light", "fog", "volume"});
+  document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "ground", "light", "fog",
+                      "volume", "night"});
   const Place place = PlaceOf(document);
   Scene scene;
   scene.place = place.position;
@@ -496,6 +514,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
     scene.lights.push_back(LightOf(light, folder));
   }
   scene.fog = FogOf(document);
+  scene.town_zenith = TownZenithOf(document);
   for (const TomlTable& volume : document.Tables("volume")) {
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));
   }

@@ -45,6 +45,9 @@ struct Camera {
   /// A linear polariser before the lens: its transmission axis, clockwise from the picture's
   /// vertical as seen from behind.
   std::optional<double> polariser_rad;
+  /// Seconds that the shutter is open for the sky: stars and the moon draw trails, the middle of
+  /// which is at the time of the picture. All else stands still.
+  double shutter_s = 0.0;
 
   /// 2 pi: a panorama, all directions; else a perspective of at most 179 degrees.
   [[nodiscard]] bool IsPanorama() const;
@@ -149,6 +152,9 @@ struct Scene {
   std::vector<Light> lights;
   std::optional<Fog> fog;
   std::vector<Volume> volumes;
+  /// Of the zenith of a moonless night over the lamps of towns [V magnitudes a square arcsecond];
+  /// nothing: there are none.
+  std::optional<double> town_zenith;
 };
 
 /// Reads scene.toml. Names of files in it are relative to it. Throws InputError "file:line: key

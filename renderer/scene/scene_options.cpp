@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
 #include "renderer/terrain/built_in_range.h"
 
@@ -53,6 +54,10 @@ Scene SceneFromOptions(const SceneOptions& options) {
       HeightFrom(options, view.height), options.heading.value_or(view.heading),
       options.pitch.value_or(view.pitch), 0.0, options.fov.value_or(view.fov), "--");
   scene.medium = MediumFrom(options.atmosphere.value_or("earth"));
+  if (options.bortle) {
+    RequireInRange(*options.bortle, 1.0, 9.0, "--bortle");
+    scene.town_zenith = ZenithOfBortleClass(*options.bortle);
+  }
   if (options.dem) {
     scene.terrain.kind = TerrainSource::Kind::kElevationModel;
     scene.terrain.file = *options.dem;

@@ -17,6 +17,7 @@ struct SceneOptions {
   std::optional<double> height_m, above_ground_m;
   std::optional<std::string> dem;
   std::optional<std::string> atmosphere;  // a file, or the name of a preset
+  std::optional<int> bortle;              // ZenithOfBortleClass
 };
 
 /// With `dem` the eye stands at latitude and longitude, 2 m above the ground, and looks north,

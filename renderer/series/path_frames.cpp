@@ -47,16 +47,6 @@ std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
   return frames;
 }
 
-double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
-  if (!ground.terrain) return 0.0;
-  constexpr double kHighest_m = 20000.0;  // over any mountain
-  GeodeticPosition high = place;
-  high.height_m = kHighest_m;
-  const CameraStand stand = StandAt(ground, high);
-  const auto hit = ground.terrain->Intersect(stand.eye, -stand.frame_from_enu[2]);
-  return hit ? kHighest_m - hit->distance_m : 0.0;
-}
-
 Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s) {
   // Straight ways between 16 steps miss a curve by less than a hundredth of its length.
   constexpr int kSteps = 17;

@@ -31,10 +31,6 @@ struct PathRate {
 [[nodiscard]] std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
                                              const UtcInstant& start);
 
-/// Height over the ellipsoid [m] of a scene's ground under a place: the highest of it, and 0 where
-/// there is none. Throws InputError as StandAt (camera_stand.h).
-[[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place);
-
 /// The camera of a frame; with a shutter that is open for a time around it, its way in that time.
 [[nodiscard]] Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s);
 

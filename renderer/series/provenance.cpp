@@ -114,9 +114,12 @@ Metadata SceneMetadata(const Scene& scene) {
                     lens.focus_m, lens.blades, Degrees(lens.blade_rotation_rad));
   }
   if (camera.polariser_rad) metadata["alpenglow.polariser_deg"] = Degrees(*camera.polariser_rad);
+  if (camera.shutter_s > 0.0) metadata["alpenglow.shutter_s"] = fmt::format("{}", camera.shutter_s);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
   }
+  if (scene.town_zenith)
+    metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
   if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
   return metadata;
 }

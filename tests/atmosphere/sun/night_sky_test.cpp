@@ -57,6 +57,13 @@ TEST(NightSky, TheCentreOfTheGalaxyStandsHighInTheSouthOfAJuneNight) {
   EXPECT_NEAR(hour_of_brightest, 11.75, 1.5) << "after noon: midnight has 18h of sidereal time";
 }
 
+TEST(NightSky, ASkyOfAHigherBortleClassIsBrighter) {
+  EXPECT_EQ(ZenithOfBortleClass(1), kNaturalZenith);
+  EXPECT_EQ(ZenithOfBortleClass(2), kNaturalZenith);
+  for (int higher = 3; higher <= 9; ++higher)
+    EXPECT_LT(ZenithOfBortleClass(higher), ZenithOfBortleClass(higher - 1)) << higher;
+}
+
 TEST(NightSky, ThereIsNoAirglowAboveItsLayer) {
   const NightSky sky({}, {.modified_julian_day = 61212});
   const glm::dvec3 up(0.0, 0.0, 1.0);

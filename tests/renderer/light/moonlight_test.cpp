@@ -9,6 +9,7 @@
 #include "atmosphere/sun/moon_disk.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/light/night_light.h"
+#include "renderer/light/town_light.h"
 #include "tests/fixtures/lit_air.h"
 
 namespace alpenglow {
@@ -148,6 +149,53 @@ TEST(NightLight, ADarkZenithIsOf21Point6MagnitudesAndTheGroundHasAThousandthOfAL
   }
   EXPECT_NEAR(magnitudes, 21.6, 0.15) << "Patat (2003); nights differ by some tenths";
   EXPECT_NEAR(lux, 1e-3, 0.3e-3) << "a clear night without moon";
+}
+
+/// What an eye on the ground sees of the night sky, through the air [cd/m^2].
+double SkyLuminance(const NightLight& light, const glm::dvec3& direction,
+                    const BandColour& colour) {
+  const BandLight left = tests::Earth().air.TransmittanceToSpace(0.0, direction.z);
+  BandLight seen = left * light.Above(direction);
+  for (std::size_t band = 0; band < seen.count; ++band)
+    seen[band] += (1.0F - left[band]) * light.scattered()[band];
+  return colour.Xyz(InDouble(seen))[1];
+}
+
+double Magnitudes(double cd_per_m2) { return -2.5 * std::log10(cd_per_m2 / 10.8e4); }
+
+TEST(NightLight, TheZenithOverTownsIsAsBrightAsTheirClassOfBortleHasIt) {
+  const AirIntegrator<float>& air = tests::Earth().air;
+  const BandColour colour(tests::Earth().medium.wavelengths_nm);
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  // The pole of the galaxy stands high, the ecliptic low.
+  const NightSky sky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-04-17T23:30:00Z"));
+  for (int bortle = 1; bortle <= 9; ++bortle) {
+    const NightLight light(sky, air, colour, up, 0.0,
+                           TownLight(ZenithOfBortleClass(bortle), 0.0, air, colour));
+    EXPECT_NEAR(Magnitudes(SkyLuminance(light, up, colour)), ZenithOfBortleClass(bortle), 0.1)
+        << bortle;
+  }
+}
+
+TEST(NightLight, OfTownsRisesToTheHorizonReddensItAndLightsTheGround) {
+  const AirIntegrator<float>& air = tests::Earth().air;
+  const BandColour colour(tests::Earth().medium.wavelengths_nm);
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  const NightSky sky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-04-17T23:30:00Z"));
+  const NightLight city(sky, air, colour, up, 0.0, TownLight(18.0, 0.0, air, colour));
+  const auto luminance = [&](double zenith_deg) {
+    const double z = zenith_deg * kRadiansPerDegree;
+    return SkyLuminance(city, {0.0, std::sin(z), std::cos(z)}, colour);
+  };
+  EXPECT_NEAR(luminance(60.0) / luminance(0.0), 1.85, 0.15)
+      << "twice the air, but for what takes its own light";
+  EXPECT_GT(luminance(85.0) / luminance(0.0), 3.5);
+  const auto rgb = colour.LinearSrgb(InDouble(city.scattered()));
+  EXPECT_GT(rgb[0], 1.5 * rgb[2]);
+  // A sky of 18 magnitudes all over would bring pi times its luminance.
+  const double lux = colour.Xyz(InDouble(city.OnSurface(1.0)))[1];
+  EXPECT_GT(lux, kPi * luminance(0.0));
+  EXPECT_LT(lux, 2.5 * kPi * luminance(0.0));
 }
 
 TEST(NightLight, RisesToTheHorizonBeforeTheAirTakesIt) {

@@ -2,6 +2,7 @@
 // What shines at night in the renderer's pictures.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
@@ -73,6 +74,62 @@ TEST(NightPicture, AStarIsOfTheSameLuxAtEverySizeOfThePicture) {
   }
   EXPECT_NEAR(lux[0] / lux[1], 1.0, 1e-3) << "the field's pixels are not quite of one size";
   EXPECT_NEAR(lux[2] / lux[1], 1.0, 1e-3);
+}
+
+TEST(NightPicture, ATrailIsOfTheLuxOfItsStarAtEverySizeAndAsLongAsTheSkyTurns) {
+  const Look sirius = SiriusAt(kMoonless);
+  Scene scene = BareScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0);
+  const SceneRenderer still(scene);
+  scene.camera.shutter_s = 300.0;
+  const SceneRenderer open(scene);
+  for (const int side : {24, 60, 111}) {
+    const double pixel_rad = 2.0 * std::tan(2.0 * kRadiansPerDegree) / side;
+    const auto settings = Small(side, side), dark = Small(side, side, Without({Effect::kStars}));
+    const Image empty = open.Render(kMoonless, dark), trails = open.Render(kMoonless, settings);
+    const double of_star =
+        Lux(still.Render(kMoonless, settings), pixel_rad) - Lux(empty, pixel_rad);
+    const double of_trail = Lux(trails, pixel_rad) - Lux(empty, pixel_rad);
+    EXPECT_NEAR(of_trail / of_star, 1.0, 5e-3)
+        << side << ": faint neighbours come in and go out, a hundredth of its light";
+    int first = side, last = 0;
+    for (int x = 0; x < side; ++x) {
+      double column = 0.0;
+      for (int y = 0; y < side; ++y)
+        column += tests::Luminance(trails.at(x, y)) - tests::Luminance(empty.at(x, y));
+      if (column * pixel_rad * pixel_rad < 0.5 * of_star * pixel_rad / 0.0209) continue;
+      first = std::min(first, x);
+      last = std::max(last, x);
+    }
+    // 15.04 arcseconds a second, by the cosine of Sirius' declination, -16.7 degrees.
+    EXPECT_NEAR((last - first + 1) * pixel_rad, 0.0209, 2.0 * pixel_rad) << side;
+  }
+}
+
+TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
+  const MoonPosition moon = MoonAt(PlaceFromDegrees(46.5, 8.0, 2.0), kFullMoon);
+  Scene scene = BareScene(2.0, moon.azimuth_rad / kRadiansPerDegree,
+                          moon.elevation_rad / kRadiansPerDegree, 8.0);
+  const RenderSettings settings = Small(64, 64);
+  const double pixel_rad = 2.0 * std::tan(4.0 * kRadiansPerDegree) / 64;
+  const Image still = SceneRenderer(scene).Render(kFullMoon, settings);
+  scene.camera.shutter_s = 600.0;
+  const Image open = SceneRenderer(scene).Render(kFullMoon, settings);
+  EXPECT_NEAR(Lux(open, pixel_rad) / Lux(still, pixel_rad), 1.0, 0.05) << "one ray a pixel";
+  int left = 64, right = 0, top = 64, bottom = 0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      if (tests::Luminance(open.at(x, y)) < 10.0) continue;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+  }
+  // From end to end but for the disk, half a degree.
+  const double across = (right - left + 1) * 8.0 / 64 - 0.55;
+  const double down = (bottom - top + 1) * 8.0 / 64 - 0.55;
+  // 14.5 arcseconds a second by the cosine of its declination, 28 degrees, but for the dim ends.
+  EXPECT_NEAR(std::hypot(across, down), 2.42 * 0.883, 0.25);
 }
 
 TEST(NightPicture, OrionStandsInTheSouthOfAJanuaryNight) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 #include "lut/picture/picture_text.h"
@@ -85,12 +86,15 @@ heading = 270.0
 pitch = -2.0
 roll = 1.5
 polariser_deg = -30.0
+shutter_s = 30.0
 fov = 45.0
 f_number = 2.8
 focal_length_mm = 50.0
 focus_m = 1000.0
 [atmosphere]
 preset = "hazy"
+[night]
+bortle = 5
 [terrain]
 dem = "N35E138.hgt"
 voids = "open"
@@ -119,6 +123,8 @@ intensity_cd = 0
   EXPECT_DOUBLE_EQ(scene.camera.pitch_rad, -2.0 * kRadiansPerDegree);
   EXPECT_DOUBLE_EQ(scene.camera.roll_rad, 1.5 * kRadiansPerDegree);
   EXPECT_DOUBLE_EQ(scene.camera.polariser_rad.value(), -30.0 * kRadiansPerDegree);
+  EXPECT_EQ(scene.camera.shutter_s, 30.0);
+  EXPECT_EQ(scene.town_zenith, ZenithOfBortleClass(5));
   EXPECT_DOUBLE_EQ(scene.camera.fov_rad, 0.25 * kPi);
   ASSERT_TRUE(scene.camera.lens.has_value());
   EXPECT_DOUBLE_EQ(scene.camera.lens->focal_length_m, 0.05);
@@ -366,6 +372,11 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
       {kPlace + "[camera]\nblades = 2\n", "camera.blades is 2"},
       {kPlace + "[camera]\npolariser_deg = 200\n", "camera.polariser_deg is 200"},
+      {kPlace + "[camera]\nshutter_s = -1\n", "camera.shutter_s is -1"},
+      {kPlace + "[night]\n", "give one of night.bortle"},
+      {kPlace + "[night]\nbortle = 4.5\n", "night.bortle is 4.5; it must be a class"},
+      {kPlace + "[night]\nbortle = 4\nzenith_mag_per_arcsec2 = 20\n", "give one of night.bortle"},
+      {kPlace + "[night]\nzenith_mag_per_arcsec2 = 22\n", "night.zenith_mag_per_arcsec2 is 22"},
       {kPlace + "[camera]\nblades = 5.5\n", "camera.blades is 5.5"},
       {kPlace + "[camera]\nsensor_width_mm = 36\n", "camera.focal_length_mm is missing"},
       {kPlace + "[camera]\nfov = 60\nsensor_width_mm = 36\nfocal_length_mm = 50\n",

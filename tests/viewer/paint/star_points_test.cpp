@@ -53,12 +53,14 @@ TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
   const std::vector<StarLight> lights{StarAt(20.0, 150.0, 1e-6), StarAt(31.3, 128.7, 2e-6),
                                       StarAt(9.1, 172.4, 5e-7)};
   for (const auto& [width, height] : {std::pair{160, 90}, {640, 360}, {1280, 720}}) {
-    const StarPixels judge(CameraRays(scene.camera, width, height), width, height, lights,
-                           [](double, double) {
-                             BandLight all(4);
-                             for (std::size_t band = 0; band < 4; ++band) all[band] = 1.0F;
-                             return all;
-                           });
+    const StarPixels judge(
+        CameraRays(scene.camera, width, height), width, height, lights,
+        [](double, double) {
+          BandLight all(4);
+          for (std::size_t band = 0; band < 4; ++band) all[band] = 1.0F;
+          return all;
+        },
+        [](double, double) { return false; });
     std::map<std::pair<int, int>, double> painted;
     for (const StarPoint& star : PointsOf(ViewOf(scene, width, height), lights))
       for (int row = 0; row < 5; ++row)
