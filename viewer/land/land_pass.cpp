@@ -72,8 +72,8 @@ LandPass::LandPass()
 
 std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
   std::vector<ShaderPiece> texts =
-      WithViewerPieces({}, {"viewer/shaders/land_block.glsl", "viewer/shaders/octahedral.glsl",
-                            "viewer/shaders/nearness.glsl"});
+      WithViewerPieces({}, {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
+                            "viewer/shaders/octahedral.glsl", "viewer/shaders/nearness.glsl"});
   texts.push_back(depth);
   return WithViewerPieces(std::move(texts), {"viewer/shaders/land_seen.glsl"});
 }
