@@ -55,3 +55,16 @@ SHARED Number LampRiseFromUnit(Number unit) {
              Number(0.4) * max(steps - Number(2.0), Number(0.0));
   return select(unit < Number(0.5), -a, a);
 }
+
+// What the air around a lamp brings to a slope, over what it brings to level ground: six terms, of
+// which the first is 1. Light comes from where the lamp is, so that slopes towards it and away from
+// it have their own.
+// @param towards, up  components of the unit normal: along the level way to the lamp, and upwards.
+SHARED Number LampGlowOnSlope(Number towards, Number up, Number steep, Number facing,
+                              Number facing_twice, Number turned, Number turned_twice) {
+  Number face = max(towards, Number(0.0));
+  Number turn = max(-towards, Number(0.0));
+  Number share = Number(1.0) + steep * (Number(1.0) - up) +
+                 face * (facing + facing_twice * face) + turn * (turned + turned_twice * turn);
+  return max(share, Number(0.0));
+}

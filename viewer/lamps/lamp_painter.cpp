@@ -9,6 +9,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/lamps/glow_map.h"
 #include "viewer/lamps/phase_macro.h"
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"
@@ -28,10 +29,10 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
       "#define LAMP_MOST {}\n#define LAMP_CONE {}\n#define LAMP_TABLE {}\n"
       "#define LAMP_NODES {}\n#define LAMP_STEP {}\n"
       "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
-      "#define LAMP_GLOW_FARTHEST {:.7f}\n",
+      "#define LAMP_GLOW_FARTHEST {:.7f}\n#define LAMP_GLOW_TERMS {}\n",
       kMostGpuLamps, static_cast<int>(LampProfile::Kind::kCone),
       static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step,
-      PhaseExpression(layers[1].phase.kind), kNearestGlow_m, kFarthestGlow_m);
+      PhaseExpression(layers[1].phase.kind), kNearestGlow_m, kFarthestGlow_m, kGlowTerms);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
   if (!shape.shades().empty()) {
     text += fmt::format(
@@ -147,14 +148,13 @@ void LampPainter::UploadGlows(const SceneLamps& shape) {
   if (shape.glows().empty()) return;
   std::vector<glm::vec4> texels;
   for (const LampGlow* glow : shape.glows()) {
-    for (const std::vector<glm::vec4>& layer : SampledGlow(*glow)) {
-      texels.insert(texels.end(), layer.begin(), layer.end());
-    }
+    const std::vector<glm::vec4> terms = SampledGlow(*glow);
+    texels.insert(texels.end(), terms.begin(), terms.end());
   }
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kGlowUnit));
   glBindTexture(GL_TEXTURE_2D_ARRAY, glows_.id());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowRises,
-               static_cast<GLsizei>(3 * shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowTerms * kGlowRises,
+               static_cast<GLsizei>(shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
   ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
 }
 

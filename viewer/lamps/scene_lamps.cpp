@@ -10,7 +10,6 @@
 #include <numeric>
 #include <queue>
 
-#include "atmosphere/lamp/lamp_ray.h"
 #include "atmosphere/number/constants.h"
 
 namespace alpenglow {
@@ -209,49 +208,6 @@ std::vector<float> SampledProfile(const LampProfile& profile) {
     }
   }
   return samples;
-}
-
-namespace {
-
-/// Irradiance of level ground times the distance, as a logarithm; and what slopes of this sine get
-/// more, towards the lamp and away from it, over that sine and relative to level ground.
-std::array<glm::vec4, 3> GlowTexel(const LampGlow& glow, double distance_m, double rise) {
-  constexpr double kTilt = 0.3;
-  constexpr double kDark = 1e-30;
-  const glm::dvec3 up(0.0, 0.0, 1.0);
-  const double level_share = std::sqrt(1.0 - kTilt * kTilt);
-  const glm::dvec3 way =
-      distance_m * glm::dvec3(std::sqrt(std::max(1.0 - rise * rise, 0.0)), 0.0, rise);
-  const Bands<double> level = glow.On(way, up, up);
-  const std::array<Bands<double>, 2> tilted{glow.On(way, {kTilt, 0.0, level_share}, up),
-                                            glow.On(way, {-kTilt, 0.0, level_share}, up)};
-  std::array<glm::vec4, 3> texel{glm::vec4(static_cast<float>(std::log(kDark))), glm::vec4(0.0F),
-                                 glm::vec4(0.0F)};
-  for (std::size_t band = 0; band < level.count; ++band) {
-    const auto at = static_cast<glm::length_t>(band);
-    const double most = std::max(level[band], kDark);
-    texel[0][at] = static_cast<float>(std::log(most * distance_m));
-    for (std::size_t k = 0; k < 2; ++k) {
-      texel[k + 1][at] = static_cast<float>((tilted[k][band] / most - level_share) / kTilt);
-    }
-  }
-  return texel;
-}
-
-}  // namespace
-
-std::array<std::vector<glm::vec4>, 3> SampledGlow(const LampGlow& glow) {
-  std::array<std::vector<glm::vec4>, 3> layers;
-  for (int j = 0; j < kGlowRises; ++j) {
-    const double rise = shared::LampRiseFromUnit(j / (kGlowRises - 1.0));
-    for (int i = 0; i < kGlowDistances; ++i) {
-      const double distance =
-          kNearestGlow_m * std::pow(kFarthestGlow_m / kNearestGlow_m, i / (kGlowDistances - 1.0));
-      const std::array<glm::vec4, 3> texel = GlowTexel(glow, distance, rise);
-      for (std::size_t k = 0; k < texel.size(); ++k) layers[k].push_back(texel[k]);
-    }
-  }
-  return layers;
 }
 
 }  // namespace alpenglow

@@ -40,13 +40,6 @@ struct LampDisk {
 /// over a whole turn, its ends the same.
 inline constexpr int kLampGammas = 361;
 inline constexpr int kLampTurns = 73;
-/// And what the air around a lamp brings to surfaces: distances and rises of lamp_ray.glsl, each
-/// step of LampGlow in four.
-inline constexpr int kGlowDistances = 61;
-inline constexpr int kGlowRises = 33;
-inline constexpr double kNearestGlow_m = 0.2;
-inline constexpr double kFarthestGlow_m = 2e4;
-
 /// Terrain around a lamp: the slope over which it is seen, over directions of the compass and
 /// distances from the first to the last in equal ratios.
 inline constexpr int kShadeTurns = 96;
@@ -130,9 +123,5 @@ class SceneLamps {
 [[nodiscard]] std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place);
 /// A measured profile at the angles of kLampGammas and kLampTurns, [turn * kLampGammas + gamma].
 [[nodiscard]] std::vector<float> SampledProfile(const LampProfile& profile);
-/// What a lamp's air brings to surfaces, three layers of [rise * kGlowDistances + distance]:
-/// logarithm of the irradiance of level ground times the distance [1/m]; what slopes towards the
-/// lamp and away from it get more, over the sine of the slope and relative to level ground.
-[[nodiscard]] std::array<std::vector<glm::vec4>, 3> SampledGlow(const LampGlow& glow);
 
 }  // namespace alpenglow

@@ -49,7 +49,7 @@ uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
 uniform sampler2DArray lamp_tables;  // share over angles from the axis and around it
 #endif
 #ifdef LAMP_GLOW_MAP
-uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see SampledGlow
+uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see glow_map.h
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slopes over which a lamp is seen, by compass and distance
@@ -315,24 +315,35 @@ vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
 }
 
 #ifdef LAMP_GLOW_MAP
-// What the air that a lamp lights brings to a surface: exact for level ground, linear in the tilt.
-// The map has the logarithm of what level ground gets times the distance, and what slopes towards
-// the lamp and away from it get more, relative to that.
+// A term of the map of a lamp's glow; `at` counts texels of one term.
+vec4 LampGlowTerm(Lamp lamp, vec2 at, float term) {
+  vec2 size = vec2(textureSize(lamp_glow_map, 0).xy);
+  vec2 place = (at + vec2(0.0, term * size.y / float(LAMP_GLOW_TERMS))) / size;
+  return textureLod(lamp_glow_map, vec3(place, lamp.glow.y), 0.0);
+}
+
+// What the air that a lamp lights brings to a surface; see glow_map.h.
 vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
   float sine = dot(towards, lamp.up.xyz);
-  vec2 size = vec2(textureSize(lamp_glow_map, 0).xy);
+  float up = dot(normal, lamp.up.xyz);
+  vec2 size = vec2(textureSize(lamp_glow_map, 0).xy) / vec2(1.0, LAMP_GLOW_TERMS);
   float far = clamp(distance_m, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST);
-  vec2 at = vec2(TexelFromUnit(LampGlowUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), size.x),
-                 TexelFromUnit(LampRiseUnit(sine), size.y));
-  vec4 level = textureLod(lamp_glow_map, vec3(at, 3.0 * lamp.glow.y), 0.0);
+  vec2 unit = vec2(LampGlowUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), LampRiseUnit(sine));
+  vec2 at = vec2(TexelFromUnit(unit.x, size.x), TexelFromUnit(unit.y, size.y)) * size;
+  vec4 level = exp(LampGlowTerm(lamp, at, 0.0)) / far;
 #ifdef LAMP_GLOW_OF_SLOPES
   vec3 flat_way = towards - sine * lamp.up.xyz;
   float tilt = dot(normal, flat_way) / max(length(flat_way), 1e-6);
-  float layer = 3.0 * lamp.glow.y + (tilt < 0.0 ? 2.0 : 1.0);
-  vec4 tilted = textureLod(lamp_glow_map, vec3(at, layer), 0.0);
-  return exp(level) / far * max(dot(normal, lamp.up.xyz) + tilted * abs(tilt), vec4(0.0));
+  vec4 steep = LampGlowTerm(lamp, at, 1.0);
+  vec4 facing = LampGlowTerm(lamp, at, 2.0), facing_twice = LampGlowTerm(lamp, at, 3.0);
+  vec4 turned = LampGlowTerm(lamp, at, 4.0), turned_twice = LampGlowTerm(lamp, at, 5.0);
+  for (int band = 0; band < 4; ++band) {
+    level[band] *= LampGlowOnSlope(tilt, up, steep[band], facing[band], facing_twice[band],
+                                   turned[band], turned_twice[band]);
+  }
+  return level;
 #else
-  return exp(level) * (max(dot(normal, lamp.up.xyz), 0.0) / far);
+  return level * max(up, 0.0);
 #endif
 }
 #endif

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/lamps/glow_map.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "atmosphere/lamp/lamp_ray.h"
+#include "atmosphere/number/cholesky.h"
+#include "atmosphere/number/constants.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr double kDark = 1e-30;  // m^-1, of which logarithms are taken at least
+constexpr std::size_t kSlopeTerms = kGlowTerms - 1;
+using SlopeTerms = std::array<glm::vec4, kSlopeTerms>;
+
+double DistanceAt(double texel) {
+  return kNearestGlow_m *
+         std::pow(kFarthestGlow_m / kNearestGlow_m, texel / (kGlowDistances - 1.0));
+}
+double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRises - 1.0)); }
+
+/// A lamp in the plane of x, which is towards it, and z.
+struct View {
+  const LampGlow& glow;
+  double distance_m, rise;
+
+  [[nodiscard]] Bands<double> On(const glm::dvec3& normal) const {
+    const double across = std::sqrt(std::max(1.0 - rise * rise, 0.0));
+    return glow.On(distance_m * glm::dvec3(across, 0.0, rise), normal, {0.0, 0.0, 1.0});
+  }
+  [[nodiscard]] Bands<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
+};
+
+/// What a slope has of the terms of LampGlowOnSlope.
+std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
+  std::array<double, kSlopeTerms> of_term{};
+  for (std::size_t k = 0; k < kSlopeTerms; ++k) {
+    std::array<double, kSlopeTerms> one{};
+    one[k] = 1.0;
+    of_term[k] =
+        shared::LampGlowOnSlope(normal.x, normal.z, one[0], one[1], one[2], one[3], one[4]) - 1.0;
+  }
+  return of_term;
+}
+
+/// A slope of the fit.
+struct Slope {
+  glm::dvec3 normal;
+  double weight;
+  std::array<double, kSlopeTerms> of_term;
+};
+
+/// Half of all: light is even about the plane.
+const std::vector<Slope>& FittedSlopes() {
+  static const auto kSlopes = [] {
+    constexpr int kTilts = 5, kTurns = 6;
+    constexpr double kSteepest_rad = 60.0 * kRadiansPerDegree, kGentleness = 4.0;
+    std::vector<Slope> slopes;
+    for (int i = 0; i < kTilts; ++i) {
+      const double tilt = kSteepest_rad * (i + 0.5) / kTilts, z = std::cos(tilt);
+      for (int k = 0; k < kTurns; ++k) {
+        const double turn = kPi * (k + 0.5) / kTurns;
+        const glm::dvec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
+                                z);
+        slopes.push_back({normal, std::sin(tilt) * std::pow(z, kGentleness), TermsOf(normal)});
+      }
+    }
+    return slopes;
+  }();
+  return kSlopes;
+}
+
+/// The least squares' normal equations, but for what they are equal to.
+const std::vector<double>& FitMatrix() {
+  static const auto kMatrix = [] {
+    std::vector<double> matrix(kSlopeTerms * kSlopeTerms);
+    for (const Slope& slope : FittedSlopes()) {
+      for (std::size_t i = 0; i < kSlopeTerms; ++i) {
+        for (std::size_t j = 0; j < kSlopeTerms; ++j)
+          matrix[i * kSlopeTerms + j] += slope.weight * slope.of_term[i] * slope.of_term[j];
+      }
+    }
+    return matrix;
+  }();
+  return kMatrix;
+}
+
+SlopeTerms FitOf(const View& view) {
+  const Bands<double> level = view.OnLevel();
+  std::array<std::vector<double>, 4> sums;
+  sums.fill(std::vector<double>(kSlopeTerms));
+  for (const Slope& slope : FittedSlopes()) {
+    const Bands<double> light = view.On(slope.normal);
+    for (std::size_t band = 0; band < level.count; ++band) {
+      const double over_level = light[band] / std::max(level[band], kDark) - 1.0;
+      for (std::size_t i = 0; i < kSlopeTerms; ++i)
+        sums[band][i] += slope.weight * slope.of_term[i] * over_level;
+    }
+  }
+  SlopeTerms terms{};
+  for (std::size_t band = 0; band < level.count; ++band) {
+    const std::vector<double> fitted = SolvePositiveDefinite(FitMatrix(), sums[band]);
+    for (std::size_t i = 0; i < kSlopeTerms; ++i)
+      terms[i][static_cast<glm::length_t>(band)] = static_cast<float>(fitted[i]);
+  }
+  return terms;
+}
+
+/// Of level ground.
+glm::vec4 LogLevelOf(const View& view) {
+  const Bands<double> level = view.OnLevel();
+  glm::vec4 logs(static_cast<float>(std::log(kDark)));
+  for (std::size_t band = 0; band < level.count; ++band) {
+    logs[static_cast<glm::length_t>(band)] =
+        static_cast<float>(std::log(std::max(level[band], kDark) * view.distance_m));
+  }
+  return logs;
+}
+
+}  // namespace
+
+std::vector<glm::vec4> SampledGlow(const LampGlow& glow) {
+  constexpr std::size_t kTerm = std::size_t{kGlowDistances} * kGlowRises;
+  std::vector<glm::vec4> texels(kGlowTerms * kTerm);
+  tbb::parallel_for(std::size_t{0}, kTerm, [&](std::size_t at) {
+    const View view{glow, DistanceAt(static_cast<double>(at % kGlowDistances)),
+                    RiseAt(static_cast<double>(at / kGlowDistances))};
+    texels[at] = LogLevelOf(view);
+    const SlopeTerms terms = FitOf(view);
+    for (std::size_t k = 0; k < kSlopeTerms; ++k) texels[(k + 1) * kTerm + at] = terms[k];
+  });
+  return texels;
+}
+
+}  // namespace alpenglow
