@@ -24,6 +24,18 @@ Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
   return light;
 }
 
+Lighting Lighting::EclipsedBy(const EclipsedDisk& disk,
+                              const std::vector<double>& wavelengths_nm) const {
+  constexpr double kCorona = 1e-6;
+  Lighting eclipsed = *this;
+  eclipsed.eclipse = EclipsedSun{disk, irradiance};
+  for (std::size_t band = 0; band < irradiance.count; ++band) {
+    const double left = std::max(UncoveredLight(disk, wavelengths_nm[band]), kCorona);
+    eclipsed.irradiance[band] = static_cast<float>(left) * irradiance[band];
+  }
+  return eclipsed;
+}
+
 std::vector<DistantLight> Lighting::Lights() const {
   std::vector<DistantLight> lights{{to_sun, sun_radius_rad, irradiance}};
   if (moonlight) lights.push_back(*moonlight);
@@ -36,6 +48,7 @@ Lighting Lighting::By(const DistantLight& light) const {
   alone.sun_radius_rad = light.radius_rad;
   alone.irradiance = light.irradiance;
   alone.moon = std::nullopt;
+  alone.eclipse = std::nullopt;
   alone.moonlight = std::nullopt;
   alone.night = nullptr;
   alone.on_terrain = nullptr;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon_disk.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/sun/time.h"
@@ -31,6 +32,12 @@ struct DistantLight {
   BandLight irradiance;  // above the air, W m^-2 nm^-1
 };
 
+/// The sun with the moon before it, which stands where Lighting::moon says.
+struct EclipsedSun {
+  EclipsedDisk disk;
+  BandLight whole;  // irradiance as if there were no moon
+};
+
 /// Light in the air and on surfaces for one position of the sun.
 struct Lighting {
   glm::dvec3 to_sun;  // unit
@@ -41,6 +48,7 @@ struct Lighting {
   std::optional<MoonDisk> moon = std::nullopt;  // as a thing to see
   BandLight moon_colour = {};                   // of its reflectance, relative to that at 550 nm
   glm::dvec3 moon_turn{0.0};  // axis and angle [rad] by which it moves while the shutter is open
+  std::optional<EclipsedSun> eclipse = std::nullopt;  // `irradiance` is of what is left then
   /// The moon where it could show beside the sun.
   std::optional<DistantLight> moonlight = std::nullopt;
   /// The sky of the night where it could show beside the sun; null: it could not.
@@ -49,6 +57,14 @@ struct Lighting {
   /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
   std::shared_ptr<const TerrainLight> on_terrain = nullptr;
 
+  /// Of the sun above the air without the moon before it.
+  [[nodiscard]] const BandLight& WholeSun() const { return eclipse ? eclipse->whole : irradiance; }
+  /// The same with the moon before the sun: what is left of each band with the limb's darkening, but
+  /// never less than the corona's, a millionth of the whole sun (Cox 2000, Allen's Astrophysical
+  /// Quantities, 14.8: 0.6 to 1.5 in the sun's cycle). That is all the light there is inside of
+  /// totality: what the air outside of the shadow sends in is left out.
+  [[nodiscard]] Lighting EclipsedBy(const EclipsedDisk& disk,
+                                    const std::vector<double>& wavelengths_nm) const;
   /// The sun, and the moon where it could show.
   [[nodiscard]] std::vector<DistantLight> Lights() const;
   /// The same scene with one light alone, as if that were the sun.

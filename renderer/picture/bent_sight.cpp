@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon.h"
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow {
@@ -77,9 +78,11 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
   if (!may_see_disk && !may_see_sea) return nullptr;
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   const SunPosition sun = SunAt(EyeOf(shot), shot.instant);
+  const MoonPosition moon = MoonAt(EyeOf(shot), shot.instant);
   auto bent = std::make_shared<BentSight>(
       BentSight{BentView(medium, height_m), up,
-                frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz});
+                frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+                frame_from_enu * DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz});
   const bool moves_disk = may_see_disk && ChangeOfDisk(bent->view, sun_rad, radius_rad,
                                                        medium.wavelengths_nm.size()) > half_pixel;
   const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;

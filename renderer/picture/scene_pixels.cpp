@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun_disk.h"
@@ -52,6 +53,22 @@ double VarianceAround(const std::vector<double>& variances, const Tile& tile, in
   return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
 }
 
+/// Angle between unit vectors, from the chord: the arc cosine of a number near 1 has no digits left.
+double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+  return 2.0 * std::asin(std::min(0.5 * glm::length(a - b), 1.0));
+}
+
+/// How far a direction points from the middle of the sun, in its radii; nothing beside the disk and
+/// where the moon stands before it.
+std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& to_sun,
+                                 const glm::dvec3& to_moon, const Lighting& light) {
+  const double rho = AngleBetween(direction, to_sun) / light.sun_radius_rad;
+  if (rho >= 1.0) return std::nullopt;
+  if (light.eclipse && AngleBetween(direction, to_moon) < light.moon->radius_rad)
+    return std::nullopt;
+  return rho;
+}
+
 /// Each band of the disk stands where the air lifts it to, and shines through the bent ray's air.
 BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                       const Lighting& light, const BentSight& bent, const Medium& medium) {
@@ -59,13 +76,13 @@ BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
   const double elevation = bent.ElevationOf(direction);
   const double per_sr = 1.0 / DiskSolidAngle(light.sun_radius_rad);
   for (std::size_t band = 0; band < disk.count; ++band) {
-    const double chord = glm::length(bent.TrueDirection(direction, band) - bent.to_sun);
-    const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
-    if (rho >= 1.0) continue;
+    const auto rho =
+        PlaceOnSun(bent.TrueDirection(direction, band), bent.to_sun, bent.to_moon, light);
+    if (!rho) continue;
     const double left = std::exp(-bent.view.MoreOpticalDepth(elevation, band));
     disk[band] =
-        static_cast<float>(per_sr * left * LimbDarkening(rho, medium.wavelengths_nm[band])) *
-        light.irradiance[band] * through.transmittance[band];
+        static_cast<float>(per_sr * left * LimbDarkening(*rho, medium.wavelengths_nm[band])) *
+        light.WholeSun()[band] * through.transmittance[band];
   }
   return disk;
 }
@@ -76,14 +93,13 @@ BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& th
                               const PictureFrame& frame) const {
   const Lighting& light = frame.light;
   if (frame.bent) return BentSunDisk(direction, through, light, *frame.bent, medium);
-  // Angle from the chord: the arc cosine of a number near 1 has no digits left.
-  const double chord = glm::length(direction - light.to_sun);
-  const double rho = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) / light.sun_radius_rad;
-  if (rho >= 1.0) return BandLight(light.irradiance.count);
+  const glm::dvec3& to_moon = light.moon ? light.moon->to_moon : light.to_sun;
+  const auto rho = PlaceOnSun(direction, light.to_sun, to_moon, light);
+  if (!rho) return BandLight(light.irradiance.count);
   BandLight disk = (1.0F / static_cast<float>(DiskSolidAngle(light.sun_radius_rad))) *
-                   (light.irradiance * through.transmittance);
+                   (light.WholeSun() * through.transmittance);
   for (std::size_t band = 0; band < disk.count; ++band) {
-    disk[band] *= static_cast<float>(LimbDarkening(rho, medium.wavelengths_nm[band]));
+    disk[band] *= static_cast<float>(LimbDarkening(*rho, medium.wavelengths_nm[band]));
   }
   return disk;
 }
@@ -117,8 +133,9 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
 
 BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
                                const Lighting& light) const {
-  const double radiance =
-      light.moon ? MeanMoonRadiance(*light.moon, light.moon_turn, direction) : 0.0;
+  // Before the sun its earthshine would stand out against a corona that is not there.
+  const bool is_seen = light.moon && !light.eclipse;
+  const double radiance = is_seen ? MeanMoonRadiance(*light.moon, light.moon_turn, direction) : 0.0;
   if (radiance == 0.0) return BandLight(light.irradiance.count);
   return static_cast<float>(radiance) *
          (light.moon_colour * (light.irradiance * through.transmittance));

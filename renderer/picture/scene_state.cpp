@@ -7,6 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/apparent_place.h"
+#include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/ground/terrain_sunlight.h"
@@ -28,6 +29,15 @@ glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand
   const glm::dvec3 pole =
       stand.frame_from_enu * glm::dvec3(0.0, std::cos(latitude_rad), std::sin(latitude_rad));
   return -(kEarthRotation_rad_per_s - kBack_rad_per_s) * open_s * pole;
+}
+
+/// Towards the moon, lifted as refraction lifts the middle of the sun behind it: what hides part of
+/// a round sun is round.
+glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
+                        const UtcInstant& instant) {
+  const MoonPosition moon = MoonAt(eye, instant);
+  const double lift_rad = apparent_sun.elevation_rad - SunAt(eye, instant).elevation_rad;
+  return DirectionFromAngles(moon.elevation_rad + lift_rad, moon.azimuth_rad).xyz;
 }
 
 }  // namespace
@@ -86,10 +96,16 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
   Lighting light = LightingOf(sun, shot.instant, scene.place, medium, scene.ground.wetness);
   light.to_sun = stand.frame_from_enu * light.to_sun;
   if (!medium.follows_wgs84) return light;  // no other planet has this moon
-  light.moon = ApparentMoonDisk(EyeOf(shot), shot.instant, sun.distance_au);
+  const GeodeticPosition eye = EyeOf(shot);
+  light.moon = ApparentMoonDisk(eye, shot.instant, sun.distance_au);
+  const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(eye, shot.instant));
+  if (disk.IsCovered()) {
+    light = light.EclipsedBy(disk, medium.wavelengths_nm);
+    light.moon->to_moon = ToMoonBefore(sun, eye, shot.instant);
+  }
   light.moon->to_moon = stand.frame_from_enu * light.moon->to_moon;
   light.moon->to_sun = stand.frame_from_enu * light.moon->to_sun;
-  light.moon_turn = MoonTurn(scene.camera.shutter_s, EyeOf(shot).latitude_rad, stand);
+  light.moon_turn = MoonTurn(scene.camera.shutter_s, eye.latitude_rad, stand);
   AddNight(shot, stand, sun.distance_au, light);
   return light;
 }
@@ -107,7 +123,7 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
   if (sun_lux > kDaylight_lux) return;
   const GeodeticPosition eye = EyeOf(shot);
   const DistantLight moonlight = MoonlightOf(*light.moon, eye, shot.instant, earth_sun_au,
-                                             light.moon_colour, light.irradiance);
+                                             light.moon_colour, light.WholeSun());
   if (IlluminanceBy(moonlight, stand.eye, light) > kUnseenShare * (sun_lux + kNightSky_lux))
     light.moonlight = moonlight;
   const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // at most

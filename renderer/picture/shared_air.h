@@ -35,8 +35,8 @@ struct SecondLight {
 /// What bent rays show of the sun and of a sea without terrain.
 struct BentSight {
   BentView view;
-  glm::dvec3 up;      // at the eye, unit
-  glm::dvec3 to_sun;  // unit, as if there were no air
+  glm::dvec3 up;               // at the eye, unit
+  glm::dvec3 to_sun, to_moon;  // unit, as if there were no air
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
   /// Where light of a band that is seen in a direction comes from, unit.
