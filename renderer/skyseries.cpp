@@ -2,9 +2,11 @@
 // skyseries: pictures of a scene through the day. A still is a series of one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/eclipse.h"
 #include "renderer/camera/track.h"
 #include "renderer/ground/camera_stand.h"
 #include "renderer/report_command.h"
@@ -132,6 +134,20 @@ NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
   return {std::move(picture.image), std::move(notes)};
 }
 
+/// Of what pictures lack while the moon hides all of the sun.
+void WarnOfTotality(const SeriesSource& source, const std::vector<Frame>& frames) {
+  const auto is_total = [&](const Frame& frame) {
+    return source.has_moon && EclipseAt(source.PlaceOf(frame), frame.instant).disk.IsTotal();
+  };
+  const auto total = static_cast<int>(std::count_if(frames.begin(), frames.end(), is_total));
+  if (total == 0) return;
+  Say(
+      fmt::format("skyseries: warning: {} of {} frames stand in the totality of an eclipse; the "
+                  "corona is not drawn, and light that the air outside of the moon's shadow sends "
+                  "in is missing: such pictures are too dark\n",
+                  total, frames.size()));
+}
+
 void List(const SkyseriesOptions& options) {
   const Scene scene = SceneOf(options);
   const std::optional<CameraPath> path = PathOf(options, scene);
@@ -208,7 +224,9 @@ int Run(const SkyseriesOptions& options) {
       scene.camera.fov_rad,
       [&](const Frame& frame) {
         return renderer(nullptr).Render(shot(frame), PilotSettings(settings, options));
-      }};
+      },
+      scene.medium.follows_wgs84};
+  WarnOfTotality(source, selected);
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     if (summary.removed > 0) {

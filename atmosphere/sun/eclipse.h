@@ -63,6 +63,9 @@ struct SolarEclipse {
 [[nodiscard]] SolarEclipse::Moment EclipseAt(const GeodeticPosition& place,
                                              const UtcInstant& instant);
 
+/// Share of the sun's light of 550 nm that does not come past the moon, [0, 1].
+[[nodiscard]] double CoveredLight(const GeodeticPosition& place, const UtcInstant& instant);
+
 /// The eclipse at a place whose maximum, the least distance of the centres, falls into so many
 /// seconds from an instant. Contacts are those of almanacs: the sun's radius is 959.63 arcseconds at
 /// 1 au (Auwers), the moon's for the outer contacts 0.2725076 equatorial radii of the earth (IAU

@@ -20,8 +20,9 @@ struct FrameListing {
 };
 
 /// CSV with a header: frame, utc, local_time (empty without a zone), sun_azimuth_deg,
-/// sun_elevation_deg, moon_azimuth_deg, moon_elevation_deg (all without refraction),
-/// moon_illuminated ([0, 1]), file (empty without a name).
+/// sun_elevation_deg, sun_covered ([0, 1], of its light, by the moon), moon_azimuth_deg,
+/// moon_elevation_deg (angles without refraction), moon_illuminated ([0, 1]), file (empty without a
+/// name).
 [[nodiscard]] std::string ListOf(const std::vector<Frame>& frames, const FrameListing& listing);
 
 }  // namespace alpenglow

@@ -37,14 +37,15 @@ std::string ObjectOf(const ManifestEntry& entry) {
   const MoonPosition moon = MoonAt(entry.place, entry.frame.instant);
   return fmt::format(
       "{{\"frame\":{},\"file\":{},\"utc\":{},\"local_time\":{},\"sun_azimuth_deg\":{:.4f},"
-      "\"sun_elevation_deg\":{:.4f},\"moon_azimuth_deg\":{:.4f},\"moon_elevation_deg\":{:.4f},"
+      "\"sun_elevation_deg\":{:.4f},\"sun_covered\":{:.6f},\"moon_azimuth_deg\":{:.4f},\"moon_"
+      "elevation_deg\":{:.4f},"
       "\"moon_illuminated\":{:.4f},\"illuminance_lx\":{},\"ev100\":{},\"exposure\":{}{}}}",
       entry.frame.number, JsonString(entry.file), JsonString(FormatUtc(entry.frame.instant)),
       StringOrNull(entry.local_time), sun.azimuth_rad / kRadiansPerDegree,
-      sun.elevation_rad / kRadiansPerDegree, moon.azimuth_rad / kRadiansPerDegree,
-      moon.elevation_rad / kRadiansPerDegree, moon.IlluminatedFraction(),
-      NumberOrNull(entry.illuminance_lx), NumberOrNull(entry.ev100), StringOrNull(entry.exposure),
-      PoseOf(entry));
+      sun.elevation_rad / kRadiansPerDegree, entry.sun_covered,
+      moon.azimuth_rad / kRadiansPerDegree, moon.elevation_rad / kRadiansPerDegree,
+      moon.IlluminatedFraction(), NumberOrNull(entry.illuminance_lx), NumberOrNull(entry.ev100),
+      StringOrNull(entry.exposure), PoseOf(entry));
 }
 
 }  // namespace

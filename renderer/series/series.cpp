@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
@@ -144,6 +145,8 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
       fmt::format("{:.6f}", sun.azimuth_rad / kRadiansPerDegree);
   metadata["alpenglow.sun_elevation_deg"] =
       fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
+  const double covered = source.SunCovered(frame);
+  if (covered > 0.0) metadata["alpenglow.sun_covered"] = fmt::format("{:.6f}", covered);
   metadata[kEv100] = fmt::format("{:.4f}", development.ev100);
   metadata[kExposure] = NameOf(output.exposure.kind);
   metadata[kExposureRule] = development.rule;
@@ -194,7 +197,8 @@ class Series {
   }
 
   void WriteManifest() const {
-    std::string text = "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,ev100";
+    std::string text =
+        "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,sun_covered,ev100";
     if (source_.path) text += ",t_s,latitude,longitude,height_m,heading,pitch,roll,fov";
     text += ",exposure\n";
     const std::vector<ManifestEntry> entries = Entries();
@@ -398,6 +402,7 @@ class Series {
       entry.illuminance_lx = found.illuminance_lx;
       if (!found.ev100.empty()) entry.ev100 = std::stod(found.ev100);
       entry.exposure = found.rule;
+      entry.sun_covered = source_.SunCovered(frame);
       entries.push_back(entry);
     }
     return entries;
@@ -418,11 +423,11 @@ class Series {
 
   [[nodiscard]] static std::string ManifestLine(const ManifestEntry& entry) {
     const SunPosition sun = SunAt(entry.place, entry.frame.instant);
-    return fmt::format("{},{},{},{},{:.4f},{:.4f},{}{},{}\n", entry.frame.number, entry.file,
+    return fmt::format("{},{},{},{},{:.4f},{:.4f},{:.6f},{}{},{}\n", entry.frame.number, entry.file,
                        FormatUtc(entry.frame.instant), entry.local_time,
                        sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
-                       entry.ev100 ? fmt::format("{:.4f}", *entry.ev100) : "", PoseText(entry),
-                       entry.exposure);
+                       entry.sun_covered, entry.ev100 ? fmt::format("{:.4f}", *entry.ev100) : "",
+                       PoseText(entry), entry.exposure);
   }
 
   const SeriesSource& source_;
@@ -477,6 +482,10 @@ std::size_t RemoveLeftovers(const SeriesOutput& output) {
 }
 
 }  // namespace
+
+double SeriesSource::SunCovered(const Frame& frame) const {
+  return has_moon ? CoveredLight(PlaceOf(frame), frame.instant) : 0.0;
+}
 
 Projection SeriesSource::ProjectionOf(const Frame& frame) const {
   if (!path) return projection;

@@ -51,7 +51,10 @@ struct SeriesSource {
   /// A small picture of a frame, for the meter of a series (smooth_meter.h); without it each frame is
   /// metered by itself.
   std::function<Image(const Frame&)> pilot = {};
+  bool has_moon = true;  // the earth's, which eclipses the sun
 
+  /// Share of the sun's light (550 nm) that the moon covers, [0, 1].
+  [[nodiscard]] double SunCovered(const Frame& frame) const;
   /// Of the eye of a frame.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : place;
@@ -89,7 +92,7 @@ struct SeriesSummary {
 
 /// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
 /// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
-/// sun_elevation_deg (without refraction), ev100; on a path also t_s, latitude, longitude, height_m,
+/// sun_elevation_deg (without refraction), sun_covered (share of its light behind the moon), ev100; on a path also t_s, latitude, longitude, height_m,
 /// heading, pitch, roll and fov; and exposure, the rule (as ev100 empty until the frame exists);
 /// and the same as JSON (manifest_json.h). Contact sheet, keogram and video show the selected frames,
 /// the plot all that there are times of; they are made when the last of the selected is there.

@@ -97,6 +97,26 @@ TEST_F(Skyseries, AStillIsASeriesOfOne) {
   EXPECT_EQ(outcome.out, "") << "standard output is for results only";
 }
 
+// Burgos, 2026 August 12: partial, total, over.
+TEST_F(Skyseries, FilesOfAnEclipseSayHowMuchIsCoveredAndTotalityIsWarnedOf) {
+  const std::string command =
+      " --latitude 42.3439 --longitude -3.6969 --size 16x9 --samples 1 --quiet --out " +
+      InFolder("e.%d.exr") +
+      " --at 2026-08-12T18:10:00Z --at 2026-08-12T18:29:20Z --at 2026-08-12T20:00:00Z";
+  const Outcome outcome = Run(command);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.error, HasSubstr("warning: 1 of 3 frames stand in the totality"));
+  EXPECT_NEAR(std::stod(ReadExrMetadata(folder_ / "e.0.exr").at("alpenglow.sun_covered")), 0.605,
+              0.01);
+  EXPECT_EQ(ReadExrMetadata(folder_ / "e.1.exr").at("alpenglow.sun_covered"), "1.000000");
+  EXPECT_EQ(ReadExrMetadata(folder_ / "e.2.exr").count("alpenglow.sun_covered"), 0U);
+  const std::string manifest = ContentOf(folder_ / "e.manifest.csv");
+  EXPECT_THAT(manifest, HasSubstr("sun_elevation_deg,sun_covered,ev100"));
+  EXPECT_THAT(manifest, HasSubstr(",1.000000,"));
+  EXPECT_THAT(ContentOf(folder_ / "e.manifest.json"), HasSubstr("\"sun_covered\":1.000000"));
+  EXPECT_THAT(Run("--list" + command).out, HasSubstr(",1.0000,"));
+}
+
 TEST_F(Skyseries, AMeterOfIncidentLightStandsBehindThePolariser) {
   WriteText(folder_ / "p.toml", std::string(kBareSceneText) + "[camera]\npolariser_deg = 30.0\n");
   const auto metadata = [&](const char* scene) {
