@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
@@ -12,6 +14,11 @@ namespace alpenglow {
 namespace {
 
 constexpr double kDay_s = 86400.0;
+// In kTimesOfDay.
+constexpr std::size_t kSunrise = 3, kSunset = 5;
+constexpr const char* kEclipseFields =
+    ",eclipse_first_contact,eclipse_second_contact,eclipse_deepest,eclipse_third_contact,"
+    "eclipse_last_contact,eclipse_magnitude,eclipse_obscuration";
 // Of the table's columns, two lines of words over each.
 constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"astr.", "dawn"},
                                                                              {"naut.", "dawn"},
@@ -26,6 +33,24 @@ constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"a
                                                                              {"moon", "tran."},
                                                                              {"moon", "set"}}};
 
+/// On the day of mean solar time, at whose noon the sun is up.
+std::optional<SeenEclipse> EclipseOf(const EventDay& day, const DayTimes& times) {
+  const UtcInstant midnight = MeanSolarMidnight(day.place.longitude_rad, *day.around);
+  const auto eclipse = FindSolarEclipse(day.place, midnight, kDay_s);
+  if (!eclipse) return std::nullopt;
+  std::vector<SolarEclipse::Moment> seen;
+  if (eclipse->maximum.IsSeen()) seen.push_back(eclipse->maximum);
+  for (const std::size_t event : {kSunrise, kSunset}) {
+    if (times.at.at(event)) seen.push_back(EclipseAt(day.place, *times.at.at(event)));
+  }
+  const auto deepest =
+      std::min_element(seen.begin(), seen.end(), [](const auto& one, const auto& other) {
+        return one.disk.separation < other.disk.separation;
+      });
+  if (deepest == seen.end() || !deepest->disk.IsCovered()) return std::nullopt;
+  return SeenEclipse{*eclipse, *deepest};
+}
+
 DayTimes TimesOf(const EventDay& day) {
   DayTimes times;
   times.date = DateAt(*day.around, day);
@@ -35,6 +60,7 @@ DayTimes TimesOf(const EventDay& day) {
   const UtcInstant noon = *FindSunEvent(SunEvent::kNoon, day.place, *day.around);
   times.noon_elevation_deg = ApparentSunAt(day.place, noon).elevation_rad / kRadiansPerDegree;
   times.moon_illuminated = MoonAt(day.place, noon).IlluminatedFraction();
+  times.eclipse = EclipseOf(day, times);
   return times;
 }
 
@@ -45,6 +71,45 @@ std::string ClockTime(const std::optional<UtcInstant>& instant,
   constexpr double kHalfMinute_s = 30.0;
   const UtcInstant rounded = AddSeconds(*instant, kHalfMinute_s);
   return (zone ? FormatInZone(rounded, *zone) : FormatUtc(rounded)).substr(11, 5);
+}
+
+/// "20:28:13", as above.
+std::string ClockSecond(const UtcInstant& instant, const std::optional<std::string>& zone) {
+  return (zone ? FormatInZone(instant, *zone) : FormatUtc(instant)).substr(11, 8);
+}
+
+/// "eclipse of the sun: begins 19:33:04, total 20:28:21 to 20:30:05, deepest 20:29:13 ...".
+std::string LineOf(const SeenEclipse& eclipse, const std::optional<std::string>& zone) {
+  const SolarEclipse& whole = eclipse.whole;
+  std::string text = "           eclipse of the sun: ";
+  if (whole.first_contact.IsSeen())
+    text += fmt::format("begins {}, ", ClockSecond(whole.first_contact.instant, zone));
+  if (whole.inner && whole.inner->second_contact.IsSeen() && whole.inner->third_contact.IsSeen()) {
+    text += fmt::format("{} {} to {}, ", whole.maximum.disk.moon_radius > 1.0 ? "total" : "annular",
+                        ClockSecond(whole.inner->second_contact.instant, zone),
+                        ClockSecond(whole.inner->third_contact.instant, zone));
+  }
+  const SolarEclipse::Moment& deepest = eclipse.at_deepest;
+  text += fmt::format("deepest {} (magnitude {:.3f}, {:.2f}% covered)",
+                      ClockSecond(deepest.instant, zone), deepest.disk.Magnitude(),
+                      100.0 * deepest.disk.CoveredArea());
+  if (whole.last_contact.IsSeen())
+    text += fmt::format(", ends {}", ClockSecond(whole.last_contact.instant, zone));
+  return text + "\n";
+}
+
+/// Fields of the CSV, each after its comma.
+std::string FieldsOf(const std::optional<SeenEclipse>& eclipse) {
+  if (!eclipse) return ",,,,,,,";
+  const auto field = [](const SolarEclipse::Moment& moment) {
+    return fmt::format(",{}", moment.IsSeen() ? FormatUtc(moment.instant) : "");
+  };
+  const SolarEclipse& whole = eclipse->whole;
+  return field(whole.first_contact) + (whole.inner ? field(whole.inner->second_contact) : ",") +
+         fmt::format(",{}", FormatUtc(eclipse->at_deepest.instant)) +
+         (whole.inner ? field(whole.inner->third_contact) : ",") + field(whole.last_contact) +
+         fmt::format(",{:.4f},{:.4f}", eclipse->at_deepest.disk.Magnitude(),
+                     eclipse->at_deepest.disk.CoveredArea());
 }
 
 }  // namespace
@@ -72,18 +137,20 @@ std::string TableOf(const std::vector<DayTimes>& days, const std::optional<std::
     for (const auto& instant : day.at) text += fmt::format(" {}", ClockTime(instant, zone));
     text +=
         fmt::format(" {:5.1f} {:4.0f}%\n", day.noon_elevation_deg, 100.0 * day.moon_illuminated);
+    if (day.eclipse) text += LineOf(*day.eclipse, zone);
   }
   return text;
 }
 
 std::string CsvOf(const std::vector<DayTimes>& days) {
-  std::string text =
-      fmt::format("date,{},noon_elevation_deg,moon_illuminated\n", fmt::join(kTimesOfDay, ","));
+  std::string text = fmt::format("date,{},noon_elevation_deg,moon_illuminated{}\n",
+                                 fmt::join(kTimesOfDay, ","), kEclipseFields);
   for (const DayTimes& day : days) {
     text += day.date;
     for (const auto& instant : day.at)
       text += fmt::format(",{}", instant ? FormatUtc(*instant) : "");
-    text += fmt::format(",{:.3f},{:.4f}\n", day.noon_elevation_deg, day.moon_illuminated);
+    text += fmt::format(",{:.3f},{:.4f}{}\n", day.noon_elevation_deg, day.moon_illuminated,
+                        FieldsOf(day.eclipse));
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/sun/eclipse.h"
 #include "renderer/series/time_text.h"
 
 namespace alpenglow {
@@ -18,12 +19,19 @@ inline constexpr std::array<const char*, 12> kTimesOfDay{
     "civil-dusk",        "nautical-dusk", "astronomical-dusk",
     "moonrise",          "moon-transit",  "moonset"};
 
+/// An eclipse of the sun where some of it is seen.
+struct SeenEclipse {
+  SolarEclipse whole;               // whether or not the sun is up
+  SolarEclipse::Moment at_deepest;  // that is seen: the maximum, or sunrise or sunset
+};
+
 /// Sun and moon of a day at a place.
 struct DayTimes {
   std::string date;
   std::array<std::optional<UtcInstant>, kTimesOfDay.size()> at;  // those that happen
   double noon_elevation_deg;  // of the sun's centre in the meridian, refracted
   double moon_illuminated;    // share of the disk at that noon, [0, 1]
+  std::optional<SeenEclipse> eclipse = std::nullopt;
 };
 
 /// Days from that of `first.around` on. Throws InputError when that is not given.
@@ -31,12 +39,16 @@ struct DayTimes {
 [[nodiscard]] std::vector<DayTimes> TimesOfDays(const EventDay& first, int count);
 
 /// A table for people: hours and minutes of the zone, of UTC without one, rounded to the minute,
-/// "--:--" for what does not happen; each line ends.
+/// "--:--" for what does not happen; each line ends. An eclipse has a line under its day, to the
+/// second.
 [[nodiscard]] std::string TableOf(const std::vector<DayTimes>& days,
                                   const std::optional<std::string>& zone);
 
 /// CSV with a header: date, the events as instants of UTC to the second (empty where there are
-/// none), noon_elevation_deg, moon_illuminated.
+/// none), noon_elevation_deg, moon_illuminated; and of an eclipse that is seen eclipse_first_contact,
+/// eclipse_second_contact, eclipse_deepest, eclipse_third_contact, eclipse_last_contact (empty while
+/// the sun is down), eclipse_magnitude (share of the diameter) and eclipse_obscuration (of the area),
+/// both at the deepest that is seen.
 [[nodiscard]] std::string CsvOf(const std::vector<DayTimes>& days);
 
 }  // namespace alpenglow

@@ -10,6 +10,7 @@ namespace alpenglow {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 EventDay Tromso() {
   EventDay day{PlaceFromDegrees(69.65, 18.96, 0.0), "Europe/Oslo", {}};
@@ -37,6 +38,45 @@ TEST(DayTimes, TheMoonGrowsToTheFullMoon) {
   }
   EXPECT_LT(days.front().moon_illuminated, 0.01);
   EXPECT_GT(days.back().moon_illuminated, 0.99);
+}
+
+EventDay EclipsedDay(double latitude_deg, double longitude_deg) {
+  EventDay day{PlaceFromDegrees(latitude_deg, longitude_deg, 0.0), "Europe/Madrid", {}};
+  day.around = DayFromText("2026-08-11", day);
+  return day;
+}
+
+TEST(DayTimes, AnEclipseStandsUnderItsDayWithContactsToTheSecond) {
+  const EventDay day = EclipsedDay(42.3439, -3.6969);  // Burgos
+  const std::vector<DayTimes> days = TimesOfDays(day, 3);
+  EXPECT_FALSE(days[0].eclipse);
+  ASSERT_TRUE(days[1].eclipse);
+  EXPECT_FALSE(days[2].eclipse);
+  EXPECT_TRUE(days[1].eclipse->at_deepest.disk.IsTotal());
+  EXPECT_THAT(TableOf(days, day.zone), HasSubstr("\n           eclipse of the sun: begins 19:33:"));
+  EXPECT_THAT(TableOf(days, day.zone), HasSubstr(", total 20:28:"));
+  EXPECT_THAT(CsvOf(days), HasSubstr(",2026-08-12T17:33:"));
+  EXPECT_THAT(CsvOf(days), HasSubstr(",1.0000\n2026-08-13,"));
+}
+
+// In Palma the sun sets between third and last contact; in Istanbul it has set before the first.
+TEST(DayTimes, OfAnEclipseOnlyWhatIsSeenIsListed) {
+  const std::vector<DayTimes> palma = TimesOfDays(EclipsedDay(39.5696, 2.6502), 2);
+  ASSERT_TRUE(palma[1].eclipse);
+  EXPECT_TRUE(palma[1].eclipse->whole.inner->third_contact.IsSeen());
+  EXPECT_THAT(TableOf(palma, "Europe/Madrid"), Not(HasSubstr("ends")));
+  EXPECT_THAT(CsvOf(palma), HasSubstr("Z,,1.")) << "no last contact before the magnitude";
+  EXPECT_FALSE(TimesOfDays(EclipsedDay(41.0, 29.0), 2)[1].eclipse);
+}
+
+// Rome: the sun sets on the sea horizon while the moon still comes on.
+TEST(DayTimes, AnEclipseIsDeepestAtSunsetWhereItsMaximumIsBelowTheHorizon) {
+  const DayTimes rome = TimesOfDays(EclipsedDay(41.9, 12.5), 2)[1];
+  ASSERT_TRUE(rome.eclipse);
+  EXPECT_FALSE(rome.eclipse->whole.maximum.IsSeen());
+  EXPECT_EQ(rome.eclipse->at_deepest.instant, rome.at[5]);
+  EXPECT_LT(rome.eclipse->at_deepest.disk.Magnitude(),
+            rome.eclipse->whole.maximum.disk.Magnitude());
 }
 
 TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
