@@ -10,6 +10,7 @@
 #include "atmosphere/number/root.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
@@ -173,6 +174,32 @@ std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, cons
   if (pair.OverContact(*nearest_s, false) < 0.0)
     eclipse.inner = {contact(false, begin_s), contact(false, end_s)};
   return eclipse;
+}
+
+std::optional<EclipseEvent> EclipseEventFromName(std::string_view name) {
+  if (name == "first-contact") return EclipseEvent::kFirstContact;
+  if (name == "second-contact") return EclipseEvent::kSecondContact;
+  if (name == "eclipse-maximum") return EclipseEvent::kMaximum;
+  if (name == "third-contact") return EclipseEvent::kThirdContact;
+  if (name == "last-contact") return EclipseEvent::kLastContact;
+  return std::nullopt;
+}
+
+std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& eclipse) {
+  const bool has_inner = eclipse.inner.has_value();
+  switch (event) {
+    case EclipseEvent::kFirstContact:
+      return eclipse.first_contact.instant;
+    case EclipseEvent::kSecondContact:
+      return has_inner ? std::optional(eclipse.inner->second_contact.instant) : std::nullopt;
+    case EclipseEvent::kMaximum:
+      return eclipse.maximum.instant;
+    case EclipseEvent::kThirdContact:
+      return has_inner ? std::optional(eclipse.inner->third_contact.instant) : std::nullopt;
+    case EclipseEvent::kLastContact:
+      return eclipse.last_contact.instant;
+  }
+  throw InternalError("unknown event of an eclipse");
 }
 
 }  // namespace alpenglow

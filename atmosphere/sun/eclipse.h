@@ -12,6 +12,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/moon.h"
@@ -75,5 +76,15 @@ struct SolarEclipse {
 /// @param within_s  > 0, 2 days at most.
 [[nodiscard]] std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place,
                                                            const UtcInstant& from, double within_s);
+
+/// What an eclipse of the sun does.
+enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact, kLastContact };
+
+/// "first-contact", "second-contact", "eclipse-maximum", "third-contact", "last-contact"; nothing for
+/// another name.
+[[nodiscard]] std::optional<EclipseEvent> EclipseEventFromName(std::string_view name);
+
+/// Nothing for the inner contacts of a partial eclipse.
+[[nodiscard]] std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& eclipse);
 
 }  // namespace alpenglow

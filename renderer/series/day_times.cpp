@@ -35,7 +35,8 @@ constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"a
 
 /// On the day of mean solar time, at whose noon the sun is up.
 std::optional<SeenEclipse> EclipseOf(const EventDay& day, const DayTimes& times) {
-  const UtcInstant midnight = MeanSolarMidnight(day.place.longitude_rad, *day.around);
+  const UtcInstant midnight =
+      MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), *day.around);
   const auto eclipse = FindSolarEclipse(day.place, midnight, kDay_s);
   if (!eclipse) return std::nullopt;
   std::vector<SolarEclipse::Moment> seen;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
@@ -23,19 +24,13 @@ constexpr std::size_t kDateLength = 10;  // "2026-06-21"
 constexpr std::array<std::pair<std::string_view, int>, 3> kDayWords = {
     {{"yesterday", -1}, {"today", 0}, {"tomorrow", 1}}};
 
-const std::vector<std::string> kEventNames = {"noon",
-                                              "sunrise",
-                                              "sunset",
-                                              "civil-dawn",
-                                              "civil-dusk",
-                                              "nautical-dawn",
-                                              "nautical-dusk",
-                                              "astronomical-dawn",
-                                              "astronomical-dusk",
-                                              "moonrise",
-                                              "moonset",
-                                              "moon-transit",
-                                              "now"};
+const std::vector<std::string> kEventNames = {
+    "noon",          "sunrise",           "sunset",
+    "civil-dawn",    "civil-dusk",        "nautical-dawn",
+    "nautical-dusk", "astronomical-dawn", "astronomical-dusk",
+    "moonrise",      "moonset",           "moon-transit",
+    "first-contact", "second-contact",    "eclipse-maximum",
+    "third-contact", "last-contact",      "now"};
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -110,12 +105,20 @@ std::optional<UtcInstant> FindMoonEvent(MoonEvent event, const UtcInstant& aroun
   }
 }
 
+std::optional<UtcInstant> FindEclipseEvent(EclipseEvent event, const UtcInstant& around,
+                                           const EventDay& day) {
+  const UtcInstant midnight = MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), around);
+  const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
+  return eclipse ? InstantOf(event, *eclipse) : std::nullopt;
+}
+
 std::string NoSuchEvent(std::string_view text, const EventDay& day) {
   const EventText parts = SplitEvent(text);
   std::string fault =
       fmt::format("time \"{}\": there is no {} on {} at latitude {:.4f}, longitude {:.4f}", text,
                   parts.name, DateAt(*day.around, day), day.place.latitude_rad / kRadiansPerDegree,
                   day.place.longitude_rad / kRadiansPerDegree);
+  if (EclipseEventFromName(parts.name)) return fault + ": no such eclipse of the sun";
   const std::optional<MoonEvent> moon = MoonEventFromName(parts.name);
   if (!moon) return fault + " (polar day or night)";
   if (const auto next = NextMoonEvent(*moon, day.place, *day.around)) {
@@ -175,6 +178,8 @@ std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& 
     instant = FindSunEvent(*sun, day.place, AroundOf(text, day));
   } else if (const std::optional<MoonEvent> moon = MoonEventFromName(parts.name)) {
     instant = FindMoonEvent(*moon, AroundOf(text, day), day);
+  } else if (const std::optional<EclipseEvent> eclipse = EclipseEventFromName(parts.name)) {
+    instant = FindEclipseEvent(*eclipse, AroundOf(text, day), day);
   } else {
     RefuseEvent(parts.name, text);
   }

@@ -43,14 +43,16 @@ struct TimeOfDay {
 [[nodiscard]] bool IsDailyEvent(std::string_view text);
 
 /// The instant of a daily event on the day: of the sun on the day of mean solar time (FindSunEvent),
-/// of the moon on the date that DateAt has. Nothing when it does not happen that day (polar day and
+/// of the moon on the date that DateAt has, of an eclipse of the sun (EclipseEvent) whose maximum falls
+/// on the day of mean solar time, seen or not. Nothing when it does not happen that day (polar day and
 /// night; each event of the moon once a month). Throws InputError for an unknown event, naming the
 /// nearest, and for an event without a day.
 [[nodiscard]] std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day);
 
 /// Reads a time:
 /// - an instant, "2026-06-21T04:00:00Z" (ParseInstant), in the day's zone without Z or offset;
-/// - an event of the sun or the moon with an offset, "sunrise-1h", "noon", "civil-dusk", "moonrise";
+/// - an event of the sun, the moon or an eclipse with an offset, "sunrise-1h", "noon", "civil-dusk",
+///   "moonrise", "second-contact-10s";
 /// - a clock time, "18:30", "18:30:15", "18:30Z", of the day;
 /// - both after a day of their own: "2026-06-21 sunrise", "tomorrow 18:30", "today moonset";
 /// - "now", "now+2h".

@@ -57,6 +57,28 @@ TEST(TimeText, UnknownEventsNameTheNearest) {
   }
 }
 
+TEST(TimeText, ContactsOfAnEclipseAreTimes) {
+  EventDay day{PlaceFromDegrees(42.3439, -3.6969, 860.0), "Europe/Madrid", {}};  // Burgos
+  day.around = DayFromText("2026-08-12", day);
+  const char* before = "sunrise";
+  for (const char* event : {"first-contact", "second-contact", "eclipse-maximum", "third-contact",
+                            "last-contact", "sunset"}) {
+    EXPECT_GT(SecondsBetween(InstantFromText(before, day), InstantFromText(event, day)), 0.0)
+        << event;
+    before = event;
+  }
+  EXPECT_NEAR(
+      SecondsBetween(InstantFromText("second-contact", day), InstantFromText("third-contact", day)),
+      104.0, 1.0)
+      << "of totality, in all almanacs";
+  const EventDay madrid{PlaceFromDegrees(40.4168, -3.7038, 660.0), "Europe/Madrid", day.around};
+  EXPECT_THAT(FaultOf([&] { return InstantFromText("second-contact", madrid); }),
+              HasSubstr("no such eclipse of the sun"))
+      << "partial";
+  EXPECT_THAT(FaultOf([] { return InstantFromText("first-contact", Fuji()); }),
+              HasSubstr("no such eclipse of the sun"));
+}
+
 TEST(TimeText, AnEventNeedsADay) {
   EventDay day = Fuji();
   day.around.reset();
