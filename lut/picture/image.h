@@ -80,7 +80,7 @@ void WriteExr(const std::filesystem::path& file, const Image& image, const Metad
 inline constexpr double kMeterConstant = 12.5;
 
 /// The range of the meter: from a moonless night to the sun's surroundings.
-inline constexpr double kDarkestEv100 = -10.0;
+inline constexpr double kDarkestEv100 = -12.0;
 inline constexpr double kBrightestEv100 = 20.0;
 
 /// Luminance over which the exposure meter takes a pixel for the sun's disk [cd/m^2].
@@ -91,7 +91,7 @@ inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 /// Pixels brighter than `ignore_above_cd_per_m2` (the sun's disk), those without light, and those
 /// that stay black beside the rest (space) do not count; those of a panorama weigh as their solid
 /// angle. Within [kDarkestEv100, kBrightestEv100], the limits of the camera: a night of stars by f/1.4
-/// for 30 s at ISO 12800, and sunlit snow eight times over. Without light kDarkestEv100.
+/// for 30 s at ISO 25600, and sunlit snow eight times over. Without light kDarkestEv100.
 [[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2,
                                 Projection projection = Projection::kCamera);
 

@@ -7,7 +7,9 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
+#include "renderer/picture/render.h"
 #include "renderer/series/smooth_meter.h"
+#include "tests/fixtures/bare_scene.h"
 
 namespace alpenglow {
 namespace {
@@ -64,6 +66,25 @@ TEST(SteadySeries, TheLightOfTheGroundExposesWithoutSteps) {
   // A sky of even luminance L lights the ground with pi L.
   EXPECT_LT(LargestStep([](const Frame& frame) { return IncidentEv100(kPi * Luminance(frame)); }),
             kThreePercent_ev);
+}
+
+TEST(SteadySeries, DuskFallsIntoADarkNightWithoutStepsWhereItIsShortAndWhereItIsLong) {
+  for (const double latitude : {0.0, 46.5, 65.0}) {
+    Scene scene = BareScene(2.0, 0.0, 45.0, 60.0);
+    scene.place = PlaceFromDegrees(latitude, 8.0, 0.0);
+    const SceneRenderer renderer(scene);
+    const UtcInstant sunset =  // of the day after a new moon
+        *FindSunEvent(SunEvent::kSunset, scene.place, ParseInstant("2026-03-20T12:00:00Z"));
+    double before = 0.0;
+    for (int minute = 0; minute <= 150; ++minute) {
+      const double lux = renderer.Illuminance(AddSeconds(sunset, 60.0 * minute));
+      const double shown = std::log2(lux) - IncidentEv100(lux);
+      if (minute > 0) {
+        EXPECT_NEAR(shown, before, kThreePercent_ev) << latitude << ", " << minute << ", " << lux;
+      }
+      before = shown;
+    }
+  }
 }
 
 TEST(SteadySeries, TheEyeLetsDuskBeDarkByItsLawAndMakesNoOtherStep) {
