@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/times_command.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon.h"
+#include "atmosphere/sun/sun.h"
+#include "lut/picture/look.h"
 #include "lut/program/atomic_file.h"
 #include "lut/program/messages.h"
 #include "lut/program/output_name.h"
+#include "lut/program/program.h"
+#include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
+#include "renderer/series/day_plot.h"
 #include "renderer/series/day_times.h"
 
 namespace alpenglow {
@@ -21,7 +30,20 @@ struct TimesOptions {
   double height_m = 0.0;
   std::string date = "today";
   int days = 1;
+  std::optional<std::string> plot;
+  double every_min = 30.0;
 };
+
+/// The scene, or a place without terrain.
+Scene SceneOf(const TimesOptions& options) {
+  if (options.scene_file) return ReadScene(*options.scene_file);
+  Scene scene;
+  scene.place = PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, 0.0);
+  scene.camera.height = {std::max(options.height_m, 0.0), false};
+  scene.medium = MediumPreset("earth");
+  scene.terrain.kind = TerrainSource::Kind::kNone;
+  return scene;
+}
 
 /// The place and the first day.
 EventDay FirstDayOf(const TimesOptions& options) {
@@ -38,6 +60,22 @@ EventDay FirstDayOf(const TimesOptions& options) {
   return day;
 }
 
+/// From the first noon on, by night as by day.
+void WritePlot(const TimesOptions& options, const EventDay& first) {
+  const SceneRenderer renderer(SceneOf(options));
+  const double span_s = 86400.0 * options.days, step_s = 60.0 * options.every_min;
+  std::vector<PlottedMoment> moments;
+  for (double at_s = 0.0; at_s <= span_s; at_s += step_s) {
+    ThrowIfInterrupted();
+    const UtcInstant instant = AddSeconds(*first.around, at_s);
+    const double lux = renderer.Illuminance(instant);
+    moments.push_back({instant, SunAt(first.place, instant).elevation_rad / kRadiansPerDegree,
+                       MoonAt(first.place, instant).elevation_rad / kRadiansPerDegree, lux,
+                       IncidentEv100(lux)});
+  }
+  WriteTextAtomically(*options.plot, SvgOfDay(moments, first.zone, PublishedLightLevels()));
+}
+
 void WriteTimes(const TimesOptions& options) {
   const EventDay first = FirstDayOf(options);
   const std::vector<DayTimes> days = TimesOfDays(first, options.days);
@@ -46,6 +84,7 @@ void WriteTimes(const TimesOptions& options) {
   } else {
     Print(TableOf(days, first.zone));
   }
+  if (options.plot) WritePlot(options, first);
 }
 
 }  // namespace
@@ -82,11 +121,25 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
       ->capture_default_str();
   times.add_option("--out", options->out, "CSV file, with instants of UTC, instead of a table")
       ->check([](const std::string& name) { return FaultOfFileName(name, ".csv"); });
+  CLI::Option* plot =
+      times
+          .add_option(
+              "--plot", options->plot,
+              "SVG of sun, moon and the light on level ground from the first noon on, by the "
+              "scene's air or a clear one, beside published levels")
+          ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
+  times.add_option("--minutes", options->every_min, "Between points of the plot, 1 to 1440")
+      ->check(CLI::Range(1.0, 1440.0))
+      ->needs(plot)
+      ->capture_default_str();
   AddCommonOptions(times, "skyseries", options->common);
   times.footer(
       "Example: a year on Mount Fuji\n"
       "  skyseries times --latitude 35.36 --longitude 138.73 --zone Asia/Tokyo --date 2026-01-01 "
-      "--days 365 --out fuji.csv");
+      "--days 365 --out fuji.csv\n"
+      "Example: the light of a month of nights\n"
+      "  skyseries times --latitude 35.36 --longitude 138.73 --zone Asia/Tokyo --days 30 --plot "
+      "month.svg");
   return [options] { WriteTimes(*options); };
 }
 

@@ -38,6 +38,7 @@ struct Panel {
   double step;       // smallest one between lines of the grid
   bool logarithmic;  // values are powers of ten
   double low, high;  // shown at least
+  std::vector<LightLevel> levels = {};
 };
 
 std::string TextAt(double x, double y, const std::string& more, const std::string& text) {
@@ -182,6 +183,19 @@ std::string GridText(const Panel& panel, const Range& range, const TimeAxis& tim
   return text;
 }
 
+/// A band or a line, and its name at the left.
+std::string LevelText(const LightLevel& level, const std::function<double(double)>& y) {
+  const double high = y(std::log10(level.high_lx)), low = y(std::log10(level.low_lx));
+  return fmt::format(
+             "<rect stroke=\"none\" fill=\"#7a1f5c\" fill-opacity=\"0.35\" x=\"{}\" y=\"{:.1f}\" "
+             "width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
+             kLeft, high, kWidth - kLeft - kRight, std::max(low - high, 1.0)) +
+         TextAt(kLeft + 4.0, high - 2.0, "font-size=\"9\" fill=\"#7a1f5c\"",
+                fmt::format(
+                    "{}, {:g}{}", level.name, level.low_lx,
+                    level.high_lx > level.low_lx ? fmt::format(" to {:g}", level.high_lx) : ""));
+}
+
 std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& moments,
                       const TimeAxis& time, double top) {
   const Range range(panel, moments);
@@ -193,6 +207,7 @@ std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& mome
       "<rect fill=\"none\" stroke=\"#888\" x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" "
       "height=\"{}\"/>\n",
       kLeft, top, kWidth - kLeft - kRight, kPanelHeight);
+  for (const LightLevel& level : panel.levels) text += LevelText(level, y);
   double name_x = kWidth - kRight;
   for (auto curve = panel.curves.rbegin(); curve != panel.curves.rend(); ++curve) {
     text += CurveText(*curve, moments, time, y);
@@ -205,7 +220,7 @@ std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& mome
   return text + TextAt(kLeft, top - 6.0, "", panel.title);
 }
 
-std::vector<Panel> Panels() {
+std::vector<Panel> Panels(const std::vector<LightLevel>& levels) {
   const Value lux = [](const PlottedMoment& moment) -> std::optional<double> {
     constexpr double kLeast_lx = 1e-5;
     if (!moment.illuminance_lx || *moment.illuminance_lx < kLeast_lx) return std::nullopt;
@@ -218,7 +233,13 @@ std::vector<Panel> Panels() {
            false,
            -10.0,
            10.0},
-          {"illuminance of level ground, lx", {{"lux", kLightColour, lux}}, 1.0, true, 0.0, 0.0},
+          {"illuminance of level ground, lx",
+           {{"lux", kLightColour, lux}},
+           1.0,
+           true,
+           levels.empty() ? 0.0 : -3.0,
+           levels.empty() ? 0.0 : 5.0,
+           levels},
           {"exposure, EV at ISO 100",
            {{"EV", kEvColour, [](const PlottedMoment& m) { return m.ev100; }}},
            1.0,
@@ -229,8 +250,17 @@ std::vector<Panel> Panels() {
 
 }  // namespace
 
+const std::vector<LightLevel>& PublishedLightLevels() {
+  static const std::vector<LightLevel> levels{{"full moon, high", 0.25, 0.32},
+                                              {"end of civil twilight", 3.4, 3.4},
+                                              {"end of nautical twilight", 8e-3, 8e-3},
+                                              {"without moon", 1e-3, 1e-3}};
+  return levels;
+}
+
 std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
-                     const std::optional<std::string>& zone) {
+                     const std::optional<std::string>& zone,
+                     const std::vector<LightLevel>& levels) {
   ALPENGLOW_ENSURE(moments.size(), >, 0U);
   const TimeAxis time(moments, zone);
   std::string text = fmt::format(
@@ -243,7 +273,7 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
                  fmt::format("{} to {}", time.Local(moments.front().instant),
                              time.Local(moments.back().instant)));
   double top = kTop;
-  for (const Panel& panel : Panels()) {
+  for (const Panel& panel : Panels(levels)) {
     text += PanelText(panel, moments, time, top);
     top += kPanelHeight + kGap;
   }

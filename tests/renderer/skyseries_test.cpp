@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "atmosphere/text/toml_table.h"
 #include "lut/picture/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
@@ -83,6 +84,31 @@ TEST_F(Skyseries, VersionIsOnStandardOutput) {
   const Outcome outcome = Run("--version");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, HasSubstr("skyseries of alpenglow "));
+}
+
+TEST_F(Skyseries, ListsAreOfEventsClockTimesAndNowWithoutRendering) {
+  const std::string list = InFolder("s.toml") + " --list --date 2026-06-21 ";
+  EXPECT_THAT(Run(list + "--at 18:30").out, HasSubstr("\n0,2026-06-21T16:30:00Z,"));
+  EXPECT_THAT(Run(list + "--at '2026-06-21 18:30'").out, HasSubstr("\n0,2026-06-21T16:30:00Z,"));
+  EXPECT_THAT(Run(list + "--at 'tomorrow sunrise'").out, HasSubstr("\n0,"));
+  EXPECT_THAT(Run(list + "--at now").out, HasSubstr("\n0,"));
+  const std::string month = Run(list + "--from sunrise --to 2026-07-20 --every 1d").out;
+  EXPECT_EQ(std::count(month.begin(), month.end(), '\n'), 31) << "a head, and each day";
+  const auto files = fs::directory_iterator(InFolder("."));
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "the scene alone";
+}
+
+TEST_F(Skyseries, TimesOfAPlaceAreATableACsvAndAPlotOfTheLight) {
+  const std::string place = "times --latitude 46.5 --longitude 8 --zone Europe/Zurich ";
+  const Outcome table = Run(place + "--date 2026-06-21 --days 2");
+  EXPECT_EQ(table.status, 0) << table.error;
+  EXPECT_THAT(table.out, HasSubstr("\n2026-06-22"));
+  const Outcome plot = Run(place + "--date 2026-12-23 --minutes 360 --out " + InFolder("t.csv") +
+                           " --plot " + InFolder("t.svg"));
+  EXPECT_EQ(plot.status, 0) << plot.error;
+  EXPECT_THAT(ReadTextFile(InFolder("t.csv")), HasSubstr("\n2026-12-23,"));
+  EXPECT_THAT(ReadTextFile(InFolder("t.svg")), HasSubstr(">full moon, high, 0.25 to 0.32</text>"));
+  EXPECT_EQ(Run(place + "--minutes 60").status, 2) << "of a plot";
 }
 
 TEST_F(Skyseries, AStillIsASeriesOfOne) {

@@ -76,6 +76,16 @@ TEST(DayPlot, LightIsDrawnByItsLogarithmAndItsBlackestLeftOut) {
   EXPECT_THAT(svg, Not(HasSubstr("\"nan")));
 }
 
+TEST(DayPlot, PublishedLevelsStandBesideTheLight) {
+  const std::vector<PlottedMoment> moments{{Hour(0.0), -40.0, 50.0, 0.2, -5.0},
+                                           {Hour(1.0), -40.0, 40.0, 0.15, -5.0}};
+  EXPECT_THAT(SvgOfDay(moments, std::nullopt), Not(HasSubstr("full moon")));
+  const std::string svg = SvgOfDay(moments, std::nullopt, PublishedLightLevels());
+  EXPECT_THAT(svg, HasSubstr(">full moon, high, 0.25 to 0.32</text>"));
+  EXPECT_THAT(svg, HasSubstr(">without moon, 0.001</text>"));
+  EXPECT_THAT(svg, HasSubstr(">1e-3</text>")) << "the panel reaches as far as the levels";
+}
+
 TEST(DayPlot, OneFrameAndAYearOfFramesHaveTheirTicks) {
   EXPECT_THAT(SvgOfDay({{Hour(4.0), 10.0, -5.0}}, std::nullopt), HasSubstr(">04:00</text>"));
   std::vector<PlottedMoment> year;
