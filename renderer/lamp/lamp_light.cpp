@@ -217,7 +217,7 @@ LampTile LampLight::State::TileAt(const MovingCamera& camera, const PixelBox& bo
   const double pixel = camera.middle().PixelAngle();
   const TileRays rays(camera, box, trace);
   LampTile tile;
-  for (const std::uint32_t node : CutInAir(tree, rays, eye.at, pixel, settings)) {
+  for (const std::uint32_t node : CutInAir(tree, stage, rays, eye.at, pixel, settings)) {
     (IsFar(tree.nodes()[node], rays, pixel) ? tile.far_air : tile.near_air).push_back(node);
   }
   tile.surface = CutOnSurface(tree, stage, rays, settings);

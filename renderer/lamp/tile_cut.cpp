@@ -132,11 +132,66 @@ LampNodes Cut(const LampTree& tree, const LampSettings& settings, const Weigh& w
   return kept;
 }
 
+/// Lamps below a node: all of few, else one of every branch.
+LampNodes MembersOf(const LampTree& tree, std::uint32_t number) {
+  constexpr std::size_t kBranches = 8;
+  const std::vector<LampNode>& nodes = tree.nodes();
+  LampNodes members{number};
+  for (std::size_t before = 0; members.size() != before && members.size() < kBranches;) {
+    before = members.size();
+    LampNodes below;
+    for (const std::uint32_t member : members) {
+      if (const auto& children = nodes[member].children) {
+        below.insert(below.end(), children->begin(), children->end());
+      } else {
+        below.push_back(member);
+      }
+    }
+    members = std::move(below);
+  }
+  for (std::uint32_t& member : members) {
+    while (nodes[member].children) member = (*nodes[member].children)[0];
+  }
+  return members;
+}
+
+/// Whether terrain hides a node from the air before a tile as it hides the lamps below it: from
+/// points of three rays, at equal angles as the node sees them.
+bool IsHiddenAsItsLamps(const LampTree& tree, const LampStage& stage, std::uint32_t number,
+                        const TileRays& tile, const glm::dvec3& eye) {
+  constexpr int kPoints = 6;
+  if (!stage.ground().terrain) return true;
+  const LampNodes members = MembersOf(tree, number);
+  const PlacedLamp& light = tree.Light(number);
+  for (const std::size_t corner : {0UL, 1UL, 4UL}) {
+    const LampRayEnd& ray = tile.rays[corner];
+    const double nearest = light.distance_m * glm::dot(light.direction, ray.direction);
+    const double approach =
+        std::max(light.distance_m * glm::length(glm::cross(light.direction, ray.direction)), 1.0);
+    const double low = std::atan2(-nearest, approach);
+    const double high = std::atan2(Reach(light, ray.length_m) - nearest, approach);
+    for (int i = 0; i < kPoints; ++i) {
+      const double angle = low + (high - low) * (i + 0.5) / kPoints;
+      const double t = std::max(nearest + approach * std::tan(angle), 0.0);
+      const glm::dvec3 point = eye + t * ray.direction;
+      const auto sees = [&](std::uint32_t lamp) {
+        return stage.Sees(tree.Light(lamp).lamp.position_m, point);
+      };
+      const bool is_lit = sees(number);
+      const bool as_all = std::all_of(members.begin(), members.end(),
+                                      [&](std::uint32_t member) { return sees(member) == is_lit; });
+      if (!as_all) return false;
+    }
+  }
+  return true;
+}
+
 /// What a node's light in the air is to a tile.
-Share WeighInAir(const LampNode& node, std::uint32_t number, const TileRays& tile,
-                 const glm::dvec3& eye, double pixel_angle_rad) {
+Share WeighInAir(const LampTree& tree, const LampStage& stage, std::uint32_t number,
+                 const TileRays& tile, const glm::dvec3& eye, double pixel_angle_rad) {
   constexpr int kScoutNodes = 4;
   constexpr double kRefine = 10.0;
+  const LampNode& node = tree.nodes()[number];
   const PlacedLamp& light = node.light;
   const auto along = [&](const Lamp& lamp, const glm::dvec3& direction, double length) {
     const LampSegment segment{eye, direction, 0.0, std::min(length, 4.0 * light.distance_m + 20e3)};
@@ -164,7 +219,8 @@ Share WeighInAir(const LampNode& node, std::uint32_t number, const TileRays& til
   const double relative = std::max(spread_across, 0.0) / (d * d) +
                           spread_along * (2.0 * node.extinction_per_m * node.extinction_per_m +
                                           1.0 / (d * d + gap * gap));
-  share.error = share.most * (d > 2.0 * node.radius_m ? std::min(relative, kRefine) : kRefine);
+  const bool is_one = d > 2.0 * node.radius_m && IsHiddenAsItsLamps(tree, stage, number, tile, eye);
+  share.error = share.most * (is_one ? std::min(relative, kRefine) : kRefine);
   return share;
 }
 
@@ -210,8 +266,6 @@ class SurfaceWeights {
 
   /// Places from which a node's own place is seen.
   [[nodiscard]] LitPlaces LitBy(std::uint32_t number);
-  /// Lamps below a node: all of few, else one of every branch.
-  [[nodiscard]] LampNodes MembersOf(std::uint32_t number) const;
   /// Whether a node and its lamps light every place, or none. Neither: edges of shades cross the
   /// tile, at another place for every lamp.
   struct Shade {
@@ -244,31 +298,9 @@ SurfaceWeights::LitPlaces SurfaceWeights::LitBy(std::uint32_t number) {
   return found->second;
 }
 
-LampNodes SurfaceWeights::MembersOf(std::uint32_t number) const {
-  constexpr std::size_t kBranches = 8;
-  const std::vector<LampNode>& nodes = tree_->nodes();
-  LampNodes members{number};
-  for (std::size_t before = 0; members.size() != before && members.size() < kBranches;) {
-    before = members.size();
-    LampNodes below;
-    for (const std::uint32_t member : members) {
-      if (const auto& children = nodes[member].children) {
-        below.insert(below.end(), children->begin(), children->end());
-      } else {
-        below.push_back(member);
-      }
-    }
-    members = std::move(below);
-  }
-  for (std::uint32_t& member : members) {
-    while (nodes[member].children) member = (*nodes[member].children)[0];
-  }
-  return members;
-}
-
 SurfaceWeights::Shade SurfaceWeights::ShadeOf(std::uint32_t number) {
   LitPlaces lit_by_any = LitBy(number), lit_by_all = lit_by_any;
-  for (const std::uint32_t member : MembersOf(number)) {
+  for (const std::uint32_t member : MembersOf(*tree_, number)) {
     lit_by_any |= LitBy(member);
     lit_by_all &= LitBy(member);
   }
@@ -319,10 +351,10 @@ Share SurfaceWeights::Of(std::uint32_t number) {
 
 }  // namespace
 
-LampNodes CutInAir(const LampTree& tree, const TileRays& tile, const glm::dvec3& eye,
-                   double pixel_angle_rad, const LampSettings& settings) {
+LampNodes CutInAir(const LampTree& tree, const LampStage& stage, const TileRays& tile,
+                   const glm::dvec3& eye, double pixel_angle_rad, const LampSettings& settings) {
   return Cut(tree, settings, [&](std::uint32_t node) {
-    return WeighInAir(tree.nodes()[node], node, tile, eye, pixel_angle_rad);
+    return WeighInAir(tree, stage, node, tile, eye, pixel_angle_rad);
   });
 }
 

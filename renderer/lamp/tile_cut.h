@@ -47,9 +47,11 @@ struct TileRays {
   void Add(const CameraRay& ray, const RayTrace& trace);
 };
 
-/// Nodes that light the air before a tile.
-[[nodiscard]] LampNodes CutInAir(const LampTree& tree, const TileRays& tile, const glm::dvec3& eye,
-                                 double pixel_angle_rad, const LampSettings& settings);
+/// Nodes that light the air before a tile: a group of lamps stands as one only where terrain hides
+/// it and its lamps (of large groups, eight) from the same points of the tile's rays.
+[[nodiscard]] LampNodes CutInAir(const LampTree& tree, const LampStage& stage, const TileRays& tile,
+                                 const glm::dvec3& eye, double pixel_angle_rad,
+                                 const LampSettings& settings);
 /// Nodes that light surfaces in a tile; none without any. Terrain may hide lamps from it, and its
 /// surfaces may turn from them: a lamp counts where its light arrives at the ends of the tile's
 /// rays, others are left out beside it by what it brings to surfaces as they lie there, and a group

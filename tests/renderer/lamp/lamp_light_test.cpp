@@ -335,6 +335,37 @@ double WorstOnSurfaces(const Stage& stage) {
   return worst;
 }
 
+/// By how much a plan's lamps light the air before terrain less or more than all lamps do, at the
+/// worst of some pixels; of at least a hundredth of the brightest's light.
+double WorstInAir(const Stage& stage) {
+  constexpr int kWidth = 160, kHeight = 96;
+  const CameraRays camera(stage.scene.camera, kWidth, kHeight,
+                          {.eye = {0.0, 0.0, stage.ground.eye_height_m}});
+  const RayTrace trace = [&](const CameraRay& ray) {
+    const auto end = stage.ground.terrain->Intersect(ray.origin, ray.direction);
+    return end ? end->distance_m : std::numeric_limits<double>::infinity();
+  };
+  const LampPlan plan = stage.light.PlanFor(camera, kWidth, kHeight, {}, trace);
+  std::vector<std::array<double, 2>> both;
+  double brightest = 0.0;
+  for (int y = 1; y < kHeight; y += 5) {
+    for (int x = 2; x < kWidth; x += 7) {
+      const CameraRay ray = camera.MiddleRay(x + 0.5, y + 0.5);
+      const LampRayEnd end{ray.direction, trace(ray)};
+      const double all =
+          stage.Luminance(stage.light.InAir(stage.light.All(), end, camera.PixelAngle(), 12));
+      const double found =
+          stage.Luminance(stage.light.InAir(plan, x, y, end, camera.PixelAngle(), 12));
+      both.push_back({found, all});
+      brightest = std::max(brightest, all);
+    }
+  }
+  double worst = 0.0;
+  for (const auto& [found, all] : both)
+    worst = std::max(worst, std::abs(found - all) / std::max(all, 0.01 * brightest));
+  return worst;
+}
+
 /// Air that scatters so little that what is dark is dark.
 void ThinTheAir(Medium& medium) {
   for (auto* of_band : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
@@ -364,6 +395,14 @@ TEST_F(LampShadows, ARowOfLampsAcrossTheEndOfTheWallIsNotOneLamp) {
   scene.camera.pitch_rad = -0.3;
   for (int i = -20; i < 40; ++i) scene.lights.push_back(LightAt(130.0, i, 10.0, 100.0));
   EXPECT_LT(WorstOnSurfaces(Stage(scene)), 0.03) << "where two of sixty lamps shine, too";
+}
+
+TEST_F(LampShadows, ARowOfLampsAcrossTheEndOfTheWallIsNotOneLampInTheAirBeforeIt) {
+  Scene scene = WallScene();
+  AddFog(scene, 0.002, std::numeric_limits<double>::infinity());
+  scene.camera.pitch_rad = -0.3;
+  for (int i = 0; i < 8; ++i) scene.lights.push_back(LightAt(130.0, 24.0 + 2.0 * i, 10.0, 100.0));
+  EXPECT_LT(WorstInAir(Stage(scene)), 0.05) << "edges of shade are found to 1/768 of a ray's angle";
 }
 
 TEST_F(LampShadows, ABrightLampThatGrazesTheGroundTakesNothingFromDimOnesBesideIt) {
