@@ -6,6 +6,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "renderer/light/night_light.h"
+#include "renderer/light/town_light.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/paint/picture_units.h"
 #include "viewer/shaders/uniform_blocks.h"
@@ -13,10 +14,12 @@
 namespace alpenglow {
 
 NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
-                          const BandColour& colour) {
+                          const BandColour& colour, const TownsOfScene& towns) {
   const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  std::optional<BandLight> town_light;
+  if (towns.zenith) town_light = TownLight(*towns.zenith, towns.ground_m, air, colour);
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
-                         std::max(eye.height_m, 0.0));
+                         std::max(eye.height_m, 0.0), town_light);
   NightFloor floor{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
   for (int row = 0; row < NightFloor::kRows; ++row) {
     const double elevation = kPi * ((row + 0.5) / NightFloor::kRows - 0.5);
@@ -28,11 +31,11 @@ NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, co
   return floor;
 }
 
-NightFloorFollower::NightFloorFollower()
-    : maker_([](const Request& request) {
+NightFloorFollower::NightFloorFollower(const TownsOfScene& towns)
+    : maker_([towns](const Request& request) {
         const Medium& medium = request.air->medium;
-        return NightFloorOver(request.place, request.now, medium,
-                              BandColour(medium.wavelengths_nm));
+        return NightFloorOver(request.place, request.now, medium, BandColour(medium.wavelengths_nm),
+                              towns);
       }) {}
 
 // The sky may turn by an eighth of a degree: a tenth of a texel.

@@ -29,13 +29,20 @@ struct NightFloor {
   glm::vec4 level;               // on level ground [W m^-2 nm^-1]
 };
 
+/// Lamps of towns, as the scene has them.
+struct TownsOfScene {
+  std::optional<double> zenith = std::nullopt;  // Scene::town_zenith
+  double ground_m = 0.0;                        // where that is, over the ellipsoid, >= 0
+};
+
 [[nodiscard]] NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now,
-                                        const Medium& medium, const BandColour& colour);
+                                        const Medium& medium, const BandColour& colour,
+                                        const TownsOfScene& towns = {});
 
 /// To be used on the thread of the context that is current when it is made.
 class NightFloorFollower {
  public:
-  NightFloorFollower();
+  explicit NightFloorFollower(const TownsOfScene& towns);
 
   /// Once a frame: takes over what is ready and asks for what is missing.
   /// @param waits  until the map of the very instant is there.

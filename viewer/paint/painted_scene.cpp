@@ -11,7 +11,7 @@ namespace {
 
 // Lamps and fog stand on ground that is there before the first picture; a landing light needs none.
 SceneGround LampGroundOf(const Scene& scene) {
-  if (!scene.lights.empty() || scene.fog) return LoadGround(scene);
+  if (!scene.lights.empty() || scene.fog || scene.town_zenith) return LoadGround(scene);
   GeodeticPosition foot = scene.place;
   foot.height_m = 0.0;
   return {LocalFrame(EllipsoidOf(scene.medium), foot), std::nullopt, 0.0, "", true};

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/sky_painter.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "renderer/ground/camera_stand.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
@@ -55,6 +57,9 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts()),
+      night_floor_(
+          {scene.town_zenith, std::max(GroundHeightUnder(scene_.lamp_ground(), scene.place), 0.0)}),
+      has_towns_(scene.town_zenith.has_value()),
       programs_(scene_, lamp_painter_, shaft_pass_) {
   CheckGl("SkyPainter");
 }
@@ -223,10 +228,10 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
   lamp_painter_.PaintOver(PixelAngle(view));
 }
 
-// In more light nobody sees a thousandth of a lux.
+// In more light nobody sees a thousandth of a lux, or what a city sends.
 bool SkyPainter::HasNightFloor() const {
-  constexpr double kMost_lux = 10.0;
-  return stars_.sky_lux() > 0.0 && stars_.sky_lux() < kMost_lux;
+  constexpr double kMost_lux = 10.0, kMostOverTowns_lux = 1000.0;
+  return stars_.sky_lux() > 0.0 && stars_.sky_lux() < (has_towns_ ? kMostOverTowns_lux : kMost_lux);
 }
 
 void SkyPainter::PaintNightFloor(double share) {

@@ -127,6 +127,7 @@ class SkyPainter {
   ShaftPass shaft_pass_;
   StarPainter stars_;
   NightFloorFollower night_floor_;
+  bool has_towns_;
   PicturePrograms programs_;  // of all above
   PictureBlocks blocks_;
   std::optional<SurfaceMap> surface_;

@@ -8,9 +8,26 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/light/night_light.h"
+#include "renderer/light/town_light.h"
 
 namespace alpenglow {
 namespace {
+
+TEST(NightFloor, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
+  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 500.0);
+  const UtcInstant now{61058, 73800.0};
+  const Medium medium = MediumPreset("earth");
+  const BandColour colour(medium.wavelengths_nm);
+  const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  const NightFloor dark = NightFloorOver(eye, now, medium, colour);
+  const NightFloor city = NightFloorOver(eye, now, medium, colour, {18.0, 400.0});
+  const BandLight towns = TownLight(18.0, 400.0, air, colour);
+  for (int band = 0; band < 4; ++band) {
+    const auto at = static_cast<std::size_t>(band);
+    EXPECT_FLOAT_EQ(city.scattered[band], dark.scattered[band] + towns[at]);
+  }
+  EXPECT_GT(city.level.y, 10.0F * dark.level.y);
+}
 
 TEST(NightFloor, BetweenTexelsTheSkyIsThatOfTheRenderer) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 3000.0);
