@@ -46,11 +46,10 @@ EyeInAnchor::EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye) 
   up = axis({0.0, 0.0, 1.0});
 }
 
-LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_light) {
+LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light) {
   const glm::vec3 high(eye.at);
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_VIEWPORT, viewport.data());
-  const double columns = viewport[2], rows = viewport[3];
   LandBlock block{};
   block.eye_high = glm::vec4(high, 0.0F);
   block.eye_low = Padded(eye.at - glm::dvec3(high));
@@ -58,10 +57,8 @@ LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_l
   block.north = Padded(eye.north);
   block.up = Padded(eye.up);
   block.eye_above.y = static_cast<float>(new_light);
-  const glm::dvec4& part = view.drawn_part;
-  block.eye_view = glm::vec4(
-      glm::dvec4(columns * (1.0 - part.x * part.z), rows * (1.0 - part.y * part.w),
-                 glm::length(view.right) / part.z / columns, glm::length(view.up) / part.w / rows));
+  block.pixel = {2.0F / static_cast<float>(viewport[2]), 2.0F / static_cast<float>(viewport[3]),
+                 0.0F, 0.0F};
   return block;
 }
 

@@ -20,8 +20,7 @@ struct LandView {
   glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
   glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
   glm::dvec3 forward{0.0, 1.0, 0.0};
-  int rays = 1;                               // that a pixel will have: for more, land is finer
-  glm::dvec4 drawn_part{0.0, 0.0, 1.0, 1.0};  // ViewOfTile
+  int rays = 1;  // that a pixel will have: for more, land is finer
 };
 
 /// `block Land` of land_block.glsl.
@@ -29,7 +28,7 @@ struct LandBlock {
   static constexpr std::size_t kMostLevels = 32;
   glm::vec4 eye_high, eye_low;
   glm::vec4 east, north, up;
-  glm::vec4 eye_sample, eye_above, eye_view;
+  glm::vec4 eye_sample, eye_above, pixel;
   std::array<glm::vec4, kMostLevels> turning;
 };
 static_assert(sizeof(LandBlock) == (8 + LandBlock::kMostLevels) * sizeof(glm::vec4));
@@ -52,7 +51,7 @@ struct EyeInAnchor {
 
 /// A block without levels: vertices stay where they are. The picture's size is the viewport's.
 /// @param new_light  share of the new light.
-[[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, const LandView& view, double new_light);
+[[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light);
 
 /// What is drawn of land: all that SurfaceMap holds, or its depth alone, into a LandOutline.
 enum class LandDrawn { kSurface, kOutline };

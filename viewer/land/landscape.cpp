@@ -194,8 +194,7 @@ void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
 }
 
 LandBlock Landscape::Block() const {
-  LandBlock block =
-      LandBlockOf(EyeInAnchor(set_->anchor().frame, eye_place_), view_, fade_.share());
+  LandBlock block = LandBlockOf(EyeInAnchor(set_->anchor().frame, eye_place_), fade_.share());
   block.eye_sample =
       glm::vec4(glm::dvec4(eye_.at.column - set_->anchor().column, eye_.at.row - set_->anchor().row,
                            eye_.size.column_m, eye_.size.row_m));
@@ -212,16 +211,13 @@ LandBlock Landscape::Block() const {
 
 void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
   LandPass::Clear(what);
-  if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_, view_binding);
+  if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_binding);
   if (!set_ || drawn_.empty()) return;
   // Over the ground no slope that faces away is seen before one that faces the eye.
   pass_.Run(what, Block(), view_binding, over_ground_, [&] { set_->Draw(drawn_, fade_.from()); });
 }
 
-void Landscape::Draw(GLuint view_binding, const glm::dvec4& part) {
-  view_.drawn_part = part;
-  DrawAll(LandDrawn::kSurface, view_binding);
-}
+void Landscape::Draw(GLuint view_binding) { DrawAll(LandDrawn::kSurface, view_binding); }
 
 void Landscape::DrawOutline(GLuint view_binding) { DrawAll(LandDrawn::kOutline, view_binding); }
 

@@ -71,9 +71,8 @@ class Landscape {
   void Settle(const GeodeticPosition& eye, const LandView& view);
   /// Draws what the last Update chose into the bound SurfaceMap, over what is in it. The uniform
   /// block View must be bound to `view_binding`.
-  /// @param part  of the view that is drawn: ViewOfTile.
-  void Draw(GLuint view_binding, const glm::dvec4& part = {0.0, 0.0, 1.0, 1.0});
-  /// The same chunks once more, into the bound LandOutline: the part of the view that was drawn last.
+  void Draw(GLuint view_binding);
+  /// The same chunks once more, into the bound LandOutline: the view that was drawn last.
   void DrawOutline(GLuint view_binding);
 
   /// Lights all vertices anew by this function, beside drawing; the old light fades into the new

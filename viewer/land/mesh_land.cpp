@@ -102,12 +102,12 @@ void MeshLand::Update(double seconds) {
 }
 
 void MeshLand::Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
-                    const LandView& view, GLuint view_binding) {
+                    GLuint view_binding) {
   if (!terrain_) return;
   glBindVertexArray(layout_.id());
   DescribeLight(LightOn(fade_.from()), 5);
   DescribeLight(LightOn(Other(fade_.from())), 8);
-  const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), view, fade_.share());
+  const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), fade_.share());
   pass.Run(what, block, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),
                    GL_UNSIGNED_INT, nullptr);

@@ -106,7 +106,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   Begin("land");
   Fit(surface_, view.width, view.height);
   surface_->Bind();
-  scene_.land().Draw(kViewBinding, view.part);
+  scene_.land().Draw(kViewBinding);
   surface_->BindTexture(kSurfaceUnit, SurfaceMap::kSurface);
   surface_->BindTexture(kSkyOnSurfaceUnit, SurfaceMap::kSky);
 }
