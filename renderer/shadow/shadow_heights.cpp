@@ -89,11 +89,10 @@ ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun,
   const Flat bounds = BoundsAlong(mesh, sunwards_, across_);
   const double width = bounds.u_high - bounds.u_low;
   const double depth = bounds.v_high - bounds.v_low;
-  // A few large triangles have sharp edges, too.
-  constexpr double kFewestLines = 2048.0;
   const double extent = std::max(width, depth);
   const double spacing = SpacingOf(mesh);  // 0 where all of it is upright
-  const double own = std::min(spacing > 0.0 ? spacing / 1.5 : extent, extent / kFewestLines);
+  const double own =
+      std::min(spacing > 0.0 ? spacing / 1.5 : extent, extent / options.fewest_lines);
   const double wanted = options.cell_m > 0.0 ? options.cell_m : own;
   // Seen along a sheet the extents have no area, and still no more cells than that.
   const auto most = static_cast<double>(options.most_cells);
@@ -108,7 +107,7 @@ ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun,
   highest_.assign(columns_ * lines_, nothing);
   Deposit(mesh);
   SweepFromTheSun();
-  BuildPyramid();
+  if (options.for_rays) BuildPyramid();
 }
 
 std::size_t ShadowHeights::bytes() const {
@@ -430,6 +429,7 @@ SunlitPath ShadowHeights::Along(const glm::dvec3& origin, const glm::dvec3& unit
   ALPENGLOW_ENSURE(std::isfinite(length_m), ==, true);
   if (!(length_m > 0.0)) return {};
   if (highest_.empty()) return {{0.0, length_m}};
+  ALPENGLOW_ENSURE(levels_.empty(), ==, false);
   Walk walk(*this, origin, unit);
   walk.Whole(length_m);
   return walk.builder.Take();

@@ -55,8 +55,10 @@ class ShadowHeights {
  public:
   struct Options {
     double cell_m = 0.0;  // distance of lines and bins; 0: two thirds of the mesh's spacing,
-                          // at most a 2048th of its extent
+                          // at most the extent over fewest_lines
+    double fewest_lines = 2048.0;                   // for large triangles have sharp edges, too
     std::size_t most_cells = std::size_t{1} << 24;  // coarser cells rather than more than these
+    bool for_rays = true;  // whether Along() is asked, whose pyramid is a fifth of the memory
   };
 
   /// The same for any number of threads.
@@ -68,6 +70,7 @@ class ShadowHeights {
       : ShadowHeights(mesh, to_sun, sun_radius_rad, Options{}) {}
 
   /// The stretches of a ray within [0, length_m] that the sun reaches; length_m may be infinite.
+  /// Throws InternalError where Options::for_rays said otherwise.
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                  double length_m) const;
 

@@ -64,7 +64,7 @@ BENCHMARK(SkyOfASunPrepared)->Unit(benchmark::kMillisecond);
 void ShadowPrepared(benchmark::State& state) {
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   const Lighting light = SunAt(10.0);
-  ShadowHeights::Options options;
+  ShadowHeights::Options options = LitGround::kShadowOfVertices;
   options.cell_m = static_cast<double>(state.range(0));
   for (auto unused : state) {
     benchmark::DoNotOptimize(ShadowHeights(TheSite()->ground().terrain->mesh(), light.to_sun,

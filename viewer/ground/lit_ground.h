@@ -46,13 +46,15 @@ class SiteFromFrame {
 /// Immutable; safe to ask from many threads.
 class LitGround {
  public:
+  /// Places of a grid are asked, not rays: of 1024 samples a side 28 MB instead of 61.
+  static constexpr ShadowHeights::Options kShadowOfVertices{.fewest_lines = 1.0, .for_rays = false};
   /// Works on the calling thread alone.
   /// @param light  the sun in the frame of the site.
-  /// @param shadow  how fine the shadow is: see ShadowHeights. Over the built-in range at its own
-  ///     cells of 45 m 0.5 to 0.9 % of places between vertices are lit or shaded wrongly, at cells
-  ///     of 90 m, prepared in half the time, 0.5 to 1.2 %.
+  /// @param shadow  how fine the shadow is: see ShadowHeights. Over the built-in range at cells of
+  ///     45 m, two thirds of its spacing, 0.5 to 0.9 % of places between vertices are lit or shaded
+  ///     wrongly, at cells of 90 m, prepared in half the time, 0.5 to 1.2 %.
   LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
-            const ShadowHeights::Options& shadow = ShadowHeights::Options{});
+            const ShadowHeights::Options& shadow = kShadowOfVertices);
 
   [[nodiscard]] const Lighting& lighting() const { return light_; }
   [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
