@@ -8,7 +8,8 @@
 //
 // which rises from the zenith to the horizon as the air does that one looks through, thickens with
 // haze, and stands before mountains too. J is chosen so that the zenith over the ground of the place
-// has the brightness asked for, of which kNaturalZenith is the sky's own (night_sky.h). A dome of light over one town in one direction is not drawn, nor the lamps.
+// has the brightness asked for, of which kNaturalZenith is the sky's own (night_sky.h). A dome of
+// light over one town, in one direction, is not drawn, nor are the lamps.
 //
 // Half of the luminance of J is that of sodium lamps, of the colour of a black body of 2050 K, half
 // that of white LED, of 4000 K: four bands do not resolve the lines that they have.
