@@ -27,7 +27,7 @@ function(alpenglow_library folder)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
-  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/.cmake/precompiled.h)
+  target_precompile_headers(${target} PRIVATE <.cmake/precompiled.h>)
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   alpenglow_install_headers(${folder} ${arg_HEADERS})
 endfunction()
@@ -172,13 +172,38 @@ function(alpenglow_test_headers)
     alpenglow::renderer alpenglow_warnings GTest::gmock GTest::gtest)
   target_compile_options(alpenglow_test_headers PUBLIC $<$<CONFIG:Release,Sanitize>:-O1>)
   target_precompile_headers(alpenglow_test_headers PRIVATE
-    ${PROJECT_SOURCE_DIR}/.cmake/precompiled.h <gmock/gmock.h> <gtest/gtest.h>)
+    <.cmake/precompiled.h> <gmock/gmock.h> <gtest/gtest.h>)
+endfunction()
+
+# alpenglow_places(<program> [skylut ...]): what tests/fixtures/places.h declares, and that the programs are
+# built before.
+function(alpenglow_places program)
+  set(text "namespace alpenglow::tests {
+extern const char* const kSourceFolder = \"${PROJECT_SOURCE_DIR}\";
+extern const char* const kSharedFolder = \"${PROJECT_SOURCE_DIR}/../shared\";
+")
+  foreach(other ${ARGN})
+    string(REGEX REPLACE "_([a-z])" ";\\1" parts "_${other}")
+    set(name k)
+    foreach(part ${parts})
+      string(SUBSTRING "${part}" 0 1 first)
+      string(SUBSTRING "${part}" 1 -1 rest)
+      string(TOUPPER "${first}" first)
+      string(APPEND name "${first}${rest}")
+    endforeach()
+    string(APPEND text "extern const char* const ${name} = \"$<TARGET_FILE:${other}>\";\n")
+    add_dependencies(${program} ${other})
+  endforeach()
+  set(places ${CMAKE_CURRENT_BINARY_DIR}/${program}_places.cpp)
+  file(GENERATE OUTPUT ${places} CONTENT "${text}}  // namespace alpenglow::tests\n")
+  set_source_files_properties(${places} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  target_sources(${program} PRIVATE ${places})
 endfunction()
 
 # alpenglow_tests(<program> FOLDER f [WHOLE a_test.cpp ...] SOURCES b_test.cpp ... LIBRARIES ...
 # [PROGRAMS skylut ...]): one program of tests, one CTest line a test, named "f.Suite.Test". A source in
 # WHOLE has one line for all its tests, "f.<name of the source>", because they share something costly.
-# PROGRAMS are built before; their paths are ALPENGLOW_SKYLUT and so on.
+# PROGRAMS are built before; tests/fixtures/places.h names their paths.
 function(alpenglow_tests program)
   if(NOT TARGET alpenglow_test_headers)
     alpenglow_test_headers()
@@ -187,14 +212,7 @@ function(alpenglow_tests program)
   add_executable(${program} ${arg_WHOLE} ${arg_SOURCES})
   target_link_libraries(${program} PRIVATE
     alpenglow_test_headers ${arg_LIBRARIES} GTest::gtest_main)
-  target_compile_definitions(${program} PRIVATE
-    ALPENGLOW_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-    ALPENGLOW_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
-  foreach(other ${arg_PROGRAMS})
-    string(TOUPPER ${other} name)
-    target_compile_definitions(${program} PRIVATE ALPENGLOW_${name}="$<TARGET_FILE:${other}>")
-    add_dependencies(${program} ${other})
-  endforeach()
+  alpenglow_places(${program} ${arg_PROGRAMS})
   target_precompile_headers(${program} REUSE_FROM alpenglow_test_headers)
   set(cache "ALPENGLOW_CACHE=${PROJECT_BINARY_DIR}/cache")  # not the one of who tests
   set(whole "")

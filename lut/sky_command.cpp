@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
 #include "lut/picture/picture_text.h"
@@ -46,8 +47,9 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
 }
 
 // Where refraction shows it, as in the pictures of skyseries.
-PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant) {
-  const SunPosition sun = ApparentSunAt(eye, instant);
+PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
+                        const Medium& medium) {
+  const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));
   return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad};
 }
 
@@ -73,7 +75,7 @@ SkyJob JobFrom(const SkyOptions& options) {
         PlaceFromDegrees(*options.latitude, *options.longitude, options.altitude);
     const UtcInstant instant = ParseInstant(*options.time, options.zone);
     job.medium = OnOsculatingSphere(job.medium, eye.latitude_rad);
-    job.settings.sun = SunFromTime(eye, instant);
+    job.settings.sun = SunFromTime(eye, instant, job.medium);
     job.metadata["alpenglow.latitude_deg"] = Degrees(eye.latitude_rad);
     job.metadata["alpenglow.longitude_deg"] = Degrees(eye.longitude_rad);
     job.metadata["alpenglow.utc"] = FormatUtc(instant, 3);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/fixtures/places.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,7 +19,7 @@ namespace fs = std::filesystem;
 /// Every file of the repository, in the folders that git keeps.
 std::vector<fs::path> Files() {
   std::vector<fs::path> files;
-  fs::recursive_directory_iterator entry(ALPENGLOW_SOURCE_DIR);
+  fs::recursive_directory_iterator entry(alpenglow::tests::kSourceFolder);
   for (; entry != fs::recursive_directory_iterator(); ++entry) {
     const std::string name = entry->path().filename().string();
     if (entry.depth() == 0 && (name == "build" || name == ".git"))
@@ -45,7 +47,7 @@ TEST(HouseRules, ProgramsSpeakThroughMessagesAlone) {
   int files = 0;
   for (const char* folder : {"atmosphere", "lut", "renderer", "viewer"}) {
     for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / folder)) {
+         fs::recursive_directory_iterator(fs::path(alpenglow::tests::kSourceFolder) / folder)) {
       const std::string extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp") continue;
       ++files;

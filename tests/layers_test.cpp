@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/fixtures/places.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +43,7 @@ const Rooms& RoomsOfTheHouse() {
     Rooms read;
     for (const std::string& folder : kFolders) {
       if (folder == "tests") continue;
-      std::ifstream readme(fs::path(ALPENGLOW_SOURCE_DIR) / folder / "README.md");
+      std::ifstream readme(fs::path(alpenglow::tests::kSourceFolder) / folder / "README.md");
       read[folder] = RoomsOf(readme);
     }
     return read;
@@ -95,11 +97,11 @@ TEST(Layers, NoFileIncludesAFolderOrARoomAboveItsOwn) {
   int files = 0;
   for (const auto& [folder, unused] : RoomsOfTheHouse()) {
     for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / folder)) {
+         fs::recursive_directory_iterator(fs::path(alpenglow::tests::kSourceFolder) / folder)) {
       const std::string extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp" && extension != ".glsl") continue;
       std::ifstream text(entry.path());
-      const std::string name = fs::relative(entry.path(), ALPENGLOW_SOURCE_DIR);
+      const std::string name = fs::relative(entry.path(), alpenglow::tests::kSourceFolder);
       EXPECT_EQ(IncludesThatRunUp(name, text, RoomsOfTheHouse()), std::vector<std::string>{});
       ++files;
     }
@@ -110,7 +112,8 @@ TEST(Layers, NoFileIncludesAFolderOrARoomAboveItsOwn) {
 TEST(Layers, ReadmesListEveryRoomThatThereIs) {
   for (const auto& [folder, listed] : RoomsOfTheHouse()) {
     std::set<std::string> found;
-    for (const auto& entry : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / folder)) {
+    for (const auto& entry :
+         fs::directory_iterator(fs::path(alpenglow::tests::kSourceFolder) / folder)) {
       if (entry.is_directory() && entry.path().filename() != "data")
         found.insert(entry.path().filename());
     }
@@ -151,7 +154,7 @@ TEST(Layers, TheTopLevelIsClosed) {
                                        "renderer",
                                        "tests",
                                        "viewer"};
-  for (const auto& entry : fs::directory_iterator(ALPENGLOW_SOURCE_DIR)) {
+  for (const auto& entry : fs::directory_iterator(alpenglow::tests::kSourceFolder)) {
     const std::string name = entry.path().filename();
     EXPECT_TRUE(name.front() == '.' || known.count(name) == 1) << name;
   }

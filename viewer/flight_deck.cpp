@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/picture_text.h"
@@ -80,8 +81,9 @@ HudTime TimeOf(const Flythrough& flight) {
 }
 
 HudSky SkyOf(const Flythrough& flight) {
-  const SunPosition sun = ApparentSunAt(flight.eye().place, flight.now());
-  const MoonPosition moon = ApparentMoonAt(flight.eye().place, flight.now());
+  const BendingAir air = GentleAirOf(flight.medium());
+  const SunPosition sun = ApparentSunAt(flight.eye().place, flight.now(), air);
+  const MoonPosition moon = ApparentMoonAt(flight.eye().place, flight.now(), air);
   return {sun.azimuth_rad, sun.elevation_rad,
           HudMoon{moon.azimuth_rad, moon.elevation_rad, moon.IlluminatedFraction()}};
 }

@@ -59,9 +59,14 @@ BendingAir BendingAirOf(const Medium& medium, double wavelength_nm) {
           .planet_radius_m = medium.planet_radius_m};
 }
 
+BendingAir GentleAirOf(const Medium& medium) {
+  BendingAir air = BendingAirOf(medium, kHorizonWavelength_nm);
+  if (!GentlyBends(air)) air.refractivity = 0.0;
+  return air;
+}
+
 BentView::BentView(const Medium& medium, double height_m)
-    : air_(BendingAirOf(medium, kHorizonWavelength_nm)), height_m_(std::max(height_m, 0.0)) {
-  if (!GentlyBends(air_)) air_.refractivity = 0.0;
+    : air_(GentleAirOf(medium)), height_m_(std::max(height_m, 0.0)) {
   const double of_molecules = air_.refractivity / RefractivityAtSeaLevel(kHorizonWavelength_nm);
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     more_refractivity_.push_back(
@@ -140,6 +145,11 @@ double BentView::ApparentElevationOf(double true_elevation_rad) const {
   };
   return BracketedRoot(error, std::max(true_elevation_rad, horizon_rad_),
                        true_elevation_rad + on_horizon + 1e-9, 1e-10);
+}
+
+double BentView::LiftedElevationOf(double true_elevation_rad) const {
+  const double below_rad = TrueElevation(horizon_rad_) - true_elevation_rad;
+  return ApparentElevationOf(true_elevation_rad) - std::max(below_rad, 0.0);
 }
 
 double BentView::MoreOpticalDepth(double elevation_rad, std::size_t band) const {

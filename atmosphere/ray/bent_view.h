@@ -30,6 +30,10 @@ inline constexpr double kHorizonWavelength_nm = 550.0;
 
 [[nodiscard]] BendingAir BendingAirOf(const Medium& medium, double wavelength_nm);
 
+/// By which sun, moon and stars are lifted: at kHorizonWavelength_nm, without any refractivity
+/// where it would not bend gently.
+[[nodiscard]] BendingAir GentleAirOf(const Medium& medium);
+
 /// A ray that ends on the ground.
 struct BentGroundRay {
   double angle_rad;      // at the planet's centre, between the eye and where it ends
@@ -47,6 +51,10 @@ class BentView {
   /// Of the horizon of the ground [rad], <= 0.
   [[nodiscard]] double horizon_rad() const { return horizon_rad_; }
   [[nodiscard]] const BendingAir& air() const { return air_; }
+  /// Of the tables.
+  [[nodiscard]] std::size_t bytes() const {
+    return sky_.size() * sizeof(Node) + bending_.size() * sizeof(double);
+  }
 
   /// True elevation [rad] of what is seen in a band, within 0.1' of the ray equation.
   [[nodiscard]] double TrueElevation(double elevation_rad, std::size_t band) const;
@@ -55,6 +63,8 @@ class BentView {
   /// The apparent elevation [rad] of what stands at a true one, at kHorizonWavelength_nm; the
   /// horizon's for what it hides.
   [[nodiscard]] double ApparentElevationOf(double true_elevation_rad) const;
+  /// The same, but what the horizon hides is as much below it as below what is seen on it.
+  [[nodiscard]] double LiftedElevationOf(double true_elevation_rad) const;
 
   /// Optical depth of molecules and aerosol on the way to space, in a band, less that of a straight
   /// ray of the same apparent elevation; 0 from 15 degrees up, where it is 1e-3 of the depth of the

@@ -138,6 +138,13 @@ MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& ins
   return moon;
 }
 
+MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,
+                            const BendingAir& air) {
+  MoonPosition moon = MoonAt(place, instant);
+  moon.elevation_rad += RefractionFromHeight(air, moon.elevation_rad, place.height_m);
+  return moon;
+}
+
 std::optional<UtcInstant> NextMoonrise(const GeodeticPosition& place, const UtcInstant& after) {
   return NextChange(place, after, true);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "atmosphere/sun/bent_ray.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
@@ -42,6 +43,9 @@ struct MoonPosition {
 /// The moon where refraction shows it from the place's height, as ApparentSunAt (sun.h). Only its
 /// elevation is another than that of MoonAt.
 [[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant);
+/// The same, in any air that bends gently.
+[[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,
+                                          const BendingAir& air);
 
 /// The next instant after `after` at which the upper limb, refracted, appears over the sea horizon
 /// seen from the place's height (dip), or vanishes below it; nothing when it does not happen within

@@ -57,8 +57,8 @@ double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wave
 }
 
 MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
-                          double earth_sun_au) {
-  const MoonPosition moon = ApparentMoonAt(place, instant);
+                          double earth_sun_au, const BendingAir& air) {
+  const MoonPosition moon = ApparentMoonAt(place, instant, air);
   const LocalFrame frame(kWgs84, place);
   return MoonDiskOf(moon, DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz,
                     frame.EnuFromEcef(moon.to_sun).xyz, earth_sun_au);

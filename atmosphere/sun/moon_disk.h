@@ -34,9 +34,10 @@ struct MoonDisk {
 [[nodiscard]] MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon,
                                   const glm::dvec3& to_sun, double earth_sun_au);
 
-/// The moon where refraction shows it from a place, in the frame east, north, up there.
+/// The moon where the refraction of air that bends gently shows it from a place, in the frame east,
+/// north, up there.
 [[nodiscard]] MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
-                                        double earth_sun_au);
+                                        double earth_sun_au, const BendingAir& air);
 
 /// Radiance [1/sr] outside the air per unit of solar irradiance, in a direction; 0 beside the disk,
 /// on its dark side that of earthshine.

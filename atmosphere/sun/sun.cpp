@@ -26,6 +26,13 @@ SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& insta
   return sun;
 }
 
+SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,
+                          const BendingAir& air) {
+  SunPosition sun = SunAt(place, instant);
+  sun.elevation_rad += RefractionFromHeight(air, sun.elevation_rad, place.height_m);
+  return sun;
+}
+
 Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {
   const double horizontal = std::cos(elevation_rad);
   return {{horizontal * std::sin(azimuth_rad), horizontal * std::cos(azimuth_rad),

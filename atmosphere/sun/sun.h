@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "atmosphere/sun/bent_ray.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
@@ -29,6 +30,9 @@ struct SunPosition {
 /// The sun where refraction shows it from the place's height: SunAt, its elevation raised by
 /// RefractionFromHeight (refraction.h). `direction` stays the one without refraction.
 [[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant);
+/// The same, in any air that bends gently.
+[[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,
+                                        const BendingAir& air);
 
 /// Unit vector from elevation and azimuth.
 [[nodiscard]] Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad);

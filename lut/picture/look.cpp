@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "lut/picture/look.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -77,10 +79,18 @@ double EyeEv100(double metered_ev100, const Look& look) {
   return metered_ev100 + low;
 }
 
+namespace {
+constexpr double kDusk_ev100 = 12.0, kDarkerPerEv_stops = 0.08;
+}
+
+double CameraEv100(double metered_ev100) {
+  return metered_ev100 + kDarkerPerEv_stops * std::max(kDusk_ev100 - metered_ev100, 0.0);
+}
+
 double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look) {
   switch (rule.kind) {
     case ExposureRule::Kind::kMetered:
-      return metered_ev100;
+      return CameraEv100(metered_ev100);
     case ExposureRule::Kind::kEye:
       return EyeEv100(metered_ev100, look);
     case ExposureRule::Kind::kFixed:
@@ -94,7 +104,8 @@ double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look)
 std::string RuleInWords(const ExposureRule& rule) {
   switch (rule.kind) {
     case ExposureRule::Kind::kMetered:
-      return MeterRule();
+      return MeterRule() + fmt::format("; grey shown {} stops darker for each EV under {}",
+                                       kDarkerPerEv_stops, kDusk_ev100);
     case ExposureRule::Kind::kEye:
       return MeterRule() +
              "; grey shown by the cube root of luminance under EV 15, 6 stops at most";

@@ -13,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "atmosphere/ray/bent_view.h"
 #include "lut/program/program.h"
 #include "lut/report/report_measure.h"
 #include "lut/version.h"
@@ -128,6 +129,9 @@ Report MeasureReport(const ReportOptions& options) {
     add(measure, options.mediums);
   add(MeasureHardAir, options.hard_mediums);
   add(MeasurePanoramas, options.mediums);
+  // Mediums bend alike, as far as they bend gently.
+  if (const Medium& first = options.mediums.front(); GentleAirOf(first).refractivity > 0.0)
+    topics.emplace_back([&] { return MeasureRefraction(first, effort); });
   return MeasureTopics(Words(), options.quick, options.progress, topics);
 }
 

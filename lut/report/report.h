@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Speed and accuracy held against each other, on the same rays, in one run: `skylut report`.
 //
-// Every method of a topic (transmittance, light scattered once, light of all orders, panoramas)
+// Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
 // answers the same rays, drawn once from the distribution of report_rays.h, by day, at sunset and
 // in twilight. Its error is the distance to a judge (judge.h, path_tracer.h); its cost is memory,
 // the time to get ready, and the time of one answer on one thread. Methods of the literature,

@@ -159,6 +159,8 @@ class TopicWork {
 [[nodiscard]] ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort);
 /// Where light of all orders is hard: with fewer rays and methods, for paths are long there.
 [[nodiscard]] ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort);
+/// Of one medium: the others bend alike.
+[[nodiscard]] ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort);
 
 }  // namespace alpenglow

@@ -33,8 +33,8 @@ constexpr std::array<EffectText, kEffects> kTexts{{
     {Effect::kNightSky, "night-sky", "no airglow, zodiacal light and Milky Way", false, false},
     {Effect::kStars, "stars", "neither stars nor planets", false, false},
     {Effect::kRefraction, "refraction",
-     "the disk of a low sun is round, the sea where it would be "
-     "without air",
+     "the disk of a low sun is round, sea and mountains stand where they "
+     "would without air",
      false, false},
     {Effect::kMolecules, "molecules", "air without molecules", true, true},
     {Effect::kAerosol, "aerosol", "air without aerosol", true, true},

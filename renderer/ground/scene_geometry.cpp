@@ -17,8 +17,23 @@ double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
   return q / (std::sqrt(across + (radius_m + point.z) * (radius_m + point.z)) + radius_m);
 }
 
+namespace {
+
+/// Of the box around the terrain: the farther from the middle, the higher over the sphere.
+double TopOf(const SceneGround& ground, double radius_m) {
+  if (!ground.terrain) return 0.0;
+  const auto [low, high] = ground.terrain->Bounds();
+  const glm::dvec3 across = glm::max(glm::abs(low), glm::abs(high));
+  return AltitudeOverSphere({across.x, across.y, high.z}, radius_m);
+}
+
+}  // namespace
+
 SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief)
-    : ground_(ground), medium_(medium), with_relief_(with_relief) {}
+    : ground_(ground),
+      medium_(medium),
+      with_relief_(with_relief),
+      top_m_(TopOf(ground, medium.planet_radius_m)) {}
 
 double SceneGeometry::AltitudeOf(const glm::dvec3& point) const {
   return AltitudeOverSphere(point, radius_m());
@@ -53,10 +68,49 @@ bool SceneGeometry::HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& d
   const RayExtent extent =
       ExtentOf({altitude, mu, 1.0, mu}, radius_m(), medium_.atmosphere_height_m);
   if (extent.end != RayEnd::kGround || 2.0 * deepest_m - extent.end_m > distance_m) return false;
-  const glm::dvec3 inside = origin + deepest_m * direction;
+  return !CoversPlanetAt(origin + deepest_m * direction);
+}
+
+bool SceneGeometry::CoversPlanetAt(const glm::dvec3& point) const {
   constexpr double kAbove_m = 20000.0;
-  const glm::dvec3 up = UpAt(inside);
-  return !ground_.terrain->Intersect(inside + kAbove_m * up, -up);
+  const glm::dvec3 up = UpAt(point);
+  return ground_.terrain->Intersect(point + kAbove_m * up, -up).has_value();
+}
+
+Hit SceneGeometry::OnTerrain(const TerrainHit& hit, const glm::dvec3& origin,
+                             const glm::dvec3& direction, double before_m,
+                             double pixel_angle_rad) const {
+  const double distance_m = before_m + hit.distance_m;
+  Hit found{HitKind::kTerrain,    distance_m,
+            hit.normal,           hit.normal,
+            hit.geometric_normal, origin + hit.distance_m * direction,
+            hit.smooth_point,     distance_m * pixel_angle_rad};
+  if (with_relief_) {
+    found.normal = MountainSurface::DetailedNormal(
+        GroundAt(found.point, found.footprint_m, -glm::dot(found.normal, direction)), found.normal);
+  }
+  return found;
+}
+
+Hit SceneGeometry::TerrainAlong(BentPath path, double pixel_angle_rad) const {
+  const double farthest_m = FarthestFrom(path.here()), nearest_m = NearestTo(path.here());
+  while (path.gone_m() < farthest_m && !(path.Rises() && path.HeightHere() > top_m_)) {
+    const RayPiece piece = path.Next(nearest_m);
+    if (path.gone_m() < nearest_m) continue;
+    const auto hit = ground_.terrain->Intersect(piece.begin, piece.direction, piece.length_m);
+    if (hit) return OnTerrain(*hit, piece.begin, piece.direction, piece.begin_m, pixel_angle_rad);
+  }
+  return {};
+}
+
+double SceneGeometry::NearestTo(const glm::dvec3& point) const {
+  const auto [low, high] = ground_.terrain->Bounds();
+  return glm::length(glm::clamp(point, low, high) - point);
+}
+
+double SceneGeometry::FarthestFrom(const glm::dvec3& point) const {
+  const auto [low, high] = ground_.terrain->Bounds();
+  return glm::length(glm::max(glm::abs(low - point), glm::abs(high - point)));
 }
 
 Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -64,16 +118,7 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   if (ground_.terrain) {
     const auto hit = ground_.terrain->Intersect(origin, direction);
     if (hit && !HiddenByPlanet(origin, direction, hit->distance_m)) {
-      Hit found{HitKind::kTerrain,     hit->distance_m,
-                hit->normal,           hit->normal,
-                hit->geometric_normal, origin + hit->distance_m * direction,
-                hit->smooth_point,     hit->distance_m * pixel_angle_rad};
-      if (with_relief_) {
-        found.normal = MountainSurface::DetailedNormal(
-            GroundAt(found.point, found.footprint_m, -glm::dot(found.normal, direction)),
-            found.normal);
-      }
-      return found;
+      return OnTerrain(*hit, origin, direction, 0.0, pixel_angle_rad);
     }
   }
   const double mu = std::clamp(glm::dot(direction, UpAt(origin)), -1.0, 1.0);

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "atmosphere/air/medium.h"
+#include "renderer/ground/bent_path.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"
 
@@ -51,13 +52,27 @@ class SceneGeometry {
   [[nodiscard]] Hit Trace(const glm::dvec3& origin, const glm::dvec3& direction,
                           double pixel_angle_rad) const;
 
+  /// What stands on a bent ray; the sky where no terrain does. Needs terrain.
+  [[nodiscard]] Hit TerrainAlong(BentPath path, double pixel_angle_rad) const;
+  /// Not nearer than anything of the terrain [m]. Needs terrain.
+  [[nodiscard]] double FarthestFrom(const glm::dvec3& point) const;
+  /// Whether terrain covers the sphere of the planet below a point. Needs terrain.
+  [[nodiscard]] bool CoversPlanetAt(const glm::dvec3& point) const;
+
  private:
+  /// Not farther than anything of the terrain [m].
+  [[nodiscard]] double NearestTo(const glm::dvec3& point) const;
+  /// @param before_m  from the eye to where the straight ray starts.
+  [[nodiscard]] Hit OnTerrain(const TerrainHit& hit, const glm::dvec3& origin,
+                              const glm::dvec3& direction, double before_m,
+                              double pixel_angle_rad) const;
   [[nodiscard]] bool HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& direction,
                                     double distance_m) const;
 
   const SceneGround& ground_;
   const Medium& medium_;
   bool with_relief_;
+  double top_m_;  // altitude that no terrain reaches
 };
 
 }  // namespace alpenglow

@@ -37,7 +37,8 @@ Lighting Lighting::EclipsedBy(const EclipsedDisk& disk,
 }
 
 std::vector<DistantLight> Lighting::Lights() const {
-  std::vector<DistantLight> lights{{to_sun, sun_radius_rad, irradiance}};
+  std::vector<DistantLight> lights;
+  if (shows) lights.push_back(Sun());
   if (moonlight) lights.push_back(*moonlight);
   return lights;
 }
@@ -51,6 +52,7 @@ Lighting Lighting::By(const DistantLight& light) const {
   alone.eclipse = std::nullopt;
   alone.moonlight = std::nullopt;
   alone.night = nullptr;
+  alone.shows = true;
   alone.on_terrain = nullptr;
   return alone;
 }
@@ -69,6 +71,13 @@ DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
                          const BandLight& sun) {
   const double share = MoonIrradiance(MoonAt(place, instant), earth_sun_au, 550.0);
   return {disk.to_moon, disk.radius_rad, static_cast<float>(share) * (colour * sun)};
+}
+
+double DepressionOfDarkAir(double altitude_m, double radius_m, double atmosphere_height_m) {
+  const auto dip = [&](double height_m) {
+    return std::acos(radius_m / (radius_m + std::max(height_m, 0.0)));
+  };
+  return dip(altitude_m) + 2.0 * dip(atmosphere_height_m) + kRadiansPerDegree;
 }
 
 LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,

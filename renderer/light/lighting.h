@@ -53,6 +53,8 @@ struct Lighting {
   std::optional<DistantLight> moonlight = std::nullopt;
   /// The sky of the night where it could show beside the sun; null: it could not.
   std::shared_ptr<const NightLight> night = nullptr;
+  /// False: the sun stands so deep under the horizon that nobody could tell it from none.
+  bool shows = true;
   EffectSet effects = EffectSet::All();
   /// Of sky and slopes on terrain; null: the ground sees the sky of a plain.
   std::shared_ptr<const TerrainLight> on_terrain = nullptr;
@@ -65,7 +67,8 @@ struct Lighting {
   /// totality: what the air outside of the shadow sends in is left out.
   [[nodiscard]] Lighting EclipsedBy(const EclipsedDisk& disk,
                                     const std::vector<double>& wavelengths_nm) const;
-  /// The sun, and the moon where it could show.
+  [[nodiscard]] DistantLight Sun() const { return {to_sun, sun_radius_rad, irradiance}; }
+  /// Of sun and moon those that could show.
   [[nodiscard]] std::vector<DistantLight> Lights() const;
   /// The same scene with one light alone, as if that were the sun.
   [[nodiscard]] Lighting By(const DistantLight& light) const;
@@ -79,6 +82,13 @@ struct Lighting {
 
 /// Of the moon's reflectance at the phase that the disk has, relative to that at 550 nm.
 [[nodiscard]] BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);
+
+/// How far under the horizontal of an eye the sun stands [rad] where of all the air that one sees
+/// from there none is lit by it: the last of it that shows over the planet is at the top, beyond the
+/// eye's horizon by as much as that is seen from the top, and the last that is lit is there, too.
+/// By a degree more, for what refraction lifts.
+[[nodiscard]] double DepressionOfDarkAir(double altitude_m, double radius_m,
+                                         double atmosphere_height_m);
 
 /// The moon as it stands over a place, as a light. @param disk  its direction counts.
 /// @param sun  irradiance of the sun there. @param earth_sun_au  distance of the place from it.

@@ -7,18 +7,15 @@
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/apparent_place.h"
-#include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
 
 namespace alpenglow {
 namespace {
 
-glm::dvec3 Refracted(const glm::dvec3& enu, double height_m) {
+glm::dvec3 Refracted(const glm::dvec3& enu, const BentView& view) {
   const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
-  return DirectionFromAngles(elevation + RefractionFromHeight(elevation, height_m),
-                             std::atan2(enu.x, enu.y))
-      .xyz;
+  return DirectionFromAngles(view.LiftedElevationOf(elevation), std::atan2(enu.x, enu.y)).xyz;
 }
 
 StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const BandColour& colour) {
@@ -54,15 +51,15 @@ double FaintestStar(double lux, double pixel_angle_rad) {
 }
 
 std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
-                                      const BandColour& colour, double faintest,
-                                      const OpenShutter& shutter) {
+                                      const BentView& view, const BandColour& colour,
+                                      double faintest, const OpenShutter& shutter) {
   const LocalFrame local(kWgs84, eye);
   std::vector<StarLight> lights;
   const auto add = [&](const PointLight& point) {
     if (point.magnitude > faintest) return;
     const auto seen_after = [&](double seconds) {
       const Vector<Ecef> ecef{After(point.direction.xyz, seconds)};
-      return Refracted(local.EnuFromEcef(ecef).xyz, eye.height_m);
+      return Refracted(local.EnuFromEcef(ecef).xyz, view);
     };
     lights.push_back(LightOf(point, seen_after(0.0), colour));
     for (int i = 0; shutter.steps > 0 && i <= shutter.steps; ++i)

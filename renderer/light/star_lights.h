@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 #include "renderer/ground/band_light.h"
@@ -42,9 +43,9 @@ inline constexpr double kDaylight_lux = 5000.0;
 [[nodiscard]] double FaintestStar(double lux, double pixel_angle_rad);
 
 /// Planets, then stars, brightest first, as bright as `faintest` at least. Directions: east, north,
-/// up at the eye. Planets move with the stars while the shutter is open (0.2 arcseconds a minute).
+/// up at the eye, where bent rays show them (without their dispersion). Planets move with the stars while the shutter is open (0.2 arcseconds a minute).
 [[nodiscard]] std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye,
-                                                    const UtcInstant& instant,
+                                                    const UtcInstant& instant, const BentView& view,
                                                     const BandColour& colour, double faintest,
                                                     const OpenShutter& shutter = {});
 

@@ -23,7 +23,10 @@ double Elevation(const glm::dvec3& direction, const glm::dvec3& up) {
   return std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
 }
 
-/// How much flatter the sun's disk is than round at its lower limb, or its colours apart at its
+/// How far pieces of bent rays may lie beside them, seen from the eye.
+constexpr double kOffPixels = 0.2, kLeastOff_rad = 0.01 * kRadiansPerDegree / 60.0;
+
+/// How much flatter a disk is than round at its lower limb, or its colours apart at its
 /// rim [rad].
 double ChangeOfDisk(const BentView& view, double elevation_rad, double radius_rad,
                     std::size_t bands) {
@@ -68,14 +71,19 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
     }
     return above && below;
   };
-  const double radius_rad = frame.light.sun_radius_rad;
   constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
-  const double sun_rad = Elevation(frame.light.to_sun, up);
   const double geometric_rad = -std::acos(geometry.radius_m() / (geometry.radius_m() + height_m));
-  const bool may_see_disk = sun_rad < kLow_rad && sun_rad > geometric_rad - 2.0 * radius_rad &&
-                            in_picture(frame.light.to_sun, 2.0 * radius_rad);
+  const auto may_see = [&](const glm::dvec3& to_disk, double radius_rad) {
+    const double elevation = Elevation(to_disk, up);
+    return elevation < kLow_rad && elevation > geometric_rad - 2.0 * radius_rad &&
+           in_picture(to_disk, 2.0 * radius_rad);
+  };
+  const Lighting& light = frame.light;
+  const bool may_see_sun = may_see(light.to_sun, light.sun_radius_rad);
+  const bool may_see_moon = light.moon && may_see(light.moon->to_moon, light.moon->radius_rad);
   const bool may_see_sea = !geometry.HasTerrain() && horizon_in_picture(geometric_rad);
-  if (!may_see_disk && !may_see_sea) return nullptr;
+  const bool may_see_far = geometry.HasTerrain() && MostLift(frame) > half_pixel;
+  if (!may_see_sun && !may_see_moon && !may_see_sea && !may_see_far) return nullptr;
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   const SunPosition sun = SunAt(EyeOf(shot), shot.instant);
   const MoonPosition moon = MoonAt(EyeOf(shot), shot.instant);
@@ -83,19 +91,86 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
       BentSight{BentView(medium, height_m), up,
                 frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
                 frame_from_enu * DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz});
-  const bool moves_disk = may_see_disk && ChangeOfDisk(bent->view, sun_rad, radius_rad,
-                                                       medium.wavelengths_nm.size()) > half_pixel;
+  const auto moves = [&](const glm::dvec3& to_disk, double radius_rad) {
+    return ChangeOfDisk(bent->view, Elevation(to_disk, up), radius_rad,
+                        medium.wavelengths_nm.size()) > half_pixel;
+  };
+  const bool moves_disk = (may_see_sun && moves(light.to_sun, light.sun_radius_rad)) ||
+                          (may_see_moon && moves(light.moon->to_moon, light.moon->radius_rad));
   const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;
-  return moves_disk || moves_sea ? bent : nullptr;
+  bent->moves_ground = !geometry.HasTerrain() || (may_see_far && MovesTerrain(*bent, frame));
+  const bool moves_terrain = geometry.HasTerrain() && bent->moves_ground;
+  return moves_disk || moves_sea || moves_terrain ? bent : nullptr;
 }
 
-Hit SceneState::OnBentSea(const CameraRay& ray, const PictureFrame& frame) const {
-  const BentSight& bent = *frame.bent;
+// Of what stands at a distance d by rays of the curvature c: c d / 2.
+double SceneState::MostLift(const PictureFrame& frame) const {
+  const double curvature_per_m =
+      std::abs(RefractivitySlopeAt(BendingAirOf(medium, kHorizonWavelength_nm), 0.0));
+  return 0.5 * curvature_per_m * geometry.FarthestFrom(frame.camera().eye());
+}
+
+bool SceneState::MovesTerrain(const BentSight& bent, const PictureFrame& frame) const {
+  constexpr int kColumns = 33, kRows = 128;
+  const double half_pixel = 0.5 * frame.camera().PixelAngle();
+  const glm::dvec3& eye = frame.camera().eye();
+  const double height_m = std::max(geometry.AltitudeOf(eye), 0.0);
+  const double geometric_rad = -std::acos(geometry.radius_m() / (geometry.radius_m() + height_m));
+  const bool moves_horizon = bent.view.horizon_rad() - geometric_rad > half_pixel;
+  for (int i = 0; i < kColumns * kRows; ++i) {
+    const CameraRay ray =
+        frame.camera().MiddleRay((i % kColumns + 0.5) * frame.settings.width / kColumns,
+                                 (i / kColumns + 0.5) * frame.settings.height / kRows);
+    const Hit hit = OnBentRay(ray, bent, frame);
+    if (hit.kind == HitKind::kSky) continue;
+    if (hit.kind == HitKind::kPlanet && moves_horizon) return true;
+    if (glm::length(glm::normalize(hit.point - eye) - ray.direction) > half_pixel) return true;
+  }
+  return false;
+}
+
+namespace {
+
+/// Whether the bare planet stands between the eye and terrain that a ray meets: it goes into the
+/// planet before, where no terrain covers it (a ray through a basin below the sphere is in free
+/// air). Inside the planet the air of the ground goes on.
+bool HiddenByPlanet(const SceneGeometry& geometry, const BentGroundRay& met, const BendingAir& air,
+                    const glm::dvec3& foot, const glm::dvec3& up, const glm::dvec3& across,
+                    const glm::dvec3& point) {
+  const glm::dvec3 from_centre = point + glm::dvec3(0.0, 0.0, geometry.radius_m());
+  const double angle = std::atan2(glm::dot(from_centre, across), glm::dot(from_centre, up));
+  if (angle < met.angle_rad) return false;
+  const double bends =
+      -RefractivitySlopeAt(air, 0.0) * geometry.radius_m() / (1.0 + air.refractivity);
+  const double to_deepest = met.elevation_rad / (1.0 - bends);
+  const double inside = met.angle_rad + std::min(to_deepest, 0.5 * (angle - met.angle_rad));
+  const double sine = std::sin(0.5 * inside);
+  return !geometry.CoversPlanetAt(foot + geometry.radius_m() *
+                                             (std::sin(inside) * across - 2.0 * sine * sine * up));
+}
+
+}  // namespace
+
+Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame) const {
+  return OnBentRay(ray, *frame.bent, frame);
+}
+
+Hit SceneState::OnBentRay(const CameraRay& ray, const BentSight& bent,
+                          const PictureFrame& frame) const {
   const auto met = bent.view.ToGround(bent.ElevationOf(ray.direction));
-  if (!met) return {};
   const glm::dvec3 across = AtElevation(ray.direction, bent.up, 0.0);
-  const double sine = std::sin(0.5 * met->angle_rad);
   const glm::dvec3 foot = ray.eye - geometry.AltitudeOf(ray.eye) * bent.up;
+  if (geometry.HasTerrain()) {
+    const double off_rad = std::max(kOffPixels * frame.camera().PixelAngle(), kLeastOff_rad);
+    const Hit hit = Relief(frame).TerrainAlong(
+        BentPath(bent.view.air(), ray.origin, ray.direction, off_rad), frame.camera().PixelAngle());
+    const bool is_seen =
+        hit.kind == HitKind::kTerrain &&
+        !(met && HiddenByPlanet(geometry, *met, bent.view.air(), foot, bent.up, across, hit.point));
+    if (is_seen) return hit;
+  }
+  if (!met) return {};
+  const double sine = std::sin(0.5 * met->angle_rad);
   const glm::dvec3 point = foot + geometry.radius_m() * (std::sin(met->angle_rad) * across -
                                                          2.0 * sine * sine * bent.up);
   const glm::dvec3 up = geometry.UpAt(point);

@@ -60,7 +60,7 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
   hit.footprint_m = cell_m;
   const LocalSun sun = LocalSunAt(hit.point, light);
   BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
-  if (const auto direct = SunIrradiance(hit, from, sun, {0.0, 0.0}))
+  if (const auto direct = SunIrradiance(hit, from, sun, light.to_sun))
     irradiance = irradiance + *direct;
   // Seen at 60 degrees, which stands for the mean over directions.
   return static_cast<float>(1.0 / kPi) *
@@ -72,8 +72,7 @@ LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light)
 }
 
 double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
-                              std::array<double, 2> disk_sample) const {
-  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+                              const glm::dvec3& to_disk) const {
   const double cosine = glm::dot(hit.normal, to_disk);
   // The smooth surface faces the sun or not. Whether the triangle does is no matter: the shadow ray
   // starts on the smooth surface (TerrainHit::smooth_point) or meets the triangle, whose own normal
@@ -139,54 +138,63 @@ BandLight GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Ligh
 
 std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
                                                     const LocalSun& sun,
-                                                    std::array<double, 2> disk_sample) const {
-  const Lighting& light = from.light;
-  const double cosine = LitCosine(hit, light, sun, disk_sample);
+                                                    const glm::dvec3& to_disk) const {
+  const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
   const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
                           air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;
-  return clear * from.media->SunLeft(hit.point, TowardsDisk(light, disk_sample));
+  return clear * from.media->SunLeft(hit.point, to_disk);
 }
 
-GroundLight::Seen GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
-                                        const Lighting& light) const {
-  const LocalSun sun = LocalSunAt(hit.point, light);
-  Seen seen{sun, PatchAt(hit, light, sun.up, glm::dot(hit.mesh_normal, to_eye)), hit, {}};
+SeenGround GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
+                                 const Lighting& light) const {
+  const glm::dvec3 up = parts_.geometry.UpAt(hit.point);
+  SeenGround seen{PatchAt(hit, light, up, glm::dot(hit.mesh_normal, to_eye)), hit, {}, up, to_eye};
   if (seen.patch.IsWater()) {
-    seen.hit.mesh_normal = sun.up;
-    seen.hit.normal = seen.patch.WaterNormal(sun.up);
+    seen.hit.mesh_normal = up;
+    seen.hit.normal = seen.patch.WaterNormal(up);
   }
   const double mu_eye = AnglesBetween(seen.hit.normal, seen.hit.normal, to_eye).mu_eye;
-  seen.body = seen.patch.BodyAlbedo(mu_eye);
+  seen.albedo = seen.patch.BodyAlbedo(mu_eye);
   return seen;
 }
 
-BandLight GroundLight::Natural(const Seen& seen, const glm::dvec3& to_eye,
-                               const GroundSources& from, const std::optional<BandLight>& direct,
-                               std::array<double, 2> disk_sample) const {
+NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources& from,
+                                     std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
-  BandLight radiance(air_.bands());
-  if (direct) {
-    const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
-    radiance = seen.patch.Brdf(AnglesBetween(seen.hit.normal, to_disk, to_eye)) * *direct;
+  const LocalSun sun = LocalSunAt(seen.hit.point, light);
+  NaturalRadiance sent{BandLight(air_.bands())};
+  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
+    sent.radiance = seen.patch.Brdf(AnglesBetween(seen.hit.normal, to_disk, seen.to_eye)) * *direct;
+    sent.disk_visibility = static_cast<float>(sun.visible_fraction);
   }
   if (light.effects.Has(Effect::kSkylight)) {
-    radiance = radiance + static_cast<float>(1.0 / kPi) *
-                              (seen.body * SkyIrradiance(seen.hit, from, seen.sun));
+    sent.radiance = sent.radiance + static_cast<float>(1.0 / kPi) *
+                                        (seen.albedo * SkyIrradiance(seen.hit, from, sun));
     if (seen.patch.IsGlossy() && light.on_terrain)
-      radiance = radiance + Mirrored(seen.patch, seen.hit, to_eye, light, seen.sun);
+      sent.radiance = sent.radiance + Mirrored(seen.patch, seen.hit, seen.to_eye, light, sun);
   }
-  return light.irradiance * radiance;
+  sent.radiance = light.irradiance * sent.radiance;
+  return sent;
 }
 
-PolarisedLight GroundLight::PolarisedTowards(const Hit& hit, const glm::dvec3& to_eye,
-                                             const GroundSources& from, const PictureAxes& axes,
-                                             std::array<double, 2> disk_sample) const {
+BandLight GroundLight::OfLamps(const SeenGround& seen, const LampNodes& near) const {
+  const Hit& at = seen.hit;
+  return static_cast<float>(1.0 / kPi) *
+         (seen.albedo * parts_.lamps.OnSurface(
+                            near, {at.point, at.smooth_point, at.normal, at.geometric_normal}));
+}
+
+PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSources& from,
+                                      const PictureAxes& axes,
+                                      std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
-  const Seen seen = SeenFrom(hit, to_eye, light);
+  const glm::dvec3& to_eye = seen.to_eye;
   PolarisedLight sum{BandLight(air_.bands()), BandLight(air_.bands())};
   if (!seen.patch.IsWater()) return sum;
+  const LocalSun sun = LocalSunAt(seen.hit.point, light);
   const auto add = [&](const glm::dvec3& to_light, const BandLight& mirrored) {
     const glm::dvec3 across = glm::cross(to_light, to_eye);
     const double sine = glm::length(across);
@@ -196,42 +204,18 @@ PolarisedLight GroundLight::PolarisedTowards(const Hit& hit, const glm::dvec3& t
     sum.q = sum.q + degree * analyser.q * mirrored;
     sum.u = sum.u + degree * analyser.u * mirrored;
   };
-  if (const auto direct = SunIrradiance(seen.hit, from, seen.sun, disk_sample)) {
-    const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
     const double glitter = seen.patch.Glitter(AnglesBetween(seen.hit.normal, to_disk, to_eye));
     add(to_disk, static_cast<float>(glitter) * *direct);
   }
   if (light.effects.Has(Effect::kSkylight) && light.on_terrain) {
     const auto rays = seen.patch.Mirrored(seen.hit.normal, to_eye);
     for (const MirroredRay& ray : rays.All()) {
-      add(ray.direction, static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, light, seen.sun));
+      add(ray.direction, static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, light, sun));
     }
   }
   return light.irradiance * sum;
-}
-
-BandLight GroundLight::NaturalTowards(const Hit& hit, const glm::dvec3& to_eye,
-                                      const GroundSources& from,
-                                      std::array<double, 2> disk_sample) const {
-  const Seen seen = SeenFrom(hit, to_eye, from.light);
-  return Natural(seen, to_eye, from, SunIrradiance(seen.hit, from, seen.sun, disk_sample),
-                 disk_sample);
-}
-
-GroundRadiance GroundLight::Towards(const Hit& hit, const glm::dvec3& to_eye,
-                                    const GroundSources& from, const LampNodes& near,
-                                    std::array<double, 2> disk_sample) const {
-  const Seen seen = SeenFrom(hit, to_eye, from.light);
-  const auto direct = SunIrradiance(seen.hit, from, seen.sun, disk_sample);
-  GroundRadiance sent;
-  if (direct) sent.sun_visibility = static_cast<float>(seen.sun.visible_fraction);
-  sent.albedo = seen.body;
-  sent.natural = Natural(seen, to_eye, from, direct, disk_sample);
-  const Hit& at = seen.hit;
-  sent.lamps = static_cast<float>(1.0 / kPi) *
-               (seen.body * parts_.lamps.OnSurface(
-                                near, {at.point, at.smooth_point, at.normal, at.geometric_normal}));
-  return sent;
 }
 
 }  // namespace alpenglow

@@ -20,12 +20,19 @@
 
 namespace alpenglow {
 
-/// Light that leaves the ground towards the eye.
-struct GroundRadiance {
-  BandLight albedo;
-  BandLight natural;            // of sun and sky [W m^-2 sr^-1 nm^-1]
-  BandLight lamps;              // [W m^-2 sr^-1 nm^-1]
-  float sun_visibility = 0.0F;  // the part of the disk that is seen, 0 to 1
+/// A point of the ground as an eye meets it, whatever shines on it.
+struct SeenGround {
+  GroundPatch patch;
+  Hit hit;            // with the normal of water where that is
+  BandLight albedo;   // of its body towards the eye
+  glm::dvec3 up;      // unit
+  glm::dvec3 to_eye;  // unit
+};
+
+/// Light that leaves the ground towards the eye, of a distant light and its sky.
+struct NaturalRadiance {
+  BandLight radiance;            // W m^-2 sr^-1 nm^-1
+  float disk_visibility = 0.0F;  // the part of the disk that is seen, 0 to 1
 };
 
 /// The ground of a scene, whatever air is over it.
@@ -53,51 +60,38 @@ class GroundLight {
   /// where it makes nothing of it.
   [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const GroundSources& from) const;
 
-  /// @param hit  of terrain or planet; to_eye: unit.
-  /// @param near  lamps that may light it.
-  /// @param disk_sample  a point of the sun's disk, uniform in the unit square: penumbrae average
-  ///     over samples.
-  [[nodiscard]] GroundRadiance Towards(const Hit& hit, const glm::dvec3& to_eye,
-                                       const GroundSources& from, const LampNodes& near,
-                                       std::array<double, 2> disk_sample) const;
+  /// @param hit  of terrain or planet; to_eye: unit. @param light  its surface and waves count.
+  [[nodiscard]] SeenGround SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
+                                    const Lighting& light) const;
 
-  /// Of `natural` alone, by another light: what it adds.
-  [[nodiscard]] BandLight NaturalTowards(const Hit& hit, const glm::dvec3& to_eye,
-                                         const GroundSources& from,
-                                         std::array<double, 2> disk_sample) const;
+  /// What a light and its sky make it send towards the eye.
+  /// @param disk_sample  a point of the light's disk, uniform in the unit square: penumbrae average
+  ///     over samples.
+  [[nodiscard]] NaturalRadiance Natural(const SeenGround& seen, const GroundSources& from,
+                                        std::array<double, 2> disk_sample) const;
+
+  /// The same of lamps, W m^-2 sr^-1 nm^-1. @param near  those that may light it.
+  [[nodiscard]] BandLight OfLamps(const SeenGround& seen, const LampNodes& near) const;
 
   /// Q and U of what water mirrors of sun and sky, in the axes of the picture: as of unpolarised
   /// light, which that of the sky is not. A part p of it that is polarised changes what a wave near
   /// Brewster's angle shows of it by up to p. Everything else that the ground sends counts as
   /// unpolarised.
-  [[nodiscard]] PolarisedLight PolarisedTowards(const Hit& hit, const glm::dvec3& to_eye,
-                                                const GroundSources& from, const PictureAxes& axes,
-                                                std::array<double, 2> disk_sample) const;
+  [[nodiscard]] PolarisedLight Polarised(const SeenGround& seen, const GroundSources& from,
+                                         const PictureAxes& axes,
+                                         std::array<double, 2> disk_sample) const;
 
   [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
 
  private:
-  /// A point of the ground as light and eye meet it.
-  struct Seen {
-    LocalSun sun;
-    GroundPatch patch;
-    Hit hit;  // with the normal of water where that is
-    BandLight body;
-  };
-  [[nodiscard]] Seen SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
-                              const Lighting& light) const;
-  /// Of sun and sky. @param direct  SunIrradiance.
-  [[nodiscard]] BandLight Natural(const Seen& seen, const glm::dvec3& to_eye,
-                                  const GroundSources& from, const std::optional<BandLight>& direct,
-                                  std::array<double, 2> disk_sample) const;
-  /// Cosine between the shading normal and a point of the disk; 0 where terrain or the planet
+  /// Cosine between the shading normal and a point of the disk, in whose direction it is asked; 0 where terrain or the planet
   /// stands before it.
   [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
-                                 std::array<double, 2> disk_sample) const;
+                                 const glm::dvec3& to_disk) const;
   /// Of the sun through the air, per unit solar irradiance [1]; nothing in the shade.
   [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const GroundSources& from,
                                                        const LocalSun& sun,
-                                                       std::array<double, 2> disk_sample) const;
+                                                       const glm::dvec3& to_disk) const;
   [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const GroundSources& from,
                                         const LocalSun& sun) const;
   /// What a slope sends to others, per unit solar irradiance [1/sr].

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/pixel_light.h"
 
+#include <algorithm>
 #include <array>
 #include <glm/vec2.hpp>
 
@@ -35,7 +36,9 @@ PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x
       through_middle_(most_rays == 1),
       around_(around),
       samples_(x, y, most_rays),
-      glow_(scene.medium.wavelengths_nm.size()) {}
+      glow_(scene.medium.wavelengths_nm.size()) {
+  airs_.reserve(2);  // of what stands in front and what it hides
+}
 
 PixelLight::Ray PixelLight::Traced(int sample) {
   glm::dvec2 offset(0.0);
@@ -68,6 +71,9 @@ void PixelLight::AddNewAir(std::size_t known) {
 void PixelLight::TakeUpTo(int rays) {
   const std::size_t known = airs_.size();
   std::vector<Ray> more;
+  const auto count = static_cast<std::size_t>(std::max(rays - sum_.rays, 0));
+  more.reserve(count);
+  new_rays_.reserve(new_rays_.size() + count);
   for (int sample = sum_.rays; sample < rays; ++sample) more.push_back(Traced(sample));
   AddNewAir(known);
   const LampTile& near = frame_->plan->tiles.empty() ? DarkTile() : frame_->plan->At(x_, y_);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // How many rays a pixel takes so that its noise is what was asked for.
 //
-// Every pixel takes a few rays first. What they say of noise decides how many follow, once:
+// Every pixel takes two rays first. Where those of its eight neighbours would not ask for more even if
+// all that they differ by were noise, edges and gradients and all, there is nothing to be missed, and
+// two are enough to begin with: skies, haze, still water. Elsewhere more are taken before it is asked
+// how much noise there is. What these first rays say of it decides how many follow, once:
 //
 //   s^2 = sum |c_i - m|^2 / (n - 1) / max(|m|, floor)^2     of the first n rays of a pixel, c in
 //                                                           linear R, G and B, m their mean
@@ -27,6 +30,9 @@ class RaySpread {
  public:
   /// @param rgb  linear [cd/m^2].
   void Add(const std::array<double, 3>& rgb);
+
+  /// Those of another pixel counted with these, as if all were of one.
+  void Add(const RaySpread& other);
 
   /// s^2 as above [1]; 0 of fewer than two rays and where there is no light.
   [[nodiscard]] double RelativeVariance(double floor_cd_per_m2) const;

@@ -8,7 +8,7 @@ namespace alpenglow {
 SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
     : state_(std::make_unique<SceneState>(scene, progress)) {}
 SceneRenderer::SceneRenderer(const Scene& scene, std::shared_ptr<const SceneGround> ground)
-    : state_(std::make_unique<SceneState>(scene, std::move(ground), nullptr)) {}
+    : state_(std::make_unique<SceneState>(scene, std::move(ground))) {}
 SceneRenderer::~SceneRenderer() = default;
 
 const Medium& SceneRenderer::medium() const { return state_->medium; }

@@ -19,6 +19,8 @@ namespace alpenglow {
 
 /// Of a pixel, unless it begins with more.
 inline constexpr int kMostRaysForNoise = 256;
+/// What a pixel begins with whose neighbours agree.
+inline constexpr int kFewestRaysForNoise = 2;
 
 struct RenderSettings {
   int width = 1280;
@@ -31,6 +33,8 @@ struct RenderSettings {
   int air_nodes = 12;  // Gauss nodes along a ray to the sky
   EffectSet effects = EffectSet::All();
   bool share_air = true;  // between rays of a pixel; false for comparison
+  /// With noise between pixels, too, where it is smooth (air_lattice.h); false for comparison.
+  bool share_air_of_pixels = true;
   std::vector<PictureLayer> layers;
   LampSettings lamps = {};
   Progress* progress = nullptr;  // told of steps, and of the rows of pixels that are done

@@ -13,7 +13,7 @@ std::unique_ptr<SceneState> SceneState::OnOtherBands(int bands) const {
   if (!other) return nullptr;
   Scene same = scene;
   same.medium = *other;
-  return std::make_unique<SceneState>(same, shared_ground, horizons);
+  return std::make_unique<SceneState>(same, shared_ground, this);
 }
 
 const SceneState& SceneState::OnFewBands() const {
@@ -36,8 +36,9 @@ EffectSet SceneState::Present(const PictureFrame& frame) const {
   present = without(present, frame.sunlight->IsBroken() || moon_is_broken, {Effect::kShafts});
   present = without(present, !lamps.All().empty(), {Effect::kLights, Effect::kBeams});
   present = without(present, ground.terrain.has_value(), {Effect::kShadows, Effect::kRelief});
-  present =
-      without(present, frame.light.on_terrain != nullptr, {Effect::kHorizons, Effect::kBounce});
+  const bool is_terrain_lit =
+      frame.light.on_terrain || (frame.moonlit && frame.moonlit->light.on_terrain);
+  present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
   present = without(present, media.HasVolumes(), {Effect::kVolumes});
   present = without(present, media.fog() != nullptr, {Effect::kFogGlow});
   present = without(present, frame.moonlit != nullptr, {Effect::kMoonlight});
@@ -56,7 +57,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   const auto with = [&](EffectSet effects) {
     const SceneState& state = state_->For(effects);
     if (&state == &whole) return whole.Reduced(frame, effects);
-    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings, frame.sunlight));
+    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings));
     return state.Reduced(*on_few_bands, effects);
   };
   EffectPilot pilot;
@@ -96,8 +97,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   const std::unique_ptr<SceneState> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
   if (more_bands && frame.model->air.bands() < 16) {
     pilot.refinements.push_back(
-        {"16 bands",
-         [&] { return timed(*more_bands, more_bands->FrameAt(shot, settings, frame.sunlight)); }});
+        {"16 bands", [&] { return timed(*more_bands, more_bands->FrameAt(shot, settings)); }});
   }
   EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
   CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));

@@ -37,20 +37,36 @@ struct Tile {
       for (int x = x0; x < x1; ++x) visit(x, y);
     }
   }
+  /// visit(Index of each of up to eight).
+  template <typename See>
+  void VisitNeighbours(int x, int y, const See& visit) const {
+    for (int v = y - 1; v <= y + 1; ++v) {
+      for (int u = x - 1; u <= x + 1; ++u) {
+        if ((u != x || v != y) && Has(u, v)) visit(Index(u, v));
+      }
+    }
+  }
 };
 
 /// Mean of the relative variances of the neighbours of a pixel; its own where it has none.
-double VarianceAround(const std::vector<double>& variances, const Tile& tile, int x, int y) {
+double VarianceAround(const std::vector<PixelLight>& pixels, const Tile& tile, int x, int y,
+                      double floor) {
   double sum = 0.0;
   int neighbours = 0;
-  for (int v = y - 1; v <= y + 1; ++v) {
-    for (int u = x - 1; u <= x + 1; ++u) {
-      if ((u == x && v == y) || !tile.Has(u, v)) continue;
-      sum += variances[tile.Index(u, v)];
-      ++neighbours;
-    }
-  }
-  return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
+  tile.VisitNeighbours(x, y, [&](std::size_t at) {
+    sum += pixels[at].spread().RelativeVariance(floor);
+    ++neighbours;
+  });
+  return neighbours > 0 ? sum / neighbours
+                        : pixels[tile.Index(x, y)].spread().RelativeVariance(floor);
+}
+
+/// Of all rays of the neighbours of a pixel as if they were of one.
+double VarianceAmong(const std::vector<RaySpread>& spreads, const Tile& tile, int x, int y,
+                     double floor) {
+  RaySpread all;
+  tile.VisitNeighbours(x, y, [&](std::size_t at) { all.Add(spreads[at]); });
+  return all.RelativeVariance(floor);
 }
 
 /// Angle between unit vectors, from the chord: the arc cosine of a number near 1 has no digits left.
@@ -129,13 +145,35 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
   return sum / steps;
 }
 
+/// As BentSunDisk.
+BandLight BentMoon(const glm::dvec3& direction, const AirAlongRay& through, const Lighting& light,
+                   const BentSight& bent) {
+  BandLight seen(light.irradiance.count);
+  MoonDisk moon = *light.moon;
+  // The disk is not wider than a round one, nor its way.
+  const double widest = 2.0 * moon.radius_rad + glm::length(light.moon_turn);
+  if (glm::length(direction - moon.to_moon) > widest) return seen;
+  moon.to_moon = bent.to_moon;
+  const double elevation = bent.ElevationOf(direction);
+  for (std::size_t band = 0; band < seen.count; ++band) {
+    const double radiance =
+        MeanMoonRadiance(moon, light.moon_turn, bent.TrueDirection(direction, band));
+    const double left = std::exp(-bent.view.MoreOpticalDepth(elevation, band));
+    seen[band] = static_cast<float>(radiance * left) * light.moon_colour[band] *
+                 light.irradiance[band] * through.transmittance[band];
+  }
+  return seen;
+}
+
 }  // namespace
 
 BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
-                               const Lighting& light) const {
+                               const PictureFrame& frame) const {
+  const Lighting& light = frame.light;
   // Before the sun its earthshine would stand out against a corona that is not there.
-  const bool is_seen = light.moon && !light.eclipse;
-  const double radiance = is_seen ? MeanMoonRadiance(*light.moon, light.moon_turn, direction) : 0.0;
+  if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
+  if (frame.bent) return BentMoon(direction, through, light, *frame.bent);
+  const double radiance = MeanMoonRadiance(*light.moon, light.moon_turn, direction);
   if (radiance == 0.0) return BandLight(light.irradiance.count);
   return static_cast<float>(radiance) *
          (light.moon_colour * (light.irradiance * through.transmittance));
@@ -153,11 +191,13 @@ PolarisedLight SceneState::PolarisedGround(const Hit& hit, const CameraRay& ray,
                                            std::array<double, 2> disk_sample) const {
   const GroundLight& ground_light = frame.model->ground_light;
   const PictureAxes axes = frame.camera().AxesAt(ray.through);
-  const PolarisedLight of_sun =
-      ground_light.PolarisedTowards(hit, -ray.direction, frame.ground_sources(), axes, disk_sample);
-  if (!frame.moonlit) return of_sun;
-  return of_sun + ground_light.PolarisedTowards(hit, -ray.direction,
-                                                frame.moonlit->ground_sources(), axes, disk_sample);
+  const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame.light);
+  PolarisedLight sum{BandLight(medium.wavelengths_nm.size()),
+                     BandLight(medium.wavelengths_nm.size())};
+  if (frame.light.shows)
+    sum = ground_light.Polarised(seen, frame.ground_sources(), axes, disk_sample);
+  if (!frame.moonlit) return sum;
+  return sum + ground_light.Polarised(seen, frame.moonlit->ground_sources(), axes, disk_sample);
 }
 
 namespace {
@@ -214,29 +254,32 @@ Shaded SceneState::ShadedWithoutPolariser(const Hit& hit, const SharedAir& throu
   shaded.volumes = through.media;
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
-    shaded.radiance =
-        shaded.radiance + through.fog * (SunDisk(ray.direction, through.air, frame) +
-                                         MoonSeen(ray.direction, through.air, frame.light));
+    shaded.radiance = shaded.radiance + through.fog * (SunDisk(ray.direction, through.air, frame) +
+                                                       MoonSeen(ray.direction, through.air, frame));
     if (frame.night) {
       shaded.radiance = shaded.radiance + shaded.transmittance * frame.night->Above(ray.direction);
     }
     return shaded;
   }
-  const GroundRadiance sent = frame.model->ground_light.Towards(
-      hit, -ray.direction, frame.ground_sources(), near.surface, disk_sample);
-  shaded.albedo = sent.albedo;
-  shaded.sun_visibility = sent.sun_visibility;
-  BandLight natural = sent.natural;
+  const GroundLight& ground_light = frame.model->ground_light;
+  const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame.light);
+  shaded.albedo = seen.albedo;
+  BandLight natural(shaded.albedo.count);
+  if (frame.light.shows) {
+    const NaturalRadiance sent = ground_light.Natural(seen, frame.ground_sources(), disk_sample);
+    shaded.sun_visibility = sent.disk_visibility;
+    natural = sent.radiance;
+  }
   if (frame.moonlit) {
-    natural = natural + frame.model->ground_light.NaturalTowards(
-                            hit, -ray.direction, frame.moonlit->ground_sources(), disk_sample);
+    natural =
+        natural + ground_light.Natural(seen, frame.moonlit->ground_sources(), disk_sample).radiance;
   }
   if (frame.night) {
-    const double cos_up = glm::dot(hit.normal, geometry.UpAt(hit.point));
+    const double cos_up = glm::dot(hit.normal, seen.up);
     natural =
-        natural + static_cast<float>(1.0 / kPi) * (sent.albedo * frame.night->OnSurface(cos_up));
+        natural + static_cast<float>(1.0 / kPi) * (seen.albedo * frame.night->OnSurface(cos_up));
   }
-  const BandLight lamp_light = shaded.transmittance * sent.lamps;
+  const BandLight lamp_light = shaded.transmittance * ground_light.OfLamps(seen, near.surface);
   shaded.lamps = shaded.lamps + lamp_light;
   shaded.radiance = shaded.radiance + lamp_light + shaded.transmittance * natural;
   return shaded;
@@ -310,26 +353,36 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
                          PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
+  const int fewest = std::min(first, kFewestRaysForNoise);
   const Tile tile{x0, y0, std::min(x0 + Tile::kSide, settings.width),
                   std::min(y0 + Tile::kSide, settings.height)};
   const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0), std::min(tile.x1 + 1, settings.width),
                    std::min(tile.y1 + 1, settings.height)};
   const auto stopped = [&] { return Interrupted() || settings.stop.stop_requested(); };
   AirLattice air(*this, frame, x0, y0, tile.x1, tile.y1);
+  AirLattice* const lattice = settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
   std::vector<PixelLight> pixels;
-  std::vector<double> variances;
+  std::vector<RaySpread> spreads;
   pixels.reserve(asked.Size());
   asked.Visit([&](int x, int y) {
     if (stopped()) return;
-    pixels.emplace_back(*this, frame, x, y, most, settings.share_air ? &air : nullptr)
-        .TakeUpTo(first);
-    variances.push_back(pixels.back().spread().RelativeVariance(floor));
+    pixels.emplace_back(*this, frame, x, y, most, lattice).TakeUpTo(fewest);
+    spreads.push_back(pixels.back().spread());
   });
   if (stopped()) return;
-  std::vector<int> wanted(asked.Size(), first);
-  tile.Visit([&](int x, int y) {
-    wanted[asked.Index(x, y)] =
-        RaysForNoise(VarianceAround(variances, asked, x, y), *settings.noise, first, most);
+  asked.Visit([&](int x, int y) {
+    if (stopped()) return;
+    const double among = VarianceAmong(spreads, asked, x, y, floor);
+    if (RaysForNoise(among, *settings.noise, fewest, first) > fewest)
+      pixels[asked.Index(x, y)].TakeUpTo(first);
+  });
+  if (stopped()) return;
+  std::vector<int> wanted;
+  asked.Visit([&](int x, int y) {
+    const int begun = pixels[asked.Index(x, y)].sum().rays;
+    wanted.push_back(tile.Has(x, y) ? RaysForNoise(VarianceAround(pixels, asked, x, y, floor),
+                                                   *settings.noise, begun, most)
+                                    : begun);
   });
   SharedRays shared(frame.filter, asked.x1 - asked.x0, asked.y1 - asked.y0,
                     medium.wavelengths_nm.size());

@@ -11,6 +11,7 @@
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/ground/terrain_sunlight.h"
+#include "renderer/light/moon_before_sun.h"
 #include "renderer/light/town_light.h"
 
 namespace alpenglow {
@@ -31,15 +32,6 @@ glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand
   return -(kEarthRotation_rad_per_s - kBack_rad_per_s) * open_s * pole;
 }
 
-/// Towards the moon, lifted as refraction lifts the middle of the sun behind it: what hides part of
-/// a round sun is round.
-glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
-                        const UtcInstant& instant) {
-  const MoonPosition moon = MoonAt(eye, instant);
-  const double lift_rad = apparent_sun.elevation_rad - SunAt(eye, instant).elevation_rad;
-  return DirectionFromAngles(moon.elevation_rad + lift_rad, moon.azimuth_rad).xyz;
-}
-
 }  // namespace
 
 double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
@@ -53,7 +45,7 @@ double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& e
 }
 
 double SceneState::SunIlluminance(const PictureFrame& frame) const {
-  return IlluminanceBy(frame.light.Lights().front(), frame.camera().eye(), frame.light);
+  return IlluminanceBy(frame.light.Sun(), frame.camera().eye(), frame.light);
 }
 
 double SceneState::Illuminance(const glm::dvec3& eye, const Lighting& light) const {
@@ -83,7 +75,7 @@ GeodeticPosition SceneState::EyeOf(const Shot& shot) const {
 }
 
 SunPosition SceneState::ApparentSun(const Shot& shot) const {
-  return ApparentSunAt(EyeOf(shot), shot.instant);
+  return ApparentSunAt(EyeOf(shot), shot.instant, GentleAirOf(medium));
 }
 
 CameraStand SceneState::StandOf(const Shot& shot) const {
@@ -97,7 +89,7 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
   light.to_sun = stand.frame_from_enu * light.to_sun;
   if (!medium.follows_wgs84) return light;  // no other planet has this moon
   const GeodeticPosition eye = EyeOf(shot);
-  light.moon = ApparentMoonDisk(eye, shot.instant, sun.distance_au);
+  light.moon = ApparentMoonDisk(eye, shot.instant, sun.distance_au, GentleAirOf(medium));
   const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(eye, shot.instant));
   if (disk.IsCovered()) {
     light = light.EclipsedBy(disk, medium.wavelengths_nm);
@@ -124,8 +116,13 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
   const GeodeticPosition eye = EyeOf(shot);
   const DistantLight moonlight = MoonlightOf(*light.moon, eye, shot.instant, earth_sun_au,
                                              light.moon_colour, light.WholeSun());
-  if (IlluminanceBy(moonlight, stand.eye, light) > kUnseenShare * (sun_lux + kNightSky_lux))
-    light.moonlight = moonlight;
+  const double moon_lux = IlluminanceBy(moonlight, stand.eye, light);
+  if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
+  const double depression_rad = -std::asin(glm::dot(light.to_sun, geometry.UpAt(stand.eye)));
+  light.shows =
+      sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
+      depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),
+                                           medium.atmosphere_height_m);
   const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // at most
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
@@ -133,8 +130,7 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
       geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye), towns);
 }
 
-PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& settings,
-                                 const std::shared_ptr<const TerrainSunlight>& known) const {
+PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& settings) const {
   const MovingCamera camera =
       CameraOn(ground, scene.camera, shot.poses, settings.width, settings.height);
   PictureFrame frame{settings,
@@ -150,13 +146,11 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
   frame.polarised = camera.middle().HasPolariser() ||
                     std::any_of(settings.layers.begin(), settings.layers.end(), IsOfPolarisation);
   if (frame.Has(Effect::kRefraction)) frame.bent = BentSightOf(frame, shot);
-  if (frame.Has(Effect::kShafts)) {
+  if (frame.Has(Effect::kShafts) && frame.light.shows) {
     Prepare(settings.progress, "shadows");
-    const Stopwatch watch;
-    frame.sunlight = known ? known
-                           : std::make_shared<TerrainSunlight>(ground, frame.light.to_sun,
-                                                               frame.light.sun_radius_rad);
-    frame.sunlight_s = watch.seconds();
+    const auto made = recent_sunlight->At(frame.light.to_sun, frame.light.sun_radius_rad);
+    frame.sunlight = made.sunlight;
+    frame.sunlight_s = made.made_in_s;
   }
   if (frame.Has(Effect::kLights)) {
     if (!lamps.All().empty()) Prepare(settings.progress, "lamps");
@@ -180,10 +174,8 @@ void SceneState::LightNight(PictureFrame& frame) const {
                    std::make_shared<TerrainSunlight>(), nullptr};
   for (std::size_t band = 0; band < moon.by_sun.count; ++band)
     moon.by_sun[band] = moon.light.irradiance[band] / frame.light.irradiance[band];
-  if (frame.Has(Effect::kShafts)) {
-    moon.sunlight =
-        std::make_shared<TerrainSunlight>(ground, moon.light.to_sun, moon.light.sun_radius_rad);
-  }
+  if (frame.Has(Effect::kShafts))
+    moon.sunlight = recent_moonlight->At(moon.light.to_sun, moon.light.sun_radius_rad).sunlight;
   frame.moonlit = std::make_shared<SecondLight>(std::move(moon));
 }
 
@@ -208,8 +200,9 @@ std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   std::vector<StarLight> lights;
   const double pixel_rad = frame.camera().PixelAngle();
+  const BentView view(medium, geometry.AltitudeOf(frame.camera().eye()));
   for (StarLight& light :
-       StarLightsOver(EyeOf(shot), shot.instant, colour, FaintestStar(lux, pixel_rad),
+       StarLightsOver(EyeOf(shot), shot.instant, view, colour, FaintestStar(lux, pixel_rad),
                       OpenFor(scene.camera.shutter_s, pixel_rad))) {
     light.direction = frame_from_enu * light.direction;
     for (glm::dvec3& direction : light.way) direction = frame_from_enu * direction;
@@ -230,7 +223,8 @@ void SceneState::LightTerrain(PictureFrame& frame) const {
   Prepare(frame.settings.progress, "light of slopes");
   if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // made once, for all frames
   const Stopwatch watch;
-  frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.ground_sources());
+  if (frame.light.shows)
+    frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.ground_sources());
   if (frame.moonlit) {
     SecondLight moon = *frame.moonlit;
     moon.light.on_terrain = frame.model->ground_light.OnTerrain(moon.ground_sources());

@@ -20,6 +20,7 @@
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/pixel_writer.h"
+#include "renderer/picture/recent_sunlight.h"
 #include "renderer/picture/render.h"
 #include "renderer/picture/render_settings.h"
 #include "renderer/picture/shared_air.h"
@@ -28,10 +29,11 @@ namespace alpenglow {
 
 struct SceneState {
   SceneState(const Scene& of, Progress* progress)
-      : SceneState(of, std::make_shared<SceneGround>(LoadGround(of, progress)), nullptr) {}
-  /// @param known  the horizons of that ground, or null.
-  SceneState(const Scene& of, std::shared_ptr<const SceneGround> on,
-             std::shared_ptr<const HorizonsOnDemand> known)
+      : SceneState(of, std::make_shared<SceneGround>(LoadGround(of, progress))) {}
+  SceneState(const Scene& of, std::shared_ptr<const SceneGround> on)
+      : SceneState(of, std::move(on), nullptr) {}
+  /// @param other  on the same ground, whose horizons and light in the air this one shares; or null.
+  SceneState(const Scene& of, std::shared_ptr<const SceneGround> on, const SceneState* other)
       : scene(of),
         shared_ground(std::move(on)),
         ground(*shared_ground),
@@ -42,15 +44,15 @@ struct SceneState {
         // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
         geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
         smooth_geometry(ground, medium, false),
-        horizons(known ? std::move(known) : std::make_shared<HorizonsOnDemand>(ground, medium)),
+        horizons(other ? other->horizons : std::make_shared<HorizonsOnDemand>(ground, medium)),
+        recent_sunlight(other ? other->recent_sunlight : std::make_shared<RecentSunlight>(ground)),
+        recent_moonlight(other ? other->recent_moonlight
+                               : std::make_shared<RecentSunlight>(ground)),
         material(scene.ground, ColourDrape::Of(scene, ground), medium.wavelengths_nm),
         models(medium, {ground, geometry, lamps, *horizons, material}),
         towns(TownsOf()) {}
 
-  /// @param known  sunlight over the terrain at that time, or null.
-  [[nodiscard]] PictureFrame FrameAt(
-      const Shot& shot, const RenderSettings& settings,
-      const std::shared_ptr<const TerrainSunlight>& known = nullptr) const;
+  [[nodiscard]] PictureFrame FrameAt(const Shot& shot, const RenderSettings& settings) const;
   void LightMedia(PictureFrame& frame) const;
   void LightTerrain(PictureFrame& frame) const;
   /// Moonlight, the sky of the night, stars: what of them could show.
@@ -74,12 +76,20 @@ struct SceneState {
   /// Of what is darker, noise counts as if it were so bright (picture_change.h) [cd/m^2].
   [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
   [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
-    if (frame.bent && !geometry.HasTerrain()) return OnBentSea(ray, frame);
-    return (frame.Has(Effect::kRelief) ? geometry : smooth_geometry)
-        .Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
+    if (frame.bent && frame.bent->moves_ground) return OnBentRay(ray, frame);
+    return Relief(frame).Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
   }
-  /// What a bent ray meets where there is no terrain.
-  [[nodiscard]] Hit OnBentSea(const CameraRay& ray, const PictureFrame& frame) const;
+  [[nodiscard]] const SceneGeometry& Relief(const PictureFrame& frame) const {
+    return frame.Has(Effect::kRelief) ? geometry : smooth_geometry;
+  }
+  /// What a bent ray meets. Terrain is seen within 0.1' of where the ray equation has it.
+  [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame) const;
+  [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const BentSight& bent,
+                              const PictureFrame& frame) const;
+  /// By which air lifts the farthest terrain, or less [rad].
+  [[nodiscard]] double MostLift(const PictureFrame& frame) const;
+  /// Whether a bent ray in the picture meets ground that it moves by more than half a pixel.
+  [[nodiscard]] bool MovesTerrain(const BentSight& bent, const PictureFrame& frame) const;
   /// Where it moves something in the picture by more than half a pixel; else null.
   [[nodiscard]] std::shared_ptr<const BentSight> BentSightOf(const PictureFrame& frame,
                                                              const Shot& shot) const;
@@ -100,7 +110,7 @@ struct SceneState {
   /// With the stars at the pixel, which rays do not meet.
   [[nodiscard]] static PixelSum WithStars(const PictureFrame& frame, int x, int y, PixelSum rays);
   [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
-                                   const Lighting& light) const;
+                                   const PictureFrame& frame) const;
   [[nodiscard]] std::optional<BandLight> TownsOf() const;
   [[nodiscard]] GeodeticPosition EyeOf(const Shot& shot) const;
   [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
@@ -135,6 +145,7 @@ struct SceneState {
   LocalMedia media;
   SceneGeometry geometry, smooth_geometry;
   std::shared_ptr<const HorizonsOnDemand> horizons;
+  std::shared_ptr<RecentSunlight> recent_sunlight, recent_moonlight;
   GroundMaterial material;
   AirModels models;
   std::optional<BandLight> towns;  // TownLight

@@ -18,6 +18,7 @@ class AirTo {
         const TerrainSunlight& sunlight)
       : frame_(frame),
         sunlight_(sunlight),
+        is_lit_(light.shows),
         kind_(rays.kind),
         direction_(direction),
         to_sun_(light.to_sun),
@@ -43,7 +44,7 @@ class AirTo {
     if (frame_.polarised) none.polarised = {none.inscatter, none.inscatter};
     std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
     if (kind_ != HitKind::kSky && !frame_.Has(Effect::kAerial)) return none;
-    if (kind_ == HitKind::kSky && !frame_.Has(Effect::kSky)) {
+    if (!is_lit_ || (kind_ == HitKind::kSky && !frame_.Has(Effect::kSky))) {
       none.transmittance = in.air.TransmittanceAlong(ray);
       return none;
     }
@@ -64,6 +65,7 @@ class AirTo {
  private:
   const PictureFrame& frame_;
   const TerrainSunlight& sunlight_;
+  bool is_lit_;
   HitKind kind_;
   glm::dvec3 direction_, to_sun_, up_;
   ViewRay ray_;

@@ -32,11 +32,12 @@ struct SecondLight {
   [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
 };
 
-/// What bent rays show of the sun and of a sea without terrain.
+/// What bent rays show of the sun, of terrain and of a sea without it.
 struct BentSight {
   BentView view;
   glm::dvec3 up;               // at the eye, unit
   glm::dvec3 to_sun, to_moon;  // unit, as if there were no air
+  bool moves_ground = false;   // by more than half a pixel, somewhere
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
   /// Where light of a band that is seen in a direction comes from, unit.

@@ -287,11 +287,10 @@ Terrain::~Terrain() = default;
 Terrain::Terrain(Terrain&&) noexcept = default;
 Terrain& Terrain::operator=(Terrain&&) noexcept = default;
 
-std::optional<TerrainHit> Terrain::Intersect(const glm::dvec3& origin,
-                                             const glm::dvec3& direction) const {
+std::optional<TerrainHit> Terrain::Intersect(const glm::dvec3& origin, const glm::dvec3& direction,
+                                             double length_m) const {
   const glm::dvec3 unit = CheckedUnit(origin, direction);
-  const std::optional<Interval> inside =
-      Clip(scene_->bounds, origin, unit, std::numeric_limits<double>::infinity());
+  const std::optional<Interval> inside = Clip(scene_->bounds, origin, unit, length_m);
   if (!inside) return std::nullopt;
   const glm::dvec3 start = origin + inside->begin * unit;
   RTCRayHit query{};
@@ -321,5 +320,9 @@ bool Terrain::Occluded(const glm::dvec3& origin, const glm::dvec3& normal,
 }
 
 const TriangleMesh& Terrain::mesh() const { return scene_->mesh; }
+
+std::pair<glm::dvec3, glm::dvec3> Terrain::Bounds() const {
+  return {scene_->bounds.low, scene_->bounds.high};
+}
 
 }  // namespace alpenglow

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/elevation.h"
@@ -33,10 +35,11 @@ class Terrain {
   Terrain(Terrain&&) noexcept;
   Terrain& operator=(Terrain&&) noexcept;
 
-  /// Nearest hit. Origin and direction (of any length but 0) in the mesh's frame, at any distance
-  /// from the mesh; throws InternalError unless all are finite.
-  [[nodiscard]] std::optional<TerrainHit> Intersect(const glm::dvec3& origin,
-                                                    const glm::dvec3& direction) const;
+  /// Nearest hit, not farther than a length. Origin and direction (of any length but 0) in the
+  /// mesh's frame, at any distance from the mesh; throws InternalError unless all are finite.
+  [[nodiscard]] std::optional<TerrainHit> Intersect(
+      const glm::dvec3& origin, const glm::dvec3& direction,
+      double length_m = std::numeric_limits<double>::infinity()) const;
   /// Whether anything stands within (0, length_m) of the ray; length_m may be infinite. The origin
   /// is moved off the surface along `normal` (the hit's geometric one) by the error bound of the
   /// hit point. Throws InternalError as Intersect does, and for a negative or NaN length.
@@ -44,6 +47,8 @@ class Terrain {
                               const glm::dvec3& direction, double length_m) const;
 
   [[nodiscard]] const TriangleMesh& mesh() const;
+  /// Corners of a box around it [m].
+  [[nodiscard]] std::pair<glm::dvec3, glm::dvec3> Bounds() const;
 
  private:
   struct Scene;

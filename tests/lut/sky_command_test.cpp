@@ -10,6 +10,7 @@
 #include <string>
 
 #include "lut/picture/image.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -21,7 +22,7 @@ using testing::HasSubstr;
 class SkylutSky : public TemporaryFolder {
  protected:
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
-    return RunCommand("'" ALPENGLOW_SKYLUT "' sky " + arguments);
+    return RunCommand(std::string("'") + tests::kSkylut + "' sky " + arguments);
   }
 };
 

@@ -12,6 +12,7 @@
 
 #include "lut/store/table_file.h"
 #include "tests/fixtures/lost_messages.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -24,7 +25,7 @@ class Skylut : public TemporaryFolder {
  protected:
   /// Runs `skylut <arguments>` in the folder of the test.
   [[nodiscard]] Outcome Run(const std::string& arguments) const {
-    return RunCommand("'" ALPENGLOW_SKYLUT "' " + arguments);
+    return RunCommand(std::string("'") + tests::kSkylut + "' " + arguments);
   }
 
   /// Tables of bruneton2017 that are coarse, but quickly made.
@@ -258,11 +259,9 @@ TEST_F(Skylut, ASetForAnotherProgramThatIsNotWholeIsRefusedByName) {
 
 TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
   WriteCases();
-  const std::vector<std::string> eval{ALPENGLOW_SKYLUT, "eval",
-                                      "--cases",        (folder_ / "cases.csv").string(),
-                                      "--method",       "integral",
-                                      "--progress",     "plain",
-                                      "--out",          (folder_ / "r.csv").string()};
+  const std::vector<std::string> eval{
+      tests::kSkylut, "eval",  "--cases", (folder_ / "cases.csv").string(), "--method", "integral",
+      "--progress",   "plain", "--out",   (folder_ / "r.csv").string()};
   ASSERT_EQ(Run("eval --cases cases.csv --out told.csv --method integral").status, 0);
   for (const tests::Lost how :
        {tests::Lost::kFull, tests::Lost::kClosed, tests::Lost::kPipe, tests::Lost::kTerminal}) {
@@ -279,7 +278,7 @@ TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
 TEST_F(Skylut, ResultsThatNobodyTakesAreStatus4) {
   WriteCoarseTables("tables");
   for (const char* command : {"info tables", "--version", "info --help"}) {
-    const std::string run = std::string("'" ALPENGLOW_SKYLUT "' ") + command;
+    const std::string run = std::string("'") + tests::kSkylut + "' " + command;
     for (const char* nowhere : {" >/dev/full", " >&-"}) {
       const Outcome outcome = RunCommand("(" + run + nowhere + ")");
       EXPECT_EQ(outcome.status, 4) << command << nowhere;
@@ -309,8 +308,8 @@ TEST_F(Skylut, AnInputIsNeverOverwritten) {
 // Hard case 45.
 TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {
   // The build is interrupted when its first line of progress is out, whenever that is.
-  const std::string script = "cd '" + folder_.string() +
-                             "' && rm -f fifo && mkfifo fifo && { '" ALPENGLOW_SKYLUT
+  const std::string script = "cd '" + folder_.string() + "' && rm -f fifo && mkfifo fifo && { '" +
+                             tests::kSkylut +
                              "' build --out tables --quality fine --progress json 2>fifo & } && "
                              "pid=$! && { read line && kill -INT $pid && cat >/dev/null; } <fifo; "
                              "wait $pid";

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -34,7 +35,7 @@ class Farm : public TemporaryFolder {
   }
   [[nodiscard]] Outcome Run(const std::string& environment, const std::string& script) const {
     return RunCommand("cd '" + folder_.string() + "' && env PATH=\"$PWD/bin:$PATH\" " +
-                      environment + " bash '" ALPENGLOW_SOURCE_DIR "/renderer/farm/'" + script);
+                      environment + " bash '" + tests::kSourceFolder + "/renderer/farm/'" + script);
   }
   [[nodiscard]] Outcome Task(const std::string& more = "") const {
     return Run(

@@ -11,6 +11,7 @@
 #include "lut/picture/image.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -27,7 +28,7 @@ class SkyviewWindow : public TemporaryFolder {
   }
   /// @param display  as ALPENGLOW_DISPLAY and ALPENGLOW_DISPLAY_GL say it.
   [[nodiscard]] Outcome Run(const std::string& display, const std::string& arguments) const {
-    return RunCommand("env " + display + " '" ALPENGLOW_SKYVIEW_ON_SCRIPTED_DISPLAY "' s.toml " +
+    return RunCommand("env " + display + " '" + tests::kSkyviewOnScriptedDisplay + "' s.toml " +
                       arguments);
   }
   [[nodiscard]] bool HasDisplay() const { return Run("ALPENGLOW_DISPLAY='8x8'", "").status == 0; }

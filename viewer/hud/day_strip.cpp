@@ -6,6 +6,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 #include "lut/picture/image.h"
@@ -95,9 +96,10 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
   strip.begin = request.begin;
   strip.colours.resize(static_cast<std::size_t>(request.columns) * kRows);
   const Sky sky(request);
+  const BendingAir refracting = GentleAirOf(request.air->medium());
   for (int x = 0; x < request.columns; ++x) {
     const UtcInstant instant = AddSeconds(request.begin, (x + 0.5) / request.columns * kDay_s);
-    const SunPosition sun = ApparentSunAt(request.place, instant);
+    const SunPosition sun = ApparentSunAt(request.place, instant, refracting);
     strip.sun_elevation_rad.push_back(sun.elevation_rad);
     Column column;
     for (std::size_t row = 0; row < kRows; ++row)

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/sun/eclipse.h"
 #include "renderer/light/lighting.h"
 #include "viewer/shaders/uniform_blocks.h"
 
@@ -32,6 +34,15 @@ BandLight LevelLight(const SolvedAir& air, double altitude_m, double elevation_r
   return sky + static_cast<float>(mu) * integrator.TransmittanceToSpace(altitude_m, mu);
 }
 
+// What the moon leaves of the sun.
+KeyLight BesideMoon(const KeyLight& sun, const GeodeticPosition& eye, const UtcInstant& now,
+                    const Medium& medium) {
+  const EclipsedDisk disk = EclipsedDiskOf(sun.disk, MoonAt(eye, now));
+  if (!disk.IsCovered()) return sun;
+  const Lighting whole = LightingOf(sun.disk, now, eye, medium);
+  return {sun.disk, GpuBandsOf(whole.EclipsedBy(disk, medium.wavelengths_nm).irradiance)};
+}
+
 SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
   SunPosition position{};
   position.elevation_rad = std::asin(std::clamp(moon.to_light.z, -1.0, 1.0));
@@ -49,14 +60,17 @@ KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
   return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};
 }
 
-KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now, const SunPosition& sun,
-                    const SolvedAir& air) {
-  const KeyLight by_sun = SunAsKey(sun, air.medium);
-  if (!air.medium.follows_wgs84 || sun.elevation_rad > kBrighterThanMoon_rad) return by_sun;
-  const MoonDisk disk = ApparentMoonDisk(eye, now, sun.distance_au);
+LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
+                          const SunPosition& sun, const SolvedAir& air) {
+  constexpr double kUnseenShare = 1e-3;
+  const KeyLight whole_sun = SunAsKey(sun, air.medium);
+  if (!air.medium.follows_wgs84) return {whole_sun, std::nullopt};
+  const KeyLight by_sun = BesideMoon(whole_sun, eye, now, air.medium);
+  if (sun.elevation_rad > kBrighterThanMoon_rad) return {by_sun, std::nullopt};
+  const MoonDisk disk = ApparentMoonDisk(eye, now, sun.distance_au, GentleAirOf(air.medium));
   BandLight solar(air.medium.wavelengths_nm.size());
   for (std::size_t band = 0; band < solar.count; ++band)
-    solar[band] = by_sun.irradiance[static_cast<glm::length_t>(band)];
+    solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
   const DistantLight moon = MoonlightOf(disk, eye, now, sun.distance_au,
                                         MoonColour(disk, air.medium.wavelengths_nm), solar);
   const KeyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
@@ -67,7 +81,12 @@ KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now, const Su
            static_cast<double>(LevelLight(air, altitude_m,
                                           key.disk.elevation_rad)[static_cast<std::size_t>(green)]);
   };
-  return brings(by_moon) > brings(by_sun) ? by_moon : by_sun;
+  const double of_sun = brings(by_sun), of_moon = brings(by_moon);
+  const bool is_by_moon = of_moon > of_sun;
+  LightsOfSky lights{is_by_moon ? by_moon : by_sun, std::nullopt};
+  if (std::min(of_sun, of_moon) > kUnseenShare * std::max(of_sun, of_moon))
+    lights.beside = is_by_moon ? by_sun : by_moon;
+  return lights;
 }
 
 double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What lights air and land of a picture: the sun or, once that brings less, the moon.
 //
-// One light at a time. Where both count, with the sun 7 to 11 degrees down and a bright moon up, the
-// lesser is left out: at the change, half of the light. By day and in moonlight less than a
-// thousandth is.
+// Where both count, with the sun 5 to 11 degrees down and a bright moon up, the lesser stands beside it
+// (light_beside.h). The sun is what the moon leaves of it: a whole picture is lit as its eye is.
 #pragma once
 
 #include <glm/vec4.hpp>
+#include <optional>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun.h"
@@ -21,13 +21,18 @@ struct KeyLight {
   bool is_moon = false;
 };
 
-/// @param sun  apparent.
+/// Without the moon before it. @param sun  apparent.
 [[nodiscard]] KeyLight SunAsKey(const SunPosition& sun, const Medium& medium);
 
-/// The one of sun and moon that brings more light to a level place at the eye, in the band next to
-/// 555 nm. No other planet has this moon: there it is the sun.
-[[nodiscard]] KeyLight KeyLightAt(const GeodeticPosition& eye, const UtcInstant& now,
-                                  const SunPosition& sun, const SolvedAir& air);
+struct LightsOfSky {
+  KeyLight key;
+  std::optional<KeyLight> beside;  // where it brings over a thousandth of what the key brings
+};
+
+/// Sun and moon; the key is the one that brings more light to a level place at the eye, in the band
+/// next to 555 nm. No other planet has this moon: there it is the sun.
+[[nodiscard]] LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
+                                        const SunPosition& sun, const SolvedAir& air);
 
 /// Of a light and the sky that it makes, on a level plane [lux]. @param colour  of the air's bands.
 [[nodiscard]] double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,

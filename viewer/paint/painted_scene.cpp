@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "atmosphere/ray/bent_view.h"
 #include "renderer/media/local_media.h"
 #include "viewer/paint/picture_units.h"
 
@@ -43,7 +44,8 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       drape_(DrapeOf(scene, lamp_ground_)),
       material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
       air_(SolveAir(MediumAt(scene)), sizes.air,
-           AirViewOf(first.eye, ApparentSunAt(first.eye.place, first.now))),
+           AirViewOf(first.eye,
+                     ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
       land_(land, LandSizeOf(sizes), ellipsoid_),
       ground_(scene.ground, drape_.colours, {}),
       ground_textures_(air_.air()->diffuse),

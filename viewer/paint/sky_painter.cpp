@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/sun/eclipse.h"
 #include "renderer/ground/camera_stand.h"
+#include "renderer/light/moon_before_sun.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
@@ -69,25 +72,27 @@ const SkyPainter::Shining& SkyPainter::LightsOf(const PaintedView& view) {
   const bool is_known = shining_ && shining_->view.now == view.now &&
                         shining_->view.eye == view.eye && shining_->air == air;
   if (!is_known) {
-    const SunPosition sun = ApparentSunAt(view.eye.place, view.now);
-    shining_ = {view, sun, air, KeyLightAt(view.eye.place, view.now, sun, *air)};
+    const SunPosition sun = ApparentSunAt(view.eye.place, view.now, GentleAirOf(air->medium));
+    shining_ = {view, sun, air, LightsOfSkyAt(view.eye.place, view.now, sun, *air)};
   }
   return *shining_;
 }
 
 void SkyPainter::Update(const PaintedView& view, double seconds) {
-  const KeyLight& key = LightsOf(view).key;
+  const KeyLight& key = LightsOf(view).lights.key;
   Begin("update");
   scene_.Update(view, key.disk, seconds);
   stars_.Follow(view, key, *scene_.air().air());
-  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), false);
+  if (HasNightFloor())
+    night_floor_.Follow(view, scene_.air().air(), LightsOf(view).lights.beside, false);
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
-  scene_.Settle(view, LightsOf(view).key.disk, samples);
+  scene_.Settle(view, LightsOf(view).lights.key.disk, samples);
   lamps_.SettlePlans();
-  stars_.Settle(view, LightsOf(view).key, *scene_.air().air());
-  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), true);
+  stars_.Settle(view, LightsOf(view).lights.key, *scene_.air().air());
+  if (HasNightFloor())
+    night_floor_.Follow(view, scene_.air().air(), LightsOf(view).lights.beside, true);
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -215,7 +220,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
-  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, LightsOf(view).key.disk);
+  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, LightsOf(view).lights.key.disk);
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
@@ -250,7 +255,7 @@ void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
 }
 
 void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray) {
-  blocks_.UploadView(scene_, view, LightsOf(view).key, ray);
+  blocks_.UploadView(scene_, view, LightsOf(view).lights.key, ray);
   PaintLand(view);
   PaintShafts(view);
   PaintLamps(view);
@@ -261,14 +266,19 @@ void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRa
 
 SkyPainter::Bodies SkyPainter::BodiesOf(const PaintedView& view) {
   const SunPosition& sun = LightsOf(view).sun;
-  return {sun, ApparentMoonDisk(view.eye.place, view.now, sun.distance_au)};
+  const GeodeticPosition& place = view.eye.place;
+  Bodies bodies{sun, ApparentMoonDisk(place, view.now, sun.distance_au,
+                                      GentleAirOf(scene_.air().air()->medium))};
+  if (EclipsedDiskOf(sun, MoonAt(place, view.now)).IsCovered())
+    bodies.moon.to_moon = ToMoonBefore(sun, place, view.now);
+  return bodies;
 }
 
 void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   const Bodies bodies = BodiesOf(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
-  blocks_.UploadGround(scene_, view, LightsOf(view).key.disk);
+  blocks_.UploadGround(scene_, view, LightsOf(view).lights.key.disk);
   DescribeMoon(bodies.moon);
   PrepareLamps(view);
   scene_.air().textures().Bind(kAirUnit, kTablesBinding);

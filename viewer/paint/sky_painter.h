@@ -98,7 +98,7 @@ class SkyPainter {
     PaintedView view;
     SunPosition sun;
     std::shared_ptr<const SolvedAir> air;
-    KeyLight key;
+    LightsOfSky lights;
   };
   [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
   [[nodiscard]] Bodies BodiesOf(const PaintedView& view);

@@ -28,7 +28,9 @@ const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_tow
 StarPainter::StarPainter()
     : maker_([](const Request& request) {
         constexpr double kAll = std::numeric_limits<double>::infinity();
-        return Made{request, StarLightsOver(request.place, request.now, *request.colour, kAll)};
+        const BentView view(request.medium, request.place.height_m);
+        return Made{request,
+                    StarLightsOver(request.place, request.now, view, *request.colour, kAll)};
       }) {}
 
 bool StarPainter::IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
@@ -45,8 +47,8 @@ bool StarPainter::IsNight(const PaintedView& view, const KeyLight& key, const So
   return sky_lux_ > 0.0;
 }
 
-void StarPainter::Ask(const PaintedView& view) {
-  asked_ = {view.eye.place, view.now, colour_};
+void StarPainter::Ask(const PaintedView& view, const Medium& medium) {
+  asked_ = {view.eye.place, view.now, colour_, medium};
   maker_.Ask(*asked_);
 }
 
@@ -60,13 +62,13 @@ void StarPainter::Follow(const PaintedView& view, const KeyLight& key, const Sol
            std::abs(asked.place.longitude_rad - place.longitude_rad) < kMostWay_rad &&
            std::abs(asked.place.height_m - place.height_m) < kMostRise_m;
   };
-  if (!maker_.Busy() && !(asked_ && suits(*asked_))) Ask(view);
+  if (!maker_.Busy() && !(asked_ && suits(*asked_))) Ask(view, air.medium);
 }
 
 void StarPainter::Settle(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
   if (!IsNight(view, key, air)) return;
   maker_.Wait();
-  Ask(view);
+  Ask(view, air.medium);
   maker_.Wait();
   if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
 }

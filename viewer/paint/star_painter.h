@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "atmosphere/air/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/moon_disk.h"
 #include "viewer/gl/gl_objects.h"
@@ -47,6 +48,7 @@ class StarPainter {
     GeodeticPosition place;
     UtcInstant now;
     std::shared_ptr<const BandColour> colour;
+    Medium medium;  // that bends their light
   };
   struct Made {
     Request request;
@@ -54,7 +56,7 @@ class StarPainter {
   };
 
   [[nodiscard]] bool IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
-  void Ask(const PaintedView& view);
+  void Ask(const PaintedView& view, const Medium& medium);
   void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
   void Draw(const std::vector<StarPoint>& points) const;
 

@@ -4,7 +4,8 @@
 // Defined before this text:
 //   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; OPEN_SKY_PASS:
 //             sky where no planet is; DISK_PASS: what the disks of sun and moon add;
-//             NIGHT_PASS: what the night's own sky adds to land, air and sky
+//             NIGHT_PASS: what the night's own sky, and the lesser of sun and moon, add to land, air
+//             and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
 in vec2 screen;
 out vec4 picture;
@@ -123,7 +124,9 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 disks = SunDiskRadiance(direction, RAY_ANGLE) + MoonRadiance(direction, RAY_ANGLE);
+  float beside_moon = 1.0 - CoveredByMoon(direction, RAY_ANGLE);
+  vec4 disks =
+      beside_moon * SunDiskRadiance(direction, RAY_ANGLE) + MoonRadiance(direction, RAY_ANGLE);
   bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
   vec4 radiance = planet ? vec4(0.0) : disks * TransmittanceToSpace(direction);
 #if HAS_FOG
@@ -137,11 +140,32 @@ void main() {
 uniform sampler2D night_sky;   // NightFloor of night_floor.h
 uniform vec4 night_scattered;  // what air without an end would send [W m^-2 sr^-1 nm^-1]
 uniform vec4 night_level;      // on level ground [W m^-2 nm^-1]
+uniform sampler2D beside_sky;  // LightBeside of light_beside.h, also the next three
+uniform vec4 beside_level;
+uniform vec4 beside_direct;
+uniform vec3 beside_towards;
+
+// Where maps of the whole sky have a direction, at least so high.
+vec2 PlaceOnSky(vec3 direction, float lowest) {
+  float elevation = max(AngleOfSine(clamp(direction.z, -1.0, 1.0)), lowest);
+  return vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359 + vec2(0.0, 0.5);
+}
 
 vec4 NightAbove(vec3 direction) {
-  float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
-  vec2 turns = vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359;
-  return textureLod(night_sky, vec2(turns.x, turns.y + 0.5), 0.0);
+  return textureLod(night_sky, PlaceOnSky(direction, -2.0), 0.0);
+}
+
+// Of the lesser light, as the eye sees it where no land is.
+vec4 SkyBeside(vec3 direction) {
+  return textureLod(beside_sky, PlaceOnSky(direction, -2.0), 0.0);
+}
+
+// The same of air near the ground that takes all light: as just over the horizon, off the texels that
+// see the planet. A light that is down lights only the sky over such air, and that sky it evenly.
+vec4 AirBeside(vec3 direction) {
+  const float kOverHorizon = 0.03;
+  if (beside_towards.z < 0.0) return 0.5 / 3.14159265359 * beside_level;
+  return textureLod(beside_sky, PlaceOnSky(direction, kOverHorizon), 0.0);
 }
 
 // What ground sends back, which sees the part of an even sky that its tilt leaves.
@@ -154,24 +178,27 @@ vec4 NightReflected(vec3 direction, vec4 surface) {
   vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
   vec4 albedo =
       LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(mesh_normal, at.up), footprint, draped);
-  return albedo / 3.14159265359 * 0.5 * (1.0 + dot(normal, at.up)) * night_level;
+  vec4 level = 0.5 * (1.0 + dot(normal, at.up)) * (night_level + beside_level);
+  return albedo / 3.14159265359 * (level + max(dot(normal, beside_towards), 0.0) * beside_direct);
 }
 
 void main() {
   vec3 direction = ViewDirection(screen);
   vec4 surface = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0);
-  vec4 left = TransmittanceToSpace(direction) * FogTransmittance(direction, 1e3);
-  vec4 behind;
+  float clear = FogTransmittance(direction, 1e3);
+  vec4 left = TransmittanceToSpace(direction) * clear;
+  vec4 behind, beside = clear * SkyBeside(direction);
   if (surface.w > 0.0) {
     float distance_km = 1e-3 * surface.w;
     left =
         AirToPoint(direction, distance_km).transmittance * FogTransmittance(direction, distance_km);
     behind = NightReflected(direction, surface);
+    beside = (1.0 - left) * AirBeside(direction);
   } else if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0) {
     behind = ground_albedo / 3.14159265359 * night_level;
   } else {
     behind = NightAbove(direction);
   }
-  picture = vec4(LinearSrgb((1.0 - left) * night_scattered + left * behind), 0.0);
+  picture = vec4(LinearSrgb((1.0 - left) * night_scattered + left * behind + beside), 0.0);
 }
 #endif

@@ -24,6 +24,13 @@ vec2 DiskOverHorizon(float mu_s, float horizon_mu, float radius) {
   return vec2(area / 3.14159265359, sin(elevation + rise * radius));
 }
 
+// Share of a pixel that the moon's disk covers.
+float CoveredByMoon(vec3 direction, float width) {
+  vec3 beside = direction - moon.xyz;
+  float rho = length(beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
+  return dot(direction, moon.xyz) <= 0.0 ? 0.0 : clamp((1.0 - rho) * moon.w / width + 0.5, 0.0, 1.0);
+}
+
 // Radiance of the sun's disk outside the air, per unit of its irradiance [1/sr], times the share of
 // a pixel that the disk covers; one value a band.
 vec4 SunDiskRadiance(vec3 direction, float width) {
@@ -44,8 +51,8 @@ vec4 MoonRadiance(vec3 direction, float width) {
   vec3 beside = direction - moon.xyz;
   vec3 at = (beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
   float rho = length(at);
-  float covered = clamp((1.0 - rho) * moon.w / width + 0.5, 0.0, 1.0);
-  if (covered <= 0.0 || dot(direction, moon.xyz) <= 0.0) return vec4(0.0);
+  float covered = CoveredByMoon(direction, width);
+  if (covered <= 0.0) return vec4(0.0);
   // What a pixel beyond the limb has of the disk is as bright as the limb.
   const float kLimb = 0.999;
   at *= min(kLimb / max(rho, 1e-6), 1.0);

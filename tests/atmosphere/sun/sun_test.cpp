@@ -14,6 +14,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/places.h"
 
 namespace alpenglow {
 namespace {
@@ -84,7 +85,7 @@ double Number(const std::string& text) {
 
 TEST(Sun, WholeTableOfSpaIsMatchedWithinTwoArcseconds) {
   const std::filesystem::path path =
-      std::filesystem::path(ALPENGLOW_SHARED_DIR) / "tables" / "sun_nrel_spa.csv";
+      std::filesystem::path(tests::kSharedFolder) / "tables" / "sun_nrel_spa.csv";
   std::ifstream file(path);
   if (!file) GTEST_SKIP() << "the reference table is not here: " << path;
   int rows = 0;

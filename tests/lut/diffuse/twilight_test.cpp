@@ -20,6 +20,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/sky/panorama.h"
+#include "tests/fixtures/places.h"
 
 namespace alpenglow {
 namespace {
@@ -28,7 +29,7 @@ constexpr double kNightSky_lux = 0.0005;  // what the table adds (Janiczek, DeYo
 
 /// Two columns of a published table as x -> y; empty where the table is absent.
 std::map<double, double> Table(const std::string& file, std::size_t x, std::size_t y) {
-  std::ifstream in(std::filesystem::path(ALPENGLOW_SHARED_DIR) / "tables" / file);
+  std::ifstream in(std::filesystem::path(tests::kSharedFolder) / "tables" / file);
   std::map<double, double> table;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || (line[0] != '-' && (line[0] < '0' || line[0] > '9'))) continue;

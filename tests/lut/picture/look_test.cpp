@@ -51,6 +51,19 @@ TEST(Look, ToTheEyeDuskLooksLikeDuskAndNightLikeNight) {
   }
 }
 
+TEST(Look, ACameraPrintsNightsDarkerThanDaysAndLetsNoLessLightBeBrighter) {
+  const auto shown_stops = [](double ev100) { return ev100 - CameraEv100(ev100); };
+  EXPECT_EQ(shown_stops(15.0), 0.0);
+  EXPECT_EQ(shown_stops(12.0), 0.0);
+  EXPECT_NEAR(shown_stops(-2.0), -1.12, 1e-12) << "0.08 (12 + 2): a full moon";
+  double before = 16.0 - CameraEv100(16.0);
+  for (double ev100 = 15.9; ev100 > kDarkestEv100; ev100 -= 0.1) {
+    EXPECT_LE(shown_stops(ev100), before);
+    EXPECT_NEAR(shown_stops(ev100), before, 0.0081) << "and makes no step";
+    before = shown_stops(ev100);
+  }
+}
+
 TEST(Look, ToTheEyeLessLightIsNeverBrighter) {
   double before = 1.0;
   for (double ev100 = 16.0; ev100 > -10.0; ev100 -= 0.05) {

@@ -50,11 +50,12 @@ TEST_F(ReportFiles, EveryFileIsWrittenAndNothingElse) {
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_ / "report"))
     names.insert(entry.path().filename());
-  EXPECT_EQ(names, (std::set<std::string>{
-                       "index.html", "summary.md", "transmittance.csv", "single_scattering.csv",
-                       "all_orders.csv", "panoramas.csv", "transmittance.earth.svg",
-                       "single_scattering.earth.svg", "single_scattering.earth.samples.svg",
-                       "all_orders.earth.svg", "panoramas.earth.svg"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{
+                "index.html", "summary.md", "transmittance.csv", "single_scattering.csv",
+                "all_orders.csv", "panoramas.csv", "refraction.csv", "transmittance.earth.svg",
+                "single_scattering.earth.svg", "single_scattering.earth.samples.svg",
+                "all_orders.earth.svg", "panoramas.earth.svg", "refraction.earth.svg"}));
 }
 
 TEST_F(ReportFiles, ThePageNeedsNoOtherFileAndNamesWhatMadeIt) {
@@ -79,14 +80,14 @@ TEST_F(ReportFiles, NumbersOfThePageAreThoseOfTheTables) {
   for (const ReportTopic& topic : QuickReport().topics) {
     const std::vector<std::string> header = CellsOf(LinesOf(CsvHeader())[0]);
     const std::vector<std::string> lines = LinesOf(CsvOfTopic(topic, QuickReport().maker));
-    for (std::size_t i = 0; i < lines.size(); i += kReportRegimes) {
+    for (std::size_t i = 0; i < lines.size(); i += topic.regimes.size()) {
       double spread = -1.0;
       std::string spread_text;
-      for (std::size_t r = 0; r < kReportRegimes; ++r) {
+      for (std::size_t r = 0; r < topic.regimes.size(); ++r) {
         const std::vector<std::string> cells = CellsOf(lines[i + r]);
         ASSERT_EQ(cells.size(), header.size());
         auto value = ValuesByName(header, cells);
-        EXPECT_EQ(value["regime"], kRegimes[r].key);
+        EXPECT_EQ(value["regime"], topic.regimes[r].key);
         if (r == 0) expected.insert(expected.end(), {value["memory_bytes"], value["build_s"]});
         for (const char* name : {"time_s", "error_rms", "error_99", "error_max"})
           expected.push_back(value[name]);
@@ -133,6 +134,11 @@ TEST(Report, MethodsOfThisLibraryKeepTheirBounds) {
     EXPECT_LT(at.error.largest, 4e-3) << "bound of TransmittanceTable::Lookup";
   for (const RegimeResult& at : RowOf("panoramas", "sky view, in rows, size chosen").at)
     EXPECT_LT(at.error.rms, 3e-3) << "bound of SkyView";
+  for (const char* name :
+       {"tables of one height", "quadrature over elevation (Auer, Standish 2000)"}) {
+    for (const RegimeResult& at : RowOf("refraction", name).at)
+      EXPECT_LT(at.error.largest, 0.1 / 32.0) << "bound of BentView and RefractionSeenAt, 0.1'";
+  }
   for (const double max_error : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const int nodes = SamplingForError(max_error).nodes;
     for (const ReportRow& row : TopicOf("single_scattering").rows) {

@@ -13,6 +13,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/series/frame_times.h"
 #include "tests/fixtures/picture_tolerance.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/report_files.h"
 
 namespace alpenglow {
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = fs::path(ALPENGLOW_SOURCE_DIR) / "tests" / "golden";
+const fs::path kFolder = fs::path(tests::kSourceFolder) / "tests" / "golden";
 
 struct Golden {
   std::string name, scene, time;

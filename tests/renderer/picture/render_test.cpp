@@ -17,6 +17,7 @@
 #include "renderer/camera/camera_rays.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/thread_counts.h"
 
 namespace alpenglow {
@@ -300,7 +301,7 @@ TEST(Render, UnknownLayersAndSizesAreRefused) {
 }
 
 TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
-  const auto dem = std::filesystem::path(ALPENGLOW_SHARED_DIR) / "dem" / "N35E138.hgt";
+  const auto dem = std::filesystem::path(tests::kSharedFolder) / "dem" / "N35E138.hgt";
   if (!std::filesystem::exists(dem)) GTEST_SKIP() << "no elevation model at " << dem;
   Scene scene = BareScene(0.0, 0.0, 0.0, 8.0);
   scene.place = PlaceFromDegrees(35.50, 138.76, 0.0);

@@ -14,6 +14,7 @@
 #include "lut/picture/picture_text.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -51,7 +52,7 @@ TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
 /// The block of TOML in the manual of scene.toml.
 std::string Manual() {
   const std::string all =
-      ReadTextFile(std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "renderer" / "README.md");
+      ReadTextFile(std::filesystem::path(tests::kSourceFolder) / "renderer" / "README.md");
   const std::size_t begin = all.find("```toml\n") + 8;
   return all.substr(begin, all.find("```", begin) - begin);
 }

@@ -87,16 +87,14 @@ TEST(SteadySeries, DuskFallsIntoADarkNightWithoutStepsWhereItIsShortAndWhereItIs
   }
 }
 
-TEST(SteadySeries, TheEyeLetsDuskBeDarkByItsLawAndMakesNoOtherStep) {
+void ExpectNoOtherStepThanByItsLaw(const ExposureRule& rule) {
   const std::vector<Frame> frames = Minutes();
   SmoothMeter meter(frames, *FramesPerNode(frames, false), RoughlyMeteredEv100);
-  ExposureRule eye;
-  eye.kind = ExposureRule::Kind::kEye;
   double before = 0.0, wanted_before = 0.0;
   for (const Frame& frame : frames) {
     const double light = MeteredEv100(frame);
-    const double shown = light - Ev100By(eye, meter.At(frame), {});
-    const double wanted = light - Ev100By(eye, light, {});
+    const double shown = light - Ev100By(rule, meter.At(frame), {});
+    const double wanted = light - Ev100By(rule, light, {});
     if (frame.number > 0) {
       EXPECT_NEAR(shown - before, wanted - wanted_before, kThreePercent_ev)
           << FormatUtc(frame.instant);
@@ -104,6 +102,14 @@ TEST(SteadySeries, TheEyeLetsDuskBeDarkByItsLawAndMakesNoOtherStep) {
     before = shown;
     wanted_before = wanted;
   }
+}
+
+TEST(SteadySeries, TheEyeLetsDuskBeDarkByItsLawAndMakesNoOtherStep) {
+  ExpectNoOtherStepThanByItsLaw({ExposureRule::Kind::kEye});
+}
+
+TEST(SteadySeries, TheCameraPrintsNightDarkerByItsLawAndMakesNoOtherStep) {
+  ExpectNoOtherStepThanByItsLaw({ExposureRule::Kind::kMetered});
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/occlusion_march.h"
+#include "tests/fixtures/places.h"
 
 namespace alpenglow {
 namespace {
@@ -213,7 +214,7 @@ TEST(ShadowHeights, ShaftsAroundFujiAreThoseOfThousandsOfOcclusionRays) {
   scene.medium = MediumPreset("earth");
   scene.camera.height = {300.0, true};
   scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-  scene.terrain.file = std::filesystem::path(ALPENGLOW_SHARED_DIR) / "dem" / "N35E138.hgt";
+  scene.terrain.file = std::filesystem::path(tests::kSharedFolder) / "dem" / "N35E138.hgt";
   if (!std::filesystem::exists(scene.terrain.file))
     GTEST_SKIP() << scene.terrain.file << " is not there";
   ExpectShaftsAsOcclusionRaysFindThem(LoadGround(scene));

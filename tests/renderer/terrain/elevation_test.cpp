@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/places.h"
 
 namespace alpenglow {
 namespace {
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-const fs::path kDem = fs::path(ALPENGLOW_SHARED_DIR) / "dem";
+const fs::path kDem = fs::path(tests::kSharedFolder) / "dem";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // What a raster file is made of.

@@ -176,11 +176,12 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
       points, [&](const ShaderProgram& program) { blocks.Upload(program); });
   std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const GroundRadiance judge = lit.site().light().Towards(
-        cases[i].hit, cases[i].to_eye, {light, nullptr}, LampNodes{}, {0.0, 0.0});
+    const GroundLight& ground = lit.site().light();
+    const NaturalRadiance judge = ground.Natural(
+        ground.SeenFrom(cases[i].hit, cases[i].to_eye, light), {light, nullptr}, {0.0, 0.0});
     double sum = 0.0;
     for (const std::size_t band : {0U, 2U}) {
-      sum += static_cast<double>(judge.natural[band]) /
+      sum += static_cast<double>(judge.radiance[band]) /
              static_cast<double>(lit.lighting().irradiance[band]);
     }
     differences.push_back(std::abs(static_cast<double>(gpu[i]) / sum - 1.0));

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/places.h"
 
 namespace alpenglow {
 namespace {
@@ -120,7 +121,7 @@ TEST(Action, LettersGoByWhatIsPrintedOnTheKey) {
 }
 
 TEST(Action, TheReadmeShowsTheTable) {
-  std::ifstream stream(ALPENGLOW_SOURCE_DIR "/viewer/README.md");
+  std::ifstream stream(std::string(tests::kSourceFolder) + "/viewer/README.md");
   const std::string readme{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_THAT(readme, HasSubstr(ControlsMarkdown())) << "put this into viewer/README.md:\n"
                                                      << ControlsMarkdown();

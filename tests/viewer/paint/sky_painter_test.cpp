@@ -7,12 +7,14 @@
 
 #include <cmath>
 
+#include "atmosphere/sun/eclipse.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
+#include "viewer/paint/key_light.h"
 #include "viewer/paint/view_difference.h"
 
 namespace alpenglow {
@@ -107,6 +109,36 @@ TEST_F(SkyPainterTest, TheRangeInFogIsTheRenderers) {
   ExpectWithin(
       Both(fog.scene, fog.instant).Difference(fog), {0.0045, 0.013},
       "light of the fog is a map, and light of the air before it is weighed in a few stretches");
+}
+
+// Over Burgos with nine tenths covered.
+TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
+  const UtcInstant now = ParseInstant("2026-08-12T18:23:00Z");
+  Scene scene = BareScene(2.0, 284.0, 9.0, 8.0);
+  scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+  ExpectWithin(Both(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
+               "tables between nodes, within four degrees of the sun");
+  const SunPosition sun = ApparentSunAt(scene.place, now);
+  const std::shared_ptr<const SolvedAir> air = SolveAir(scene.medium, AirSolution::kDraft);
+  const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).key.irradiance[1]} /
+                      double{SunAsKey(sun, scene.medium).irradiance[1]};
+  const double covered = CoveredLight(scene.place, now);
+  EXPECT_NEAR(covered, 0.9, 0.02);
+  EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";
+}
+
+// A bright moon 13 to 16 degrees up behind the eye, the sun before it 6.8, 8.4 and 10 degrees down: at
+// last the sun is the lesser of the two.
+TEST_F(SkyPainterTest, WhereSunAndMoonBothCountTheRangeIsLitByBoth) {
+  const ParityView moonlit = ViewNamed("night, moon");
+  Both both(moonlit.scene, ParseInstant("2026-12-23T16:35:00Z"));
+  const auto at = [](const char* utc) {
+    return ParityView{"", RangeScene({200.0, true}, 250.0, 0.0), ParseInstant(utc)};
+  };
+  const char* why = "the lesser light has no shadows, and its air before land is a mean";
+  ExpectWithin(both.Difference(at("2026-12-23T16:25:00Z")), {0.011, 0.11}, why);
+  ExpectWithin(both.Difference(at("2026-12-23T16:35:00Z")), {0.012, 0.093}, why);
+  ExpectWithin(both.Difference(at("2026-12-23T16:45:00Z")), {0.12, 1.2}, why);
 }
 
 // Hard case 5.

@@ -104,8 +104,9 @@ TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
 TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 2000.0);
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
-  const auto before = StarLightsOver(place, {61058, 73800.0}, colour, 1.5);
-  const auto now = StarLightsOver(place, {61058, 73830.0}, colour, 1.5);
+  const BentView view(MediumPreset("earth"), place.height_m);
+  const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 1.5);
+  const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 1.5);
   const glm::dmat3 turn = TurnOfSky(place.latitude_rad, 30.0);
   ASSERT_EQ(before.size(), now.size());
   int seen = 0;

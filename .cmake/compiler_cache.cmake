@@ -1,0 +1,16 @@
+# Compiles through ccache where it is installed: a second folder, or a second preset's first build after a
+# change, takes what has been compiled before. -DCMAKE_CXX_COMPILER_LAUNCHER= of one's own wins.
+option(ALPENGLOW_CCACHE "Compile through ccache where it is installed" ON)
+find_program(ALPENGLOW_CCACHE_PROGRAM ccache)
+mark_as_advanced(ALPENGLOW_CCACHE_PROGRAM)
+if(ALPENGLOW_CCACHE AND ALPENGLOW_CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  # Paths of the tree count from its top, so that its place does not matter; precompiled headers need the
+  # sloppiness that ccache's manual names for them ("Precompiled headers").
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+    ${ALPENGLOW_CCACHE_PROGRAM})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    string(PREPEND CMAKE_CXX_FLAGS "-fpch-preprocess ")
+  endif()
+endif()
