@@ -70,9 +70,11 @@ struct Grid {
   }
 };
 
-std::vector<Grid> GridsBySize() {
+/// The grids to try, of the degrees that the finest solution has.
+std::vector<Grid> GridsBySize(int finest_degree) {
   std::vector<Grid> grids;
   for (const int degree : kDegrees) {
+    if (degree > finest_degree) continue;
     for (const int altitudes : kAltitudes) {
       for (const int sun_angles : kSunAngles) grids.push_back({altitudes, sun_angles, degree});
     }
@@ -166,7 +168,7 @@ TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, do
   const DiffuseLight finest = *tables.multiple_scattering;
   TableLookup lookup(std::move(tables));
   Verdict best;
-  for (const Grid& grid : GridsBySize()) {
+  for (const Grid& grid : GridsBySize(finest.options().degree)) {
     ThrowIfInterrupted();
     lookup.ReplaceMultipleScattering(
         Resampled(finest, grid.altitudes, grid.sun_angles, grid.degree));
@@ -206,6 +208,7 @@ void RemoveOld(const fs::path& file) {
 }  // namespace
 
 DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles, int degree) {
+  ALPENGLOW_ENSURE(degree, <=, light.options().degree);
   const std::size_t moments = MomentCount(degree);
   const auto share = [](int i, int n) { return static_cast<double>(i) / (n - 1); };
   SolvedOrders solved{{}, light.orders(), light.converged()};

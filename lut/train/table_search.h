@@ -46,6 +46,7 @@ struct TableChoice {
 [[nodiscard]] TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search);
 
 /// A table with fewer nodes and moments than the solution it is taken from.
+/// @param degree  at most the degree of `light`; InternalError otherwise.
 [[nodiscard]] DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles,
                                      int degree);
 

@@ -44,6 +44,18 @@ TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
   }
 }
 
+TEST(TableSearch, ResamplingRefusesADegreeThatTheLightLacks) {
+  EXPECT_THROW(static_cast<void>(Resampled(Small(), 5, 7, 4)), InternalError) << "it has degree 3";
+}
+
+TEST(TableSearch, ChoosesNoDegreeThatTheFinestLightLacks) {
+  const TableChoice choice = ChooseTables(
+      Small(), {.max_error = 0.5, .views_of_a_kind = 4, .path_traced_views_of_a_kind = 0});
+  EXPECT_LE(choice.tables.multiple_scattering->options().degree, Small().options().degree);
+  for (const float value : choice.tables.multiple_scattering->values())
+    ASSERT_TRUE(std::isfinite(value));
+}
+
 TEST(TableSearch, AnErrorThatNothingReachesIsRefusedWithWhatIsBest) {
   if (kSanitized) GTEST_SKIP() << kTooSlow;
   try {

@@ -14,3 +14,12 @@ if(ALPENGLOW_CCACHE AND ALPENGLOW_CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPI
     string(PREPEND CMAKE_CXX_FLAGS "-fpch-preprocess ")
   endif()
 endif()
+
+# Links with mold where it is installed: GNU ld takes seconds for each of the test programs.
+option(ALPENGLOW_MOLD "Link with mold where it is installed" ON)
+find_program(ALPENGLOW_MOLD_PROGRAM mold)
+mark_as_advanced(ALPENGLOW_MOLD_PROGRAM)
+if(ALPENGLOW_MOLD AND ALPENGLOW_MOLD_PROGRAM AND
+   (NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12.1))
+  add_link_options(-fuse-ld=mold)
+endif()
