@@ -1,24 +1,41 @@
-# Writes OUTPUT, a C++ file that holds the text of INPUT as alpenglow::embedded::SYMBOL.
-# The text is cut into pieces because compilers limit the length of one literal.
-file(READ "${INPUT}" text)
-set(body "")
+# Writes OUTPUT, a C++ file that holds the text of each of FILES (paths from the folder SOURCE, separated by
+# semicolons) and alpenglow::FOLDER::EmbeddedText, which finds a text by its path. A text is cut into pieces
+# because compilers limit the length of one literal.
 set(chunk 8000)
-string(LENGTH "${text}" length)
-set(at 0)
-while(at LESS length)
-  string(SUBSTRING "${text}" ${at} ${chunk} piece)
-  string(APPEND body "R\"ALPENGLOW(${piece})ALPENGLOW\"\n")
-  math(EXPR at "${at} + ${chunk}")
-endwhile()
-if(body STREQUAL "")
-  set(body "\"\"")
-endif()
+set(rows "")
+foreach(name IN LISTS FILES)
+  file(READ "${SOURCE}/${name}" text)
+  set(body "")
+  string(LENGTH "${text}" length)
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${text}" ${at} ${chunk} piece)
+    string(APPEND body "R\"ALPENGLOW(${piece})ALPENGLOW\"\n")
+    math(EXPR at "${at} + ${chunk}")
+  endwhile()
+  if(body STREQUAL "")
+    set(body "\"\"")
+  endif()
+  string(APPEND rows "    {\"${name}\",\n${body}},\n")
+endforeach()
 file(WRITE "${OUTPUT}"
-"// ${NAME}
+"// Written by alpenglow_embed.
+#include \"${FOLDER}/embedded_text.h\"
+
+#include <string>
 #include <string_view>
-namespace alpenglow::embedded {
-extern const std::string_view ${SYMBOL};
-const std::string_view ${SYMBOL} =
-${body};
+#include <utility>
+
+#include \"atmosphere/text/error.h\"
+
+namespace alpenglow::${FOLDER} {
+std::string_view EmbeddedText(std::string_view name) {
+  static constexpr std::pair<std::string_view, std::string_view> rows[] = {
+${rows}  };
+  for (const auto& [key, text] : rows) {
+    if (key == name) return text;
+  }
+  throw InternalError(\"no embedded text \" + std::string(name));
 }
+}  // namespace alpenglow::${FOLDER}
 ")

@@ -33,20 +33,13 @@ function(alpenglow_library folder)
 endfunction()
 
 # alpenglow_install_headers(<folder> a/b.h ...): strangers include <alpenglow/folder/a/b.h>, so the
-# includes inside installed headers, "folder/a/b.h" in this tree, get that prefix.
+# includes inside installed headers, "folder/a/b.h" in this tree, get that prefix when they are installed.
 function(alpenglow_install_headers folder)
-  foreach(header ${ARGN})
-    get_filename_component(room ${header} DIRECTORY)
-    set(installed ${CMAKE_CURRENT_BINARY_DIR}/installed/${header})
-    add_custom_command(OUTPUT ${installed}
-      COMMAND ${CMAKE_COMMAND} -DINPUT=${CMAKE_CURRENT_SOURCE_DIR}/${header} -DOUTPUT=${installed}
-              -P ${PROJECT_SOURCE_DIR}/.cmake/installed_header.cmake
-      DEPENDS ${header} ${PROJECT_SOURCE_DIR}/.cmake/installed_header.cmake
-      VERBATIM)
-    list(APPEND all ${installed})
-    install(FILES ${installed} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder}/${room})
-  endforeach()
-  add_custom_target(alpenglow_${folder}_headers ALL DEPENDS ${all})
+  list(JOIN ARGN ";" headers)
+  install(CODE "set(source \"${CMAKE_CURRENT_SOURCE_DIR}\")
+set(destination \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder}\")
+set(headers \"${headers}\")
+include(\"${PROJECT_SOURCE_DIR}/.cmake/install_headers.cmake\")")
 endfunction()
 
 # The instruction sets that kernels are compiled for (atmosphere/dialect/instruction_set.h), and their options.
@@ -106,28 +99,24 @@ function(alpenglow_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# alpenglow_embed(<target> <files>...): the text of each file becomes a string in the library.
-# "data/cie.csv" of folder atmosphere is EmbeddedText("atmosphere/data/cie.csv") of
+# alpenglow_embed(<target> <files>...): the text of each file becomes a string in the library, all in one
+# generated source. "data/cie.csv" of folder atmosphere is EmbeddedText("atmosphere/data/cie.csv") of
 # "atmosphere/embedded_text.h", which the build writes.
 function(alpenglow_embed target)
-  set(pieces)
+  set(names)
   foreach(file ${ARGN})
-    get_filename_component(path ${file} ABSOLUTE)
-    file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${path})
-    string(MAKE_C_IDENTIFIER ${name} symbol)
-    set(output ${CMAKE_CURRENT_BINARY_DIR}/${symbol}.embedded.cpp)
-    add_custom_command(
-      OUTPUT ${output}
-      COMMAND ${CMAKE_COMMAND} -DINPUT=${path} -DOUTPUT=${output} -DNAME=${name} -DSYMBOL=${symbol}
-              -P ${PROJECT_SOURCE_DIR}/.cmake/embed.cmake
-      DEPENDS ${path} ${PROJECT_SOURCE_DIR}/.cmake/embed.cmake
-      VERBATIM)
-    list(APPEND pieces ${output})
-    set(declarations "${declarations}extern const std::string_view ${symbol};\n")
-    set(rows "${rows}    {\"${name}\", &${symbol}},\n")
+    file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    list(APPEND names ${name})
   endforeach()
   string(REPLACE alpenglow_ "" folder ${target})
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp)
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${names}" -DSOURCE=${PROJECT_SOURCE_DIR} -DOUTPUT=${output}
+            -DFOLDER=${folder} -P ${PROJECT_SOURCE_DIR}/.cmake/embed.cmake
+    DEPENDS ${ARGN} ${PROJECT_SOURCE_DIR}/.cmake/embed.cmake
+    VERBATIM)
   file(CONFIGURE OUTPUT ${generated}/${folder}/embedded_text.h @ONLY CONTENT
 "// Written by alpenglow_embed: files of folder @folder@ that travel inside its library.
 #pragma once
@@ -138,28 +127,8 @@ namespace alpenglow::@folder@ {
 std::string_view EmbeddedText(std::string_view name);
 }  // namespace alpenglow::@folder@
 ")
-  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp @ONLY CONTENT
-"// Written by alpenglow_embed.
-#include \"@folder@/embedded_text.h\"
-#include <string>
-#include <utility>
-#include \"atmosphere/text/error.h\"
-namespace alpenglow::embedded {
-@declarations@}
-namespace alpenglow::@folder@ {
-std::string_view EmbeddedText(std::string_view name) {
-  using namespace alpenglow::embedded;
-  static const std::pair<std::string_view, const std::string_view*> rows[] = {
-@rows@  };
-  for (const auto& [key, text] : rows) {
-    if (key == name) return *text;
-  }
-  throw InternalError(\"no embedded text \" + std::string(name));
-}
-}  // namespace alpenglow::@folder@
-")
-  target_sources(${target} PRIVATE ${pieces} ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp)
-  set_source_files_properties(${pieces} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  target_sources(${target} PRIVATE ${output})
+  set_source_files_properties(${output} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 

@@ -90,7 +90,7 @@ TEST(Airlight, SixteenSamplesAreGoodToOneInAThousandInHeightFog) {
 }
 
 TEST(Airlight, StoredCasesWithinOneInAThousandBySixteenSamples) {
-  if (!stored::Available()) GTEST_SKIP() << "the stored cases are not there";
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   for (const stored::LampCase& work : stored::LampCases()) {
     const double value = Airlight(work.air, work.lamp, work.segment)[0];
     EXPECT_NEAR(value, work.radiance, 1e-3 * work.radiance) << work.id;
@@ -98,7 +98,7 @@ TEST(Airlight, StoredCasesWithinOneInAThousandBySixteenSamples) {
 }
 
 TEST(Airlight, StoredCasesOnTheRayAndOffIt) {
-  if (!stored::Available()) GTEST_SKIP() << "the stored cases are not there";
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   int checked = 0;
   for (const stored::LampCase& work : stored::LampCases()) {
     const double value = Airlight(work.air, work.lamp, work.segment, 64)[0];
@@ -109,7 +109,7 @@ TEST(Airlight, StoredCasesOnTheRayAndOffIt) {
 }
 
 TEST(AirlightJudge, AgreesWithTheStoredCases) {
-  if (!stored::Available()) GTEST_SKIP() << "the stored cases are not there";
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   for (const stored::LampCase& work : stored::LampCases()) {
     const judge::LampLight found = judge::AirlightAlong(work.air, work.lamp, work.segment);
     EXPECT_NEAR(found.radiance[0], work.radiance, 1e-9 * work.radiance) << work.id;

@@ -84,7 +84,7 @@ double RatioToTable(const Daylight& daylight, double apparent_deg) {
 
 TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
   const std::map<double, double> standard = Table("ussa76_profile.csv", 0, 6);
-  if (standard.empty()) GTEST_SKIP() << "shared/tables is absent";
+  if (standard.empty()) GTEST_SKIP() << "../shared/tables is not here";
   const Medium medium = MediumPreset("earth");
   double column_m = 0.0, last_km = 0.0, last_density = 1.0;
   for (const auto& [altitude_km, density] : standard) {
@@ -102,7 +102,7 @@ TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
 
 // Hard case 22.
 TEST(Twilight, IsAsBrightAsPublished) {
-  if (PublishedLux().empty()) GTEST_SKIP() << "shared/tables is absent";
+  if (PublishedLux().empty()) GTEST_SKIP() << "../shared/tables is not here";
   const Daylight daylight(MediumPreset("earth", WavelengthSet(8)));
   for (const double apparent_deg : {0.0, -3.0, -6.0, -9.0, -12.0}) {
     const double ratio = RatioToTable(daylight, apparent_deg);
@@ -113,7 +113,7 @@ TEST(Twilight, IsAsBrightAsPublished) {
 }
 
 TEST(Twilight, OfOneExponentialOfEightKilometresIsTooBrightForItsAirIsTooDenseHighUp) {
-  if (PublishedLux().empty()) GTEST_SKIP() << "shared/tables is absent";
+  if (PublishedLux().empty()) GTEST_SKIP() << "../shared/tables is not here";
   const double height_m = 8000.0;
   const double too_dense = std::exp(-40e3 / height_m) / DensityAt40Km();
   EXPECT_NEAR(too_dense, 2.1, 0.1) << "the reason: molecules at 40 km, times too many";

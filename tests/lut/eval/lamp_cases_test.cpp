@@ -74,12 +74,12 @@ void ExpectStored(const std::map<std::string, Estimate>& found, double tolerance
 }
 
 TEST_F(LampCases, StoredCasesWithinOneInAThousandBySixteenSamples) {
-  if (!stored::Available()) GTEST_SKIP() << "the stored cases are not there";
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   ExpectStored(Evaluate(StoredAsCases(), {}), 1e-3);
 }
 
 TEST_F(LampCases, StoredCasesAreAsNearAsIsAskedFor) {
-  if (!stored::Available()) GTEST_SKIP() << "the stored cases are not there";
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   for (const double error : {1e-3, 1e-4, 1e-5, 1e-8}) {
     ExpectStored(Evaluate(StoredAsCases(), {.max_error = error}), error);
   }
