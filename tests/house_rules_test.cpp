@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -43,7 +42,7 @@ TEST(HouseRules, EveryFileThatBeginsWithAnInterpreterCanBeRun) {
 
 // fmt::print throws where standard error takes nothing, which would end the work.
 TEST(HouseRules, ProgramsSpeakThroughMessagesAlone) {
-  static const std::regex speech(R"(fmt::print|std::cerr|std::cout <<|printf\()");
+  constexpr const char* kSpeech[] = {"fmt::print", "std::cerr", "std::cout <<", "printf("};
   int files = 0;
   for (const char* folder : {"atmosphere", "lut", "renderer", "viewer"}) {
     for (const auto& entry :
@@ -53,7 +52,8 @@ TEST(HouseRules, ProgramsSpeakThroughMessagesAlone) {
       ++files;
       std::ifstream stream(entry.path());
       const std::string text{std::istreambuf_iterator<char>(stream), {}};
-      EXPECT_FALSE(std::regex_search(text, speech)) << entry.path();
+      for (const char* speech : kSpeech)
+        EXPECT_EQ(text.find(speech), std::string::npos) << entry.path() << ": " << speech;
     }
   }
   EXPECT_GT(files, 100) << "the test must have looked at the sources";

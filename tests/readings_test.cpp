@@ -2,6 +2,9 @@
 // The readings of the shared texts in C++: float, the twin of the graphics card, against double.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "atmosphere/ray/shell.h"
 #include "tests/fixtures/shared_text_cases.h"
 
 namespace alpenglow {
@@ -31,7 +34,7 @@ TEST(Readings, TheNaiveFormulaOfTheAltitudeFails) {
                                     [](const tests::Arguments<float>& a) {
                                       return std::sqrt((a[2] + a[0]) * (a[2] + a[0]) - a[2] * a[2]);
                                     },
-                                    tests::grid::Rays(), 0.0};
+                                    tests::HardRays(), 0.0};
   for (const auto& a : naive.points) {
     const double exact = shared::HorizonDistance<double>(static_cast<double>(a[0]), 6371.0);
     const double error = std::abs(static_cast<double>(naive.in_float(a)) - exact);
