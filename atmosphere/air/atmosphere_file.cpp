@@ -394,10 +394,11 @@ class AtmosphereFile {
     const Range range = key == "alpha" ? Range{0.0, 100.0} : Range{-1.0, 1.0};
     Values values = *mie_->Numbers(key, range.low, range.high);
     const std::size_t count = medium.wavelengths_nm.size();
-    if (values.size() == 1) values.resize(phases.size(), values.front());
-    if (values.size() != phases.size()) {
+    if (values.size() == 1) {
+      values.resize(phases.size(), values.front());
+    } else {
       ReadList(*mie_, key, range, values, count);
-      phases.resize(count, phases.front());
+      if (phases.size() != count) phases.resize(count, phases.front());
     }
     for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
   }

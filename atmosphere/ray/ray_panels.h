@@ -25,7 +25,7 @@ struct RayPanel {
 };
 
 struct RayPanels {
-  static constexpr std::size_t kMost = 17;
+  static constexpr std::size_t kMost = kMaxRayPanels;
   std::array<RayPanel, kMost> panel;
   std::size_t count = 0;
 };

@@ -6,15 +6,18 @@
 #include <array>
 #include <cstddef>
 
+#include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/ray.h"
 
 namespace alpenglow {
 
 inline constexpr std::size_t kMaxBands = 40;
-/// Sixteen panels (a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee
-/// and the planet's shadow) of 32 nodes, 64 more at the perigee and at the shadow's edges, and room
-/// for the last SIMD lanes.
-inline constexpr std::size_t kMaxRaySamples = 592;
+/// Panels of a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee, both
+/// edges of the planet's shadow and both ends.
+inline constexpr std::size_t kMaxRayPanels = 17;
+/// Every panel with the most nodes, and room for the last SIMD lanes.
+inline constexpr std::size_t kMaxRaySamples =
+    kMaxRayPanels * static_cast<std::size_t>(kMaxGaussNodes) + 16;
 
 /// One value a wavelength.
 template <typename Real>

@@ -25,10 +25,17 @@ std::uint8_t AirStep(double depth) {
   return static_cast<std::uint8_t>(std::lround(std::min(step, 255.0)));
 }
 
-double ExtinctionOfFirstBand(const Medium& medium, double altitude_m) {
-  return medium.rayleigh_scattering_per_m.front() *
-             std::exp(-altitude_m / medium.rayleigh_scale_height_m) +
-         medium.mie_extinction_per_m.front() * std::exp(-altitude_m / medium.mie_scale_height_m);
+/// Extinction [1/m] in the band by whose optical depth the air between slopes is kept: the first
+/// that the air dims at all. 0 in air that dims none.
+double ReferenceExtinction(const Medium& medium, double altitude_m) {
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    const double rayleigh = medium.rayleigh_scattering_per_m[band];
+    const double mie = medium.mie_extinction_per_m[band];
+    if (rayleigh + mie == 0.0) continue;
+    return rayleigh * std::exp(-altitude_m / medium.rayleigh_scale_height_m) +
+           mie * std::exp(-altitude_m / medium.mie_scale_height_m);
+  }
+  return 0.0;
 }
 
 glm::dvec3 NormalAt(const HeightRaster& heights, int column, int row) {
@@ -126,7 +133,7 @@ void SlopeViews::Walk(std::size_t node, std::size_t azimuth, const Medium& mediu
       passed += strips[strip++].weight;
     const Strip& kept = strips[strip];
     const double middle_m = std::max(0.5 * (from.point.z + places_[kept.node].point.z), 0.0);
-    const std::uint8_t air = AirStep(kept.distance_m * ExtinctionOfFirstBand(medium, middle_m));
+    const std::uint8_t air = AirStep(kept.distance_m * ReferenceExtinction(medium, middle_m));
     seen_[(node * kHorizonAzimuths + azimuth) * kStrips + k] =
         kept.node | (static_cast<std::uint32_t>(air) << 24);
   }
@@ -158,13 +165,14 @@ SlopeLight::SlopeLight(const SlopeViews& views, const Medium& medium, const Outg
       stride_((bands_ + 3) / 4 * 4),
       light_(views.places().size() * kHorizonAzimuths * stride_, 0.0F) {
   std::vector<float> through(256 * stride_, 0.0F);
+  const double reference = ReferenceExtinction(medium, 0.0);
   for (std::size_t step = 0; step < 256; ++step) {
-    const double depth =
-        SlopeViews::AirDepth(static_cast<std::uint8_t>(step)) / ExtinctionOfFirstBand(medium, 0.0);
+    const double depth = SlopeViews::AirDepth(static_cast<std::uint8_t>(step));
+    const double length_m = reference > 0.0 ? depth / reference : 0.0;
     for (std::size_t band = 0; band < bands_; ++band) {
       const double extinction =
           medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band];
-      through[step * stride_ + band] = static_cast<float>(std::exp(-depth * extinction));
+      through[step * stride_ + band] = static_cast<float>(std::exp(-length_m * extinction));
     }
   }
   std::vector<float> air(kHorizonAzimuths * stride_, 0.0F);

@@ -209,8 +209,10 @@ std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, E
   const auto span = [](double place, int count) {
     const double nearest = std::round(place);
     const double snapped = std::abs(place - nearest) < 1e-2 ? nearest : place;
-    const double low = std::clamp(std::floor(snapped), 0.0, count - 1.0);
-    return Span{static_cast<int>(low), std::clamp(snapped - low, 0.0, 1.0)};
+    // The lattice may reach past the grid by the part of a sample that counts as on the lattice.
+    const double inside = std::clamp(snapped, 0.0, count - 1.0);
+    const double low = std::floor(inside);
+    return Span{static_cast<int>(low), inside - low};
   };
   std::vector<float> heights;
   heights.reserve(static_cast<std::size_t>(columns.count()) *
