@@ -91,6 +91,10 @@ int BladesOf(const TomlTable& table) {
   return static_cast<int>(blades);
 }
 
+/// The smallest f-number that is accepted. Lenses in air end at 0.5 (the sine condition); a fifth of
+/// that leaves room for effects.
+constexpr double kWidestLens = 0.1;
+
 std::optional<ThinLens> LensOf(const TomlTable& table) {
   const double f_number = table.Number("f_number", 0.0, 1000.0).value_or(0.0);
   const std::optional<double> focal_length_mm = table.Number("focal_length_mm", 0.1, 10000.0);
@@ -98,6 +102,10 @@ std::optional<ThinLens> LensOf(const TomlTable& table) {
   const int blades = BladesOf(table);
   const double rotation = table.Number("blade_rotation", -360.0, 360.0).value_or(0.0);
   if (f_number == 0.0) return std::nullopt;
+  if (f_number < kWidestLens) {
+    table.Fail("f_number", fmt::format("{} is {}; it must be 0, a pinhole, or from {} to 1000",
+                                       table.FullName("f_number"), f_number, kWidestLens));
+  }
   for (const auto& [key, value] :
        {std::pair{"focal_length_mm", focal_length_mm}, std::pair{"focus_m", focus_m}}) {
     if (!value) {

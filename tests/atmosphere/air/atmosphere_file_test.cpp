@@ -73,6 +73,28 @@ TEST(AtmosphereFile, AscendingAndDescendingFilesGiveTheSameMedium) {
   EXPECT_EQ(descending.ground_albedo, (std::vector<double>{0.1, 0.2}));
 }
 
+TEST(AtmosphereFile, EveryPhaseParameterOfADescendingFileIsReversed) {
+  const std::string spectrum = "preset = \"earth\"\n[spectrum]\nwavelengths_nm = ";
+  const std::string phase = "[mie]\nphase = \"double-henyey-greenstein\"\n";
+  const Medium ascending = Read(spectrum + "[450, 550, 650]\n" + phase +
+                                "g = [0.9, 0.8, 0.7]\ng_back = [-0.1, -0.2, -0.3]\n"
+                                "back_weight = [0.1, 0.2, 0.3]\n");
+  const Medium descending = Read(spectrum + "[650, 550, 450]\n" + phase +
+                                 "g = [0.7, 0.8, 0.9]\ng_back = [-0.3, -0.2, -0.1]\n"
+                                 "back_weight = [0.3, 0.2, 0.1]\n");
+  EXPECT_EQ(ascending, descending);
+  EXPECT_EQ(MediumHash(ascending), MediumHash(descending));
+  EXPECT_EQ(descending.mie_phase.front().g_back, -0.1) << "at 450 nm";
+}
+
+TEST(AtmosphereFile, ADescendingListMayBeTheOnlyOneOfAPhaseFunction) {
+  const auto with = [&](const char* wavelengths, const char* alpha) {
+    return Read(std::string("[spectrum]\nwavelengths_nm = ") + wavelengths +
+                "\n[mie]\nphase = \"draine\"\ng = 0.5\nalpha = " + alpha + "\n");
+  };
+  EXPECT_EQ(with("[450, 550, 650]", "[0.1, 0.2, 0.3]"), with("[650, 550, 450]", "[0.3, 0.2, 0.1]"));
+}
+
 TEST(AtmosphereFile, WhatIsNotGivenIsThePresets) {
   const Medium medium = Read("preset = \"hazy\"\n[mie]\nscale_height_m = 2000\n");
   Medium expected = MediumPreset("hazy");

@@ -126,6 +126,30 @@ TEST(SingleScattering, SamplingForAnErrorKeepsIt) {
   EXPECT_THROW(static_cast<void>(SamplingForError(-1.0)), InputError);
 }
 
+// Rays through twilight have up to 912 samples where ozone is a tent and samples in shadow count.
+TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const AirIntegrator<double> air(medium);
+  const Sampling finest{.nodes = 32, .split_ozone = true, .dark_samples = true};
+  std::size_t most = 0;
+  for (const double altitude_m : {10.0, 12e3, 30e3, 59e3, 400e3}) {
+    const double ratio = medium.planet_radius_m / (medium.planet_radius_m + altitude_m);
+    const double horizon = -std::sqrt(1.0 - ratio * ratio);
+    for (int i = 0; i < 40; ++i) {
+      const double mu = horizon + 0.05 * std::pow((i + 0.5) / 40.0, 3.0);
+      for (const double mu_s : {-0.3, -0.2, -0.15, -0.1, -0.07, -0.04, -0.01}) {
+        for (const double side : {-1.0, -0.7, 0.7, 1.0}) {
+          const double nu = mu * mu_s + side * std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s));
+          const auto samples = air.Sample({altitude_m, mu, mu_s, nu}, finest);
+          most = std::max(most, samples.count);
+        }
+      }
+    }
+  }
+  EXPECT_GT(most, 592U) << "the rays must be those that need the room";
+  EXPECT_LE(most, kMaxRaySamples - 16);
+}
+
 // What ErrorOfRegime takes for the truth is right.
 TEST(SingleScattering, SixtyFourSamplesAreTheJudgeInEveryRegime) {
   const Medium medium = MediumPreset("hazy");

@@ -264,6 +264,39 @@ TEST(TerrainLight, IsThatOfRaysThatMeetSkyAndSlopes) {
   }
 }
 
+// Light between slopes has 0/0 for the depth of such air when it is divided by its extinction.
+TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
+  Medium medium = TheAir().medium;
+  for (std::vector<double>* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                                    &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
+    std::fill(list->begin(), list->end(), 0.0);
+  const AirIntegrator<float> air(medium);
+  const DiffuseLight diffuse(medium, {.altitudes = 4, .sun_angles = 8, .degree = 2});
+  const Terrain terrain(LandMesh(RoughLand, 17, 480.0));
+  const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), medium);
+  const glm::dvec3 to_sun = SunAtElevation(30.0);
+  TerrainLight light(horizons, air, diffuse, to_sun);
+  const auto one = [&](const SlopePlace&) {
+    BandLight sent(air.bands());
+    std::fill_n(sent.value.begin(), sent.count, 1.0F);
+    return sent;
+  };
+  light.AddSlopes(medium, one, to_sun.z);
+  float most = 0.0F;
+  for (int i = 0; i < 16; ++i) {
+    const auto hit =
+        terrain.Intersect({450.0 * (i - 8), 170.0 * (i - 8), 9000.0}, {0.0, 0.0, -1.0});
+    if (!hit) continue;
+    const BandLight irradiance =
+        light.Irradiance({hit->smooth_point, hit->normal, kUp, hit->smooth_point.z, to_sun.z});
+    for (std::size_t band = 0; band < irradiance.count; ++band) {
+      ASSERT_TRUE(std::isfinite(irradiance[band])) << i;
+      most = std::max(most, irradiance[band]);
+    }
+  }
+  EXPECT_GT(most, 0.0F) << "slopes must have been in view";
+}
+
 TEST(TerrainLight, IsTheSameForAnyNumberOfThreads) {
   std::vector<float> made;
   for (const std::size_t threads : {1U, 2U, 8U}) {

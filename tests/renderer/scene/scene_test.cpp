@@ -371,6 +371,8 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[camera]\nf_number = 2\n", "camera.focal_length_mm is missing"},
       {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 0.05\n", "beyond the"},
       {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
+      {kPlace + "[camera]\nf_number = 1e-300\nfocal_length_mm = 50\nfocus_m = 5\n",
+       "camera.f_number is 1e-300; it must be 0, a pinhole, or from 0.1 to 1000"},
       {kPlace + "[camera]\nblades = 2\n", "camera.blades is 2"},
       {kPlace + "[camera]\npolariser_deg = 200\n", "camera.polariser_deg is 200"},
       {kPlace + "[camera]\nshutter_s = -1\n", "camera.shutter_s is -1"},

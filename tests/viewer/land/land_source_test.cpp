@@ -41,6 +41,47 @@ TEST(LandSourceRange, TheExtentOfTheRangeIsThatOfTheRange) {
   }
 }
 
+/// A tile that rises eastwards from 100 m to 2100 m.
+void WriteRisingTile(const std::filesystem::path& file, double west_deg, double north_deg,
+                     double step_lon_deg, double step_lat_deg, int columns, int rows) {
+  GDALRegister_GTiff();
+  GDALDataset* const dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      file.c_str(), columns, rows, 1, GDT_Float32, nullptr);
+  std::array<double, 6> corner{west_deg - 0.5 * step_lon_deg,  step_lon_deg, 0.0,
+                               north_deg + 0.5 * step_lat_deg, 0.0,          -step_lat_deg};
+  dataset->SetGeoTransform(corner.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  dataset->SetSpatialRef(&crs);
+  std::vector<float> heights;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      heights.push_back(100.0F +
+                        2000.0F * static_cast<float>(column) / static_cast<float>(columns - 1));
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, heights.data(),
+                                                columns, rows, GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+}
+
+// Near the poles tiles are narrower than others: the last sample of the lattice may lie past the
+// last one of the tile, by less than a hundredth of a step of the lattice.
+TEST_F(LandSourceFiles, ATileOfAnotherAspectKeepsTheHeightOfItsRim) {
+  constexpr double kSecond_deg = 1.0 / 3600.0;
+  const double west_deg = 8.0 + 0.992 * 10.0 * kSecond_deg;
+  WriteRisingTile(folder_ / "a.tif", 8.0, 47.0, 10.0 * kSecond_deg, kSecond_deg, 37, 361);
+  WriteRisingTile(folder_ / "b.tif", west_deg, 46.5, 3.0 * kSecond_deg, 3.0 * kSecond_deg, 21, 21);
+  LandSource source;
+  source.files = {folder_ / "a.tif", folder_ / "b.tif"};
+  const LandTiles tiles(source);
+  const ReadTile tile = ReadLandTile(tiles, 1, 0);
+  const LatticeBox& box = tiles.tiles()[1].box;
+  for (int row = box.first_row; row <= box.last_row; ++row) {
+    EXPECT_EQ(tile.heights->At(0, box.first_column, row), 100.0F) << row;
+    EXPECT_EQ(tile.heights->At(0, box.last_column, row), 2100.0F) << row;
+  }
+}
+
 TEST_F(LandSourceFiles, EverySampleOfATileIsASampleOfTheLattice) {
   WriteTiles(2);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
