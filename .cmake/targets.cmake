@@ -51,10 +51,11 @@ endfunction()
 
 # The instruction sets that kernels are compiled for (atmosphere/dialect/instruction_set.h), and their options.
 # Multiplication and addition may fuse where the processor has one instruction for both.
-set(ALPENGLOW_INSTRUCTION_SETS Baseline)
-if(ALPENGLOW_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+set(ALPENGLOW_INSTRUCTION_SETS Scalar Baseline)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   list(APPEND ALPENGLOW_INSTRUCTION_SETS Avx2 Avx512)
 endif()
+set(ALPENGLOW_OPTIONS_Scalar)
 set(ALPENGLOW_OPTIONS_Baseline)
 set(ALPENGLOW_OPTIONS_Avx2 -mavx2 -mfma -ffp-contract=fast)
 set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
@@ -66,13 +67,12 @@ set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
 # puts the objects into the library. Optimised in every configuration: without inlining their symbols
 # would leak.
 function(alpenglow_kernels target)
-  set(simd $<$<BOOL:${ALPENGLOW_SIMD}>:ALPENGLOW_SIMD>)
   set(sets)
   if("Avx2" IN_LIST ALPENGLOW_INSTRUCTION_SETS)
     set(sets ALPENGLOW_X86_KERNELS)
   endif()
   # The choice is made in a header, so all who include it must see the same sets.
-  target_compile_definitions(${target} PRIVATE ${simd} PUBLIC ${sets})
+  target_compile_definitions(${target} PUBLIC ${sets})
   foreach(source ${ARGN})
     get_filename_component(name ${source} NAME_WE)
     foreach(set ${ALPENGLOW_INSTRUCTION_SETS})
@@ -81,8 +81,8 @@ function(alpenglow_kernels target)
       target_compile_features(${objects} PRIVATE cxx_std_20)
       target_include_directories(${objects} PRIVATE
         $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
-      target_compile_definitions(${objects} PRIVATE ${simd} ${sets}
-        ALPENGLOW_KERNEL_SET=k${set})
+      target_compile_definitions(${objects} PRIVATE ${sets} ALPENGLOW_KERNEL_SET=k${set}
+        $<$<NOT:$<STREQUAL:${set},Scalar>>:ALPENGLOW_BATCHES>)
       target_compile_options(${objects} PRIVATE
         $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
         $<$<CONFIG:Debug,Sanitize>:-O2> ${ALPENGLOW_OPTIONS_${set}}
