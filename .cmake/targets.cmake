@@ -200,15 +200,31 @@ extern const char* const kSharedFolder = \"${PROJECT_SOURCE_DIR}/../shared\";
   target_sources(${program} PRIVATE ${places})
 endfunction()
 
+# Sets the variable `out` to the filter of GoogleTest that takes all suites of the sources.
+function(alpenglow_suites out)
+  set(filter)
+  foreach(source ${ARGN})
+    file(STRINGS ${source} suites REGEX "^(TEST|TEST_F|TEST_P|RC_GTEST_PROP)\\(")
+    list(TRANSFORM suites REPLACE "^[A-Z_]+\\(([A-Za-z0-9]+),.*" "\\1.*:*/\\1.*")
+    list(APPEND filter ${suites})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES filter)
+  list(JOIN filter ":" filter)
+  set(${out} "${filter}" PARENT_SCOPE)
+endfunction()
+
 # alpenglow_tests(<program> FOLDER f [WHOLE a_test.cpp ...] SOURCES b_test.cpp ... LIBRARIES ...
-# [PROGRAMS skylut ...]): one program of tests, one CTest line a test, named "f.Suite.Test". A source in
-# WHOLE has one line for all its tests, "f.<name of the source>", because they share something costly.
-# PROGRAMS are built before; tests/fixtures/places.h names their paths.
+# [PROGRAMS skylut ...] [SCALAR b_test.cpp ... [BUT Suite.Test ...]]): one program of tests, one CTest line
+# a test, named "f.Suite.Test". A source in WHOLE has one line for all its tests, "f.<name of the source>",
+# because they share something costly. PROGRAMS are built before; tests/fixtures/places.h names their paths.
+# The sources in SCALAR run a second time with scalar kernels, in one line "scalar.<program>", without the
+# tests that BUT names.
 function(alpenglow_tests program)
   if(NOT TARGET alpenglow_test_headers)
     alpenglow_test_headers()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "WHOLE;SOURCES;LIBRARIES;PROGRAMS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "WHOLE;SOURCES;LIBRARIES;PROGRAMS;SCALAR;BUT")
   add_executable(${program} ${arg_WHOLE} ${arg_SOURCES})
   target_link_libraries(${program} PRIVATE
     alpenglow_test_headers ${arg_LIBRARIES} GTest::gtest_main)
@@ -218,17 +234,21 @@ function(alpenglow_tests program)
   set(whole "")
   foreach(source ${arg_WHOLE})
     get_filename_component(name ${source} NAME_WE)
-    file(STRINGS ${source} suites REGEX "^(TEST|TEST_F|TEST_P|RC_GTEST_PROP)\\(")
-    list(TRANSFORM suites REPLACE "^[A-Z_]+\\(([A-Za-z0-9]+),.*" "\\1.*:*/\\1.*")
-    list(REMOVE_DUPLICATES suites)
-    list(JOIN suites ":" filter)
+    alpenglow_suites(filter ${source})
     string(APPEND whole ":${filter}")
     add_test(NAME ${arg_FOLDER}.${name} COMMAND ${program} --gtest_filter=${filter})
     # Long ones start first, so that no processor waits for them in the end.
     set_tests_properties(${arg_FOLDER}.${name} PROPERTIES
       TIMEOUT 900 COST 100 ENVIRONMENT "${cache}")
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
   endforeach()
+  if(arg_SCALAR)
+    alpenglow_suites(filter ${arg_SCALAR})
+    list(JOIN arg_BUT ":" but)
+    add_test(NAME scalar.${program} COMMAND ${program} "--gtest_filter=${filter}:-${but}")
+    set_tests_properties(scalar.${program} PROPERTIES
+      LABELS scalar TIMEOUT 900 COST 100
+      ENVIRONMENT "${cache};ALPENGLOW_INSTRUCTION_SET=scalar")
+  endif()
   gtest_discover_tests(${program} TEST_PREFIX "${arg_FOLDER}." TEST_FILTER "-${whole}"
     DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${cache}")
 endfunction()

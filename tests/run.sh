@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs packages, then builds and runs every test in the presets named as arguments
-# (default: ci, sanitize and scalar; see CMakePresets.json).
+# (default: ci and sanitize; see CMakePresets.json).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bash .ci/install-packages.sh
 presets=("$@")
-[ "${#presets[@]}" -gt 0 ] || presets=(ci sanitize scalar)
+[ "${#presets[@]}" -gt 0 ] || presets=(ci sanitize)
 # Where a library has been loaded late, LeakSanitizer of gcc 12 reads thread-local storage where there
 # is none: what it intercepts is not what this glibc gives it (log_threads=1 shows "DTLS 21 at 0x2ac6").
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:intercept_tls_get_addr=0}
