@@ -44,10 +44,11 @@ endfunction()
 
 # The instruction sets that kernels are compiled for (atmosphere/dialect/instruction_set.h), and their options.
 # Multiplication and addition may fuse where the processor has one instruction for both.
-set(ALPENGLOW_INSTRUCTION_SETS Baseline)
-if(ALPENGLOW_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+set(ALPENGLOW_INSTRUCTION_SETS Scalar Baseline)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   list(APPEND ALPENGLOW_INSTRUCTION_SETS Avx2 Avx512)
 endif()
+set(ALPENGLOW_OPTIONS_Scalar)
 set(ALPENGLOW_OPTIONS_Baseline)
 set(ALPENGLOW_OPTIONS_Avx2 -mavx2 -mfma -ffp-contract=fast)
 set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
@@ -59,13 +60,12 @@ set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
 # puts the objects into the library. Optimised in every configuration: without inlining their symbols
 # would leak.
 function(alpenglow_kernels target)
-  set(simd $<$<BOOL:${ALPENGLOW_SIMD}>:ALPENGLOW_SIMD>)
   set(sets)
   if("Avx2" IN_LIST ALPENGLOW_INSTRUCTION_SETS)
     set(sets ALPENGLOW_X86_KERNELS)
   endif()
   # The choice is made in a header, so all who include it must see the same sets.
-  target_compile_definitions(${target} PRIVATE ${simd} PUBLIC ${sets})
+  target_compile_definitions(${target} PUBLIC ${sets})
   foreach(source ${ARGN})
     get_filename_component(name ${source} NAME_WE)
     foreach(set ${ALPENGLOW_INSTRUCTION_SETS})
@@ -74,8 +74,8 @@ function(alpenglow_kernels target)
       target_compile_features(${objects} PRIVATE cxx_std_20)
       target_include_directories(${objects} PRIVATE
         $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
-      target_compile_definitions(${objects} PRIVATE ${simd} ${sets}
-        ALPENGLOW_KERNEL_SET=k${set})
+      target_compile_definitions(${objects} PRIVATE ${sets} ALPENGLOW_KERNEL_SET=k${set}
+        $<$<NOT:$<STREQUAL:${set},Scalar>>:ALPENGLOW_BATCHES>)
       target_compile_options(${objects} PRIVATE
         $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
         $<$<CONFIG:Debug,Sanitize>:-O2> ${ALPENGLOW_OPTIONS_${set}}
@@ -169,15 +169,31 @@ extern const char* const kSharedFolder = \"${PROJECT_SOURCE_DIR}/../shared\";
   target_sources(${program} PRIVATE ${places})
 endfunction()
 
+# Sets the variable `out` to the filter of GoogleTest that takes all suites of the sources.
+function(alpenglow_suites out)
+  set(filter)
+  foreach(source ${ARGN})
+    file(STRINGS ${source} suites REGEX "^(TEST|TEST_F|TEST_P|RC_GTEST_PROP)\\(")
+    list(TRANSFORM suites REPLACE "^[A-Z_]+\\(([A-Za-z0-9]+),.*" "\\1.*:*/\\1.*")
+    list(APPEND filter ${suites})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES filter)
+  list(JOIN filter ":" filter)
+  set(${out} "${filter}" PARENT_SCOPE)
+endfunction()
+
 # alpenglow_tests(<program> FOLDER f [WHOLE a_test.cpp ...] SOURCES b_test.cpp ... LIBRARIES ...
-# [PROGRAMS skylut ...]): one program of tests, one CTest line a test, named "f.Suite.Test". A source in
-# WHOLE has one line for all its tests, "f.<name of the source>", because they share something costly.
-# PROGRAMS are built before; tests/fixtures/places.h names their paths.
+# [PROGRAMS skylut ...] [SCALAR b_test.cpp ... [BUT Suite.Test ...]]): one program of tests, one CTest line
+# a test, named "f.Suite.Test". A source in WHOLE has one line for all its tests, "f.<name of the source>",
+# because they share something costly. PROGRAMS are built before; tests/fixtures/places.h names their paths.
+# The sources in SCALAR run a second time with scalar kernels, in one line "scalar.<program>", without the
+# tests that BUT names.
 function(alpenglow_tests program)
   if(NOT TARGET alpenglow_test_headers)
     alpenglow_test_headers()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "WHOLE;SOURCES;LIBRARIES;PROGRAMS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "WHOLE;SOURCES;LIBRARIES;PROGRAMS;SCALAR;BUT")
   add_executable(${program} ${arg_WHOLE} ${arg_SOURCES})
   target_link_libraries(${program} PRIVATE
     alpenglow_test_headers ${arg_LIBRARIES} GTest::gtest_main)
@@ -187,17 +203,21 @@ function(alpenglow_tests program)
   set(whole "")
   foreach(source ${arg_WHOLE})
     get_filename_component(name ${source} NAME_WE)
-    file(STRINGS ${source} suites REGEX "^(TEST|TEST_F|TEST_P|RC_GTEST_PROP)\\(")
-    list(TRANSFORM suites REPLACE "^[A-Z_]+\\(([A-Za-z0-9]+),.*" "\\1.*:*/\\1.*")
-    list(REMOVE_DUPLICATES suites)
-    list(JOIN suites ":" filter)
+    alpenglow_suites(filter ${source})
     string(APPEND whole ":${filter}")
     add_test(NAME ${arg_FOLDER}.${name} COMMAND ${program} --gtest_filter=${filter})
     # Long ones start first, so that no processor waits for them in the end.
     set_tests_properties(${arg_FOLDER}.${name} PROPERTIES
       TIMEOUT 900 COST 100 ENVIRONMENT "${cache}")
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
   endforeach()
+  if(arg_SCALAR)
+    alpenglow_suites(filter ${arg_SCALAR})
+    list(JOIN arg_BUT ":" but)
+    add_test(NAME scalar.${program} COMMAND ${program} "--gtest_filter=${filter}:-${but}")
+    set_tests_properties(scalar.${program} PROPERTIES
+      LABELS scalar TIMEOUT 900 COST 100
+      ENVIRONMENT "${cache};ALPENGLOW_INSTRUCTION_SET=scalar")
+  endif()
   gtest_discover_tests(${program} TEST_PREFIX "${arg_FOLDER}." TEST_FILTER "-${whole}"
     DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${cache}")
 endfunction()

@@ -14,7 +14,7 @@ namespace alpenglow {
 namespace {
 
 std::vector<InstructionSet> FindAvailable() {
-  std::vector<InstructionSet> sets{InstructionSet::kBaseline};
+  std::vector<InstructionSet> sets{InstructionSet::kScalar, InstructionSet::kBaseline};
 #ifdef ALPENGLOW_X86_KERNELS
   // The compiler's own test also asks the operating system whether it saves the wide registers.
   __builtin_cpu_init();
@@ -66,17 +66,17 @@ std::string_view NameOf(InstructionSet set) {
       return "avx512";
     case InstructionSet::kAvx2:
       return "avx2";
+    case InstructionSet::kScalar:
+      return "scalar";
     case InstructionSet::kBaseline:
       break;
   }
-#if !defined(ALPENGLOW_SIMD)
-  return "scalar";
-#elif defined(__SSE2__)
+#if defined(__SSE2__)
   return "sse2";
 #elif defined(__ARM_NEON)
   return "neon";
 #else
-  return "scalar";
+  return "baseline";
 #endif
 }
 

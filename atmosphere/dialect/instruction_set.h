@@ -28,11 +28,12 @@
 
 namespace alpenglow {
 
-/// Baseline is what the compiler assumes of every processor: SSE2 on x86-64, NEON on AArch64,
-/// plain numbers elsewhere or when built without ALPENGLOW_SIMD.
-enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
+/// Scalar kernels compute with one number at a time, so that tests can compare the others with them.
+/// Baseline is what the compiler assumes of every processor: SSE2 on x86-64, NEON on AArch64; where
+/// xsimd knows no such instructions, it is scalar too.
+enum class InstructionSet { kScalar, kBaseline, kAvx2, kAvx512 };
 
-/// "sse2", "neon" or "scalar" for the baseline, "avx2", "avx512".
+/// "scalar"; "sse2", "neon" or, on other processors, "baseline"; "avx2", "avx512".
 [[nodiscard]] std::string_view NameOf(InstructionSet set);
 
 /// The sets that this program was built for and this
@@ -64,30 +65,36 @@ template <typename Table, InstructionSet set>
 #ifdef ALPENGLOW_X86_KERNELS
 #define ALPENGLOW_DECLARE_KERNEL(Table)                      \
   template <>                                                \
+  const Table& KernelOf<Table, InstructionSet::kScalar>();   \
+  template <>                                                \
   const Table& KernelOf<Table, InstructionSet::kBaseline>(); \
   template <>                                                \
   const Table& KernelOf<Table, InstructionSet::kAvx2>();     \
   template <>                                                \
   const Table& KernelOf<Table, InstructionSet::kAvx512>()
 #else
-#define ALPENGLOW_DECLARE_KERNEL(Table) \
-  template <>                           \
+#define ALPENGLOW_DECLARE_KERNEL(Table)                    \
+  template <>                                              \
+  const Table& KernelOf<Table, InstructionSet::kScalar>(); \
+  template <>                                              \
   const Table& KernelOf<Table, InstructionSet::kBaseline>()
 #endif
 
 /// The table of the current set.
 template <typename Table>
 [[nodiscard]] const Table& Kernel() {
-#ifdef ALPENGLOW_X86_KERNELS
   switch (CurrentInstructionSet()) {
+#ifdef ALPENGLOW_X86_KERNELS
     case InstructionSet::kAvx512:
       return KernelOf<Table, InstructionSet::kAvx512>();
     case InstructionSet::kAvx2:
       return KernelOf<Table, InstructionSet::kAvx2>();
-    case InstructionSet::kBaseline:
+#endif
+    case InstructionSet::kScalar:
+      return KernelOf<Table, InstructionSet::kScalar>();
+    default:
       break;
   }
-#endif
   return KernelOf<Table, InstructionSet::kBaseline>();
 }
 

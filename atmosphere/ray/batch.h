@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // For kernels only (instruction_set.h): the type in which a loop over samples is read, an xsimd
-// batch where SIMD is on, the plain number where it is off; and the shared formulas in it.
+// batch or, in the scalar set, the plain number; and the shared formulas in it.
 //
 // All of it is in an unnamed namespace, against custom in a header, because the same names mean
 // other instructions in every object that includes it.
@@ -10,8 +10,12 @@
 #error "batch.h is for files of alpenglow_kernels (.cmake/targets.cmake)"
 #endif
 
-#ifdef ALPENGLOW_SIMD
+// The build defines ALPENGLOW_BATCHES for every set but the scalar one.
+#ifdef ALPENGLOW_BATCHES
 #include <xsimd/xsimd.hpp>
+#ifdef XSIMD_NO_SUPPORTED_ARCHITECTURE
+#undef ALPENGLOW_BATCHES
+#endif
 #endif
 
 #include <cmath>
@@ -34,9 +38,10 @@ struct PlainNumber {
   static Real Sum(Type value) { return value; }
   static bool All(bool condition) { return condition; }
   static Real Last(Type value) { return value; }
+  static Type Floor(Type value) { return std::floor(value); }
 };
 
-#if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
+#ifdef ALPENGLOW_BATCHES
 /// Loads and stores are aligned but for StoreAnywhere: rows begin at multiples of 64 bytes.
 template <typename Real>
 struct BatchOf {
@@ -48,6 +53,7 @@ struct BatchOf {
   static Real Sum(const Type& value) { return xsimd::hadd(value); }
   static bool All(const typename Type::batch_bool_type& condition) { return xsimd::all(condition); }
   static Real Last(const Type& value) { return value.get(kLanes - 1); }
+  static Type Floor(const Type& value) { return xsimd::floor(value); }
 };
 #else
 template <typename Real>

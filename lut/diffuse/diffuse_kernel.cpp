@@ -41,11 +41,7 @@ void StoreTaps(const T& position, std::size_t nodes, const T& factor, float* cel
   using Lanes = BatchOf<float>;
   const T last(static_cast<float>(nodes - 2));
   const T at = min(max(position, T(0.0F)), T(static_cast<float>(nodes - 1)));
-#if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
-  const T below = min(xsimd::floor(at), last);
-#else
-  const T below = min(std::floor(at), last);
-#endif
+  const T below = min(Lanes::Floor(at), last);
   const Weights<T> w = Folded<T>(Cubic<T>(at - below), below, last);
   Lanes::Store(cell, below);
   Lanes::Store(weight[0], w.w0 * factor);

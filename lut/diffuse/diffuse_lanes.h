@@ -14,7 +14,7 @@ namespace alpenglow {
 namespace {
 
 // Lanes of work that comes by eights: at most eight, fewer where the processor has fewer.
-#if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
+#ifdef ALPENGLOW_BATCHES
 constexpr std::size_t kWidth = BatchOf<float>::kLanes < 8 ? BatchOf<float>::kLanes : 8;
 using V = xsimd::make_sized_batch_t<float, kWidth>;
 V Load(const float* from) { return V::load_aligned(from); }
@@ -65,7 +65,7 @@ Eight Zero() {
   return zero;
 }
 
-#if defined(ALPENGLOW_SIMD) && !defined(XSIMD_NO_SUPPORTED_ARCHITECTURE)
+#ifdef ALPENGLOW_BATCHES
 // a four times, b four times.
 Eight Pair(float a, float b) {
   Eight value;

@@ -48,7 +48,7 @@ int Report(const std::string& name, std::string message, int status) {
   return status;
 }
 
-// "avx512 (of sse2, avx2, avx512)".
+// "avx512 (of scalar, sse2, avx2, avx512)".
 std::string SimdText() {
   std::string available;
   for (const InstructionSet set : AvailableInstructionSets()) {

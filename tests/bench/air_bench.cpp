@@ -59,7 +59,7 @@ void ColumnsToSpace(benchmark::State& state) {
   state.counters["ns_per_column"] = benchmark::Counter(
       3e-9 * kPoints, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(ColumnsToSpace)->ArgsProduct({{0, 1, 2}, {0, 1}})->ArgNames({"set", "any_angle"});
+BENCHMARK(ColumnsToSpace)->ArgsProduct({{0, 1, 2, 3}, {0, 1}})->ArgNames({"set", "any_angle"});
 
 void SingleScatteringOfOneRay(benchmark::State& state) {
   const InstructionSetScope scope(SetOf(state));
@@ -71,7 +71,7 @@ void SingleScatteringOfOneRay(benchmark::State& state) {
     benchmark::DoNotOptimize(air.Scatter(air.Sample(rays[++i % rays.size()], sampling)));
 }
 BENCHMARK(SingleScatteringOfOneRay)
-    ->ArgsProduct({{0, 1, 2}, {8, 12}, {60, 91}})
+    ->ArgsProduct({{0, 1, 2, 3}, {8, 12}, {60, 91}})
     ->ArgNames({"set", "nodes", "sun_zenith"});
 
 void SingleScatteringByTheJudge(benchmark::State& state) {
