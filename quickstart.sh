@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh Debian or Ubuntu to pictures: packages, build, then the built-in mountain range from an hour
+# From a fresh Debian 12 to pictures: packages, build, then the built-in mountain range from an hour
 # before sunrise to an hour after sunset, its noon first. The pictures are in out/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"

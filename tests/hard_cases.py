@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes the table of hard cases and their tests into tests/README.md.
+"""Writes the table of hard cases and their tests into tests/HARD_CASES.md.
 
 A test that shows a hard case says so in the comment directly above it, in a line of its own:
 
@@ -16,7 +16,7 @@ import re
 import sys
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-README = FOLDER / "README.md"
+DOCUMENT = FOLDER / "HARD_CASES.md"
 BEGIN, END = "<!-- hard cases: begin -->", "<!-- hard cases: end -->"
 TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|RC_GTEST_PROP)\(\s*(\w+)\s*,\s*(\w+)")
 MARK = re.compile(r"^// Hard cases? (\d+(?:, \d+)*)\.$")
@@ -80,13 +80,13 @@ def main():
     untested = [str(number) for number, found in tests.items() if not found]
     if check and untested:
         raise Fault(f"no test shows hard case {', '.join(untested)}")
-    before = README.read_text(encoding="utf-8")
+    before = DOCUMENT.read_text(encoding="utf-8")
     head, rest = before.split(BEGIN)
     after = f"{head}{BEGIN}\n{table(known, tests)}\n{END}{rest.split(END)[1]}"
     if check and after != before:
-        raise Fault("the table in tests/README.md is old; tests/hard_cases.py writes it anew")
+        raise Fault("the table in tests/HARD_CASES.md is old; tests/hard_cases.py writes it anew")
     if not check:
-        README.write_text(after, encoding="utf-8")
+        DOCUMENT.write_text(after, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,43 +1,5 @@
 // SPDX-License-Identifier: MIT
-// atmosphere.toml. Everything is optional; what is not given is the preset's.
-//
-//   preset = "earth"     also clear-mountain, hazy, mars, bruneton2017
-//   polarised = true     light of all orders is polarised, molecules depolarise as the preset's gas
-//                        (GasDepolarisation) unless the file says how; false (bruneton2017's own):
-//                        scalar light, of round molecules unless the file says how
-//   [planet]             radius_m (makes the planet a sphere), follows_wgs84, atmosphere_top_m,
-//                        ground_albedo
-//   [spectrum]           wavelengths_nm | bands, solar_irradiance
-//   [rayleigh]           scattering_per_m, scale_height_m (makes the density one exponential),
-//                        deficit, deficit_scale_height_m (MoleculeDeficit), depolarisation (one
-//                        value or one per wavelength)
-//   [mie]                scattering_per_m, extinction_per_m, scale_height_m, phase with its
-//                        parameters, each one value or one per wavelength:
-//     rayleigh
-//     henyey-greenstein, cornette-shanks, schlick       g
-//     double-henyey-greenstein                          g, g_back, back_weight
-//     draine                                            g, alpha
-//     henyey-greenstein-draine                          g; g_back, alpha of Draine's lobe, its
-//                                                       share back_weight
-//     fog                                               droplet_diameter_um, in [1.5, 50]
-//     table                                             phase_file (CSV; phase_table.h), or
-//                                                       phase_angles_deg with phase_per_sr
-//   [aerosol]            instead of the lists of [mie]: mixture (aerosol_mixture.h), or one of
-//                        visibility_m, turbidity, optical_depth_550, or both;
-//                        single_scattering_albedo; without a mixture angstrom_exponent
-//   [ozone]              absorption_per_m (at the peak) | dobson, profile ("smooth" | "tent";
-//   another
-//                        than the preset's keeps the column), peak_m; bottom_m and top_m of a tent,
-//                        which they make of it
-//
-// What people think in becomes the aerosol's extinction at 550 nm and the ground:
-//   visibility V             3.912 / V - molecules         kOpticalDepthOfVisibility
-//   turbidity T              (T - 1) (column of molecules) / H_M
-//                                                          McCartney (1976): optical depth of air
-//                                                          with haze over that without
-//   optical depth tau        tau / H_M
-// and (lambda / 550 nm)^-angstrom_exponent elsewhere, scattering keeping the preset's share; or the
-// mixture's own spectrum and share.
+// The reader of atmosphere.toml. ATMOSPHERE_FILE.md describes every key.
 #include <fmt/format.h>
 
 #include <algorithm>

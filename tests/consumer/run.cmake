@@ -1,4 +1,4 @@
-# Installs BUILD into PREFIX, configures and builds the consumer against it, runs it.
+# Installs BUILD into PREFIX, configures and builds the consumer against it, runs its programs.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -11,3 +11,4 @@ run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${BINARY} -DCMAKE_PREFIX_PATH=${PR
     -DCMAKE_BUILD_TYPE=${TYPE} -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --build ${BINARY})
 run(${BINARY}/consumer)
+run(${BINARY}/sky_radiance)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a pilot can ask for, and with which keys: one table, read by the keyboard, by the help on
-// the screen and by the README.
+// the screen and by the manual.
 //
 // Keys are FlightGear's where it has them (its keyboard.xml); in the free camera W A S D, R F and
 // Q E move the eye, as in other viewers.
@@ -153,7 +153,7 @@ struct KeyChord {
 /// "T, Keypad 9": all keys of a line.
 [[nodiscard]] std::string KeysText(const ActionRow& row);
 
-/// The table for a README.
+/// The table for the manual.
 [[nodiscard]] std::string ControlsMarkdown();
 
 }  // namespace alpenglow

@@ -52,7 +52,7 @@ TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
 /// The block of TOML in the manual of scene.toml.
 std::string Manual() {
   const std::string all =
-      ReadTextFile(std::filesystem::path(tests::kSourceFolder) / "renderer" / "README.md");
+      ReadTextFile(std::filesystem::path(tests::kSourceFolder) / "renderer" / "MANUAL.md");
   const std::size_t begin = all.find("```toml\n") + 8;
   return all.substr(begin, all.find("```", begin) - begin);
 }

@@ -120,10 +120,10 @@ TEST(Action, LettersGoByWhatIsPrintedOnTheKey) {
   EXPECT_EQ(PrintedKey(GLFW_KEY_X, "\xd1\x8f"), GLFW_KEY_X) << "a Russian keyboard";
 }
 
-TEST(Action, TheReadmeShowsTheTable) {
-  std::ifstream stream(std::string(tests::kSourceFolder) + "/viewer/README.md");
-  const std::string readme{std::istreambuf_iterator<char>(stream), {}};
-  EXPECT_THAT(readme, HasSubstr(ControlsMarkdown())) << "put this into viewer/README.md:\n"
+TEST(Action, TheManualShowsTheTable) {
+  std::ifstream stream(std::string(tests::kSourceFolder) + "/viewer/MANUAL.md");
+  const std::string manual{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_THAT(manual, HasSubstr(ControlsMarkdown())) << "put this into viewer/MANUAL.md:\n"
                                                      << ControlsMarkdown();
 }
 

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Compares the Markdown files with the tree and with the programs.
+
+- Every relative link leads to a file, and to a heading if it names one.
+- A manual has every option that --help of its program prints, and no option that it does not print.
+- The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
+  list their keys in the message about an unknown one.
+- The example of README.md is the one that tests/consumer builds.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+TREE = pathlib.Path(__file__).resolve().parent.parent
+UNKNOWN = "qqqqqqqqqqqqqqqq"
+PLACE = "[place]\nlatitude = 46.5\nlongitude = 8.0\n"
+SHARED = ("lut/MANUAL.md", "What the three programs share")
+# Program, its manual, and its subcommands.
+PROGRAMS = (
+    ("skylut", "lut/MANUAL.md", ("sky", "build", "info", "eval", "report")),
+    ("skyseries", "renderer/MANUAL.md", ("times", "report")),
+    ("skyview", "viewer/MANUAL.md", ()),
+)
+
+
+def text_of(name):
+    return (TREE / name).read_text(encoding="utf-8")
+
+
+def documents():
+    ignored = {"build", "out", ".git"}
+    return [file for file in sorted(TREE.rglob("*.md"))
+            if file.relative_to(TREE).parts[0] not in ignored]
+
+
+def without_code(text):
+    return re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def headings(text):
+    return re.findall(r"^#+ +(.+?)\s*$", without_code(text), flags=re.MULTILINE)
+
+
+def anchor_of(heading):
+    """The anchor that GitHub gives to a heading."""
+    kept = re.sub(r"[^\w\- ]", "", heading.lower())
+    return kept.replace(" ", "-")
+
+
+def faults_of_links():
+    for file in documents():
+        text = file.read_text(encoding="utf-8")
+        for target in re.findall(r"\]\(([^)\s]+)\)", without_code(text)):
+            if re.match(r"[a-z]+:", target):
+                continue
+            path, _, anchor = target.partition("#")
+            linked = (file.parent / path).resolve() if path else file
+            if not linked.exists():
+                yield f"{file.relative_to(TREE)}: {target} does not exist"
+            elif anchor and anchor not in map(anchor_of, headings(linked.read_text("utf-8"))):
+                yield f"{file.relative_to(TREE)}: {target} names no heading"
+
+
+def section(text, heading):
+    """The text below a heading, up to the next heading of its level or above."""
+    found = re.search(rf"^(#+) +{re.escape(heading)}.*$", text, flags=re.MULTILINE)
+    if not found:
+        return ""
+    rest = text[found.end():]
+    after = re.search(rf"^#{{1,{len(found[1])}}} ", without_comments_in_code(rest), re.MULTILINE)
+    return rest[:after.start()] if after else rest
+
+
+def without_comments_in_code(text):
+    """The same length; code blocks are blank, because their comments look like headings."""
+    def blank(match):
+        return re.sub(r"[^\n]", " ", match[0])
+    return re.sub(r"^```.*?^```", blank, text, flags=re.MULTILINE | re.DOTALL)
+
+
+def options_of_help(program, subcommand):
+    command = [program] + ([subcommand] if subcommand else []) + ["--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    options = set()
+    for line in done.stdout.splitlines():
+        if re.match(r"^\s+-", line):
+            options.update(re.findall(r"--[a-z][a-z0-9-]*", line.split()[0]))
+    if "--help" not in options:
+        raise ValueError(f"{' '.join(command)} lists no options")
+    return options
+
+
+def options_of_manual(text):
+    """Those in the first column of a table."""
+    cells = re.findall(r"^\| ([^|]*`--[^|]*)\|", text, flags=re.MULTILINE)
+    return {option for cell in cells for option in re.findall(r"--[a-z][a-z0-9-]*", cell)}
+
+
+def faults_of_options(programs):
+    shared = options_of_manual(section(text_of(SHARED[0]), SHARED[1]))
+    for name, manual, subcommands in PROGRAMS:
+        if name not in programs:
+            continue
+        text = text_of(manual)
+        printed = set()
+        for subcommand in ("",) + subcommands:
+            of_help = options_of_help(programs[name], subcommand)
+            printed |= of_help
+            called = f"{name} {subcommand}".strip()
+            part = section(text, called) if subcommand else text
+            for option in sorted(of_help - shared):
+                if not re.search(rf"`{option}[`=\s]", part):
+                    yield f"{manual}: {option} of {called} is missing"
+        for option in sorted(options_of_manual(text) - printed - shared):
+            yield f"{manual}: {name} has no option {option}"
+
+
+def keys_known(skyseries, folder, table, in_atmosphere):
+    """The keys that a reader accepts in a table ("" for the top level); none for a plain key."""
+    unknown = f"{table}\n{UNKNOWN} = 1\n" if table else f"{UNKNOWN} = 1\n"
+    scene = folder / "scene.toml"
+    if in_atmosphere:
+        (folder / "air.toml").write_text(unknown, encoding="utf-8")
+        scene.write_text(PLACE + '[atmosphere]\nfile = "air.toml"\n', encoding="utf-8")
+    else:
+        place = "" if not table or table == "[place]" else PLACE
+        scene.write_text(place + unknown, encoding="utf-8")
+    done = subprocess.run([skyseries, str(scene), "--list", "--at", "2026-06-21T12:00:00Z"],
+                          capture_output=True, text=True, check=False)
+    if done.returncode != 3:
+        raise ValueError(f"{table or 'top level'}: an unknown key ends with {done.returncode}")
+    known = re.search(r"known are (.*)", done.stderr)
+    return [key.strip() for key in known[1].split(",")] if known else []
+
+
+def scene_tables(block):
+    """The parts of the block of TOML in the manual, by the name of the table."""
+    parts = re.split(r"^(?:# )?(\[+\w+\]+).*$", block, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2]))
+
+
+def faults_of_scene_keys(skyseries, folder):
+    manual = "renderer/MANUAL.md"
+    block = re.search(r"^```toml\n(.*?)^```", text_of(manual), re.MULTILINE | re.DOTALL)[1]
+    tables = scene_tables(block)
+    for name in keys_known(skyseries, folder, "", False):
+        header = next((known for known in tables if known.strip("[]") == name), None)
+        if header is None:
+            yield f"{manual}: the table {name} of scene.toml is missing"
+            continue
+        for key in keys_known(skyseries, folder, header, False):
+            if not re.search(rf"(?:^|[ (]){key} = ", tables[header], flags=re.MULTILINE):
+                yield f"{manual}: {name}.{key} of scene.toml is missing"
+
+
+def faults_of_atmosphere_keys(skyseries, folder):
+    manual = "atmosphere/ATMOSPHERE_FILE.md"
+    text = text_of(manual)
+    for name in keys_known(skyseries, folder, "", True):
+        keys = keys_known(skyseries, folder, f"[{name}]", True)
+        part = section(text, f"`[{name}]`" if keys else "Top level")
+        first_column = " ".join(re.findall(r"^\| ([^|]*)\|", part, flags=re.MULTILINE))
+        for key in keys or [name]:
+            if f"`{key}`" not in first_column:
+                yield f"{manual}: {key} of [{name}] is missing"
+
+
+def faults_of_example():
+    consumer = TREE / "tests" / "consumer"
+    built = {"cpp": consumer / "sky_radiance.cpp", "cmake": consumer / "CMakeLists.txt"}
+    for language, file in built.items():
+        shown = re.search(rf"^```{language}\n(.*?)^```", text_of("README.md"),
+                          flags=re.MULTILINE | re.DOTALL)
+        lines = file.read_text(encoding="utf-8").splitlines()
+        for line in shown[1].splitlines() if shown else ["an example"]:
+            if line not in lines:
+                yield f"README.md: {file.relative_to(TREE)} does not have: {line}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    for name, _, _ in PROGRAMS:
+        parser.add_argument(f"--{name}", help="the program")
+    arguments = vars(parser.parse_args())
+    programs = {name: path for name, path in arguments.items() if path}
+    faults = list(faults_of_links()) + list(faults_of_example()) + list(faults_of_options(programs))
+    if "skyseries" in programs:
+        with tempfile.TemporaryDirectory() as folder:
+            for of_keys in (faults_of_scene_keys, faults_of_atmosphere_keys):
+                faults += of_keys(programs["skyseries"], pathlib.Path(folder))
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
