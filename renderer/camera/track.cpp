@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/camera/track.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
@@ -44,7 +46,10 @@ std::vector<CameraPathPoint> Knots(const Track& track, const TrackStyle& style) 
     knots.push_back(knot);
     segment = point.segment;
   }
-  if (knots.size() < 2) throw InputError("the track has fewer than two points apart");
+  if (knots.size() < 2) {
+    throw InputError(fmt::format("{}: the track has fewer than two points apart",
+                                 track.file.empty() ? "a track" : track.file));
+  }
   return knots;
 }
 

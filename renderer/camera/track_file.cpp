@@ -147,7 +147,15 @@ class TrackReader {
     if (IsEmpty(segments)) Fail(gpx.GetLineNum(), "there is no trkpt, rtept or wpt in it");
     Track track = Made(segments, TrackHeights::kSea, gpx);
     if (owner != nullptr) track.name = TextOf(ChildOf(*owner, "name"));
+    if (owner != nullptr && NameOf(*owner) == "rte")
+      NoteTheFirstOf(All(gpx, "rte").size(), "routes", track);
     return track;
+  }
+
+  static void NoteTheFirstOf(std::size_t count, const char* what, Track& track) {
+    if (count < 2) return;
+    if (!track.note.empty()) track.note += "; ";
+    track.note += fmt::format("the first of {} {} is read", count, what);
   }
 
   [[nodiscard]] static bool IsEmpty(const std::vector<RecordedSegment>& segments) {
@@ -195,6 +203,7 @@ class TrackReader {
     const bool recorded = !lines.empty();
     if (!recorded) lines = All(kml, "LineString");
     if (lines.empty()) Fail(kml.GetLineNum(), "there is no gx:Track and no LineString in it");
+    const std::size_t drawn = recorded ? 1 : lines.size();
     if (!recorded) lines.erase(lines.begin() + 1, lines.end());
     std::vector<RecordedSegment> segments;
     const TrackHeights heights = HeightsOf(*lines.front());
@@ -206,6 +215,7 @@ class TrackReader {
     if (IsEmpty(segments)) Fail(lines.front()->GetLineNum(), "it has no points");
     Track track = Made(segments, heights, *lines.front());
     track.name = PlacemarkName(*lines.front());
+    NoteTheFirstOf(drawn, "LineStrings", track);
     return track;
   }
 
@@ -299,6 +309,10 @@ class TrackReader {
 
 }  // namespace
 
-Track ReadTrack(const std::filesystem::path& file) { return TrackReader(file).Read(); }
+Track ReadTrack(const std::filesystem::path& file) {
+  Track track = TrackReader(file).Read();
+  track.file = file.string();
+  return track;
+}
 
 }  // namespace alpenglow

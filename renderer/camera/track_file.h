@@ -31,6 +31,7 @@ struct Track {
   std::string name;  // empty if it has none
   TrackHeights heights = TrackHeights::kSea;
   std::vector<TrackPoint> points;
+  std::string file = {};  // that it was read from
   std::string note = {};  // one line about points that are left out or made up; empty: none are
 };
 

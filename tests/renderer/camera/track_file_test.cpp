@@ -64,6 +64,7 @@ TEST_F(TrackFile, RoutesAndWaypointsServeWhereThereIsNoTrack) {
       "<gpx><rte><name>R</name><rtept lat='1' lon='2'/><rtept lat='3' lon='4'/></rte>"
       "<rte><rtept lat='5' lon='6'/></rte></gpx>");
   EXPECT_EQ(route.points.size(), 2U) << "the first route";
+  EXPECT_EQ(route.note, "the first of 2 routes is read");
   EXPECT_EQ(route.heights, TrackHeights::kOnGround) << "no heights";
   EXPECT_FALSE(route.points[0].utc);
   EXPECT_EQ(Read("<gpx><wpt lat='1' lon='2'/><wpt lat='3' lon='4'/></gpx>").points.size(), 2U);

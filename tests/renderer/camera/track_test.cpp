@@ -286,7 +286,8 @@ TEST(TrackPath, ATrackIsRefusedThatGoesNowhere) {
   Track track;
   EXPECT_THAT(fault(track), HasSubstr("fewer than two points"));
   track.points.assign(10, {PlaceFromDegrees(46.0, 8.0, 0.0)});
-  EXPECT_THAT(fault(track), HasSubstr("fewer than two points"));
+  track.file = "still.gpx";
+  EXPECT_THAT(fault(track), HasSubstr("still.gpx: the track has fewer than two points apart"));
   EXPECT_THAT(
       tests::FaultOf([] { return PathAlong(Circle(), {.speed_m_per_s = 0.0}, Sea).end_s(); }),
       HasSubstr("speed of the track"));
