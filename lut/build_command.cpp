@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/air/medium_choice.h"
 #include "lut/eval/eval.h"
 #include "lut/program/output_name.h"
 #include "lut/store/exchange_tables.h"
@@ -71,7 +71,7 @@ void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exc
                          const CommonOptions& common) {
   RequireAtmosphereElsewhere(options, kMediumFileName);
   const Medium medium =
-      options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("bruneton2017");
+      options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("bruneton2017");
   MakeFolder(options.out);  // before the work
   WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
                       exchange, options.out);
@@ -89,7 +89,7 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
     return;
   }
   const Medium medium =
-      options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
+      options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("earth");
   if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
     MakeFolder(options.out);  // before the work
     const TableChoice choice = ChooseTables(

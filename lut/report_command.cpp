@@ -39,10 +39,10 @@ Subcommand AddReportCommand(CLI::App& app) {
   report.add_option("--out", options->out, "Folder for the report; made when missing")
       ->check(FaultOfFolderName)
       ->required();
-  report.add_option(
-      "--atmosphere", options->atmosphere,
-      "Atmosphere file (TOML); without it the presets earth and hazy, and, for light of all "
-      "orders, dust, thick haze and thick air");
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) or preset; without it the presets earth and hazy, and, "
+                    "for light of all "
+                    "orders, dust, thick haze and thick air");
   report.add_flag("--quick", options->quick,
                   "Few rays and methods, one atmosphere: a test of the report, not of the methods");
   report.footer("Example: skylut report --out report");

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/air/medium_choice.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
@@ -55,7 +55,7 @@ PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
 
 SkyJob JobFrom(const SkyOptions& options) {
   SkyJob job;
-  job.medium = options.atmosphere ? ReadMedium(*options.atmosphere) : MediumPreset("earth");
+  job.medium = options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("earth");
   const ImageSize size = ImageSizeFromText(options.size);
   job.settings.width = size.width;
   job.settings.height = size.height;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/air/medium_choice.h"
 #include "atmosphere/text/error.h"
 #include "lut/build_command.h"
 #include "lut/eval/eval.h"
@@ -85,7 +85,7 @@ void CheckMethod(const CLI::App& eval, const Options& options) {
 std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
   std::optional<Medium> medium;
   std::optional<std::uint64_t> hash;
-  if (options.atmosphere) hash = MediumHash(medium.emplace(ReadMedium(*options.atmosphere)));
+  if (options.atmosphere) hash = MediumHash(medium.emplace(MediumFromChoice(*options.atmosphere)));
   if (options.tables) {
     TableFolder tables = ReadTableFolder(*options.tables, hash);
     if (options.method == "table") {

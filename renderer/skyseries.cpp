@@ -7,6 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/eclipse.h"
+#include "atmosphere/text/file_extension.h"
 #include "renderer/camera/track.h"
 #include "renderer/ground/camera_stand.h"
 #include "renderer/report_command.h"
@@ -22,15 +23,13 @@ namespace alpenglow {
 namespace {
 
 bool IsTrack(const std::filesystem::path& file) {
-  return file.extension() == ".gpx" || file.extension() == ".kml";
+  return HasExtension(file, ".gpx") || HasExtension(file, ".kml");
 }
 
 /// Without a scene and without a place, a track says where.
 SceneOptions OptionsOfScene(const SkyseriesOptions& options) {
   SceneOptions scene = options.scene;
-  const SceneOptions untyped;
-  if (options.path && IsTrack(*options.path) && scene.latitude == untyped.latitude &&
-      scene.longitude == untyped.longitude) {
+  if (options.path && IsTrack(*options.path) && !scene.latitude && !scene.longitude) {
     const std::vector<TrackPoint> points = ReadTrack(*options.path).points;
     const GeodeticPosition middle = points[points.size() / 2].place;
     scene.latitude = middle.latitude_rad / kRadiansPerDegree;
@@ -49,6 +48,8 @@ Scene SceneOf(const SkyseriesOptions& options) {
 /// A track as a path; its ground is loaded for tracks that are not over the sea.
 CameraPath PathOfTrack(const SkyseriesOptions& options, const Scene& scene) {
   const Track track = ReadTrack(*options.path);
+  if (!track.note.empty())
+    Say(fmt::format("skyseries: warning: {}: {}\n", *options.path, track.note));
   TrackStyle style = options.track;
   style.fov_rad = scene.camera.fov_rad;
   std::optional<SceneGround> ground;

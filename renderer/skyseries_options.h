@@ -2,6 +2,8 @@
 // The command line of skyseries. Included by its one translation unit (CLI11 is slow to compile).
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -63,11 +65,15 @@ inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
   CLI::Option* file = app.add_option("SCENE", options.scene_file,
                                      "Scene file (TOML); without it, the next options:");
   SceneOptions& scene = options.scene;
-  const auto without_file = [&](const char* name, auto& value, const char* text) {
+  const auto without_file = [&](const char* name, auto& value, const std::string& text) {
     return app.add_option(name, value, text)->excludes(file)->group("Instead of a scene file");
   };
-  without_file("--latitude", scene.latitude, "Degrees north, -90 to 90")->capture_default_str();
-  without_file("--longitude", scene.longitude, "Degrees east, -180 to 360")->capture_default_str();
+  without_file("--latitude", scene.latitude,
+               fmt::format("Degrees north, -90 to 90 (default: {0}; the range at {0} {1} is seen "
+                           "from a shoulder 17 km off)",
+                           kHomeLatitude, kHomeLongitude));
+  without_file("--longitude", scene.longitude,
+               fmt::format("Degrees east, -180 to 360 (default: {})", kHomeLongitude));
   without_file("--heading", scene.heading,
                "Degrees clockwise from north, -360 to 360 (default: 0, or the range's view)");
   without_file("--pitch", scene.pitch,
@@ -80,7 +86,7 @@ inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
                "Metres above the ground, 0 to 1e9 (default: 2, or the range's view)");
   without_file("--dem", scene.dem,
                "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM (default: a "
-               "built-in mountain range, centred on the place)");
+               "built-in mountain range, which the place has the view of)");
   without_file("--atmosphere", scene.atmosphere,
                "Atmosphere file (TOML) or preset: earth, hazy, "
                "clear-mountain, mars, bruneton2017");

@@ -11,7 +11,8 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/root.h"
 #include "atmosphere/sun/refraction.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/sun/sun_day.h"
+#include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
@@ -64,6 +65,14 @@ Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
   const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
   return {SeaHorizonFrom(place.height_m, radius_m).true_elevation_rad, true,
           event == SunEvent::kSunrise};
+}
+
+/// How far the sun stands above the height of a crossing [rad].
+double HeightOver(const Crossing& crossing, const GeodeticPosition& place,
+                  const UtcInstant& instant) {
+  const SunPosition sun = SunAt(place, instant);
+  const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad : 0.0;
+  return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
 }
 
 struct Sample {
@@ -158,13 +167,16 @@ std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& p
   if (event == SunEvent::kNoon) return AddSeconds(midnight, NoonOf(wrapped, midnight));
   const Crossing crossing = CrossingOf(event, wrapped);
   const auto height_over_crossing = [&](double time_s) {
-    const SunPosition sun = SunAt(wrapped, AddSeconds(midnight, time_s));
-    const double limb_rad = crossing.of_upper_limb ? sun.angular_radius_rad : 0.0;
-    return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
+    return HeightOver(crossing, wrapped, AddSeconds(midnight, time_s));
   };
   const std::optional<double> time_s = FirstChange(height_over_crossing, crossing.rising);
   if (!time_s) return std::nullopt;
   return AddSeconds(midnight, *time_s);
+}
+
+bool IsAboveEvent(SunEvent event, const GeodeticPosition& place, const UtcInstant& instant) {
+  if (event == SunEvent::kNoon) throw InternalError("noon is not at a height of the sun");
+  return HeightOver(CrossingOf(event, place), place, instant) >= 0.0;
 }
 
 }  // namespace alpenglow

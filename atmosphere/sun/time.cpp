@@ -96,8 +96,10 @@ class InstantReader {
     written.second = sys_seconds(day) + std::chrono::hours(hour) + std::chrono::minutes(minute) +
                      seconds(std::min(second, 59));
     if (cursor_.Accept('.')) {
-      const std::string_view digits = cursor_.Run("0123456789");
-      if (digits.empty() || digits.size() > 9) Refuse("a fraction of a second has 1 to 9 digits");
+      // More than nanoseconds, as some recorders write, could round up to the next second.
+      constexpr std::size_t kDigits = 9;
+      const std::string_view digits = cursor_.Run("0123456789").substr(0, kDigits);
+      if (digits.empty()) Refuse("a fraction of a second has digits");
       for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit) {
         written.fraction = (written.fraction + (*digit - '0')) / 10.0;
       }
@@ -105,10 +107,21 @@ class InstantReader {
     return written;
   }
 
+  /// Offsets without it, "+0200" and "+02", are of ISO 8601 too, but of another of its forms.
+  void RequireColonIn(std::string_view offset) const {
+    const std::string_view digits = offset.substr(1);
+    const bool is_number = digits.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!is_number || (digits.size() != 2 && digits.size() != 4)) return;
+    const std::string_view minutes = digits.size() == 4 ? digits.substr(2) : "00";
+    Refuse(fmt::format("the offset \"{}\" is written {}:{}", offset, offset.substr(0, 3), minutes));
+  }
+
   std::optional<seconds> Offset() {
     if (cursor_.Accept('Z')) return seconds(0);
+    const std::string_view whole = cursor_.rest();
     const bool west = cursor_.Accept('-');
     if (!west && !cursor_.Accept('+')) return std::nullopt;
+    RequireColonIn(whole);
     int total_s = 3600 * Part("hour of the offset", 0, 15);
     if (!cursor_.Accept(':')) Refuse("expected : after the hour of the offset");
     total_s += 60 * Part("minute of the offset", 0, 59);

@@ -3,12 +3,16 @@
 // parse a command line, and no others (CLI11 is slow to compile).
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/command_hints.h"
 #include "lut/program/program.h"
 
 namespace alpenglow {
@@ -30,7 +34,8 @@ using Subcommand = std::function<void(const CommonOptions&)>;
 /// Adds --atmosphere. `atmosphere` must outlive the parsing.
 inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& atmosphere) {
   command.add_option("--atmosphere", atmosphere,
-                     "Atmosphere file (TOML); without it the preset earth");
+                     "Atmosphere file (TOML) or preset: earth, hazy, clear-mountain, mars, "
+                     "bruneton2017; without it the preset earth");
 }
 
 /// Adds --threads, --quiet, --progress and --version. `options` must outlive the parsing.
@@ -61,15 +66,47 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   return CLI::Validator(fault, "");
 }
 
+/// Long names of the options of a command and of the subcommands that were named.
+[[nodiscard]] inline std::vector<std::string> OptionNamesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  for (const CLI::App* command : app.get_subcommands()) {
+    const std::vector<std::string> more = OptionNamesOf(*command);
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+/// What is wrong with the first word, or with the first option that is unknown; empty when nothing
+/// is. To be asked before what else the parser complains of, which follows from it.
+[[nodiscard]] inline std::string FaultOfWords(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (argc > 1) {
+    if (std::string fault = FaultOfCommand(argv[1], commands); !fault.empty()) return fault;
+  }
+  for (const std::string& word : app.remaining(true)) {
+    if (word.size() > 1 && word.starts_with('-'))
+      return FaultOfUnknownOption(word, OptionNamesOf(app));
+  }
+  return "";
+}
+
 /// Parses. Gives an exit status when the program has nothing left to do: 0 after --help and
 /// --version, 2 when the command line is wrong.
 inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
-    return std::nullopt;
+    if (FaultOfWords(app, argc, argv).empty()) return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    const bool is_fault = error.get_exit_code() != 0;
+    if (!is_fault || FaultOfWords(app, argc, argv).empty()) return app.exit(error) == 0 ? 0 : 2;
   }
+  Say(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(),
+                  FaultOfWords(app, argc, argv)));
+  return 2;
 }
 
 }  // namespace alpenglow

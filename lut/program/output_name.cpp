@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 
 namespace alpenglow {
 namespace {
@@ -33,14 +34,14 @@ void RequireNoInput(const NamedFile& output, const std::vector<NamedFile>& input
 
 std::string FaultOfFileName(std::string_view name, std::string_view extension) {
   if (name == "-") return "\"-\" is no name of a file; nothing is written to standard output";
-  if (extension.empty() || fs::path(name).extension() == extension) return "";
+  if (extension.empty() || HasExtension(name, extension)) return "";
   return fmt::format("\"{}\" must end in {}, which is what is written", name, extension);
 }
 
 std::string FaultOfFolderName(std::string_view name) {
-  const std::string extension = fs::path(name).extension().string();
-  const bool file = std::find(kExtensionsOfFiles.begin(), kExtensionsOfFiles.end(), extension) !=
-                    kExtensionsOfFiles.end();
+  const bool file =
+      std::any_of(kExtensionsOfFiles.begin(), kExtensionsOfFiles.end(),
+                  [&](std::string_view extension) { return HasExtension(name, extension); });
   if (!file && name != "-") return "";
   return fmt::format("\"{}\" is no name of a folder, which files are written into", name);
 }

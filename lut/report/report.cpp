@@ -13,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "atmosphere/air/medium_choice.h"
 #include "atmosphere/ray/bent_view.h"
 #include "lut/program/program.h"
 #include "lut/report/report_measure.h"
@@ -112,7 +113,7 @@ Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
 }
 
 std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file, bool quick) {
-  if (atmosphere_file) return {ReadMedium(*atmosphere_file)};
+  if (atmosphere_file) return {MediumFromChoice(*atmosphere_file)};
   std::vector<Medium> mediums{MediumPreset("earth")};
   if (!quick) mediums.push_back(MediumPreset("hazy"));
   return mediums;

@@ -16,6 +16,7 @@
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "lut/store/table_image.h"
 #include "lut/table/transmittance_table.h"
 
@@ -378,7 +379,7 @@ std::string LineOf(const ExchangeDescription::Texture& texture) {
 std::optional<fs::path> ExchangeFolderOf(const fs::path& file_or_folder) {
   if (FormatOf(file_or_folder)) return file_or_folder;
   const std::optional<TexelFormat> format = FormatOf(file_or_folder.parent_path());
-  if (!format || file_or_folder.extension() != SuffixOf(*format)) return std::nullopt;
+  if (!format || !HasExtension(file_or_folder, SuffixOf(*format))) return std::nullopt;
   for (const TextureShape& shape : ShapesOf(ExchangeLayout::kTakram)) {
     if (file_or_folder.stem() == shape.name) return file_or_folder.parent_path();
   }

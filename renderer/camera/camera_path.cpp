@@ -10,6 +10,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "lut/program/csv_reader.h"
 #include "renderer/scene/scene.h"
 
@@ -60,6 +61,22 @@ Value SlopeOfParabola(double step_before, const Value& before, double step_after
   return (step_after * before + step_before * after) / (step_before + step_after);
 }
 
+/// The same of places, limited: at most kMost times the lesser speed, less where the way turns by
+/// more than a right angle, and 0 where it turns back. A cubic whose slopes are at most 3 times
+/// that of its chord does not overshoot (Fritsch and Carlson 1980, SIAM J. Numer. Anal. 17, 238);
+/// less keeps it nearer to the chord at a corner.
+glm::dvec3 LimitedSlope(double step_before, const glm::dvec3& before, double step_after,
+                        const glm::dvec3& after) {
+  constexpr double kMost = 2.0;
+  const glm::dvec3 slope = SlopeOfParabola(step_before, before, step_after, after);
+  const double speed_before = glm::length(before), speed_after = glm::length(after);
+  const double least = std::min(speed_before, speed_after);
+  if (!(least > 0.0)) return glm::dvec3(0.0);
+  const double cosine = glm::dot(before, after) / (speed_before * speed_after);
+  const double most = kMost * least * std::clamp(1.0 + cosine, 0.0, 1.0);
+  return slope * std::min(1.0, most / std::max(glm::length(slope), least));
+}
+
 /// Slope that overshoots nowhere: Fritsch and Butland's harmonic mean, 0 at an extreme.
 double SlopeWithoutOvershoot(double step_before, double before, double step_after, double after) {
   if (!(before * after > 0.0)) return 0.0;
@@ -68,7 +85,7 @@ double SlopeWithoutOvershoot(double step_before, double before, double step_afte
   return (w_before + w_after) / (w_before / before + w_after / after);
 }
 
-/// Slopes at all points: those of the first and last step at the ends.
+/// Slopes at all points: those of the first and last step at the ends and beside gaps.
 template <typename Value, typename Between>
 std::vector<Value> SlopesOf(const std::vector<CameraPathPoint>& points,
                             const std::vector<Value>& values, const Between& between) {
@@ -78,7 +95,11 @@ std::vector<Value> SlopesOf(const std::vector<CameraPathPoint>& points,
   const auto slope = [&](std::size_t i) { return (values[i + 1] - values[i]) / step(i); };
   std::vector<Value> slopes{slope(0)};
   for (std::size_t i = 1; i + 1 < count; ++i) {
-    slopes.push_back(between(step(i - 1), slope(i - 1), step(i), slope(i)));
+    if (points[i].after_gap || points[i + 1].after_gap) {
+      slopes.push_back(slope(points[i].after_gap ? i : i - 1));
+    } else {
+      slopes.push_back(between(step(i - 1), slope(i - 1), step(i), slope(i)));
+    }
   }
   slopes.push_back(slope(count - 2));
   return slopes;
@@ -120,7 +141,7 @@ CameraPath::CameraPath(std::vector<CameraPathPoint> points) : points_(std::move(
   }
   constexpr std::size_t kOfHeading = 1, kOfRoll = 3;
   for (const std::size_t k : {kOfHeading, kOfRoll}) scalars_[k] = Unwound(std::move(scalars_[k]));
-  normal_slopes_ = SlopesOf(points_, normals_, SlopeOfParabola<glm::dvec3>);
+  normal_slopes_ = SlopesOf(points_, normals_, LimitedSlope);
   for (std::size_t k = 0; k < kScalars; ++k) {
     scalar_slopes_[k] = SlopesOf(points_, scalars_[k], SlopeWithoutOvershoot);
   }
@@ -138,10 +159,11 @@ CameraPath::Span CameraPath::SpanAt(double time_s) const {
 }
 
 template <typename Value>
-Value CameraPath::Smooth(const std::vector<Value>& values, const std::vector<Value>& slopes,
-                         const Span& span) const {
+Value CameraPath::Between(const std::vector<Value>& values, const std::vector<Value>& slopes,
+                          const Span& span) const {
   const std::size_t i = span.left;
   if (span.share == 0.0) return values[i];
+  if (points_[i + 1].after_gap) return values[i] + span.share * (values[i + 1] - values[i]);
   return Hermite(values[i], slopes[i], values[i + 1], slopes[i + 1],
                  points_[i + 1].time_s - points_[i].time_s, span.share);
 }
@@ -150,9 +172,9 @@ CameraPose CameraPath::PoseAt(double time_s) const {
   const Span span = SpanAt(time_s);
   // A point of the path is what it was said to be, to the bit.
   if (span.share == 0.0) return points_[span.left].pose;
-  const auto scalar = [&](std::size_t k) { return Smooth(scalars_[k], scalar_slopes_[k], span); };
+  const auto scalar = [&](std::size_t k) { return Between(scalars_[k], scalar_slopes_[k], span); };
   CameraPose pose;
-  pose.place = PlaceOfNormal(glm::normalize(Smooth(normals_, normal_slopes_, span)), scalar(0));
+  pose.place = PlaceOfNormal(glm::normalize(Between(normals_, normal_slopes_, span)), scalar(0));
   pose.heading_rad = std::remainder(scalar(1), 2.0 * kPi);
   pose.pitch_rad = scalar(2);
   pose.roll_rad = std::remainder(scalar(3), 2.0 * kPi);
@@ -178,7 +200,7 @@ std::vector<CameraPose> CameraPath::PosesBetween(double from_s, double to_s, int
 }
 
 CameraPath ReadCameraPath(const std::filesystem::path& file, const CameraPose& otherwise) {
-  CsvReader lines(file, kColumns, {kNeeded, true, file.extension() == ".part"});
+  CsvReader lines(file, kColumns, {kNeeded, true, HasExtension(file, ".part")});
   const auto degrees = [&](Column column, double low, double high, double radians) {
     return lines.Has(column) ? lines.Number(column, low, high) : Degrees(radians);
   };

@@ -15,6 +15,10 @@
 // ellipsoid (Gade 2010, "A non-singular horizontal position representation", J. Navigation 63,
 // 395): no seam at 180 degrees or at a pole. Its components are cubics with the slope of the
 // parabola through a point and its neighbours (Catmull and Rom 1974, for uneven times), normalised.
+// That slope is at most twice the lesser of the two steps' speeds, and is 0 where the way turns
+// back: on a straight way the camera never leaves the two points between which it is, however long
+// it stands between others. Across a gap, of which nothing is known, place and height go straight
+// and with even speed, and the slopes on either side do not heed it.
 // Height and angles are cubics that do not overshoot (Fritsch and Butland 1984, SIAM J. Sci. Stat.
 // Comput. 5, 300): never lower than the lower of two points, and still where two points are the
 // same. Angles take the shorter way around; a level camera stays level. Of a path over a pole,
@@ -46,6 +50,7 @@ struct CameraPathPoint {
   double time_s = 0.0;
   CameraPose pose;
   std::optional<UtcInstant> utc = std::nullopt;
+  bool after_gap = false;  // nothing is known of the way from the point before
 };
 
 /// Immutable.
@@ -75,8 +80,8 @@ class CameraPath {
   };
   [[nodiscard]] Span SpanAt(double time_s) const;
   template <typename Value>
-  [[nodiscard]] Value Smooth(const std::vector<Value>& values, const std::vector<Value>& slopes,
-                             const Span& span) const;
+  [[nodiscard]] Value Between(const std::vector<Value>& values, const std::vector<Value>& slopes,
+                              const Span& span) const;
 
   std::vector<CameraPathPoint> points_;
   std::vector<glm::dvec3> normals_, normal_slopes_;  // of the ellipsoid, earth-fixed

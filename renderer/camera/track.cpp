@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/camera/track.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/gravity.h"
 #include "atmosphere/text/error.h"
+#include "renderer/camera/way_length.h"
 
 namespace alpenglow {
 namespace {
@@ -22,29 +26,30 @@ bool HasTimes(const Track& track) {
                      [](const TrackPoint& point) { return point.utc.has_value(); });
 }
 
-double Distance(const GeodeticPosition& a, const GeodeticPosition& b) {
-  return glm::length((EcefFromGeodetic(kWgs84, a) - EcefFromGeodetic(kWgs84, b)).xyz);
-}
-
 /// The points with their times.
 std::vector<CameraPathPoint> Knots(const Track& track, const TrackStyle& style) {
-  constexpr double kSamePlace_m = 0.5;
   const bool timed = HasTimes(track);
   std::vector<CameraPathPoint> knots;
+  int segment = 0;
   for (const TrackPoint& point : track.points) {
     CameraPathPoint knot;
     knot.pose.place = point.place;
     knot.utc = timed ? point.utc : std::nullopt;
     if (!knots.empty()) {
-      const double way_m = Distance(point.place, knots.back().pose.place);
+      const double way_m = DistanceBetween(point.place, knots.back().pose.place);
       if (!timed && way_m < kSamePlace_m) continue;
       knot.time_s = timed ? SecondsBetween(*knots.front().utc, *point.utc)
                           : knots.back().time_s + way_m / style.speed_m_per_s;
       if (!(knot.time_s > knots.back().time_s)) continue;
+      knot.after_gap = point.segment != segment;
     }
     knots.push_back(knot);
+    segment = point.segment;
   }
-  if (knots.size() < 2) throw InputError("the track has fewer than two points apart");
+  if (knots.size() < 2) {
+    throw InputError(fmt::format("{}: the track has fewer than two points apart",
+                                 track.file.empty() ? "a track" : track.file));
+  }
   return knots;
 }
 
@@ -77,9 +82,10 @@ glm::dvec3 Chord(const GeodeticPosition& from, const GeodeticPosition& to,
   return frame.EnuFromGeodetic(to).xyz - frame.EnuFromGeodetic(from).xyz;
 }
 
-/// Looks along the chords. What stands looks on as before.
+/// Looks along the chords. What stands looks on as before, and as it will go before it goes.
 void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
   constexpr double kStands_m = 1.0;
+  std::optional<std::size_t> first;  // that goes
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double t = points[i].time_s;
     CameraPose& pose = points[i].pose;
@@ -91,10 +97,13 @@ void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
     if (level_m > kStands_m) {
       pose.heading_rad = std::atan2(chord.x, chord.y);
       pose.pitch_rad = std::atan2(chord.z, level_m);
+      if (!first) first = i;
     } else if (i > 0) {
       pose.heading_rad = points[i - 1].pose.heading_rad;
     }
   }
+  for (std::size_t i = 0; i < first.value_or(0); ++i)
+    points[i].pose.heading_rad = points[*first].pose.heading_rad;
 }
 
 /// How many points on either side of each are within kSmooth_s, as many before as after it.
@@ -131,19 +140,60 @@ double WeightOfParabola(int m, int j) { return 3.0 * m * (m + 1.0) - 1.0 - 5.0 *
 /// A Hann window: weights that go to 0 at its ends.
 double WeightOfHann(int m, int j) { return 1.0 + std::cos(kPi * j / (m + 1.0)); }
 
-/// The same way, with a smooth speed: where each point is on it changes, not the way.
+struct LongStep {
+  double from_s, to_s;
+};
+
+/// Steps in which the receiver wrote nothing for longer than the speed is smoothed over.
+std::vector<LongStep> LongStepsOf(const CameraPath& way) {
+  std::vector<LongStep> steps;
+  for (std::size_t k = 1; k < way.points().size(); ++k) {
+    const LongStep step{way.points()[k - 1].time_s, way.points()[k].time_s};
+    if (step.to_s - step.from_s > kSmooth_s) steps.push_back(step);
+  }
+  return steps;
+}
+
+/// How far the speed is smoothed around each point: not into long steps of a track with times, whose
+/// points are kept to. A track without times has an even speed as it is.
+std::vector<int> ReachOfSpeed(const CameraPath& way, const std::vector<CameraPathPoint>& points) {
+  std::vector<int> reach = ReachOf(points);
+  if (!way.points().front().utc) return reach;
+  const std::vector<LongStep> steps = LongStepsOf(way);
+  const double spacing_s = points[1].time_s - points[0].time_s;
+  std::size_t next = 0;  // the first step that is not over
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double time_s = points[i].time_s;
+    while (next < steps.size() && steps[next].to_s < time_s) ++next;
+    double clear_s = kSmooth_s;
+    if (next < steps.size()) clear_s = std::clamp(steps[next].from_s - time_s, 0.0, clear_s);
+    if (next > 0) clear_s = std::min(clear_s, time_s - steps[next - 1].to_s);
+    reach[i] = std::min(reach[i], static_cast<int>(clear_s / spacing_s));
+  }
+  return reach;
+}
+
+/// The same way, with a smooth speed: where each point is on it changes, not the way, and by no more
+/// than where it would be kShift_s sooner or later. What stands is not moved.
 void SmoothSpeed(const CameraPath& way, std::vector<CameraPathPoint>& points) {
+  constexpr double kShift_s = 2.0;
   std::vector<double> gone_m{0.0};
   for (std::size_t i = 1; i < points.size(); ++i) {
-    gone_m.push_back(gone_m.back() + Distance(points[i - 1].pose.place, points[i].pose.place));
+    gone_m.push_back(gone_m.back() +
+                     DistanceBetween(points[i - 1].pose.place, points[i].pose.place));
   }
-  const std::vector<double> smooth_m = Smoothed(gone_m, ReachOf(points), WeightOfParabola);
+  const auto shift = static_cast<std::size_t>(
+      std::max(std::lround(kShift_s / (points[1].time_s - points[0].time_s)), 1L));
+  const std::vector<double> smooth_m =
+      Smoothed(gone_m, ReachOfSpeed(way, points), WeightOfParabola);
   std::vector<double> times_s;
   for (const CameraPathPoint& point : points) times_s.push_back(point.time_s);
   double farthest_m = 0.0;
   std::size_t next = 1;
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-    farthest_m = std::clamp(smooth_m[i], farthest_m, gone_m.back());  // never back
+    const double least_m = gone_m[i - std::min(i, shift)];
+    const double most_m = gone_m[std::min(i + shift, points.size() - 1)];
+    farthest_m = std::max(farthest_m, std::clamp(smooth_m[i], least_m, most_m));  // never back
     while (next + 1 < gone_m.size() && gone_m[next] < farthest_m) ++next;
     const double span_m = gone_m[next] - gone_m[next - 1];
     const double share = span_m > 0.0 ? (farthest_m - gone_m[next - 1]) / span_m : 1.0;
@@ -160,7 +210,7 @@ void Bank(std::vector<CameraPathPoint>& points) {
     const CameraPathPoint &before = points[i - 1], &after = points[i + 1];
     const double seconds = after.time_s - before.time_s;
     const double turn = std::remainder(after.pose.heading_rad - before.pose.heading_rad, 2.0 * kPi);
-    const double speed = Distance(before.pose.place, after.pose.place) / seconds;
+    const double speed = DistanceBetween(before.pose.place, after.pose.place) / seconds;
     bank_rad[i] = std::clamp(std::atan(speed * turn / seconds / kStandardGravity_m_per_s2),
                              -kMost_rad, kMost_rad);
   }

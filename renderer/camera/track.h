@@ -3,10 +3,11 @@
 //
 //   bank = atan(v psi' / g), to 35 degrees           psi' is the turn of the path per second
 //
-// The camera goes through all points of the track on the smooth curve of CameraPath. Receivers are
-// not as steady as wings: it looks where the chord of the curve points, over 4 s; where it is on the
-// curve, and so its speed, is the parabola that fits best 4 s before and after; so far the bank is
-// smoothed too.
+// The camera goes through all points of the track on the smooth curve of CameraPath; between segments
+// of the track it goes straight and with even speed. Receivers are not as steady as wings: it looks
+// where the chord of the curve points, over 4 s; where it is on the curve, and so its speed, is the
+// parabola that fits best 4 s before and after, except near steps of the track of more than 4 s
+// (pauses, and receivers that write seldom); the bank is smoothed over 4 s too.
 #pragma once
 
 #include "renderer/camera/camera_path.h"

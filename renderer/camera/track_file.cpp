@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
+#include "renderer/camera/track_record.h"
 
 namespace alpenglow {
 namespace {
@@ -22,6 +24,8 @@ class TrackReader {
  public:
   explicit TrackReader(const std::filesystem::path& file) : file_(file.string()) {
     const std::string text = ReadTextFile(file);
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+      Fail(1, "this is UTF-16; UTF-8 is read: save it as such");
     if (document_.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS) return;
     Fail(std::max(document_.ErrorLineNum(), 1),
          fmt::format("this is no XML ({})", document_.ErrorName()));
@@ -113,59 +117,120 @@ class TrackReader {
     }
   }
 
-  [[nodiscard]] double Attribute(const XMLElement& point, const char* name) const {
+  /// Nothing where it is empty or nan: what receivers write that have no fix.
+  [[nodiscard]] std::optional<double> NumberIfAny(std::string_view text, const XMLElement& at,
+                                                  std::string_view what) const {
+    if (text.find_first_not_of(kBlanks) == std::string_view::npos) return std::nullopt;
+    const double value = Number(text, at, what);
+    return std::isnan(value) ? std::nullopt : std::optional<double>(value);
+  }
+
+  [[nodiscard]] std::optional<double> Attribute(const XMLElement& point, const char* name) const {
     const char* text = point.Attribute(name);
     if (text == nullptr) {
       Fail(point.GetLineNum(), fmt::format("<{}> has no {}", point.Name(), name));
     }
-    return Number(text, point, name);
+    return NumberIfAny(text, point, name);
   }
 
   [[nodiscard]] Track ReadGpx(const XMLElement& gpx) const {
-    Track track;
-    std::vector<const XMLElement*> points = All(gpx, "trkpt");
+    std::vector<RecordedSegment> segments;
+    for (const XMLElement* segment : All(gpx, "trkseg"))
+      segments.push_back(GpxPoints(All(*segment, "trkpt")));
+    if (IsEmpty(segments)) segments = {GpxPoints(All(gpx, "trkpt"))};
     const XMLElement* owner = ChildOf(gpx, "trk");
-    if (points.empty()) {
+    if (IsEmpty(segments)) {
       owner = ChildOf(gpx, "rte");
-      if (owner != nullptr) points = All(*owner, "rtept");
+      if (owner != nullptr) segments = {GpxPoints(All(*owner, "rtept"))};
     }
-    if (points.empty()) points = All(gpx, "wpt");
-    if (points.empty()) Fail(gpx.GetLineNum(), "there is no trkpt, rtept or wpt in it");
+    if (IsEmpty(segments)) segments = {GpxPoints(All(gpx, "wpt"))};
+    if (IsEmpty(segments)) Fail(gpx.GetLineNum(), "there is no trkpt, rtept or wpt in it");
+    Track track = Made(segments, TrackHeights::kSea, gpx);
     if (owner != nullptr) track.name = TextOf(ChildOf(*owner, "name"));
-    for (const XMLElement* point : points) AddGpxPoint(*point, track);
+    if (owner != nullptr && NameOf(*owner) == "rte")
+      NoteTheFirstOf(All(gpx, "rte").size(), "routes", track);
     return track;
   }
 
-  // One point without a height puts the track on the ground: the others' would jump to it.
-  void AddGpxPoint(const XMLElement& point, Track& track) const {
+  static void NoteTheFirstOf(std::size_t count, const char* what, Track& track) {
+    if (count < 2) return;
+    if (!track.note.empty()) track.note += "; ";
+    track.note += fmt::format("the first of {} {} is read", count, what);
+  }
+
+  [[nodiscard]] static bool IsEmpty(const std::vector<RecordedSegment>& segments) {
+    return std::all_of(segments.begin(), segments.end(),
+                       [](const RecordedSegment& segment) { return segment.empty(); });
+  }
+
+  [[nodiscard]] Track Made(const std::vector<RecordedSegment>& segments, TrackHeights heights,
+                           const XMLElement& at) const {
+    Track track = TrackOf(segments, heights);
+    if (track.points.empty()) Fail(at.GetLineNum(), "none of its points has a place");
+    return track;
+  }
+
+  [[nodiscard]] RecordedSegment GpxPoints(const std::vector<const XMLElement*>& points) const {
+    RecordedSegment segment;
+    for (const XMLElement* point : points) segment.push_back(GpxPoint(*point));
+    return segment;
+  }
+
+  [[nodiscard]] RecordedPoint GpxPoint(const XMLElement& point) const {
     const XMLElement* height = ChildOf(point, "ele");
     const XMLElement* time = ChildOf(point, "time");
-    if (height == nullptr) track.heights = TrackHeights::kOnGround;
-    TrackPoint added;
-    added.place = Place(Attribute(point, "lat"), Attribute(point, "lon"),
-                        height == nullptr ? 0.0 : Number(TextOf(height), *height, "ele"), point);
-    if (time != nullptr) added.utc = Instant(*time);
-    track.points.push_back(added);
+    const std::optional<double> height_m =
+        height == nullptr ? std::nullopt : NumberIfAny(TextOf(height), *height, "ele");
+    RecordedPoint read =
+        Recorded(Attribute(point, "lat"), Attribute(point, "lon"), height_m, point);
+    if (!TextOf(time).empty()) read.utc = Instant(*time);
+    return read;
+  }
+
+  [[nodiscard]] RecordedPoint Recorded(std::optional<double> latitude,
+                                       std::optional<double> longitude,
+                                       std::optional<double> height_m, const XMLElement& at) const {
+    RecordedPoint point;
+    if (!latitude || !longitude) return point;
+    point.place = Place(*latitude, *longitude, height_m.value_or(0.0), at);
+    point.place->height_m = 0.0;
+    point.height_m = height_m;
+    return point;
   }
 
   [[nodiscard]] Track ReadKml(const XMLElement& kml) const {
-    Track track;
-    const std::vector<const XMLElement*> recorded = All(kml, "Track");
-    const std::vector<const XMLElement*> drawn = All(kml, "LineString");
-    const XMLElement* first = !recorded.empty() ? recorded.front()
-                              : !drawn.empty()  ? drawn.front()
-                                                : nullptr;
-    if (first == nullptr) Fail(kml.GetLineNum(), "there is no gx:Track and no LineString in it");
-    track.heights = HeightsOf(*first);
-    track.name = PlacemarkName(*first);
-    for (const XMLElement* element : recorded) AddKmlTrack(*element, track);
-    if (recorded.empty()) AddLineString(*first, track);
-    if (track.points.empty()) Fail(first->GetLineNum(), "it has no points");
+    std::vector<const XMLElement*> lines = All(kml, "Track");
+    const bool recorded = !lines.empty();
+    if (!recorded) lines = All(kml, "LineString");
+    if (lines.empty()) Fail(kml.GetLineNum(), "there is no gx:Track and no LineString in it");
+    const std::size_t drawn = recorded ? 1 : lines.size();
+    if (!recorded) lines.erase(lines.begin() + 1, lines.end());
+    std::vector<RecordedSegment> segments;
+    const TrackHeights heights = HeightsOf(*lines.front());
+    for (const XMLElement* line : lines) {
+      if (HeightsOf(*line) != heights)
+        Fail(line->GetLineNum(), "its altitudeMode is not that of the lines before it");
+      segments.push_back(recorded ? KmlTrack(*line) : LineString(*line));
+    }
+    if (IsEmpty(segments)) Fail(lines.front()->GetLineNum(), "it has no points");
+    Track track = Made(segments, heights, *lines.front());
+    track.name = PlacemarkName(*lines.front());
+    NoteTheFirstOf(drawn, "LineStrings", track);
     return track;
   }
 
+  /// The line's own, or that of an element around it.
+  [[nodiscard]] static const XMLElement* AltitudeModeOf(const XMLElement& line) {
+    for (const tinyxml2::XMLNode* node = &line; node != nullptr; node = node->Parent()) {
+      const XMLElement* element = node->ToElement();
+      if (element == nullptr) break;
+      if (const XMLElement* mode = ChildOf(*element, "altitudeMode")) return mode;
+    }
+    return nullptr;
+  }
+
   [[nodiscard]] TrackHeights HeightsOf(const XMLElement& line) const {
-    const XMLElement* mode = ChildOf(line, "altitudeMode");
+    const XMLElement* mode = AltitudeModeOf(line);
     const std::string_view text = TextOf(mode);
     if (mode == nullptr || text == "clampToGround" || text == "clampToSeaFloor") {
       return TrackHeights::kOnGround;
@@ -189,47 +254,53 @@ class TrackReader {
     return "";
   }
 
+  /// The first part of a text up to one of the separators, which is cut off with those after it.
+  [[nodiscard]] static std::string_view TakePart(std::string_view& text,
+                                                 std::string_view separators) {
+    const std::size_t end = std::min(text.find_first_of(separators), text.size());
+    const std::string_view part = text.substr(0, end);
+    text.remove_prefix(std::min(text.find_first_not_of(separators, end), text.size()));
+    return part;
+  }
+
   /// "8.5 47.3 410" or "8.5,47.3,410": longitude first. The height may be left out.
-  [[nodiscard]] GeodeticPosition Coordinate(std::string_view text, char separator,
-                                            const XMLElement& at) const {
+  [[nodiscard]] RecordedPoint Coordinate(std::string_view text, std::string_view separators,
+                                         const XMLElement& at) const {
     const std::string_view all = text;
-    double values[3] = {0.0, 0.0, 0.0};
+    std::optional<double> values[3];
     std::size_t count = 0;
-    for (; !text.empty() && count < 3; ++count) {
-      const std::size_t end = std::min(text.find(separator), text.size());
-      values[count] = Number(text.substr(0, end), at, "a coordinate");
-      text.remove_prefix(std::min(end + 1, text.size()));
-    }
+    for (; !text.empty() && count < 3; ++count)
+      values[count] = NumberIfAny(TakePart(text, separators), at, "a coordinate");
     if (count < 2 || !text.empty()) {
       Fail(at.GetLineNum(), fmt::format("\"{}\" is no coordinate", all));
     }
-    return Place(values[1], values[0], values[2], at);
+    return Recorded(values[1], values[0], values[2], at);
   }
 
-  void AddLineString(const XMLElement& line, Track& track) const {
+  [[nodiscard]] RecordedSegment LineString(const XMLElement& line) const {
     const XMLElement* coordinates = ChildOf(line, "coordinates");
     std::string_view text = TextOf(coordinates);
-    while (!text.empty()) {
-      const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
-      track.points.push_back({Coordinate(text.substr(0, end), ',', *coordinates)});
-      text.remove_prefix(end);
-      text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-    }
+    RecordedSegment segment;
+    while (!text.empty()) segment.push_back(Coordinate(TakePart(text, kBlanks), ",", *coordinates));
+    return segment;
   }
 
-  void AddKmlTrack(const XMLElement& element, Track& track) const {
+  [[nodiscard]] RecordedSegment KmlTrack(const XMLElement& element) const {
     const std::vector<const XMLElement*> places = All(element, "coord");
     const std::vector<const XMLElement*> times = All(element, "when");
     if (places.size() != times.size()) {
       Fail(element.GetLineNum(), fmt::format("it has {} gx:coord and {} when; as many are needed",
                                              places.size(), times.size()));
     }
+    RecordedSegment segment;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      TrackPoint point;
-      point.place = Coordinate(TextOf(places[i]), ' ', *places[i]);
-      point.utc = Instant(*times[i]);
-      track.points.push_back(point);
+      const std::string_view text = TextOf(places[i]);
+      RecordedPoint point;
+      if (!text.empty()) point = Coordinate(text, kBlanks, *places[i]);
+      if (!TextOf(times[i]).empty()) point.utc = Instant(*times[i]);
+      segment.push_back(point);
     }
+    return segment;
   }
 
   std::string file_;
@@ -238,6 +309,10 @@ class TrackReader {
 
 }  // namespace
 
-Track ReadTrack(const std::filesystem::path& file) { return TrackReader(file).Read(); }
+Track ReadTrack(const std::filesystem::path& file) {
+  Track track = TrackReader(file).Read();
+  track.file = file.string();
+  return track;
+}
 
 }  // namespace alpenglow

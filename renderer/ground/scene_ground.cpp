@@ -53,6 +53,21 @@ bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double 
          dip(eye_m) + dip(static_cast<double>(highest_m));
 }
 
+// A range of degrees in as many digits, 6 at least, as tell its ends from a value outside.
+struct RangeText {
+  std::string value, low, high;
+};
+RangeText TextOfRange(double value, double low, double high) {
+  RangeText text;
+  for (int digits = 6; digits <= 17; ++digits) {
+    const auto written = [&](double number) { return fmt::format("{:.{}g}", number, digits); };
+    text = {written(value), written(low), written(high)};
+    const bool differs = text.value != text.low && text.value != text.high;
+    if (differs || value == low || value == high) break;
+  }
+  return text;
+}
+
 // An eye that stands on the ground stands on the model's; one that flies sees some of it.
 void RequireEyeOver(const ElevationGrid& grid, const Scene& scene) {
   const GeodeticPosition& place = scene.place;
@@ -61,13 +76,16 @@ void RequireEyeOver(const ElevationGrid& grid, const Scene& scene) {
   const Height& height = scene.camera.height;
   if (!height.above_ground && IsInSight(grid, place, height.value_m)) return;
   const bool swapped_lies_inside = grid.Covers(place.longitude_rad, place.latitude_rad);
-  throw InputError(
-      fmt::format("the camera at latitude {:.6g}, longitude {:.6g} is outside {}, which covers "
-                  "latitudes {:.6g} "
-                  "to {:.6g} and longitudes {:.6g} to {:.6g}{}",
-                  place.latitude_rad / kRadiansPerDegree, place.longitude_rad / kRadiansPerDegree,
-                  scene.terrain.file.string(), model.south, model.north, model.west, model.east,
-                  swapped_lies_inside ? "; latitude and longitude seem to be swapped" : ""));
+  const RangeText latitude =
+      TextOfRange(place.latitude_rad / kRadiansPerDegree, model.south, model.north);
+  const RangeText longitude =
+      TextOfRange(place.longitude_rad / kRadiansPerDegree, model.west, model.east);
+  throw InputError(fmt::format(
+      "the camera at latitude {}, longitude {} is outside {}, which covers latitudes {} "
+      "to {} and longitudes {} to {}{}",
+      latitude.value, longitude.value, scene.terrain.file.string(), latitude.low, latitude.high,
+      longitude.low, longitude.high,
+      swapped_lies_inside ? "; latitude and longitude seem to be swapped" : ""));
 }
 
 std::string MessageOn(const ElevationModel& model, const std::string& file) {

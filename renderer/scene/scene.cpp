@@ -7,9 +7,11 @@
 #include <initializer_list>
 #include <limits>
 
+#include "atmosphere/air/medium_choice.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "atmosphere/text/toml_table.h"
 
 namespace alpenglow {
@@ -177,7 +179,7 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder) {
   }
   if (preset) return At(*table, "preset", [&] { return MediumPreset(*preset); });
   if (!file) table->Fail("file", "atmosphere.file is missing");
-  return ReadMedium(folder / *file);
+  return MediumFromChoice(*file, folder);
 }
 
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
@@ -439,7 +441,7 @@ void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume)
   }
   RefuseKeys(table, {"scale_height_m"}, "is for a volume without a grid");
   volume.grid = folder / *grid;
-  if (volume.grid.extension() == ".nrrd") {
+  if (HasExtension(volume.grid, ".nrrd")) {
     RefuseKeys(table, {"grid_size"}, "is for a raw grid; an NRRD file says its own");
     return;
   }

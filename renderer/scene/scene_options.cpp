@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene_options.h"
 
-#include <algorithm>
-
+#include "atmosphere/air/medium_choice.h"
 #include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
 #include "renderer/terrain/built_in_range.h"
@@ -16,9 +15,22 @@ struct View {
   double heading, pitch, fov;
 };
 
-View ViewOfTheRange(const GeodeticPosition& centre) {
-  const BuiltInView view = BuiltInRangeViewAboveGround(centre);
-  GeodeticPosition place = view.eye;
+bool IsPlaceTyped(const SceneOptions& options) { return options.latitude || options.longitude; }
+
+GeodeticPosition PlaceTyped(const SceneOptions& options) {
+  return PlaceFromDegrees(options.latitude.value_or(kHomeLatitude),
+                          options.longitude.value_or(kHomeLongitude), 0.0);
+}
+
+/// The range comes to a place that is typed; nobody else moves.
+GeodeticPosition CentreOfTheRange(const SceneOptions& options) {
+  const GeodeticPosition typed = PlaceTyped(options);
+  return IsPlaceTyped(options) ? CentreOfRangeSeenFrom(typed) : typed;
+}
+
+View ViewOfTheRange(const SceneOptions& options) {
+  const BuiltInView view = BuiltInRangeViewAboveGround(CentreOfTheRange(options));
+  GeodeticPosition place = IsPlaceTyped(options) ? PlaceTyped(options) : view.eye;
   place.height_m = 0.0;
   return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
 }
@@ -36,24 +48,18 @@ Height HeightFrom(const SceneOptions& options, const Height& fallback) {
   return fallback;
 }
 
-Medium MediumFrom(const std::string& name) {
-  const std::vector<std::string> presets = MediumPresetNames();
-  const bool is_preset = std::find(presets.begin(), presets.end(), name) != presets.end();
-  return is_preset ? MediumPreset(name) : ReadMedium(name);
-}
-
 }  // namespace
 
 Scene SceneFromOptions(const SceneOptions& options) {
-  const GeodeticPosition typed = PlaceFromDegrees(options.latitude, options.longitude, 0.0);
-  const View view = options.dem ? View{typed, Height{}, 0.0, 0.0, 60.0} : ViewOfTheRange(typed);
+  const View view =
+      options.dem ? View{PlaceTyped(options), Height{}, 0.0, 0.0, 60.0} : ViewOfTheRange(options);
   Scene scene;
   scene.place = view.place;
   scene.time = ParseInstant("2026-06-21T12:00:00Z");
   scene.camera = CameraFromDegrees(
       HeightFrom(options, view.height), options.heading.value_or(view.heading),
       options.pitch.value_or(view.pitch), 0.0, options.fov.value_or(view.fov), "--");
-  scene.medium = MediumFrom(options.atmosphere.value_or("earth"));
+  scene.medium = MediumFromChoice(options.atmosphere.value_or("earth"));
   if (options.bortle) {
     RequireInRange(*options.bortle, 1.0, 9.0, "--bortle");
     scene.town_zenith = ZenithOfBortleClass(*options.bortle);
@@ -62,10 +68,9 @@ Scene SceneFromOptions(const SceneOptions& options) {
     scene.terrain.kind = TerrainSource::Kind::kElevationModel;
     scene.terrain.file = *options.dem;
   } else {
-    const SceneOptions at_home;  // the range's own place, where nobody looks for other mountains
-    scene.terrain.centre = typed;
-    scene.terrain.is_default =
-        options.latitude != at_home.latitude || options.longitude != at_home.longitude;
+    scene.terrain.centre = CentreOfTheRange(options);
+    // Nobody looks for other mountains at the range's own place.
+    scene.terrain.is_default = IsPlaceTyped(options);
   }
   return scene;
 }

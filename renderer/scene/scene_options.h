@@ -9,10 +9,14 @@
 
 namespace alpenglow {
 
+/// Latitude and longitude [degrees] where none are typed: of elevation models, and of the view of
+/// the built-in range that is centred there.
+inline constexpr double kHomeLatitude = 46.5;
+inline constexpr double kHomeLongitude = 8.0;
+
 /// What may be typed instead of a scene file; degrees and metres.
 struct SceneOptions {
-  double latitude = 46.5;
-  double longitude = 8.0;
+  std::optional<double> latitude, longitude;
   std::optional<double> heading, pitch, fov;
   std::optional<double> height_m, above_ground_m;
   std::optional<std::string> dem;
@@ -20,10 +24,11 @@ struct SceneOptions {
   std::optional<int> bortle;              // ZenithOfBortleClass
 };
 
-/// With `dem` the eye stands at latitude and longitude, 2 m above the ground, and looks north,
-/// horizontally, 60 degrees wide, unless said otherwise. Without it the built-in range is centred
-/// there and seen as in BuiltInRangeView, unless said otherwise. The scene's time is noon (UTC) of
-/// 2026-06-21: the day of events when none is given. Throws InputError naming the option.
+/// The eye stands at latitude and longitude, whatever the ground is. With `dem` it stands 2 m above
+/// the ground and looks north, horizontally, 60 degrees wide, unless said otherwise. Without it the
+/// built-in range lies so that the place is that of BuiltInRangeView, whose height and directions
+/// hold unless said otherwise. The scene's time is noon (UTC) of 2026-06-21: the day of events when
+/// none is given. Throws InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);
 
 }  // namespace alpenglow

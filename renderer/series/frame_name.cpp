@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 
 namespace alpenglow {
 namespace {
@@ -40,7 +41,7 @@ Conversion ConversionAt(const std::string& pattern, std::size_t at) {
 }  // namespace
 
 FrameName::FrameName(const std::string& pattern) {
-  if (std::filesystem::path(pattern).extension() != ".exr") Refuse(pattern, "it must end in .exr");
+  if (!HasExtension(pattern, ".exr")) Refuse(pattern, "it must end in .exr");
   std::string* part = &before_;
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     if (pattern[i] != '%') {

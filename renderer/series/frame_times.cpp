@@ -26,9 +26,11 @@ EventDay DayOfFrom(const TimesText& times, const EventDay& day) {
 
 UtcInstant EndOf(const TimesText& times, const EventDay& day, const UtcInstant& from) {
   const UtcInstant to = InstantFromText(*times.to, day);
-  if (SecondsBetween(from, to) > 0.0 || !IsDailyEvent(*times.to)) return to;
+  const bool comes_daily = IsDailyEvent(*times.to) || IsClockTime(*times.to);
+  if (SecondsBetween(from, to) > 0.0 || !comes_daily) return to;
   EventDay next = day;
-  next.around = AddSeconds(*day.around, kSecondsPerDay);
+  // From noon: clocks may be set before the next one.
+  next.around = AddSeconds(DayFromText(DateAt(*day.around, day), day), kSecondsPerDay);
   return InstantFromText(*times.to, next);
 }
 
@@ -64,6 +66,43 @@ std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s,
   std::vector<UtcInstant> instants;
   const int steps = StepsIn(span_s, every);
   for (int i = 0; i <= steps; ++i) instants.push_back(AddSeconds(from, i * StepOf(every)));
+  return instants;
+}
+
+/// A clock time of a day in the zone. Clocks that skip it or show it twice go on with the offset
+/// that they had before.
+UtcInstant ClockTimeOn(const std::string& date_and_clock, const std::string& zone,
+                       const UtcInstant& before) {
+  constexpr std::size_t kOffsetAt = 19;  // in "2026-06-21T13:00:00+09:00"
+  try {
+    return ParseInstant(date_and_clock, zone);
+  } catch (const InputError&) {
+    return ParseInstant(date_and_clock + FormatInZone(before, zone).substr(kOffsetAt));
+  }
+}
+
+/// Whole days of the calendar of a zone: clocks show the same at every frame.
+bool IsOfCalendarDays(const std::string& every, const EventDay& day) {
+  return day.zone && every.ends_with('d') && std::fmod(StepOf(every), kSecondsPerDay) == 0.0;
+}
+
+std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const std::string& every,
+                                  const EventDay& day) {
+  constexpr double kRounding_s = 1e-6;
+  const double fraction_s = from.second_of_day - std::floor(from.second_of_day);
+  const UtcInstant whole = AddSeconds(from, -fraction_s);
+  const std::string clock = FormatInZone(whole, *day.zone).substr(10, 9);  // "T13:00:00"
+  const UtcInstant noon = DayFromText(DateAt(from, day), day);
+  std::vector<UtcInstant> instants{from};
+  // A span of whole days is an hour longer or shorter where clocks are set in it.
+  const int most = StepsIn(span_s + 0.5 * kSecondsPerDay, every);
+  for (int i = 1; i <= most; ++i) {
+    const std::string date = DateAt(AddSeconds(noon, i * StepOf(every)), day);
+    const UtcInstant next =
+        AddSeconds(ClockTimeOn(date + clock, *day.zone, instants.back()), fraction_s);
+    if (SecondsBetween(from, next) > span_s + kRounding_s) break;
+    instants.push_back(next);
+  }
   return instants;
 }
 
@@ -161,6 +200,8 @@ std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) 
   if (span_s < 0.0) {
     throw InputError(fmt::format("--to {} is before --from {}", *times.to, *times.from));
   }
+  if (times.every && IsOfCalendarDays(*times.every, day))
+    return Numbered(EveryDays(from, span_s, *times.every, day));
   if (times.every) return Numbered(EverySeconds(from, span_s, *times.every));
   if (times.count) return Numbered(CountBetween(from, span_s, *times.count));
   throw InputError("--from and --to need --every or --count");

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,7 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/sun/sun_day.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
@@ -63,11 +65,49 @@ std::optional<int> DaysFromToday(std::string_view word) {
   return std::nullopt;
 }
 
-bool IsClockTime(std::string_view text) {
-  return text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':';
+/// "18:00" for what people write instead: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; nothing for other
+/// texts.
+std::optional<std::string> ClockTimeMeant(std::string_view text) {
+  const auto number = [&](std::size_t most) {
+    int value = 0;
+    std::size_t digits = 0;
+    for (; digits < most && digits < text.size() && IsDigit(text[digits]); ++digits)
+      value = 10 * value + (text[digits] - '0');
+    text.remove_prefix(digits);
+    return digits > 0 ? std::optional<int>(value) : std::nullopt;
+  };
+  std::optional<int> hour = number(2);
+  const bool has_separator = !text.empty() && std::string_view(":.hH").find(text.front()) < 4;
+  if (has_separator) text.remove_prefix(1);
+  const int minute = has_separator ? number(2).value_or(0) : 0;
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  std::string half(text);
+  std::transform(half.begin(), half.end(), half.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const bool is_afternoon = half == "pm" || half == "p.m.";
+  const bool is_half = is_afternoon || half == "am" || half == "a.m.";
+  if (!hour || (!is_half && !half.empty()) || (is_half && (*hour < 1 || *hour > 12)))
+    return std::nullopt;
+  if (is_half) hour = *hour % 12 + (is_afternoon ? 12 : 0);
+  if (*hour > 23 || minute > 59) return std::nullopt;
+  return fmt::format("{:02}:{:02}", *hour, minute);
+}
+
+/// Refuses a clock time that is written otherwise than it is read, after a day or alone.
+void RefuseOtherClockTimes(std::string_view text) {
+  const bool after_day = text.size() > kDateLength + 1 && IsDayText(text.substr(0, kDateLength));
+  const std::string_view clock = after_day ? text.substr(kDateLength + 1) : text;
+  const std::optional<std::string> meant = ClockTimeMeant(clock);
+  if (!meant || clock.starts_with(*meant)) return;
+  throw InputError(
+      fmt::format("time \"{}\": \"{}\" is no time; did you mean {}?", text, clock, *meant));
 }
 
 [[noreturn]] void RefuseEvent(std::string_view name, std::string_view text) {
+  if (name.empty() && !text.empty()) {
+    throw InputError(fmt::format(
+        "time \"{}\": an offset follows a time: now+2h, sunrise+20m, 18:30+02:00", text));
+  }
   const std::optional<std::string> nearest = NearestName(name, kEventNames);
   throw InputError(fmt::format("time \"{}\": unknown event \"{}\"; {}", text, name,
                                nearest
@@ -112,6 +152,17 @@ std::optional<UtcInstant> FindEclipseEvent(EclipseEvent event, const UtcInstant&
   return eclipse ? InstantOf(event, *eclipse) : std::nullopt;
 }
 
+/// Why the sun does not cross the height of an event on a day.
+std::string WhyNot(SunEvent event, const EventDay& day) {
+  const auto noon = FindSunEvent(SunEvent::kNoon, day.place, *day.around);
+  const bool above = IsAboveEvent(event, day.place, noon.value());
+  if (event == SunEvent::kSunrise || event == SunEvent::kSunset)
+    return above ? " (polar day: the sun stays above the horizon)"
+                 : " (polar night: the sun stays below the horizon)";
+  return above ? " (the night is light: the sun does not sink so far below the horizon)"
+               : " (polar night: the sun stays farther below the horizon)";
+}
+
 std::string NoSuchEvent(std::string_view text, const EventDay& day) {
   const EventText parts = SplitEvent(text);
   std::string fault =
@@ -119,9 +170,10 @@ std::string NoSuchEvent(std::string_view text, const EventDay& day) {
                   parts.name, DateAt(*day.around, day), day.place.latitude_rad / kRadiansPerDegree,
                   day.place.longitude_rad / kRadiansPerDegree);
   if (EclipseEventFromName(parts.name)) return fault + ": no such eclipse of the sun";
+  if (const std::optional<SunEvent> sun = SunEventFromName(parts.name))
+    return fault + WhyNot(*sun, day);
   const std::optional<MoonEvent> moon = MoonEventFromName(parts.name);
-  if (!moon) return fault + " (polar day or night)";
-  if (const auto next = NextMoonEvent(*moon, day.place, *day.around)) {
+  if (const auto next = NextMoonEvent(moon.value(), day.place, *day.around)) {
     fault += fmt::format(" (the next is at {})", FormatUtc(*next));
   }
   return fault;
@@ -165,6 +217,10 @@ TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day) {
   return time;
 }
 
+bool IsClockTime(std::string_view text) {
+  return text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':';
+}
+
 bool IsDailyEvent(std::string_view text) {
   return !text.empty() && !IsDigit(text.front()) && !IsNow(text) && !IsDayText(text) &&
          !EndOfDay(text);
@@ -172,6 +228,7 @@ bool IsDailyEvent(std::string_view text) {
 
 std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day) {
   const EventText parts = SplitEvent(text);
+  if (parts.name.empty()) RefuseEvent(parts.name, text);
   const double offset_s = OffsetOf(parts);
   std::optional<UtcInstant> instant;
   if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
@@ -200,7 +257,10 @@ UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
   if (IsClockTime(text)) {
     return ParseInstant(fmt::format("{}T{}", DateAt(AroundOf(text, day), day), text), day.zone);
   }
-  if (!IsDailyEvent(text)) return ParseInstant(text, day.zone);
+  if (!IsDailyEvent(text)) {
+    RefuseOtherClockTimes(text);
+    return ParseInstant(text, day.zone);
+  }
   const std::optional<UtcInstant> instant = FindDailyEvent(text, day);
   if (!instant) throw InputError(NoSuchEvent(text, day));
   return *instant;

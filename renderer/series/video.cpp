@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -16,11 +17,13 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "lut/program/atomic_file.h"
 #include "lut/program/descriptor.h"
 #include "lut/program/program.h"
@@ -69,7 +72,7 @@ std::vector<std::string> ArgumentsOf(const fs::path& file, const VideoSettings& 
       "-c:v", "libx264", "-crf", "17", "-colorspace", "bt709", "-color_primaries", "bt709",
       "-color_trc", "iec61966-2-1", "-color_range", "tv", "-metadata",
       "comment=" + CommentOf(settings.metadata)};
-  if (file.extension() != ".mkv") {
+  if (!HasExtension(file, ".mkv")) {
     arguments.insert(arguments.end(), {"-movflags", "+faststart"});
   }
   arguments.push_back("file:" + file.string());
@@ -188,8 +191,9 @@ class Notes {
 }  // namespace
 
 void RequireVideo(const fs::path& file) {
-  const fs::path kind = file.extension();
-  if (kind != ".mp4" && kind != ".mov" && kind != ".mkv") {
+  constexpr std::array<std::string_view, 3> kKinds{".mp4", ".mov", ".mkv"};
+  const auto is_of = [&](std::string_view kind) { return HasExtension(file, kind); };
+  if (std::none_of(kKinds.begin(), kKinds.end(), is_of)) {
     throw InputError(
         fmt::format("\"{}\" is no film's name; it must end in .mp4, .mov or .mkv", file.string()));
   }

@@ -190,6 +190,17 @@ class BoxMap {
     return {centre_.latitude_rad + north_m * rad_per_north_m_,
             centre_.longitude_rad + east_m * rad_per_east_m_, 0.0};
   }
+  // The centre that this map would have if a place were so far east and north of it. Each pass is
+  // closer by the factor that the radius of the meridian changes by on the way: under 1e-4.
+  [[nodiscard]] static GeodeticPosition CentreSeenFrom(const GeodeticPosition& place, double east_m,
+                                                       double north_m) {
+    constexpr int kPasses = 5;
+    double latitude = place.latitude_rad;
+    for (int pass = 0; pass < kPasses; ++pass)
+      latitude = place.latitude_rad - north_m / MeridianRadius(latitude);
+    return {latitude, WrappedLongitude(place.longitude_rad - east_m / ParallelRadius(latitude)),
+            0.0};
+  }
 
  private:
   GeodeticPosition centre_;
@@ -215,6 +226,18 @@ class PolarMap {
   [[nodiscard]] glm::dvec2 From(const GeodeticPosition& place) const {
     const glm::dvec2 step = PlaneOf(place) - centre_;
     return {glm::dot(step, East()), glm::dot(step, North())};
+  }
+  // The centre that this map would have if a place were so far east and north of it.
+  [[nodiscard]] static GeodeticPosition CentreSeenFrom(const GeodeticPosition& place, double east_m,
+                                                       double north_m) {
+    const double hemisphere = place.latitude_rad > 0.0 ? 1.0 : -1.0;
+    const double radius_m = MeridianRadius(0.5 * kPi);
+    const double from_pole_m = (0.5 * kPi - std::abs(place.latitude_rad)) * radius_m;
+    const double square_m2 = from_pole_m * from_pole_m - east_m * east_m;
+    const double along_m = std::sqrt(std::max(square_m2, 0.0));
+    const double centre_from_pole_m = along_m + hemisphere * north_m;
+    return {hemisphere * (0.5 * kPi - centre_from_pole_m / radius_m),
+            WrappedLongitude(place.longitude_rad - std::atan2(east_m, along_m)), 0.0};
   }
   // How much the meridians turn clockwise from the centre's to a place's.
   [[nodiscard]] double Convergence(const GeodeticPosition& place) const {
@@ -264,7 +287,7 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   const PolarMap map(centre);
   const double half_m = 0.5 * land.spacing_m * (land.size - 1);
   const double radius_m = MeridianRadius(0.5 * kPi);
-  const double to_pole_m = (0.5 * kPi - std::abs(centre.latitude_rad)) * radius_m;
+  const double to_pole_m = std::abs(0.5 * kPi - std::abs(centre.latitude_rad)) * radius_m;
   ElevationGrid grid;
   grid.columns = kColumns;
   grid.rows = static_cast<int>(std::ceil((to_pole_m + std::sqrt(2.0) * half_m) / kRowSpacing_m));
@@ -288,8 +311,13 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   return grid;
 }
 
+// Where the view of the range stands, from its centre.
+constexpr double kViewEast_m = 2000.0;
+constexpr double kViewNorth_m = 16560.0;
+
 ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
-  RequireInRange(centre.latitude_rad, -0.5 * kPi, 0.5 * kPi, "latitude_rad");
+  const double most = 0.5 * kPi + kViewNorth_m / MeridianRadius(0.5 * kPi);
+  RequireInRange(centre.latitude_rad, -most, most, "latitude_rad");
   GeodeticPosition wrapped = centre;
   wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
   return IsPolar(wrapped) ? PolarGrid(land, wrapped) : BoxGrid(land, wrapped);
@@ -306,20 +334,23 @@ ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre) {
 }
 
 BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {
-  constexpr double kEast_m = 2000.0;
-  constexpr double kNorth_m = 16560.0;
   constexpr double kAboveGround_m = 60.0;
   BuiltInView view{{}, 161.0, 0.5, 50.0};
   if (IsPolar(centre)) {
     const PolarMap map(centre);
-    view.eye = map.At(kEast_m, kNorth_m);
+    view.eye = map.At(kViewEast_m, kViewNorth_m);
     const double heading = view.heading_deg - map.Convergence(view.eye) / kRadiansPerDegree;
     view.heading_deg = heading - 360.0 * std::floor(heading / 360.0);
   } else {
-    view.eye = BoxMap(centre).At(kEast_m, kNorth_m);
+    view.eye = BoxMap(centre).At(kViewEast_m, kViewNorth_m);
   }
   view.eye.height_m = kAboveGround_m;
   return view;
+}
+
+GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place) {
+  const GeodeticPosition centre = BoxMap::CentreSeenFrom(place, kViewEast_m, kViewNorth_m);
+  return IsPolar(centre) ? PolarMap::CentreSeenFrom(place, kViewEast_m, kViewNorth_m) : centre;
 }
 
 BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {

@@ -10,7 +10,7 @@
 
 namespace alpenglow {
 
-/// The range, centred on a place: foreland in the north, valleys at 500-900 m, chains that rise
+/// The range, centred on a place (also one of CentreOfRangeSeenFrom): foreland in the north, valleys at 500-900 m, chains that rise
 /// southwards, one peak above all. Its heights are the same bytes on every machine with IEEE
 /// arithmetic, for any number of threads and any centre; it falls to 0 m at the rim.
 [[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre);
@@ -39,5 +39,11 @@ struct BuiltInView {
 
 /// The same view without the range at hand: eye.height_m counts from the ground.
 [[nodiscard]] BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre);
+
+/// Centre of the range whose built-in view stands at a place, to a micrometre. A centre beyond a
+/// pole keeps the meridian that it has this side of it: its latitude exceeds 90 degrees. The view
+/// stands 2 km east of its centre's meridian, which no place within 2 km of a pole does: the view
+/// is then within 4 km of the place.
+[[nodiscard]] GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place);
 
 }  // namespace alpenglow

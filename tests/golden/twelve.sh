@@ -15,7 +15,7 @@ scene() { # name, then what skyseries is told
   "$skyseries" "${@}" "${common[@]}" --out "$out/$name.exr"
 }
 common=(--size "${SIZE:-480x270}" --png --aov scotopic --resume --quiet "$@")
-winter=(--latitude 46.5 --longitude 8 --zone Europe/Zurich --date 2026-02-10)
+winter=(--zone Europe/Zurich --date 2026-02-10)
 sea="$out/sea.toml"
 cat >"$sea" <<'END'
 [place]

@@ -65,6 +65,27 @@ std::vector<double> ValuesOf(const fs::path& results) {
   return values;
 }
 
+TEST_F(Skylut, APresetStandsWhereAnAtmosphereFileMay) {
+  WriteCases();
+  const std::string eval = "eval --cases cases.csv --method integral --quiet --atmosphere ";
+  ASSERT_EQ(Run(eval + "hazy --out hazy.csv").status, 0);
+  ASSERT_EQ(Run(eval + "earth --out earth.csv").status, 0);
+  EXPECT_LT(ValuesOf(folder_ / "hazy.csv").front(), ValuesOf(folder_ / "earth.csv").front())
+      << "haze lets less light through";
+  const Outcome unknown = Run(eval + "haezy --out r.csv");
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.error,
+              HasSubstr("\"haezy\" is neither a file nor a preset; did you mean hazy?"));
+  EXPECT_THAT(Run(eval + "vacuum-of-space --out r.csv").error, HasSubstr("presets are earth, "));
+}
+
+TEST_F(Skylut, WordsThatAreUnknownNameTheNearest) {
+  EXPECT_THAT(Run("help").error, HasSubstr("unknown command help; did you mean --help?"));
+  EXPECT_THAT(Run("bild --out t").error, HasSubstr("unknown command bild; did you mean build?"));
+  EXPECT_THAT(Run("build -o t").error, HasSubstr("unknown option -o; did you mean --out?"));
+  EXPECT_EQ(Run("build -o t").status, 2);
+}
+
 TEST_F(Skylut, AWrongCommandLineIsStatus2) {
   for (const char* arguments :
        {"",

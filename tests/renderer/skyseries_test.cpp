@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <sstream>
 
+#include "atmosphere/sun/time.h"
 #include "atmosphere/text/toml_table.h"
 #include "lut/picture/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
@@ -112,6 +114,51 @@ TEST_F(Skyseries, TimesOfAPlaceAreATableACsvAndAPlotOfTheLight) {
   EXPECT_EQ(Run(place + "--minutes 60").status, 2) << "of a plot";
 }
 
+/// The field of a CSV text's row, counted from 0, that its head gives a name.
+std::string FieldOf(const std::string& csv, const std::string& name, int row = 0) {
+  std::istringstream lines(csv);
+  std::string head, line, column, field;
+  std::getline(lines, head);
+  for (int i = 0; i <= row; ++i) std::getline(lines, line);
+  std::istringstream columns(head), fields(line);
+  while (std::getline(columns, column, ',') && std::getline(fields, field, ',')) {
+    if (column == name) return field;
+  }
+  return "no " + name;
+}
+
+struct PlacedDay {
+  const char* options;
+  std::vector<std::pair<const char*, const char*>> events;  // as typed, and its column of `times`
+};
+
+TEST_F(Skyseries, ListsAndTimesOfAPlaceAgreeToTheSecond) {
+  const std::vector<PlacedDay> days = {
+      {"--latitude 69.65 --longitude 18.96 --date 2026-05-10",
+       {{"sunset", "sunset"}, {"sunrise", "sunrise"}, {"noon", "noon"}}},
+      {"--latitude 46.5 --longitude 8 --zone Europe/Zurich --date 2026-06-21",
+       {{"astronomical-dusk", "astronomical-dusk"}, {"moonset", "moonset"}}},
+      {"--latitude -33.9 --longitude 179.99 --date 2026-01-05",
+       {{"civil-dawn", "civil-dawn"}, {"moon-transit", "moon-transit"}}},
+      {"--latitude 42.3439 --longitude -3.6969 --date 2026-08-12",
+       {{"first-contact", "eclipse_first_contact"},
+        {"second-contact", "eclipse_second_contact"},
+        {"third-contact", "eclipse_third_contact"},
+        {"sunset", "sunset"}}}};
+  for (const PlacedDay& day : days) {
+    const std::string csv = InFolder("times.csv");
+    ASSERT_EQ(Run(std::string("times ") + day.options + " --out " + csv).status, 0);
+    std::string at;
+    for (const auto& [event, column] : day.events) at += std::string(" --at ") + event;
+    const Outcome list = Run(std::string("--list ") + day.options + at);
+    int row = 0;
+    for (const auto& [event, column] : day.events) {
+      EXPECT_EQ(FieldOf(list.out, "utc", row++), FieldOf(ContentOf(csv), column))
+          << day.options << " " << event;
+    }
+  }
+}
+
 TEST_F(Skyseries, AStillIsASeriesOfOne) {
   const Outcome outcome = Run(SmallStill() + " --png --aov depth,normal");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
@@ -129,7 +176,8 @@ TEST_F(Skyseries, FilesOfAnEclipseSayHowMuchIsCoveredAndTotalityIsWarnedOf) {
   const std::string command =
       " --latitude 42.3439 --longitude -3.6969 --size 16x9 --samples 1 --quiet --out " +
       InFolder("e.%d.exr") +
-      " --at 2026-08-12T18:10:00Z --at 2026-08-12T18:29:20Z --at 2026-08-12T20:00:00Z";
+      " --date 2026-08-12 --at 2026-08-12T18:10:00Z --at second-contact+52s --at "
+      "2026-08-12T20:00:00Z";
   const Outcome outcome = Run(command);
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.error, HasSubstr("warning: 1 of 3 frames stand in the totality"));
@@ -142,6 +190,13 @@ TEST_F(Skyseries, FilesOfAnEclipseSayHowMuchIsCoveredAndTotalityIsWarnedOf) {
   EXPECT_THAT(manifest, HasSubstr(",1.000000,"));
   EXPECT_THAT(ContentOf(folder_ / "e.manifest.json"), HasSubstr("\"sun_covered\":1.000000"));
   EXPECT_THAT(Run("--list" + command).out, HasSubstr(",1.0000,"));
+  const std::string times = InFolder("times.csv");
+  ASSERT_EQ(
+      Run("times --latitude 42.3439 --longitude -3.6969 --date 2026-08-12 --out " + times).status,
+      0);
+  const UtcInstant total = ParseInstant(FieldOf(ContentOf(times), "eclipse_second_contact"));
+  const UtcInstant taken = ParseInstant(ReadExrMetadata(folder_ / "e.1.exr").at("alpenglow.utc"));
+  EXPECT_NEAR(SecondsBetween(total, taken), 52.0, 1.0);
 }
 
 TEST_F(Skyseries, AMeterOfIncidentLightStandsBehindThePolariser) {
@@ -212,6 +267,45 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
     EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.error;
   }
   EXPECT_EQ(FileCount(), 1U) << "only the scene";
+}
+
+TEST_F(Skyseries, AWordThatIsUnknownNamesTheNearestThatIsKnown) {
+  const std::vector<std::pair<std::string, const char*>> cases = {
+      {"-o x.exr", "unknown option -o; did you mean --out?"},
+      {InFolder("s.toml") + " --outt=x.exr", "unknown option --outt; did you mean --out?"},
+      {"help", "unknown command help; did you mean --help?"},
+      {"time --latitude 3 --longitude 4", "unknown command time; did you mean times?"},
+      {"times --latitude 3 --longitude 4 --dates today", "did you mean --date?"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.error, HasSubstr(message)) << arguments;
+  }
+  const Outcome preset = Run("--list --at noon --atmosphere hzay");
+  EXPECT_EQ(preset.status, 3);
+  EXPECT_THAT(preset.error, HasSubstr("neither a file nor a preset; did you mean hazy?"));
+}
+
+TEST_F(Skyseries, NamesOfOutputsEndInWhateverCase) {
+  const Outcome outcome =
+      Run(InFolder("s.toml") + " --list --at noon --plot P.SVG --keogram K.PNG" +
+          " --contact-sheet C.Png --out F.EXR");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("F.EXR"));
+}
+
+TEST_F(Skyseries, TracksAreKnownByTheirNameInWhateverCase) {
+  WriteText(folder_ / "UP.GPX",
+            "<gpx><trk><trkseg>"
+            "<trkpt lat='46.5' lon='8'><time>2026-06-21T10:00:00Z</time></trkpt>"
+            "<trkpt lat='46.5' lon='8.1'><ele>4100</ele><time>2026-06-21T10:01:00Z</time></trkpt>"
+            "<trkpt lat='46.5' lon='8.2'><ele>4200</ele><time>2026-06-21T10:02:00Z</time></trkpt>"
+            "</trkseg></trk></gpx>");
+  const Outcome list = Run(InFolder("s.toml") + " --list --count 3 --path " + InFolder("UP.GPX"));
+  EXPECT_EQ(list.status, 0) << list.error;
+  EXPECT_THAT(list.out, HasSubstr("\n0,2026-06-21T10:00:00Z,"));
+  EXPECT_THAT(list.error, HasSubstr("UP.GPX: 1 of 3 points have no height"));
+  EXPECT_EQ(std::count(list.error.begin(), list.error.end(), '\n'), 1) << list.error;
 }
 
 TEST_F(Skyseries, ABadInputExitsWith3AndOneLine) {

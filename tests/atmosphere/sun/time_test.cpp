@@ -33,6 +33,8 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   EXPECT_EQ(ParseInstant("2024-02-29T00:00:00Z").modified_julian_day, 60369);
   EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30.125Z").second_of_day, 14430.125, 1e-9);
   EXPECT_LT(ParseInstant("2026-06-21T23:59:59.999999999Z").second_of_day, 86400.0);
+  EXPECT_LT(ParseInstant("2026-06-21T23:59:59.99999999999999999999Z").second_of_day, 86400.0);
+  EXPECT_NEAR(ParseInstant("2026-06-21T00:00:01.1234567890123Z").second_of_day, 1.123456789, 1e-9);
   EXPECT_EQ(ParseInstant("1900-01-01T00:00:00Z").modified_julian_day, 15020);
   EXPECT_EQ(ParseInstant("2100-12-31T23:59:59Z").modified_julian_day, 88433);
 }
@@ -62,6 +64,8 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
   EXPECT_THAT(FaultOf("1900-01-01T00:00:00+01:00"), testing::HasSubstr("is 1899"));
   EXPECT_THAT(FaultOf("2100-12-31T23:30:00-01:00"), testing::HasSubstr("is 2101"));
   EXPECT_THAT(FaultOf("2024-06-21T04:00:00", "Mars/Olympus"), testing::HasSubstr("Mars/Olympus"));
+  EXPECT_THAT(FaultOf("2024-06-21T04:00:00+0900"), testing::HasSubstr("is written +09:00"));
+  EXPECT_THAT(FaultOf("2024-06-21T04:00:00-03"), testing::HasSubstr("is written -03:00"));
   for (const char* text : {"",
                            "now",
                            "2024",
@@ -76,7 +80,6 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
                            "2024-06-21T4:00:00Z",
                            "2024-06-21T04:00:00.Z",
                            "2024-06-21T04:00:00,5Z",
-                           "2024-06-21T04:00:00.1234567890Z",
                            "2024-06-21T04:00:00+9:00",
                            "2024-06-21T04:00:00+0900",
                            "2024-06-21T04:00:00+16:00",

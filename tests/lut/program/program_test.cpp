@@ -349,6 +349,8 @@ TEST_F(OutputName, AnInputIsRecognisedUnderEveryName) {
 
 TEST_F(OutputName, TheExtensionSaysWhatIsWritten) {
   EXPECT_EQ(FaultOfFileName("a/b.exr", ".exr"), "");
+  EXPECT_EQ(FaultOfFileName("a/b.EXR", ".exr"), "");
+  EXPECT_THAT(FaultOfFolderName("a/b.EXR"), HasSubstr("no name of a folder"));
   EXPECT_THAT(FaultOfFileName("b.hdr", ".exr"), HasSubstr("must end in .exr"));
   EXPECT_THAT(FaultOfFileName("-", ".exr"), HasSubstr("standard output"));
   EXPECT_THAT(FaultOfFileName("-", ""), HasSubstr("standard output"));

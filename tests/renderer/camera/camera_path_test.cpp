@@ -95,6 +95,25 @@ TEST(CameraPath, AFlightAtOneHeightStaysAtItAcrossAnOcean) {
   }
 }
 
+TEST(CameraPath, OnAStraightWayItStaysBetweenItsTwoPoints) {
+  const double longitudes[] = {-180.0, -179.9, -179.899, -179.9, -180.0, 179.0};
+  const double times_s[] = {0.0, 5.0, 3605.0, 3606.0, 3700.0, 4000.0};
+  std::vector<CameraPathPoint> points;
+  for (std::size_t i = 0; i < 6; ++i)
+    points.push_back(PointAt(times_s[i], 0.0, longitudes[i], 1000.0, 90.0));
+  const CameraPath path(points);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double whole = std::remainder(longitudes[i + 1] - longitudes[i], 360.0);
+    for (double share = 0.05; share < 1.0; share += 0.05) {
+      const double t = times_s[i] + share * (times_s[i + 1] - times_s[i]);
+      const double gone = std::remainder(
+          path.PoseAt(t).place.longitude_rad / kRadiansPerDegree - longitudes[i], 360.0);
+      EXPECT_GE(gone / whole, -1e-9) << t;
+      EXPECT_LE(gone / whole, 1.0 + 1e-9) << t;
+    }
+  }
+}
+
 TEST(CameraPath, TheDateLineIsNoSeam) {
   const CameraPath path(
       {PointAt(0.0, 10.0, 179.9, 100.0, 90.0), PointAt(1.0, 10.0, -179.9, 100.0, 90.0)});

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -11,6 +15,7 @@
 namespace alpenglow {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -59,6 +64,7 @@ TEST_F(TrackFile, RoutesAndWaypointsServeWhereThereIsNoTrack) {
       "<gpx><rte><name>R</name><rtept lat='1' lon='2'/><rtept lat='3' lon='4'/></rte>"
       "<rte><rtept lat='5' lon='6'/></rte></gpx>");
   EXPECT_EQ(route.points.size(), 2U) << "the first route";
+  EXPECT_EQ(route.note, "the first of 2 routes is read");
   EXPECT_EQ(route.heights, TrackHeights::kOnGround) << "no heights";
   EXPECT_FALSE(route.points[0].utc);
   EXPECT_EQ(Read("<gpx><wpt lat='1' lon='2'/><wpt lat='3' lon='4'/></gpx>").points.size(), 2U);
@@ -115,7 +121,11 @@ TEST_F(TrackFile, FaultsNameTheFileTheLineAndWhatIsWrong) {
       {gpx("<trkpt lon='8'/>"), 3, "<trkpt> has no lat"},
       {gpx("<trkpt lat='north' lon='8'/>"), 3, "lat is \"north\"; it must be a number"},
       {gpx("<trkpt lat='91' lon='8'/>"), 3, "latitude is 91"},
-      {gpx("<trkpt lat='nan' lon='8'/>"), 3, "latitude is nan"},
+      {gpx("<trkpt lat='inf' lon='8'/>"), 3, "latitude is inf"},
+      {gpx("<trkpt lat='nan' lon='8'/>"), 1, "none of its points has a place"},
+      {"\xFF\xFE<\0g\0", 1, "this is UTF-16"},
+      {"<kml><gx:Track><altitudeMode>absolute</altitudeMode></gx:Track>\n<gx:Track/></kml>", 2,
+       "its altitudeMode is not that of the lines before it"},
       {gpx("<trkpt lat='1' lon='8'>\n<ele>high</ele></trkpt>"), 4, "ele is \"high\""},
       {gpx("<trkpt lat='1' lon='8'>\n<ele>1e300</ele></trkpt>"), 3, "height is 1e+300"},
       {gpx("<trkpt lat='1' lon='8'>\n\n<time>noon</time></trkpt>"), 5, "noon"},
@@ -137,6 +147,146 @@ TEST_F(TrackFile, FaultsNameTheFileTheLineAndWhatIsWrong) {
   }
   EXPECT_THAT(tests::FaultOf([&] { return ReadTrack(folder_ / "none.gpx").points.size(); }),
               HasSubstr("none.gpx"));
+}
+
+// A point of a track: the longitude's hundredths beyond 8 E, the rest as in a file; empty is left out.
+std::string TrackPointText(int hundredths, const std::string& height, const std::string& time) {
+  std::string text = "<trkpt lat='46.5' lon='8.0" + std::to_string(hundredths) + "'>";
+  if (!height.empty()) text += "<ele>" + height + "</ele>";
+  if (!time.empty()) text += "<time>2026-06-21T10:0" + time + "Z</time>";
+  return text + "</trkpt>";
+}
+std::string GpxOf(const std::string& points) {
+  return "<gpx><trk><trkseg>" + points + "</trkseg></trk></gpx>";
+}
+std::vector<double> HeightsOf(const Track& track) {
+  std::vector<double> heights_m;
+  for (const TrackPoint& point : track.points) heights_m.push_back(point.place.height_m);
+  return heights_m;
+}
+std::vector<std::string> ClockTimesOf(const Track& track) {
+  std::vector<std::string> times;
+  for (const TrackPoint& point : track.points)
+    times.push_back(FormatUtc(point.utc.value()).substr(11, 8));
+  return times;
+}
+MATCHER_P(IsAbout, expected, "") { return std::abs(arg - expected) < 1e-2; }
+
+TEST_F(TrackFile, HeightsThatSomePointsLackAreInterpolated) {
+  const Track first =
+      Read(GpxOf(TrackPointText(0, "", "0:00") + TrackPointText(2, "4250", "1:00") +
+                 TrackPointText(4, "4300", "2:00") + TrackPointText(6, "4350", "3:00")));
+  EXPECT_EQ(first.heights, TrackHeights::kSea);
+  EXPECT_THAT(HeightsOf(first),
+              ElementsAre(IsAbout(4200.0), IsAbout(4250.0), IsAbout(4300.0), IsAbout(4350.0)));
+  EXPECT_EQ(first.note, "1 of 4 points have no height, which is interpolated");
+  const Track inside = Read(GpxOf(TrackPointText(0, "100", "") + TrackPointText(1, "nan", "") +
+                                  TrackPointText(3, " ", "") + TrackPointText(4, "500", "") +
+                                  TrackPointText(5, "", "") + TrackPointText(9, "", "")));
+  EXPECT_THAT(HeightsOf(inside), ElementsAre(IsAbout(100.0), IsAbout(200.0), IsAbout(400.0),
+                                             IsAbout(500.0), IsAbout(600.0), IsAbout(900.0)))
+      << "on with the slope, for no longer than the step it is of";
+  EXPECT_THAT(inside.note, HasSubstr("4 of 6 points have no height"));
+}
+
+TEST_F(TrackFile, TimesThatSomePointsLackAreInterpolated) {
+  const Track ends = Read(GpxOf(TrackPointText(0, "1", "") + TrackPointText(0, "1", "0:00") +
+                                TrackPointText(2, "1", "1:00") + TrackPointText(3, "1", "") +
+                                TrackPointText(4, "1", "2:00") + TrackPointText(6, "1", "")));
+  EXPECT_THAT(ClockTimesOf(ends),
+              ElementsAre("10:00:00", "10:00:00", "10:01:00", "10:01:30", "10:02:00", "10:03:00"));
+  EXPECT_EQ(ends.note, "3 of 6 points have no time, which is interpolated");
+  const Track one = Read(GpxOf(TrackPointText(0, "1", "0:00") + TrackPointText(2, "1", "")));
+  EXPECT_FALSE(one.points[0].utc);
+  EXPECT_THAT(one.note, HasSubstr("flown with an even speed"));
+}
+
+TEST_F(TrackFile, APointWhoseTimeCannotBeTrueIsLeftOutAndCounted) {
+  const std::string rest = TrackPointText(2, "1", "1:00") + TrackPointText(4, "1", "2:00") +
+                           TrackPointText(6, "1", "3:00");
+  const auto odd = [](int year) {
+    return "<trkpt lat='46.5' lon='8'><time>" + std::to_string(year) +
+           "-02-05T10:00:00Z</time></trkpt>";
+  };
+  const std::vector<std::string> texts = {
+      odd(2045) + rest,
+      rest + odd(2045),
+      odd(1980) + rest,
+      rest + odd(1980),
+      TrackPointText(2, "1", "1:00") + odd(2045) + TrackPointText(4, "1", "2:00") +
+          TrackPointText(6, "1", "3:00"),
+      TrackPointText(2, "1", "1:00") + TrackPointText(4, "1", "2:00") +
+          TrackPointText(5, "1", "0:30") + TrackPointText(6, "1", "3:00"),
+      TrackPointText(2, "1", "1:00") + TrackPointText(3, "1", "1:00") +
+          TrackPointText(4, "1", "2:00") + TrackPointText(6, "1", "3:00")};
+  for (const std::string& text : texts) {
+    const Track track = Read(GpxOf(text));
+    EXPECT_THAT(ClockTimesOf(track), ElementsAre("10:01:00", "10:02:00", "10:03:00")) << text;
+    EXPECT_EQ(track.note,
+              "1 of 4 points have a time that does not fit the others' and are left out")
+        << text;
+  }
+  EXPECT_EQ(Read(GpxOf(rest + TrackPointText(6, "1", "3:00"))).note, "") << "the same point twice";
+  EXPECT_EQ(Read(GpxOf(rest)).note, "");
+}
+
+TEST_F(TrackFile, PointsAreInTheOrderOfTheirTimes) {
+  const std::string newer = TrackPointText(4, "1", "2:00") + TrackPointText(6, "1", "3:00");
+  const std::string older = TrackPointText(0, "1", "0:00") + TrackPointText(2, "1", "1:00");
+  const Track tracks = Read("<gpx><trk><trkseg>" + newer + "</trkseg></trk><trk><trkseg>" + older +
+                            "</trkseg></trk></gpx>");
+  EXPECT_THAT(ClockTimesOf(tracks), ElementsAre("10:00:00", "10:01:00", "10:02:00", "10:03:00"));
+  EXPECT_EQ(tracks.note, "");
+  EXPECT_EQ(tracks.points[1].segment, 0);
+  EXPECT_EQ(tracks.points[2].segment, 1) << "there is a gap between the tracks";
+  const Track turned = Read(GpxOf(TrackPointText(4, "1", "2:00") + TrackPointText(2, "1", "1:00") +
+                                  TrackPointText(0, "1", "0:00")));
+  EXPECT_THAT(ClockTimesOf(turned), ElementsAre("10:00:00", "10:01:00", "10:02:00"));
+}
+
+TEST_F(TrackFile, ALostFixIsLeftOutAndCounted) {
+  const Track kml = Read(R"(<kml><gx:MultiTrack><altitudeMode>absolute</altitudeMode><gx:Track>
+      <when>2026-06-21T09:59:50Z</when><gx:coord/>
+      <when>2026-06-21T10:00:00Z</when><gx:coord>8.00 46.50 4200</gx:coord>
+      <when>2026-06-21T10:01:00Z</when><gx:coord>8.02  46.50	4300</gx:coord>
+      <when>2026-06-21T10:02:00Z</when><gx:coord> </gx:coord>
+      </gx:Track></gx:MultiTrack></kml>)",
+                         "t.kml");
+  EXPECT_THAT(ClockTimesOf(kml), ElementsAre("10:00:00", "10:01:00"));
+  EXPECT_EQ(kml.heights, TrackHeights::kSea) << "as the MultiTrack says";
+  EXPECT_THAT(HeightsOf(kml), ElementsAre(4200.0, 4300.0));
+  EXPECT_EQ(kml.note, "2 of 4 points have no place (a lost fix) and are left out");
+  const Track gpx = Read(GpxOf("<trkpt lat='' lon='8'/><trkpt lat='46' lon='NaN'/>" +
+                               TrackPointText(0, "1", "") + TrackPointText(2, "1", "")));
+  EXPECT_EQ(gpx.points.size(), 2U);
+  EXPECT_THAT(gpx.note, HasSubstr("2 of 4 points"));
+}
+
+TEST_F(TrackFile, AnAltitudeModeHoldsForWhatIsInsideItsElement) {
+  const auto heights = [&](const std::string& around, const std::string& own) {
+    return Read("<kml><Folder><Placemark><gx:MultiTrack>" + around + "<gx:Track>" + own +
+                    "<when>2026-06-21T10:00:00Z</when><gx:coord>8 46 9</gx:coord></gx:Track>"
+                    "</gx:MultiTrack></Placemark></Folder></kml>",
+                "t.kml")
+        .heights;
+  };
+  const std::string absolute = "<altitudeMode>absolute</altitudeMode>";
+  const std::string sea_floor = "<gx:altitudeMode>relativeToSeaFloor</gx:altitudeMode>";
+  EXPECT_EQ(heights("", ""), TrackHeights::kOnGround);
+  EXPECT_EQ(heights(absolute, ""), TrackHeights::kSea);
+  EXPECT_EQ(heights("", absolute), TrackHeights::kSea);
+  EXPECT_EQ(heights(absolute, sea_floor), TrackHeights::kOverGround) << "its own comes first";
+  EXPECT_EQ(heights(sea_floor, ""), TrackHeights::kOverGround);
+}
+
+TEST_F(TrackFile, PrefixesOfNamespacesAndByteOrderMarksAreRead) {
+  const Track track = Read(
+      "\xEF\xBB\xBF<?xml version='1.0'?><g:gpx xmlns:g='http://www.topografix.com/GPX/1/1'>"
+      "<g:trk><g:trkseg><g:trkpt lat='46' lon='8'><g:ele>5</g:ele>"
+      "<g:time>2026-06-21T12:00:00.250+02:00</g:time></g:trkpt></g:trkseg></g:trk></g:gpx>");
+  ASSERT_EQ(track.points.size(), 1U);
+  EXPECT_EQ(track.points[0].place.height_m, 5.0);
+  EXPECT_EQ(FormatUtc(*track.points[0].utc, 2), "2026-06-21T10:00:00.25Z");
 }
 
 TEST_F(TrackFile, EveryTruncationOfAFileIsRefused) {

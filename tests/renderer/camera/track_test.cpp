@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/fault_of.h"
@@ -116,6 +118,73 @@ TEST(TrackPath, ATrackWithoutHeightsFollowsTheGround) {
   EXPECT_NEAR(high.PoseAt(0.0).place.height_m - hills(track.points[0].place), 500.0, 60.0);
 }
 
+/// Along a parallel: degrees of longitude, and seconds of each point.
+Track Eastward(const std::vector<std::pair<double, double>>& points) {
+  Track track;
+  const UtcInstant start = ParseInstant("2026-06-21T10:00:00Z");
+  for (const auto& [longitude, time_s] : points)
+    track.points.push_back({PlaceFromDegrees(0.0, longitude, 3500.0), AddSeconds(start, time_s)});
+  return track;
+}
+
+/// A drive of 20 m/s with a fix every `step_s`, a pause of an hour in which the car is moved by 30 m,
+/// and a drive on.
+std::vector<std::pair<double, double>> DriveWithPause(double step_s) {
+  constexpr double kDegreesPerMetre = 1.0 / 111319.49;
+  std::vector<std::pair<double, double>> points;
+  for (double t = 0.0; t <= 120.0; t += step_s)
+    points.emplace_back(8.0 + 20.0 * t * kDegreesPerMetre, t);
+  const auto [longitude, time_s] = points.back();
+  for (double t = 0.0; t <= 120.0; t += step_s)
+    points.emplace_back(longitude + (30.0 + 20.0 * t) * kDegreesPerMetre, time_s + 3600.0 + t);
+  return points;
+}
+
+TEST(TrackPath, APauseIsSpentBetweenThePointsAroundIt) {
+  for (const double step_s : {1.0, 5.0}) {
+    const auto points = DriveWithPause(step_s);
+    const CameraPath path = PathAlong(Eastward(points), {}, Sea);
+    const std::size_t last = points.size() / 2 - 1;  // before the pause
+    for (double t = points[last].second; t <= points[last + 1].second; t += 7.3) {
+      const CameraPose pose = path.PoseAt(t);
+      EXPECT_GE(Degrees(pose.place.longitude_rad), points[last].first - 1e-9) << t;
+      EXPECT_LE(Degrees(pose.place.longitude_rad), points[last + 1].first + 1e-9) << t;
+      EXPECT_NEAR(Degrees(pose.heading_rad), 90.0, 0.01) << t << ": the heading is kept";
+    }
+  }
+}
+
+TEST(TrackPath, ASeldomFixIsPassedAtItsTimeAndNeverTwice) {
+  const auto points = DriveWithPause(5.0);
+  const CameraPath path = PathAlong(Eastward(points), {}, Sea);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    for (double share = 0.0; share <= 1.0; share += 0.125) {
+      const double t = points[i - 1].second + share * (points[i].second - points[i - 1].second);
+      const double longitude = Degrees(path.PoseAt(t).place.longitude_rad);
+      EXPECT_GE(longitude, points[i - 1].first - 1e-7) << t;
+      EXPECT_LE(longitude, points[i].first + 1e-7) << t;
+    }
+  }
+}
+
+TEST(TrackPath, GoesStraightAndEvenlyThroughAGap) {
+  Track track = Eastward({{8.0, 0.0}, {8.01, 60.0}, {8.02, 120.0}});
+  const UtcInstant later = AddSeconds(*track.points[0].utc, 1120.0);
+  track.points.push_back({PlaceFromDegrees(0.1, 8.02, 3500.0), later, 1});
+  track.points.push_back({PlaceFromDegrees(0.1, 8.01, 3500.0), AddSeconds(later, 60.0), 1});
+  const CameraPath path = PathAlong(track, {}, Sea);
+  for (const double t : {130.0, 370.0, 620.0, 870.0, 1110.0}) {
+    const GeodeticPosition place = path.PoseAt(t).place;
+    EXPECT_NEAR(Degrees(place.longitude_rad), 8.02, 2e-6) << t;
+    EXPECT_NEAR(Degrees(place.latitude_rad), 1e-4 * (t - 120.0), 2e-6) << t;
+  }
+}
+
+TEST(TrackPath, LooksWhereItWillGoBeforeItGoes) {
+  const CameraPath path = PathAlong(Eastward({{8.0, 0.0}, {8.0, 60.0}, {8.02, 120.0}}), {}, Sea);
+  EXPECT_NEAR(Degrees(path.PoseAt(1.0).heading_rad), 90.0, 0.01);
+}
+
 TEST(TrackPath, LooksUpTheSlopeAndOnWhenItStands) {
   Track track;
   const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
@@ -217,7 +286,8 @@ TEST(TrackPath, ATrackIsRefusedThatGoesNowhere) {
   Track track;
   EXPECT_THAT(fault(track), HasSubstr("fewer than two points"));
   track.points.assign(10, {PlaceFromDegrees(46.0, 8.0, 0.0)});
-  EXPECT_THAT(fault(track), HasSubstr("fewer than two points"));
+  track.file = "still.gpx";
+  EXPECT_THAT(fault(track), HasSubstr("still.gpx: the track has fewer than two points apart"));
   EXPECT_THAT(
       tests::FaultOf([] { return PathAlong(Circle(), {.speed_m_per_s = 0.0}, Sea).end_s(); }),
       HasSubstr("speed of the track"));

@@ -53,6 +53,8 @@ TEST_F(AModel, RefusesAnEyeThatStandsOutsideAndNamesItsPlaceAndTheModels) {
   EXPECT_THAT(fault, HasSubstr("N46E008.hgt"));
   EXPECT_THAT(fault, HasSubstr("latitudes 46 to 47 and longitudes 8 to 9"));
   EXPECT_THAT(fault, Not(HasSubstr("swapped")));
+  EXPECT_THAT(FaultOf(At(47.0000001, 8.5)), HasSubstr("latitude 47.0000001, "))
+      << "as many digits as tell it from 47";
   EXPECT_THAT(FaultOf(At(8.5, 46.5)), HasSubstr("latitude and longitude seem to be swapped"));
 }
 

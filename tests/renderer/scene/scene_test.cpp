@@ -6,13 +6,18 @@
 
 #include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 #include "lut/picture/picture_text.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/terrain/built_in_range.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -438,6 +443,36 @@ TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
   EXPECT_DOUBLE_EQ(SceneFromOptions(turned).camera.heading_rad, 0.5 * kPi);
   EXPECT_EQ(SceneFromOptions(turned).camera.height, (Height{4000.0, false}));
   EXPECT_EQ(SceneFromOptions(turned).place.latitude_rad, scene.place.latitude_rad);
+}
+
+// How far the built-in view of a scene's range is from the scene's place, and the place from
+// where it was typed [m].
+double ViewOffPlace_m(const Scene& scene) {
+  GeodeticPosition eye = BuiltInRangeViewAboveGround(*scene.terrain.centre).eye;
+  eye.height_m = 0.0;
+  return glm::length((EcefFromGeodetic(kWgs84, eye) - EcefFromGeodetic(kWgs84, scene.place)).xyz);
+}
+Scene SceneTypedAt(double latitude, double longitude) {
+  SceneOptions options;
+  options.latitude = latitude;
+  options.longitude = longitude;
+  return SceneFromOptions(options);
+}
+
+TEST(SceneOptions, TheRangeComesToThePlaceThatIsTyped) {
+  const std::vector<std::pair<double, double>> places = {
+      {46.5, 8.0},    {69.65, 18.96},  {42.3439, -3.6969}, {-33.9, 151.2}, {0.0, 179.999},
+      {10.0, -180.0}, {89.449, 20.0},  {89.44, 20.0},      {89.9, 120.0},  {89.98, -60.0},
+      {-89.1, 10.0},  {-89.149, 10.0}, {-89.95, 33.0},     {-89.97, 200.0}};
+  for (const auto& [latitude, longitude] : places) {
+    const Scene scene = SceneTypedAt(latitude, longitude);
+    EXPECT_EQ(scene.place.latitude_rad, PlaceFromDegrees(latitude, longitude, 0.0).latitude_rad);
+    EXPECT_EQ(scene.place.longitude_rad, PlaceFromDegrees(latitude, longitude, 0.0).longitude_rad);
+    EXPECT_LT(ViewOffPlace_m(scene), 1e-6) << latitude << " " << longitude;
+  }
+  for (const double pole : {-90.0, 90.0, -89.99, 89.99}) {
+    EXPECT_LT(ViewOffPlace_m(SceneTypedAt(pole, 30.0)), 4000.0) << "the place stays anyway";
+  }
 }
 
 TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {

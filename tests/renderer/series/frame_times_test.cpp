@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 
@@ -84,6 +87,51 @@ TEST(FrameTimes, FramesAreSelectedByRanges) {
   for (const char* bad : {"", "10", "3-2", "a", "1-", "-3", "1,,2", "1-2-3", "1 2", "9999999999"}) {
     EXPECT_NE(FaultOf([&] { return SelectFrames(frames, bad); }), "no fault") << bad;
   }
+}
+
+/// What clocks in the zone show at the frames, "2026-03-27T12:00".
+std::vector<std::string> ClocksOf(const TimesText& times, const EventDay& day) {
+  std::vector<std::string> clocks;
+  for (const Frame& frame : FramesFromTimes(times, day))
+    clocks.push_back(FormatInZone(frame.instant, *day.zone).substr(0, 16));
+  return clocks;
+}
+EventDay Zurich(const char* date) {
+  EventDay day{PlaceFromDegrees(47.0, 8.0, 0.0), "Europe/Zurich", {}};
+  day.around = DayFromText(date, day);
+  return day;
+}
+
+TEST(FrameTimes, ADayOfEveryIsADayOfTheCalendar) {
+  // Clocks are set on 2026-03-29 and 2026-10-25.
+  EXPECT_EQ(ClocksOf({{}, "12:00", "2026-03-31 12:00", "1d", {}}, Zurich("2026-03-27")),
+            (std::vector<std::string>{"2026-03-27T12:00", "2026-03-28T12:00", "2026-03-29T12:00",
+                                      "2026-03-30T12:00", "2026-03-31T12:00"}));
+  EXPECT_EQ(ClocksOf({{}, "00:30", "2026-10-28 00:30", "2d", {}}, Zurich("2026-10-24")),
+            (std::vector<std::string>{"2026-10-24T00:30", "2026-10-26T00:30", "2026-10-28T00:30"}));
+  EXPECT_EQ(ClocksOf({{}, "12:00", "2026-03-30 12:00", "24h", {}}, Zurich("2026-03-28")),
+            (std::vector<std::string>{"2026-03-28T12:00", "2026-03-29T13:00"}))
+      << "24 hours are 24 hours";
+}
+
+TEST(FrameTimes, AClockTimeThatADayLacksKeepsTheOffsetBefore) {
+  EXPECT_EQ(ClocksOf({{}, "02:30", "2026-03-30 12:00", "1d", {}}, Zurich("2026-03-28")),
+            (std::vector<std::string>{"2026-03-28T02:30", "2026-03-29T03:30", "2026-03-30T02:30"}));
+  const std::vector<Frame> twice =
+      FramesFromTimes({{}, "02:30", "2026-10-26 12:00", "1d", {}}, Zurich("2026-10-24"));
+  ASSERT_EQ(twice.size(), 3U);
+  EXPECT_EQ(FormatUtc(twice[1].instant), "2026-10-25T00:30:00Z") << "the first of the two";
+  EXPECT_EQ(FormatUtc(twice[2].instant), "2026-10-26T01:30:00Z");
+}
+
+TEST(FrameTimes, ARangeOfClockTimesRollsOverMidnight) {
+  EXPECT_EQ(ClocksOf({{}, "22:00", "02:00", "2h", {}}, Zurich("2026-06-21")),
+            (std::vector<std::string>{"2026-06-21T22:00", "2026-06-22T00:00", "2026-06-22T02:00"}));
+  EXPECT_EQ(ClocksOf({{}, "2026-10-25 00:10", "00:05", {}, 2}, Zurich("2026-06-21")).back(),
+            "2026-10-26T00:05")
+      << "the day has 25 hours";
+  EXPECT_EQ(ClocksOf({{}, "sunset", "02:00", {}, 2}, Zurich("2026-06-21")).back(),
+            "2026-06-22T02:00");
 }
 
 TEST(FrameTimes, EachDayHasItsOwnSunrise) {

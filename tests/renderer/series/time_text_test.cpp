@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/sun/moon.h"
@@ -18,6 +19,7 @@ namespace alpenglow {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 using tests::FaultOf;
 using tests::Fuji;
@@ -57,6 +59,24 @@ TEST(TimeText, UnknownEventsNameTheNearest) {
   }
 }
 
+TEST(TimeText, OtherWaysToWriteATimeNameTheOneThatIsRead) {
+  const std::vector<std::pair<const char*, const char*>> cases = {
+      {"6pm", "did you mean 18:00?"},
+      {"12 AM", "did you mean 00:00?"},
+      {"6:30 p.m.", "did you mean 18:30?"},
+      {"9:30", "did you mean 09:30?"},
+      {"18h30", "did you mean 18:30?"},
+      {"2026-06-21 6pm", "did you mean 18:00?"},
+      {"tomorrow 6pm", "did you mean 18:00?"},
+      {"2026-06-21T18:00:00+0200", "the offset \"+0200\" is written +02:00"},
+      {"18:00-03", "the offset \"-03\" is written -03:00"},
+      {"+0200", "an offset follows a time"}};
+  for (const auto& [text, message] : cases) {
+    EXPECT_THAT(FaultOf([&] { return InstantFromText(text, Fuji()); }), HasSubstr(message)) << text;
+  }
+  EXPECT_EQ(FaultOf([] { return InstantFromText("18:30:15", Fuji()); }), "no fault");
+}
+
 TEST(TimeText, ContactsOfAnEclipseAreTimes) {
   EventDay day{PlaceFromDegrees(42.3439, -3.6969, 860.0), "Europe/Madrid", {}};  // Burgos
   day.around = DayFromText("2026-08-12", day);
@@ -88,9 +108,16 @@ TEST(TimeText, AnEventNeedsADay) {
 // Hard case 24.
 TEST(TimeText, PolarDayAndNightHaveNoSunrise) {
   EXPECT_THAT(FaultOf([] { return InstantFromText("sunrise", Tromso("2026-06-21")); }),
-              HasSubstr("there is no sunrise on 2026-06-21"));
+              HasSubstr("polar day"));
   EXPECT_THAT(FaultOf([] { return InstantFromText("sunset+5m", Tromso("2026-12-21")); }),
-              HasSubstr("there is no sunset on 2026-12-21"));
+              HasSubstr("polar night"));
+  const auto both = [](const char* event, const char* date) {
+    return FaultOf([&] { return InstantFromText(event, Tromso(date)); });
+  };
+  EXPECT_THAT(both("sunset", "2026-06-21"), HasSubstr("there is no sunset on 2026-06-21"));
+  EXPECT_THAT(both("sunset", "2026-06-21"), Not(HasSubstr("night")));
+  EXPECT_THAT(both("sunrise", "2026-12-21"), Not(HasSubstr("polar day")));
+  EXPECT_THAT(both("astronomical-dusk", "2026-05-10"), HasSubstr("the night is light"));
   EXPECT_EQ(FaultOf([] { return InstantFromText("noon", Tromso("2026-12-21")); }), "no fault");
 }
 
