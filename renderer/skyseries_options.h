@@ -102,7 +102,8 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
   CLI::Option* to = app.add_option("--to", times.to, "Last time of the series");
   CLI::Option* every = app.add_option(
       "--every", times.every,
-      "Time between frames: 10m, 90s, 1h. With whole days (1d) and an event in --from each "
+      "Time between frames: 10m, 90s, 1h; 1d is a day of the calendar in the zone. With whole days "
+      "and an event in --from each "
       "frame is the event of its own day, and --to may be a day");
   CLI::Option* count = app.add_option("--count", times.count,
                                       "Number of frames, first and last "

@@ -10,6 +10,7 @@
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "lut/picture/picture_text.h"
 #include "lut/program/atomic_file.h"
 #include "lut/sky/sky_view_map.h"
@@ -393,7 +394,7 @@ void FlightDeck::Serve(const HudRequest& asked) {
 }
 
 void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
-  if (file.extension() != ".png")
+  if (!HasExtension(file, ".png"))
     throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
   RequireDrawable(size.width, size.height);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);

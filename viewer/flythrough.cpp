@@ -9,6 +9,7 @@
 
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "lut/program/program.h"
 #include "renderer/series/provenance.h"
 #include "viewer/flight/places.h"
@@ -73,7 +74,7 @@ WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metere
 }
 
 void RequirePictureName(const std::filesystem::path& file) {
-  if (file.extension() == ".png" || file.extension() == ".exr") return;
+  if (HasExtension(file, ".png") || HasExtension(file, ".exr")) return;
   throw InputError(
       fmt::format("\"{}\" is no picture's name; it must end in .png or .exr", file.string()));
 }
@@ -461,7 +462,7 @@ void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize
   const auto [look, ev100] = DevelopmentOf(image);
   Metadata metadata = PictureHeader(size);
   metadata.merge(ExposureHeader({look, ev100}));
-  if (file.extension() == ".exr") {
+  if (HasExtension(file, ".exr")) {
     WriteExr(file, image, metadata);
   } else {
     WritePng(file, Develop(Balanced(std::move(image), look.white), ev100, look), metadata);

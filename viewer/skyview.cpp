@@ -54,8 +54,8 @@ Scene SceneOf(const SkyviewOptions& options) {
     typed.latitude = place.latitude_rad / kRadiansPerDegree;
     typed.longitude = place.longitude_rad / kRadiansPerDegree;
   }
-  typed.latitude = options.latitude.value_or(typed.latitude);
-  typed.longitude = options.longitude.value_or(typed.longitude);
+  if (options.latitude) typed.latitude = options.latitude;
+  if (options.longitude) typed.longitude = options.longitude;
   typed.height_m = options.altitude;
   typed.heading = options.heading;
   typed.pitch = options.pitch;
@@ -80,9 +80,9 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
 
 UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
-  const Eye eye = Placed({scene.place}, PlacementOf(options));
-  const EventDay day{eye.place, scene.zone,
-                     scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
+  GeodeticPosition place = Placed({scene.place}, PlacementOf(options)).place;
+  place.height_m = 0.0;  // events are those of the place at sea level, as in skyseries
+  const EventDay day{place, scene.zone, scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
   return InstantFromText(options.time.value_or("noon"), day);
 }
 
@@ -251,7 +251,12 @@ int Run(const SkyviewOptions& options) {
        std::nullopt, FlightExposureFromText(options.exposure), LookOf(options)});
   flight.Place(PlacementOf(options));
   if (options.place) flight.GoTo(*options.place);
-  if (options.track) flight.Follow(PathAlong(ReadTrack(*options.track), {}, flight.Ground()));
+  if (options.track) {
+    const Track track = ReadTrack(*options.track);
+    if (!track.note.empty())
+      Say(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
+    flight.Follow(PathAlong(track, {}, flight.Ground()));
+  }
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
   if (window) window->AtLostDisplay([&recorder] { recorder.Finish(); });
   if (options.explain) {

@@ -9,9 +9,9 @@
 
 namespace alpenglow {
 
-/// MediumPreset of a name that is one of MediumPresetNames, else ReadMedium of the file, whose name is
-/// relative to `folder`. Throws InputError as they do; for a word that is neither it names the nearest
-/// preset, or all.
+/// MediumPreset of a name that is one of MediumPresetNames, else ReadMedium of the file, whose name
+/// is relative to `folder`. Throws InputError as they do; for a word that is neither it names the
+/// nearest preset, or all.
 [[nodiscard]] Medium MediumFromChoice(const std::string& preset_or_file,
                                       const std::filesystem::path& folder = {});
 

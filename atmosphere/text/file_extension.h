@@ -10,8 +10,8 @@
 
 namespace alpenglow {
 
-/// Whether a name ends in an extension such as ".gpx", in whatever case: cameras and recorders write
-/// ".GPX" and ".TIF" too.
+/// Whether a name ends in an extension such as ".gpx", in whatever case: cameras and recorders
+/// write ".GPX" and ".TIF" too.
 [[nodiscard]] inline bool HasExtension(const std::filesystem::path& file,
                                        std::string_view extension) {
   const auto lower = [](unsigned char letter) { return std::tolower(letter); };

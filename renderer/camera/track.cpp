@@ -133,8 +133,8 @@ std::vector<double> Smoothed(const std::vector<double>& values, const std::vecto
   return smooth;
 }
 
-/// Of the least-squares parabola through 2 m + 1 even points, at its middle (Savitzky and Golay 1964,
-/// Anal. Chem. 36, 1627): even acceleration passes unchanged.
+/// Of the least-squares parabola through 2 m + 1 even points, at its middle (Savitzky and Golay
+/// 1964, Anal. Chem. 36, 1627): even acceleration passes unchanged.
 double WeightOfParabola(int m, int j) { return 3.0 * m * (m + 1.0) - 1.0 - 5.0 * j * j; }
 
 /// A Hann window: weights that go to 0 at its ends.
@@ -154,8 +154,8 @@ std::vector<LongStep> LongStepsOf(const CameraPath& way) {
   return steps;
 }
 
-/// How far the speed is smoothed around each point: not into long steps of a track with times, whose
-/// points are kept to. A track without times has an even speed as it is.
+/// How far the speed is smoothed around each point: not into long steps of a track with times,
+/// whose points are kept to. A track without times has an even speed as it is.
 std::vector<int> ReachOfSpeed(const CameraPath& way, const std::vector<CameraPathPoint>& points) {
   std::vector<int> reach = ReachOf(points);
   if (!way.points().front().utc) return reach;

@@ -30,14 +30,15 @@ struct TimesText {
 /// Frames in a series, at most.
 inline constexpr int kMostFrames = 1000000;
 
-/// The frames. A `to` that is an event or a clock time and not after `from` is taken on the following
-/// day, so that "sunset" to "sunrise" and "22:00" to "02:00" are nights; a day of an `every` such as
-/// "1d" is one of the calendar, after which clocks of the zone show the same ("24h" is 24 hours;
-/// clocks that skip the time or show it twice go on with the offset before); an instant at one end says of which day the event at the other
-/// end is. Where `from` is an event and `every` whole days, each frame is the event of its own day,
-/// from that of `from` to that of `to`, which may be a day without a time; days without the event
-/// have no frame. Throws InputError for what InstantFromText refuses, a `to` before `from`, an
-/// `every` that is not positive, a `count` below 1, too many frames, no frame.
+/// The frames. A `to` that is an event or a clock time and not after `from` is taken on the
+/// following day, so that "sunset" to "sunrise" and "22:00" to "02:00" are nights; a day of an
+/// `every` such as "1d" is one of the calendar, after which clocks of the zone show the same ("24h"
+/// is 24 hours; clocks that skip the time or show it twice go on with the offset before); an
+/// instant at one end says of which day the event at the other end is. Where `from` is an event and
+/// `every` whole days, each frame is the event of its own day, from that of `from` to that of `to`,
+/// which may be a day without a time; days without the event have no frame. Throws InputError for
+/// what InstantFromText refuses, a `to` before `from`, an `every` that is not positive, a `count`
+/// below 1, too many frames, no frame.
 [[nodiscard]] std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day);
 
 /// The frames whose numbers are in "A-B,C"; throws InputError for numbers that the series does not

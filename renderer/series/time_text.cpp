@@ -65,8 +65,8 @@ std::optional<int> DaysFromToday(std::string_view word) {
   return std::nullopt;
 }
 
-/// "18:00" for what people write instead: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; nothing for other
-/// texts.
+/// "18:00" for what people write instead: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; nothing for
+/// other texts.
 std::optional<std::string> ClockTimeMeant(std::string_view text) {
   const auto number = [&](std::size_t most) {
     int value = 0;

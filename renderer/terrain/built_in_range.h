@@ -10,9 +10,10 @@
 
 namespace alpenglow {
 
-/// The range, centred on a place (also one of CentreOfRangeSeenFrom): foreland in the north, valleys at 500-900 m, chains that rise
-/// southwards, one peak above all. Its heights are the same bytes on every machine with IEEE
-/// arithmetic, for any number of threads and any centre; it falls to 0 m at the rim.
+/// The range, centred on a place (also one of CentreOfRangeSeenFrom): foreland in the north,
+/// valleys at 500-900 m, chains that rise southwards, one peak above all. Its heights are the same
+/// bytes on every machine with IEEE arithmetic, for any number of threads and any centre; it falls
+/// to 0 m at the rim.
 [[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre);
 
 /// Its grid without heights, at once.

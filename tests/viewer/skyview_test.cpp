@@ -83,6 +83,29 @@ TEST_F(Skyview, WithoutATimeItBeginsAtNoonOfThePlace) {
       << "138.5 degrees before Greenwich, and the equation of time of two minutes";
 }
 
+/// The instant of the first frame of a list of skyseries.
+UtcInstant FirstListed(const std::string& list) {
+  constexpr std::size_t kInstant = 20;  // "2026-06-21T04:00:00Z"
+  const std::size_t frame = list.find("\n0,");
+  return ParseInstant(frame == std::string::npos ? list : list.substr(frame + 3, kInstant));
+}
+
+TEST_F(Skyview, AnEventIsAtTheTimeThatSkyseriesLists) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  const std::vector<std::pair<std::string, std::string>> scenes = {
+      {" --latitude 69.65 --longitude 18.96 ", ""}, {InFolder("s.toml"), " --altitude 3000"}};
+  for (const auto& [scene, eye] : scenes) {
+    const Outcome listed = RunCommand(std::string("'") + tests::kSkyseries + "' " + scene +
+                                      " --list --at '2026-05-10 sunset'");
+    ASSERT_EQ(listed.status, 0) << listed.error;
+    const Outcome seen = Run(scene + eye + " --headless --size 8x4 --time '2026-05-10 sunset' " +
+                             "--screenshot " + InFolder("s.png"));
+    ASSERT_EQ(seen.status, 0) << seen.error;
+    const UtcInstant shown = ParseInstant(ReadPngMetadata(InFolder("s.png")).at("alpenglow.time"));
+    EXPECT_NEAR(SecondsBetween(FirstListed(listed.out), shown), 0.0, 0.51) << scene;
+  }
+}
+
 TEST_F(Skyview, AFlightIsRecordedAndAReplayIsTheSameFlight) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string small = InFolder("s.toml") + " --headless --size 32x18 ";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "lut/program/growing_file.h"
 #include "lut/program/messages.h"
 #include "renderer/series/frame_name.h"
@@ -106,7 +107,7 @@ CameraPath ReadFlight(const std::filesystem::path& file) {
                                  file.string(), part.string()));
   }
   CameraPath path = ReadCameraPath(file);
-  if (file.extension() == part.extension()) {
+  if (HasExtension(file, part.extension().string())) {
     Say(fmt::format("skyview: {} is unfinished: a flight that was cut short after {:.1f} s\n",
                     file.string(), path.end_s()));
   }
@@ -120,7 +121,7 @@ ReplayFrame ReplayAt(const CameraPath& path, double path_s) {
 std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern, int count) {
   if (count == 1) return {pattern};
   const std::filesystem::path last = pattern;
-  const bool is_png = last.extension() == ".png";
+  const bool is_png = HasExtension(last, ".png");
   const FrameName name(is_png ? std::filesystem::path(last).replace_extension(".exr").string()
                               : pattern);
   if (!name.HasNumber()) {
@@ -128,7 +129,7 @@ std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern, in
         "--screenshot has no frame number (%04d), but the replay has {} pictures", count));
   }
   std::vector<std::filesystem::path> files;
-  for (int i = 0; i < count; ++i) files.push_back(is_png ? name.Png(i) : name.Exr(i));
+  for (int i = 0; i < count; ++i) files.push_back(name.Exr(i).replace_extension(last.extension()));
   return files;
 }
 

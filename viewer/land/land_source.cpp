@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/file_extension.h"
 #include "renderer/terrain/built_in_range.h"
 
 namespace alpenglow {
@@ -52,10 +53,8 @@ ElevationGrid Closed(ElevationGrid grid) {
 
 bool IsModel(const std::filesystem::path& file) {
   constexpr std::array<const char*, 4> kEndings{".hgt", ".tif", ".tiff", ".dem"};
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return HasExtension(file, ending); });
 }
 
 std::string NoteOn(const ElevationModel& model, const std::string& file) {

@@ -149,7 +149,8 @@ TEST_F(TrackFile, FaultsNameTheFileTheLineAndWhatIsWrong) {
               HasSubstr("none.gpx"));
 }
 
-// A point of a track: the longitude's hundredths beyond 8 E, the rest as in a file; empty is left out.
+// A point of a track: the longitude's hundredths beyond 8 E, the rest as in a file; empty is left
+// out.
 std::string TrackPointText(int hundredths, const std::string& height, const std::string& time) {
   std::string text = "<trkpt lat='46.5' lon='8.0" + std::to_string(hundredths) + "'>";
   if (!height.empty()) text += "<ele>" + height + "</ele>";

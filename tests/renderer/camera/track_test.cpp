@@ -127,8 +127,8 @@ Track Eastward(const std::vector<std::pair<double, double>>& points) {
   return track;
 }
 
-/// A drive of 20 m/s with a fix every `step_s`, a pause of an hour in which the car is moved by 30 m,
-/// and a drive on.
+/// A drive of 20 m/s with a fix every `step_s`, a pause of an hour in which the car is moved by 30
+/// m, and a drive on.
 std::vector<std::pair<double, double>> DriveWithPause(double step_s) {
   constexpr double kDegreesPerMetre = 1.0 / 111319.49;
   std::vector<std::pair<double, double>> points;
