@@ -77,7 +77,8 @@ TEST_F(LandSourceFiles, ATileOfAnotherAspectKeepsTheHeightOfItsRim) {
   const ReadTile tile = ReadLandTile(tiles, 1, 0);
   const LatticeBox& box = tiles.tiles()[1].box;
   for (int row = box.first_row; row <= box.last_row; ++row) {
-    EXPECT_EQ(tile.heights->At(0, box.first_column, row), 100.0F) << row;
+    // 0.08" east of the first sample; the land rises 100 m in 3".
+    EXPECT_NEAR(tile.heights->At(0, box.first_column, row), 100.0 + 100.0 * 0.08 / 3.0, 0.01);
     EXPECT_EQ(tile.heights->At(0, box.last_column, row), 2100.0F) << row;
   }
 }
