@@ -51,7 +51,7 @@ class BentView {
   /// Of the horizon of the ground [rad], <= 0.
   [[nodiscard]] double horizon_rad() const { return horizon_rad_; }
   [[nodiscard]] const BendingAir& air() const { return air_; }
-  /// Of the tables.
+  /// Returns the size of the tables.
   [[nodiscard]] std::size_t bytes() const {
     return sky_.size() * sizeof(Node) + bending_.size() * sizeof(double);
   }

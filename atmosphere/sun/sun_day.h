@@ -6,7 +6,7 @@
 
 namespace alpenglow {
 
-/// Whether the sun stands above the height at which it rises and sets, or begins and ends a
+/// True if the sun stands above the height at which it rises and sets, or begins and ends a
 /// twilight (FindSunEvent); an event other than noon. On a day without the event it does so all
 /// day, if at noon.
 [[nodiscard]] bool IsAboveEvent(SunEvent event, const GeodeticPosition& place,

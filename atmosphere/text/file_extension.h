@@ -10,7 +10,7 @@
 
 namespace alpenglow {
 
-/// Whether a name ends in an extension such as ".gpx", in whatever case: cameras and recorders
+/// True if a name ends in an extension such as ".gpx", in whatever case: cameras and recorders
 /// write ".GPX" and ".TIF" too.
 [[nodiscard]] inline bool HasExtension(const std::filesystem::path& file,
                                        std::string_view extension) {

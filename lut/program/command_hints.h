@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was meant by a word on a command line that the program does not know.
+// Hints for words on a command line that the program does not know.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace alpenglow {
 
-/// What is wrong with a word that stands where a command or the name of a file may: it is neither,
-/// but nearly a command, or one that other programs have as a command ("help"). Empty for other
-/// words.
+/// Describes the fault of a word that stands where a command or the name of a file may: it is
+/// neither, but nearly a command, or one that other programs have as a command ("help"). Empty for
+/// other words.
 [[nodiscard]] std::string FaultOfCommand(const std::string& word,
                                          const std::vector<std::string>& commands);
 
-/// What is wrong with an option that the program does not have, "-o" or "--lattitude=3", and which
+/// Describes an option that the program does not have, "-o" or "--lattitude=3", and which
 /// of the known ones (long names without dashes) are like it.
 [[nodiscard]] std::string FaultOfUnknownOption(const std::string& option,
                                                const std::vector<std::string>& known);

@@ -57,7 +57,7 @@ class SlopeViews {
     const std::uint32_t packed = seen_[(node * kHorizonAzimuths + azimuth) * kStrips + strip];
     return {packed & 0xFFFFFFU, static_cast<std::uint8_t>(packed >> 24)};
   }
-  /// Optical depth, at the wavelength of the first band, of a step.
+  /// Optical depth of a step, in the first band that the air dims.
   [[nodiscard]] static double AirDepth(std::uint8_t step);
 
  private:
