@@ -3,7 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <system_error>
+
 namespace alpenglow {
+
+void RefuseFile(const std::filesystem::path& file, std::string_view fault) {
+  throw InputError(fmt::format("{}: {}", file.string(), fault));
+}
+
+std::string LastSystemError() { return std::generic_category().message(errno); }
 
 double RequireInRange(double value, double low, double high, std::string_view name) {
   if (!(value >= low && value <= high)) {  // written so that NaN fails

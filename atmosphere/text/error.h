@@ -3,6 +3,7 @@
 // (InternalError). Nothing is repaired in silence, and every check stays in release builds.
 #pragma once
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -40,6 +41,12 @@ class InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
+
+/// Throws the InputError "FILE: fault".
+[[noreturn]] void RefuseFile(const std::filesystem::path& file, std::string_view fault);
+
+/// What the operating system says of the call that has just failed (errno).
+[[nodiscard]] std::string LastSystemError();
 
 /// Returns `value`, or throws InputError naming `name`
 /// when it is not in [low, high]; NaN is never in.

@@ -153,16 +153,10 @@ void OfDegree(std::size_t degree, const Run& run) {
   switch (degree) {
     case 2:
       return run(std::integral_constant<std::size_t, 2>{});
-    case 3:
-      return run(std::integral_constant<std::size_t, 3>{});
     case 4:
       return run(std::integral_constant<std::size_t, 4>{});
-    case 5:
-      return run(std::integral_constant<std::size_t, 5>{});
     case 6:
       return run(std::integral_constant<std::size_t, 6>{});
-    case 8:
-      return run(std::integral_constant<std::size_t, 8>{});
     default:
       return run(std::integral_constant<std::size_t, kLargestDegree>{});
   }

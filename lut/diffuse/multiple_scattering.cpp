@@ -32,9 +32,7 @@ namespace {
 const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) {
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
-  RequireInRange(options.degree, 2, kMaxDegree, "degree");
-  if (std::find(kDegrees.begin(), kDegrees.end(), options.degree) == kDegrees.end())
-    throw InputError(fmt::format("degree is {}; there are 2 to 6, 8 and 12", options.degree));
+  RequireDegree(options.degree);
   if (options.forward_peak && options.exact_orders)
     throw InputError("forward_peak sums all orders; exact_orders wants some");
   RequireInRange(options.azimuth_nodes, 1, static_cast<double>(kMostAzimuths), "azimuth_nodes");

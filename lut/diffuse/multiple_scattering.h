@@ -42,7 +42,7 @@ namespace alpenglow {
 struct DiffuseLightOptions {
   int altitudes = 18;     // nodes, quadratic in altitude, >= 4
   int sun_angles = 32;    // nodes, dense around the terminator, >= 4
-  int degree = 6;         // largest l: 2 to 6, 8 or 12
+  int degree = 6;         // largest l: 2, 4, 6 or 12
   int zenith_nodes = 14;  // directions above and below the horizon, each
   int azimuth_nodes = 8;  // over half a turn, in [1, 32]
   int ray_nodes = 10;     // Gauss nodes along each direction

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "lut/diffuse/spherical_harmonics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
+#include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
@@ -24,6 +27,11 @@ struct HarmonicNorms {
 };
 
 }  // namespace
+
+void RequireDegree(int degree) {
+  if (std::find(kDegrees.begin(), kDegrees.end(), degree) == kDegrees.end())
+    throw InputError(fmt::format("degree is {}; there are {}", degree, fmt::join(kDegrees, ", ")));
+}
 
 double HarmonicNorm(int l, int m) {
   double ratio = 1.0;  // (l - m)! / (l + m)!

@@ -19,8 +19,10 @@
 namespace alpenglow {
 
 inline constexpr int kMaxDegree = 12;
-/// What light is kept to.
-inline constexpr std::array kDegrees{2, 3, 4, 5, 6, 8, kMaxDegree};
+/// The degrees that light may have. Every kernel of diffuse light is compiled for each of them.
+inline constexpr std::array kDegrees{2, 4, 6, kMaxDegree};
+/// Throws InputError, which lists the degrees, when this is none of them.
+void RequireDegree(int degree);
 
 [[nodiscard]] constexpr std::size_t MomentCount(int degree) {
   return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2);

@@ -123,10 +123,6 @@ TextAttributes AttributesOf(const Kind& kind, const Medium& medium,
           {"alpenglow.producer", ProducerText()}};
 }
 
-[[noreturn]] void Fail(const fs::path& file, const std::string& fault) {
-  throw InputError(fmt::format("{}: {}", file.string(), fault));
-}
-
 std::vector<std::size_t> SizesOf(const TableImageReader& image, std::size_t axes) {
   const std::string text = image.Attribute("alpenglow.axisSizes");
   std::vector<std::size_t> sizes;
@@ -140,9 +136,10 @@ std::vector<std::size_t> SizesOf(const TableImageReader& image, std::size_t axes
     at = next != end && *next == ' ' ? next + 1 : next;
   }
   if (at != end || sizes.size() != axes) {
-    Fail(image.file(), fmt::format("alpenglow.axisSizes is \"{}\"; it must be {} numbers from 1 to "
-                                   "65536",
-                                   text, axes));
+    RefuseFile(image.file(),
+               fmt::format("alpenglow.axisSizes is \"{}\"; it must be {} numbers from 1 to "
+                           "65536",
+                           text, axes));
   }
   return sizes;
 }
@@ -153,20 +150,22 @@ Medium MediumOf(const TableImageReader& image) {
   medium.name = image.Attribute("alpenglow.mediumName");
   if (const std::string stored = image.Attribute("alpenglow.mediumHash");
       stored != HashText(MediumHash(medium))) {
-    Fail(image.file(), fmt::format("alpenglow.mediumHash is {}; the medium in the file has {}",
-                                   stored, HashText(MediumHash(medium))));
+    RefuseFile(image.file(),
+               fmt::format("alpenglow.mediumHash is {}; the medium in the file has {}", stored,
+                           HashText(MediumHash(medium))));
   }
   return medium;
 }
 
 void RequireKind(const TableImageReader& image, const Kind& kind) {
   if (const std::string name = image.Attribute("alpenglow.kind"); name != kind.name) {
-    Fail(image.file(), fmt::format("is a table of {}; it must be one of {}", name, kind.name));
+    RefuseFile(image.file(),
+               fmt::format("is a table of {}; it must be one of {}", name, kind.name));
   }
   if (const std::string version = image.Attribute("alpenglow.mapVersion");
       version != std::to_string(kind.map_version)) {
-    Fail(image.file(), fmt::format("alpenglow.mapVersion is {}; this program reads {}", version,
-                                   kind.map_version));
+    RefuseFile(image.file(), fmt::format("alpenglow.mapVersion is {}; this program reads {}",
+                                         version, kind.map_version));
   }
   for (const auto& [name, text] : {std::pair{"units", kind.units},
                                    {"axes", kind.axes},
@@ -174,8 +173,8 @@ void RequireKind(const TableImageReader& image, const Kind& kind) {
                                    {"quantity", kind.quantity}}) {
     const std::string found = image.Attribute(fmt::format("alpenglow.{}", name));
     if (found != text) {
-      Fail(image.file(),
-           fmt::format("alpenglow.{} is \"{}\"; it must be \"{}\"", name, found, text));
+      RefuseFile(image.file(),
+                 fmt::format("alpenglow.{} is \"{}\"; it must be \"{}\"", name, found, text));
     }
   }
   static_cast<void>(image.Attribute("alpenglow.producer"));
@@ -184,16 +183,17 @@ void RequireKind(const TableImageReader& image, const Kind& kind) {
 void RequireMedium(const TableImageReader& image, const Medium& medium,
                    const std::optional<std::uint64_t>& expected) {
   if (expected && *expected != MediumHash(medium)) {
-    Fail(image.file(),
-         fmt::format("was made for another atmosphere ({}, hash {}); the one asked for has {}",
-                     medium.name, HashText(MediumHash(medium)), HashText(*expected)));
+    RefuseFile(
+        image.file(),
+        fmt::format("was made for another atmosphere ({}, hash {}); the one asked for has {}",
+                    medium.name, HashText(MediumHash(medium)), HashText(*expected)));
   }
 }
 
 void RequireWindow(const TableImageReader& image, std::size_t width, std::size_t height) {
   if (image.width() != width || image.height() != height) {
-    Fail(image.file(), fmt::format("is {} x {} texels; its axes need {} x {}", image.width(),
-                                   image.height(), width, height));
+    RefuseFile(image.file(), fmt::format("is {} x {} texels; its axes need {} x {}", image.width(),
+                                         image.height(), width, height));
   }
 }
 
@@ -205,9 +205,10 @@ std::vector<float> CheckedValues(const TableImageReader& image, const Kind& kind
     const auto value = static_cast<double>(values[i]);
     if (value >= kind.lowest && value <= kind.highest) continue;
     const std::size_t texel = i / names.size();
-    Fail(image.file(), fmt::format("texel ({}, {}) of channel {} is {}; it must lie in [{}, {}]",
-                                   texel % image.width(), texel / image.width(),
-                                   names[i % names.size()], value, kind.lowest, kind.highest));
+    RefuseFile(image.file(),
+               fmt::format("texel ({}, {}) of channel {} is {}; it must lie in [{}, {}]",
+                           texel % image.width(), texel / image.width(), names[i % names.size()],
+                           value, kind.lowest, kind.highest));
   }
   return values;
 }
@@ -218,7 +219,7 @@ double NumberOf(const TableImageReader& image, const std::string& name) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    Fail(image.file(), fmt::format("{} is \"{}\"; it must be a number", name, text));
+    RefuseFile(image.file(), fmt::format("{} is \"{}\"; it must be a number", name, text));
   }
   return value;
 }
@@ -229,7 +230,7 @@ auto NamingTheFile(const fs::path& file, const Make& make) {
   try {
     return make();
   } catch (const InputError& error) {
-    Fail(file, error.what());
+    RefuseFile(file, error.what());
   }
 }
 
@@ -270,14 +271,14 @@ int IntegerOf(const TableImageReader& image, const std::string& name, int lowest
   if (value == std::floor(value) && value >= lowest && value <= highest) {
     return static_cast<int>(value);
   }
-  Fail(image.file(), fmt::format("{} is {}; it must be a whole number from {} to {}", name, value,
-                                 lowest, highest));
+  RefuseFile(image.file(), fmt::format("{} is {}; it must be a whole number from {} to {}", name,
+                                       value, lowest, highest));
 }
 
 bool YesOf(const TableImageReader& image, const std::string& name) {
   const std::string text = image.Attribute(name);
   if (text == "yes" || text == "no") return text == "yes";
-  Fail(image.file(), fmt::format("{} is \"{}\"; it must be yes or no", name, text));
+  RefuseFile(image.file(), fmt::format("{} is \"{}\"; it must be yes or no", name, text));
 }
 
 std::string SunCosinesText(std::size_t columns, bool polarised) {
@@ -310,12 +311,13 @@ FolderUse UseOf(const TableImageReader& image) {
       if (tables == TablesText(use)) return use;
     }
   }
-  Fail(image.file(), fmt::format("alpenglow.tables is \"{}\"", tables));
+  RefuseFile(image.file(), fmt::format("alpenglow.tables is \"{}\"", tables));
 }
 
 StoredDiffuseLight DiffuseLightOf(const TableImageReader& image,
                                   const std::optional<std::uint64_t>& medium_hash) {
-  const int degree = IntegerOf(image, "alpenglow.degree", 2, kMaxDegree);
+  const int degree = IntegerOf(image, "alpenglow.degree", 0, 1 << 20);
+  NamingTheFile(image.file(), [&] { RequireDegree(degree); });
   RequireKind(image, MultipleScattering(degree, false));
   const Medium medium = MediumOf(image);
   const Kind kind = MultipleScattering(degree, medium.polarised);
@@ -323,7 +325,7 @@ StoredDiffuseLight DiffuseLightOf(const TableImageReader& image,
   const std::vector<std::size_t> sizes = SizesOf(image, 2);
   RequireWindow(image, sizes[0], sizes[1]);
   if (image.Attribute("alpenglow.sunCosines") != SunCosinesText(sizes[0], medium.polarised)) {
-    Fail(image.file(), "alpenglow.sunCosines are not the nodes of this program");
+    RefuseFile(image.file(), "alpenglow.sunCosines are not the nodes of this program");
   }
   DiffuseLightOptions options;
   options.sun_angles = static_cast<int>(sizes[0]);
@@ -435,7 +437,8 @@ TableDescription DescribeTable(const fs::path& file) {
     describe(MultipleScattering(light.options().degree, light.medium().polarised), light.medium(),
              light.values());
   } else {
-    Fail(file, fmt::format("is a table of {}, which this program does not know", description.kind));
+    RefuseFile(file,
+               fmt::format("is a table of {}, which this program does not know", description.kind));
   }
   description.quantity = image.Attribute("alpenglow.quantity");
   description.units = image.Attribute("alpenglow.units");
