@@ -6,7 +6,10 @@ target_compile_options(alpenglow_warnings INTERFACE
   $<$<BOOL:${ALPENGLOW_WARNINGS_AS_ERRORS}>:-Werror>
   # Not -ffast-math: infinities and NaN mean what they mean. Contraction is off so that one source
   # gives one result on every machine.
-  -fno-math-errno -fno-trapping-math -ffp-contract=off)
+  -fno-math-errno -fno-trapping-math -ffp-contract=off
+  # Of a type in an anonymous namespace it warns where that stands in an included file. All sources are
+  # included where several are compiled as one (CMAKE_UNITY_BUILD).
+  $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 
 # Not cache variables: project() has put empty ones of these names into the cache, which would win. -O2
 # takes up to twice as long to compile.
@@ -183,43 +186,61 @@ function(alpenglow_suites out)
   set(${out} "${filter}" PARENT_SCOPE)
 endfunction()
 
-# alpenglow_tests(<program> FOLDER f [WHOLE a_test.cpp ...] SOURCES b_test.cpp ... LIBRARIES ...
-# [PROGRAMS skylut ...] [SCALAR b_test.cpp ... [BUT Suite.Test ...]]): one program of tests, one CTest line
-# a test, named "f.Suite.Test". A source in WHOLE has one line for all its tests, "f.<name of the source>",
-# because they share something costly. PROGRAMS are built before; tests/fixtures/places.h names their paths.
-# The sources in SCALAR run a second time with scalar kernels, in one line "scalar.<program>", without the
-# tests that BUT names.
+# alpenglow_tests(<program> FOLDER f [LONG a_test.cpp ...] SOURCES b_test.cpp ... LIBRARIES ...
+# [PROGRAMS skylut ...] [SMOKE b_test.cpp ...] [SCALAR b_test.cpp ... [BUT Suite.Test ...]]): one program of
+# tests, one CTest line a source, "f.<name of the source>": its tests share what is costly, and a process
+# takes longer to start than most tests (0.2 s, under the sanitizers 0.5 s). Each line writes its results to
+# tests/results/<line>.xml. The sources in LONG start first. Those in SMOKE, which are any of both, have the
+# label smoke. PROGRAMS are built before; tests/fixtures/places.h names their paths. The sources in SCALAR run
+# a second time with scalar kernels, in one line "scalar.<program>", without the tests that BUT names.
 function(alpenglow_tests program)
   if(NOT TARGET alpenglow_test_headers)
     alpenglow_test_headers()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "WHOLE;SOURCES;LIBRARIES;PROGRAMS;SCALAR;BUT")
-  add_executable(${program} ${arg_WHOLE} ${arg_SOURCES})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER"
+    "LONG;SOURCES;LIBRARIES;PROGRAMS;SMOKE;SCALAR;BUT")
+  add_executable(${program} ${arg_LONG} ${arg_SOURCES})
   target_link_libraries(${program} PRIVATE
     alpenglow_test_headers ${arg_LIBRARIES} GTest::gtest_main)
   alpenglow_places(${program} ${arg_PROGRAMS})
   target_precompile_headers(${program} REUSE_FROM alpenglow_test_headers)
-  set(cache "ALPENGLOW_CACHE=${PROJECT_BINARY_DIR}/cache")  # not the one of who tests
-  set(whole "")
-  foreach(source ${arg_WHOLE})
+  set(all "")
+  foreach(source ${arg_LONG} ${arg_SOURCES})
     get_filename_component(name ${source} NAME_WE)
     alpenglow_suites(filter ${source})
-    string(APPEND whole ":${filter}")
-    add_test(NAME ${arg_FOLDER}.${name} COMMAND ${program} --gtest_filter=${filter})
-    # Long ones start first, so that no processor waits for them in the end.
-    set_tests_properties(${arg_FOLDER}.${name} PROPERTIES
-      TIMEOUT 900 COST 100 ENVIRONMENT "${cache}")
+    if(filter)
+      string(APPEND all ":${filter}")
+      alpenglow_test_line(${arg_FOLDER}.${name} ${program} "${filter}")
+    endif()
+    if(source IN_LIST arg_LONG)
+      # So that no processor waits for it in the end.
+      set_tests_properties(${arg_FOLDER}.${name} PROPERTIES COST 100)
+    endif()
+    if(source IN_LIST arg_SMOKE)
+      set_tests_properties(${arg_FOLDER}.${name} PROPERTIES LABELS smoke)
+    endif()
   endforeach()
+  # A test whose suite no line has found would never run.
+  add_test(NAME ${arg_FOLDER}.EveryTestOf_${program}_HasALine
+    COMMAND ${program} --gtest_list_tests "--gtest_filter=-${all}")
+  set_tests_properties(${arg_FOLDER}.EveryTestOf_${program}_HasALine PROPERTIES
+    FAIL_REGULAR_EXPRESSION "\\.\n")
   if(arg_SCALAR)
     alpenglow_suites(filter ${arg_SCALAR})
     list(JOIN arg_BUT ":" but)
-    add_test(NAME scalar.${program} COMMAND ${program} "--gtest_filter=${filter}:-${but}")
-    set_tests_properties(scalar.${program} PROPERTIES
-      LABELS scalar TIMEOUT 900 COST 100
-      ENVIRONMENT "${cache};ALPENGLOW_INSTRUCTION_SET=scalar")
+    alpenglow_test_line(scalar.${program} ${program} "${filter}:-${but}")
+    set_tests_properties(scalar.${program} PROPERTIES LABELS scalar COST 100)
+    set_property(TEST scalar.${program} APPEND PROPERTY
+      ENVIRONMENT ALPENGLOW_INSTRUCTION_SET=scalar)
   endif()
-  gtest_discover_tests(${program} TEST_PREFIX "${arg_FOLDER}." TEST_FILTER "-${whole}"
-    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${cache}")
+endfunction()
+
+# One CTest line: the tests of a program that a filter takes.
+function(alpenglow_test_line line program filter)
+  add_test(NAME ${line} COMMAND ${program} "--gtest_filter=${filter}"
+    --gtest_output=xml:${CMAKE_CURRENT_BINARY_DIR}/results/${line}.xml)
+  set_tests_properties(${line} PROPERTIES TIMEOUT 900
+    ENVIRONMENT "ALPENGLOW_CACHE=${PROJECT_BINARY_DIR}/cache")  # not the one of who tests
 endfunction()
 
 # The package that find_package(alpenglow) reads.

@@ -18,9 +18,10 @@ export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$PWD/tests/leaks_of_drivers.txt
 
 # run_tests <preset> [further options of ctest]
 run_tests() {
-  local results=$PWD/build/$1/tests.xml
-  ctest --preset "$1" --parallel "$(nproc)" --output-junit "$results" "${@:2}"
-  python3 tests/check_skips.py "$results"
+  local lines=$PWD/build/$1/tests.xml results=$PWD/build/$1/tests/results
+  rm -rf "$results"
+  ctest --preset "$1" --parallel "$(nproc)" --output-junit "$lines" "${@:2}"
+  python3 tests/check_skips.py "$lines" "$results"
 }
 
 times=()
