@@ -23,7 +23,6 @@ namespace alpenglow {
 namespace {
 
 constexpr double kMessage_s = 8.0;
-constexpr double kDay_s = 86400.0;
 const std::vector<std::string> kCurves{"agx", "aces", "reinhard", "pbr-neutral", "linear"};
 const std::vector<std::string> kQualities{"auto", "low", "medium", "high", "reference"};
 
@@ -196,8 +195,8 @@ HudChoices FlightDeck::Choices() const {
 void FlightDeck::WantStrip() {
   if (!hud_.IsOpen(HudPanel::kPlaceAndTime)) return;
   const std::shared_ptr<const SolvedAir>& air = flight_.painter().air().air();
-  const UtcInstant begin =
-      AddSeconds(flight_.now(), -kDay_s * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
+  const UtcInstant begin = AddSeconds(
+      flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
   strips_.Want({std::make_shared<const AirIntegrator<float>>(air->medium),
                 std::shared_ptr<const DiffuseLight>(air, &air->diffuse), flight_.eye().place,
                 begin});
@@ -339,7 +338,7 @@ void FlightDeck::ServeTime(const HudTimeRequest& asked) {
   SceneClock& clock = flight_.cockpit().clock();
   if (asked.instant) clock.Type(*asked.instant, flight_.eye().place, flight_.zone());
   if (asked.day_fraction) {
-    clock.Shift(kDay_s *
+    clock.Shift(kSecondsPerDay *
                 (*asked.day_fraction - LocalTimeAt(clock.now(), flight_.zone()).day_fraction));
   }
   if (asked.rate) clock.SetRate(*asked.rate);

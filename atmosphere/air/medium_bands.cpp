@@ -27,7 +27,7 @@ std::optional<std::string> PresetOf(const Medium& medium) {
 }
 
 /// Linear between wavelengths, constant beyond them.
-double Between(const std::vector<double>& nm, const std::vector<double>& values, double at) {
+double Interpolated(const std::vector<double>& nm, const std::vector<double>& values, double at) {
   const auto above = std::upper_bound(nm.begin(), nm.end(), at);
   if (above == nm.begin()) return values.front();
   if (above == nm.end()) return values.back();
@@ -54,7 +54,8 @@ std::vector<double> DepolarisationAt(const Medium& medium, const std::string& pr
   if (here == GasDepolarisation(preset, medium.wavelengths_nm))
     return GasDepolarisation(preset, wavelengths_nm);
   std::vector<double> there;
-  for (const double nm : wavelengths_nm) there.push_back(Between(medium.wavelengths_nm, here, nm));
+  for (const double nm : wavelengths_nm)
+    there.push_back(Interpolated(medium.wavelengths_nm, here, nm));
   return there;
 }
 
@@ -80,7 +81,7 @@ std::optional<Medium> OnBands(const Medium& medium, int bands) {
     if (!factors) return std::nullopt;
     result.*row = there.*row;
     for (std::size_t i = 0; i < there.wavelengths_nm.size(); ++i) {
-      (result.*row)[i] *= Between(medium.wavelengths_nm, *factors, there.wavelengths_nm[i]);
+      (result.*row)[i] *= Interpolated(medium.wavelengths_nm, *factors, there.wavelengths_nm[i]);
     }
   }
   return result;

@@ -176,10 +176,10 @@ std::vector<Example> Examples(std::span<const double> wavelengths_nm) {
   return examples;
 }
 
-using Row = std::vector<double>;
+using BandRow = std::vector<double>;
 
-Row Starting(std::span<const double> wavelengths_nm, std::size_t component) {
-  Row row(wavelengths_nm.size(), 0.0);
+BandRow Starting(std::span<const double> wavelengths_nm, std::size_t component) {
+  BandRow row(wavelengths_nm.size(), 0.0);
   for (const Slice& slice : SunlightSlices()) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       row[i] += Hat(wavelengths_nm, i, slice.wavelength_nm) * slice.seen[component];
@@ -188,7 +188,7 @@ Row Starting(std::span<const double> wavelengths_nm, std::size_t component) {
   return row;
 }
 
-double Sum(const Row& row) {
+double Sum(const BandRow& row) {
   double sum = 0.0;
   for (const double value : row) sum += value;
   return sum;
@@ -202,7 +202,7 @@ double Dot(std::span<const double> a, std::span<const double> b) {
 
 // The correction that trains a row on the examples. Errors count relative to the component, but not
 // below a fiftieth of the luminance: the blue of a deep red sun is not seen.
-Row Corrected(Row row, const std::vector<Example>& examples, std::size_t component) {
+BandRow Corrected(BandRow row, const std::vector<Example>& examples, std::size_t component) {
   constexpr double kWeightOfSun = 1e5;
   constexpr double kRidge = 1e-5;
   const double whole = Sum(row);
@@ -215,7 +215,7 @@ Row Corrected(Row row, const std::vector<Example>& examples, std::size_t compone
   }
   equations.Add(std::vector<double>(row.size(), 1.0), 0.0, kWeightOfSun);
   equations.AddRidge(kRidge);
-  const Row correction = equations.Solve();
+  const BandRow correction = equations.Solve();
   for (std::size_t i = 0; i < row.size(); ++i) row[i] += whole * correction[i];
   return row;
 }
@@ -228,8 +228,8 @@ void RequireAscending(const std::vector<double>& wavelengths_nm) {
 }
 
 // The rows that make X, Y, Z and scotopic luminance of light relative to the sun.
-std::array<Row, 4> RowsOf(std::span<const double> wavelengths_nm) {
-  std::array<Row, 4> rows;
+std::array<BandRow, 4> BandRowsOf(std::span<const double> wavelengths_nm) {
+  std::array<BandRow, 4> rows;
   for (std::size_t c = 0; c < 4; ++c) rows[c] = Starting(wavelengths_nm, c);
   if (wavelengths_nm.size() <= kMostTrainedBands) {
     const std::vector<Example> examples = Examples(wavelengths_nm);
@@ -257,7 +257,7 @@ BandColour::BandColour(std::vector<double> wavelengths_nm)
     : wavelengths_nm_(std::move(wavelengths_nm)) {
   RequireAscending(wavelengths_nm_);
   const std::size_t n = wavelengths_nm_.size();
-  const std::array<Row, 4> rows = RowsOf(wavelengths_nm_);
+  const std::array<BandRow, 4> rows = BandRowsOf(wavelengths_nm_);
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < n; ++i) {
       (c < 3 ? xyz_ : scotopic_).push_back(rows[c][i] / SolarIrradiance(wavelengths_nm_[i]));

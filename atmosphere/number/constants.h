@@ -8,6 +8,8 @@ namespace alpenglow {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kRadiansPerDegree = kPi / 180.0;
+inline constexpr double kMetresPerKilometre = 1000.0;
+inline constexpr double kSecondsPerDay = 86400.0;
 
 /// Mean radius of the earth, (2a + b) / 3 of WGS84. Moritz (2000), J. Geodesy 74, 128-133.
 inline constexpr double kEarthMeanRadius_m = 6371008.7714;

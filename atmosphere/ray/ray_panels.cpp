@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
@@ -13,14 +14,12 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMetresPerKilometre = 1000.0;
-
 double Kilometres(double metres) { return metres / kMetresPerKilometre; }
 
 /// Distances at which a ray is cut, in any order.
-class Cuts {
+class PanelEnds {
  public:
-  explicit Cuts(double length) : length_(length) {
+  explicit PanelEnds(double length) : length_(length) {
     Add(0.0);
     Add(length);
   }
@@ -64,7 +63,7 @@ LineCrossings SunPerigees(const RayEntry& entry, double z, double radius) {
   return found;
 }
 
-void AddTent(const RayEntry& entry, const OzoneLayer& ozone, double radius, Cuts& cuts) {
+void AddTent(const RayEntry& entry, const OzoneLayer& ozone, double radius, PanelEnds& cuts) {
   for (const double z : {ozone.bottom_m, ozone.peak_m, ozone.top_m}) {
     cuts.Add(CrossingsOf(entry.altitude_km, entry.mu, Kilometres(z), radius));
     cuts.Add(SunPerigees(entry, Kilometres(z), radius));
@@ -148,7 +147,7 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
   const double perigee = -(radius + entry.altitude_km) * entry.mu;
   const double extinction = LargestExtinctionPerKm(medium);
   const DarkSpan dark = DarkSpanOf(ray, extent, entry, medium);
-  Cuts cuts(length);
+  PanelEnds cuts(length);
   if (perigee > 0.0 && perigee < length) cuts.Add(perigee);
   if (dark.begin < dark.end) {
     cuts.Add(dark.begin);

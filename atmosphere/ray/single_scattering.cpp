@@ -7,6 +7,7 @@
 
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/air/phase_text.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
@@ -14,8 +15,6 @@
 
 namespace alpenglow {
 namespace {
-
-constexpr double kMetresPerKilometre = 1000.0;
 
 std::size_t RoundUp(std::size_t count, std::size_t lanes) {
   return (count + lanes - 1) / lanes * lanes;
@@ -67,8 +66,8 @@ struct ColumnRows {
 };
 
 template <typename Real>
-ColumnSet<Real> Between(Real mu_origin, Real mu_point, const ColumnSet<Real>& origin,
-                        const ColumnSet<Real>& point, const ColumnSet<Real>& perigee) {
+ColumnSet<Real> ColumnsBetween(Real mu_origin, Real mu_point, const ColumnSet<Real>& origin,
+                               const ColumnSet<Real>& point, const ColumnSet<Real>& perigee) {
   using namespace shared;
   return {
       ColumnBetween<Real>(mu_origin, mu_point, origin.rayleigh, point.rayleigh, perigee.rayleigh),
@@ -211,7 +210,7 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
   kernel.columns_up(air, RoundUp(3, kernel.lanes), rows.altitude.data(), rows.mu.data(),
                     rows.Targets());
   ColumnSet<Real> columns =
-      Between<Real>(real(entry.mu), real(mu_end), rows.At(0), rows.At(1), rows.At(2));
+      ColumnsBetween<Real>(real(entry.mu), real(mu_end), rows.At(0), rows.At(1), rows.At(2));
   const auto molecules = [&medium](double h) {
     return MoleculeDensity(medium, h * kMetresPerKilometre);
   };

@@ -13,9 +13,8 @@ namespace alpenglow {
 namespace {
 
 constexpr double kModifiedJulianEpoch = 2400000.5;
-constexpr double kDay_s = 86400.0;
 constexpr double kSpeedOfLight_m_per_s = 299792458.0;  // exact, SI
-constexpr double kLightDaysPerAu = kAstronomicalUnit_m / kSpeedOfLight_m_per_s / kDay_s;
+constexpr double kLightDaysPerAu = kAstronomicalUnit_m / kSpeedOfLight_m_per_s / kSecondsPerDay;
 
 glm::dvec3 Vec(const double* v) { return {v[0], v[1], v[2]}; }
 
@@ -25,7 +24,7 @@ BodyState ObserverOf(const BodyState& earth, const Point<Ecef>& place,
       glm::cross(glm::dvec3(0.0, 0.0, kEarthRotation_rad_per_s), place.xyz);
   return {earth.position_au + gcrs_from_ecef * place.xyz / kAstronomicalUnit_m,
           earth.velocity_au_per_day +
-              gcrs_from_ecef * velocity_m_per_s * (kDay_s / kAstronomicalUnit_m)};
+              gcrs_from_ecef * velocity_m_per_s * (kSecondsPerDay / kAstronomicalUnit_m)};
 }
 
 /// From the observer to the body as it was when the light left.
@@ -60,12 +59,12 @@ double Azimuth(const glm::dvec3& enu) {
 
 TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s) {
   return {kModifiedJulianEpoch + instant.modified_julian_day,
-          (instant.second_of_day + delta_t_s) / kDay_s};
+          (instant.second_of_day + delta_t_s) / kSecondsPerDay};
 }
 
 glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
   const double day = kModifiedJulianEpoch + instant.modified_julian_day;
-  const double ut1 = instant.second_of_day / kDay_s;
+  const double ut1 = instant.second_of_day / kSecondsPerDay;
   const double tt = TerrestrialTimeAt(instant, delta_t_s).part;
   double true_from_gcrs[3][3];
   eraPnm06a(day, tt, true_from_gcrs);

@@ -35,10 +35,9 @@ double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-constexpr double kDay_s = 86400.0;
 constexpr double kStep_s = 1200.0;
-constexpr double kTolerance_s = 0.01;
-constexpr int kSteps = static_cast<int>(30.0 * kDay_s / kStep_s);
+constexpr double kMoonTolerance_s = 0.01;
+constexpr int kSteps = static_cast<int>(30.0 * kSecondsPerDay / kStep_s);
 
 /// How far the upper limb stands over the sea horizon [rad], some seconds after an instant.
 class LimbOverHorizon {
@@ -94,7 +93,7 @@ std::optional<UtcInstant> NextChange(const GeodeticPosition& place, const UtcIns
     for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
       if (samples[i].IsAbove() == rising || samples[i + 1].IsAbove() != rising) continue;
       return AddSeconds(
-          after, BracketedRoot(limb, samples[i].time_s, samples[i + 1].time_s, kTolerance_s));
+          after, BracketedRoot(limb, samples[i].time_s, samples[i + 1].time_s, kMoonTolerance_s));
     }
     before = here;
     here = samples.back();
@@ -163,7 +162,7 @@ UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& afte
   while (true) {
     const double high_s = low_s + kStep_s, high = hour_angle(high_s);
     if (low < 0.0 && high >= 0.0) {
-      return AddSeconds(after, BracketedRoot(hour_angle, low_s, high_s, kTolerance_s));
+      return AddSeconds(after, BracketedRoot(hour_angle, low_s, high_s, kMoonTolerance_s));
     }
     low_s = high_s;
     low = high;

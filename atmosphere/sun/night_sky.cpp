@@ -44,13 +44,13 @@ constexpr std::array<std::array<double, 11>, 19> kZodiacal{{
     {230, 212, 195, 178, 163, 148, 134, 105, 83, 72, 77},
 }};
 
-struct Between {
+struct GridCell {
   std::size_t low;
   double share;  // of the next
 };
 
 template <std::size_t kCount>
-Between Find(const std::array<double, kCount>& nodes, double x) {
+GridCell GridCellAt(const std::array<double, kCount>& nodes, double x) {
   const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
   const auto low = static_cast<std::size_t>(above - nodes.begin()) - 1;
   return {low, std::clamp((x - nodes[low]) / (nodes[low + 1] - nodes[low]), 0.0, 1.0)};
@@ -100,8 +100,9 @@ double VanRhijn(double sin_z) {
 }
 
 double ZodiacalLight(double longitude_rad, double latitude_rad) {
-  const Between i = Find(kLongitudes_deg, std::abs(Turned(longitude_rad)) / kRadiansPerDegree);
-  const Between j = Find(kLatitudes_deg, std::abs(latitude_rad) / kRadiansPerDegree);
+  const GridCell i =
+      GridCellAt(kLongitudes_deg, std::abs(Turned(longitude_rad)) / kRadiansPerDegree);
+  const GridCell j = GridCellAt(kLatitudes_deg, std::abs(latitude_rad) / kRadiansPerDegree);
   const auto row = [&](std::size_t at) {
     return std::lerp(std::log(kZodiacal[at][j.low]), std::log(kZodiacal[at][j.low + 1]), j.share);
   };

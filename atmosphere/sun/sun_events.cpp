@@ -17,10 +17,9 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kDay_s = 86400.0;
-constexpr double kStep_s = 1800.0;
-constexpr int kSteps = 48;
-constexpr double kTolerance_s = 0.01;
+constexpr double kEventStep_s = 1800.0;
+constexpr int kEventSteps = 48;
+constexpr double kEventTolerance_s = 0.01;
 
 constexpr std::array<std::pair<std::string_view, SunEvent>, 9> kNames = {{
     {"noon", SunEvent::kNoon},
@@ -75,7 +74,7 @@ double HeightOver(const Crossing& crossing, const GeodeticPosition& place,
   return sun.elevation_rad + limb_rad - crossing.true_elevation_rad;
 }
 
-struct Sample {
+struct EventSample {
   double time_s, value;
   [[nodiscard]] bool IsAbove() const { return value >= 0.0; }
 };
@@ -83,11 +82,11 @@ struct Sample {
 /// The largest (or least) value of f between two times around it, by golden sections; stops as soon
 /// as the value has the other sign.
 template <typename Function>
-Sample Extremum(const Function& f, double low_s, double high_s, bool largest) {
+EventSample Extremum(const Function& f, double low_s, double high_s, bool largest) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
   const double sign = largest ? 1.0 : -1.0;
-  Sample left{high_s - ratio * (high_s - low_s), 0.0};
-  Sample right{low_s + ratio * (high_s - low_s), 0.0};
+  EventSample left{high_s - ratio * (high_s - low_s), 0.0};
+  EventSample right{low_s + ratio * (high_s - low_s), 0.0};
   left.value = f(left.time_s);
   right.value = f(right.time_s);
   while (high_s - low_s > 0.5) {
@@ -111,32 +110,34 @@ Sample Extremum(const Function& f, double low_s, double high_s, bool largest) {
 /// Samples from half an hour before the day to half an hour after it, ascending, dense enough that
 /// the sign changes at most once between two.
 template <typename Function>
-std::vector<Sample> Samples(const Function& f) {
-  std::vector<Sample> regular;
-  for (int i = -1; i <= kSteps + 1; ++i) regular.push_back({i * kStep_s, f(i * kStep_s)});
-  std::vector<Sample> all = regular;
+std::vector<EventSample> Samples(const Function& f) {
+  std::vector<EventSample> regular;
+  for (int i = -1; i <= kEventSteps + 1; ++i)
+    regular.push_back({i * kEventStep_s, f(i * kEventStep_s)});
+  std::vector<EventSample> all = regular;
   for (std::size_t i = 1; i + 1 < regular.size(); ++i) {
-    const Sample& before = regular[i - 1];
-    const Sample& here = regular[i];
-    const Sample& after = regular[i + 1];
+    const EventSample& before = regular[i - 1];
+    const EventSample& here = regular[i];
+    const EventSample& after = regular[i + 1];
     const bool is_peak = here.value >= before.value && here.value >= after.value;
     const bool is_trough = here.value <= before.value && here.value <= after.value;
     const bool could_hide = is_peak ? !here.IsAbove() : is_trough && here.IsAbove();
     if (could_hide) all.push_back(Extremum(f, before.time_s, after.time_s, is_peak));
   }
   std::sort(all.begin(), all.end(),
-            [](const Sample& a, const Sample& b) { return a.time_s < b.time_s; });
+            [](const EventSample& a, const EventSample& b) { return a.time_s < b.time_s; });
   return all;
 }
 
 /// First time in [0, one day) at which f changes its sign in the given direction.
 template <typename Function>
 std::optional<double> FirstChange(const Function& f, bool rising) {
-  const std::vector<Sample> samples = Samples(f);
+  const std::vector<EventSample> samples = Samples(f);
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     if (samples[i].IsAbove() == rising || samples[i + 1].IsAbove() != rising) continue;
-    const double time_s = BracketedRoot(f, samples[i].time_s, samples[i + 1].time_s, kTolerance_s);
-    if (time_s >= 0.0 && time_s < kDay_s) return time_s;
+    const double time_s =
+        BracketedRoot(f, samples[i].time_s, samples[i + 1].time_s, kEventTolerance_s);
+    if (time_s >= 0.0 && time_s < kSecondsPerDay) return time_s;
   }
   return std::nullopt;
 }
@@ -147,7 +148,8 @@ double NoonOf(const GeodeticPosition& place, const UtcInstant& midnight) {
     const glm::dvec3 sun = SunAt(place, AddSeconds(midnight, time_s)).direction.xyz;
     return WrappedLongitude(place.longitude_rad - std::atan2(sun.y, sun.x));
   };
-  return BracketedRoot(hour_angle, 0.5 * kDay_s - kStep_s, 0.5 * kDay_s + kStep_s, kTolerance_s);
+  return BracketedRoot(hour_angle, 0.5 * kSecondsPerDay - kEventStep_s,
+                       0.5 * kSecondsPerDay + kEventStep_s, kEventTolerance_s);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "atmosphere/number/constants.h"
 #include "lut/diffuse/diffuse_fan_kernel.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/diffuse/spherical_harmonics.h"
@@ -15,7 +16,6 @@ namespace {
 
 constexpr std::size_t kLanes = 4;
 constexpr int kTableCells = 4096;
-constexpr double kMetresPerKilometre = 1000.0;
 
 }  // namespace
 

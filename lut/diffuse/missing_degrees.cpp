@@ -11,12 +11,12 @@ namespace alpenglow {
 namespace {
 
 // Beyond it the peak of any dust or haze is narrower than half a degree of arc times its share.
-constexpr int kLastDegree = 64;
+constexpr int kLastMissingDegree = 64;
 
-// P_l(nu) for l = 0 ... kLastDegree.
+// P_l(nu) for l = 0 ... kLastMissingDegree.
 std::vector<double> LegendreValues(double nu) {
   std::vector<double> values{1.0, nu};
-  for (int l = 1; l < kLastDegree; ++l) {
+  for (int l = 1; l < kLastMissingDegree; ++l) {
     const auto i = static_cast<std::size_t>(l);
     values.push_back(((2.0 * l + 1.0) * nu * values[i] - l * values[i - 1]) / (l + 1.0));
   }
@@ -34,7 +34,7 @@ double Envelope(int l, double nu) {
 MissingDegrees::MissingDegrees(const Medium& medium, int degree)
     : bands_(medium.wavelengths_nm.size()),
       degree_(degree),
-      chi_(MieLegendreCoefficients(medium, kLastDegree)) {}
+      chi_(MieLegendreCoefficients(medium, kLastMissingDegree)) {}
 
 std::vector<double> MissingDegrees::Along(const AirConstants<float>& air,
                                           const RaySamples<float>& samples, double nu) const {
@@ -62,7 +62,7 @@ double MissingDegrees::AlongBand(const AirConstants<float>& air, std::size_t ban
                          scattering;
     if (!(light > 0.0)) continue;
     const double tau = scattering * static_cast<double>(samples.view_mie[i] + samples.sun_mie[i]);
-    for (int l = degree_ + 1; l <= kLastDegree; ++l) {
+    for (int l = degree_ + 1; l <= kLastMissingDegree; ++l) {
       const auto at = static_cast<std::size_t>(l);
       const double chi = chi_[at * bands_ + band];
       const double part = light * (2.0 * l + 1.0) / (4.0 * kPi) * chi * std::expm1(chi * tau);

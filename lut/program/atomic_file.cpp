@@ -28,8 +28,6 @@ namespace fs = std::filesystem;
   throw OutputError(fmt::format("{}: {}", target.string(), fault));
 }
 
-std::string LastSystemError() { return std::generic_category().message(errno); }
-
 // FNV-1a (Fowler, Noll and Vo): names of machines as eight digits, whatever they are made of.
 std::uint32_t Hash(std::string_view text) {
   std::uint32_t hash = 2166136261U;

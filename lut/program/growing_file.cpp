@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string LastSystemError() { return std::generic_category().message(errno); }
-
 bool Lock(int file) {
   int status = -1;
   do {

@@ -18,8 +18,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMetresPerKilometre = 1000.0;
-
 float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
 
 /// Coefficients of one wavelength [1/km] and in float.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: light of all orders along a view.
+// OrdersTopic of the report: light of all orders along a view.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style {
+enum OrdersStyle {
   kDegree4 = 0,
   kIsotropic = 1,
   kDegree2 = 2,
@@ -32,9 +32,9 @@ int StyleOf(const DiffuseLightOptions& options) {
 // What a renderer takes: one set of samples for all orders.
 constexpr Sampling kSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
 
-class Topic : public TopicWork {
+class OrdersTopic : public TopicWork {
  public:
-  Topic(const Medium& medium, const ReportEffort& effort)
+  OrdersTopic(const Medium& medium, const ReportEffort& effort)
       : TopicWork(medium, effort, TracedViews(medium, effort.traced_rays, effort.paths)),
         air_(medium) {}
 
@@ -138,7 +138,7 @@ ReportTopic WordsOfAllOrders() {
 }  // namespace
 
 ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort);
+  OrdersTopic topic(medium, effort);
   topic.AddNothing();
   topic.AddIsotropic({}, true);
   if (!effort.quick) topic.AddIsotropic({.side = 32, .directions_side = 16, .steps = 20}, false);
@@ -182,7 +182,7 @@ ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort) {
   ReportEffort fewer = effort;
   fewer.traced_rays = std::min(effort.traced_rays, 12);
   fewer.paths = std::min<std::size_t>(effort.paths, 10000);
-  Topic topic(medium, fewer);
+  OrdersTopic topic(medium, fewer);
   topic.AddNothing();
   topic.AddIsotropic({}, true);
   topic.AddDiffuse({});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: the whole sphere around an observer under one sun.
+// PanoramaTopic of the report: the whole sphere around an observer under one sun.
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -18,7 +18,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kSkyViewRows = 0, kLatitudes = 1, kDirect = 2, kSkyView = 6 };
+enum PanoramaStyle { kSkyViewRows = 0, kLatitudes = 1, kDirect = 2, kSkyView = 6 };
 
 constexpr double kAltitude_m = 2.0;
 constexpr std::size_t kSuns = 3;
@@ -143,9 +143,9 @@ class LatitudeTable {
   std::vector<float> texels_;
 };
 
-class Topic {
+class PanoramaTopic {
  public:
-  Topic(const Medium& medium, const ReportEffort& effort)
+  PanoramaTopic(const Medium& medium, const ReportEffort& effort)
       : medium_(medium),
         effort_(effort),
         air_(medium),
@@ -299,7 +299,7 @@ class Topic {
 }  // namespace
 
 ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort);
+  PanoramaTopic topic(medium, effort);
   topic.AddDirect();
   topic.AddSkyView(SkyViewSize{.sky_rows = 20, .ground_rows = 12, .azimuths = 9});
   topic.AddSkyView({});

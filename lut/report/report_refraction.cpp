@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: where a line of sight leads, bent by the air.
+// RefractionTopic of the report: where a line of sight leads, bent by the air.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kTables = 0, kQuadrature = 1, kStraight = 5, kBennett = 6 };
+enum RefractionStyle { kTables = 0, kQuadrature = 1, kStraight = 5, kBennett = 6 };
 
 constexpr double kSunDiameter_rad = 32.0 / 60.0 * kRadiansPerDegree;
 
@@ -40,9 +40,10 @@ double BennettRefraction(double apparent_rad) {
   return kRadiansPerDegree / 60.0 / std::tan((h_deg + 7.31 / (h_deg + 4.4)) * kRadiansPerDegree);
 }
 
-class Topic {
+class RefractionTopic {
  public:
-  Topic(const Medium& medium, const ReportEffort& effort) : medium_(medium), effort_(effort) {
+  RefractionTopic(const Medium& medium, const ReportEffort& effort)
+      : medium_(medium), effort_(effort) {
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t r = 0; r < kSights.size(); ++r) Judge(r);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -122,7 +123,7 @@ class Topic {
     return sight.lowest_m +
            (sight.highest_m - sight.lowest_m) * static_cast<double>(eye) / (kEyes - 1.0);
   }
-  static ReportRow Row(std::string series, Style style) {
+  static ReportRow Row(std::string series, RefractionStyle style) {
     return {.series = std::move(series), .parameter = "", .style = style, .in_summary = true};
   }
 
@@ -170,7 +171,7 @@ class Topic {
 }  // namespace
 
 ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort);
+  RefractionTopic topic(medium, effort);
   topic.AddTables();
   topic.AddQuadrature();
   topic.AddBennett();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: light scattered once along a view.
+// SingleTopic of the report: light scattered once along a view.
 #include <fmt/format.h>
 
 #include "lut/report/report_baselines.h"
@@ -11,7 +11,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style {
+enum SingleStyle {
   kGauss = 0,
   kMidpoint = 1,
   kTable = 3,
@@ -20,9 +20,9 @@ enum Style {
   kGaussSplit = 6
 };
 
-class Topic : public TopicWork {
+class SingleTopic : public TopicWork {
  public:
-  Topic(const Medium& medium, const ReportEffort& effort)
+  SingleTopic(const Medium& medium, const ReportEffort& effort)
       : TopicWork(medium, effort, JudgedViews(medium, effort.rays)), air_(medium) {}
 
   void AddGauss(int nodes, bool split_ozone, bool in_summary) {
@@ -66,7 +66,7 @@ class Topic : public TopicWork {
 }  // namespace
 
 ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort);
+  SingleTopic topic(medium, effort);
   for (const int nodes : {4, 6, 8, 12, 16, 20})
     topic.AddGauss(nodes, false, nodes == 8 || nodes == 12 || nodes == 20);
   if (medium.ozone.shape == OzoneShape::kTent) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: transmittance from a point to the sun.
+// TransmittanceTopic of the report: transmittance from a point to the sun.
 #include <fmt/format.h>
 
 #include <array>
@@ -14,19 +14,19 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style {
+enum TransmittanceStyle {
   kClosedForm = 0,
-  kMidpoint = 1,
+  kColumnMidpoint = 1,
   kMany = 2,
-  kTable = 3,
+  kColumnTable = 3,
   kChapman = 4,
   kTrapezoid = 5,
   kGolubev = 6
 };
 
-class Topic : public TopicWork {
+class TransmittanceTopic : public TopicWork {
  public:
-  Topic(const Medium& medium, const ReportEffort& effort)
+  TransmittanceTopic(const Medium& medium, const ReportEffort& effort)
       : TopicWork(medium, effort, JudgedSunbeams(medium, effort.rays)) {
     for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
       sigma_.push_back({static_cast<float>(medium.rayleigh_scattering_per_m[band]),
@@ -88,7 +88,7 @@ class Topic : public TopicWork {
     const bool published = size.mu == 256;
     Add({.series = "table",
          .parameter = fmt::format("{} x {}", size.mu, size.altitudes),
-         .style = kTable,
+         .style = kColumnTable,
          .in_summary = published,
          .memory_bytes = table.bytes(),
          .build_s = seconds},
@@ -100,7 +100,7 @@ class Topic : public TopicWork {
     Add({.series = midpoint ? "midpoint march" : "trapezoid march",
          .parameter = fmt::format("{} steps", steps),
          .origin = MethodOrigin::kLiterature,
-         .style = midpoint ? kMidpoint : kTrapezoid,
+         .style = midpoint ? kColumnMidpoint : kTrapezoid,
          .in_summary = in_summary},
         steps, [&](const ViewRay& ray) { return MarchedTransmittance(medium_, ray, rule, steps); });
   }
@@ -123,7 +123,7 @@ class Topic : public TopicWork {
 }  // namespace
 
 ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort);
+  TransmittanceTopic topic(medium, effort);
   topic.AddClosedForms();
   topic.AddClosedFormOfMany();
   topic.AddTable({.mu = 64, .altitudes = 16});

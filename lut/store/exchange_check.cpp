@@ -29,10 +29,6 @@ using Rgba = std::array<double, 4>;
 constexpr double kLargestMedian = 0.05;      // of the distance from our texels
 constexpr std::size_t kCheckedTexels = 600;  // of a texture of scattering
 
-[[noreturn]] void Fail(const fs::path& file, const std::string& fault) {
-  throw InputError(fmt::format("{}: {}", file.string(), fault));
-}
-
 std::optional<TexelFormat> FormatOf(const fs::path& folder) {
   for (const TexelFormat format : {TexelFormat::kExr, TexelFormat::kBin, TexelFormat::kDat}) {
     std::error_code error;
@@ -44,7 +40,7 @@ std::optional<TexelFormat> FormatOf(const fs::path& folder) {
 /// Layout and format. Only our own .exr of Bruneton's layout say so: the demo reads none.
 ExchangeOptions OptionsOf(const fs::path& folder) {
   const std::optional<TexelFormat> format = FormatOf(folder);
-  if (!format) Fail(folder, "has no scattering.exr, .bin or .dat");
+  if (!format) RefuseFile(folder, "has no scattering.exr, .bin or .dat");
   ExchangeOptions options{.format = format};
   if (*format == TexelFormat::kDat) {
     options.layout = ExchangeLayout::kBruneton;
@@ -75,11 +71,11 @@ std::vector<float> RawTexels(const fs::path& file, std::size_t texels, TexelType
   const std::size_t size = type == TexelType::kHalf ? 2 : 4;
   const std::uint64_t bytes = fs::file_size(file);
   if (bytes != 4 * size * texels) {
-    Fail(file, fmt::format("has {} bytes; such a table has {}", bytes, 4 * size * texels));
+    RefuseFile(file, fmt::format("has {} bytes; such a table has {}", bytes, 4 * size * texels));
   }
   std::ifstream stream(file, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (content.size() != bytes) Fail(file, "cannot be read");
+  if (content.size() != bytes) RefuseFile(file, "cannot be read");
   std::vector<float> values;
   values.reserve(4 * texels);
   for (std::size_t i = 0; i < 4 * texels; ++i) {
@@ -107,8 +103,8 @@ std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, 
   const TableImageReader image(file);
   const std::size_t rows = shape.height * shape.depth;
   if (image.width() != shape.width || image.height() != rows) {
-    Fail(file, fmt::format("is {} x {} texels; it must be {} x {}", image.width(), image.height(),
-                           shape.width, rows));
+    RefuseFile(file, fmt::format("is {} x {} texels; it must be {} x {}", image.width(),
+                                 image.height(), shape.width, rows));
   }
   std::vector<float> values = RgbaOf(image, std::string_view(shape.name) == "scattering");
   const auto row = static_cast<std::ptrdiff_t>(4 * shape.width);
@@ -123,7 +119,8 @@ std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, 
 std::vector<float> TexelsOf(const fs::path& file, const TextureShape& shape,
                             const ExchangeOptions& options) {
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) Fail(file, "is missing; the whole set is not loaded");
+  if (!fs::is_regular_file(file, error))
+    RefuseFile(file, "is missing; the whole set is not loaded");
   if (options.format == TexelFormat::kExr) {
     return ImageTexels(file, shape, options.layout == ExchangeLayout::kTakram);
   }
@@ -151,8 +148,8 @@ std::array<ExchangeDescription::Channel, 4> RangesOf(const fs::path& file,
     const double value = texels[i];
     // Alpha is used in scattering alone, and there a light like the others.
     if (!std::isfinite(value) || (i % 4 < 3 && !(value >= 0.0 && value <= highest))) {
-      Fail(file, fmt::format("channel {} of texel {} is {}; it must lie in [0, {}]", "RGBA"[i % 4],
-                             i / 4, value, highest));
+      RefuseFile(file, fmt::format("channel {} of texel {} is {}; it must lie in [0, {}]",
+                                   "RGBA"[i % 4], i / 4, value, highest));
     }
     ExchangeDescription::Channel& range = ranges[i % 4];
     range.lowest = std::min(range.lowest, texels[i]);
@@ -317,10 +314,10 @@ double LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
 
 void RequireAgreement(const fs::path& file, const TexelErrors& errors, const Medium& medium) {
   if (!(errors.median > kLargestMedian)) return;
-  Fail(file,
-       fmt::format("is not of the atmosphere {}: its texels differ from those of this program "
-                   "by {:.2g} % in the median, and {:g} % are allowed",
-                   medium.name, 100.0 * errors.median, 100.0 * kLargestMedian));
+  RefuseFile(
+      file, fmt::format("is not of the atmosphere {}: its texels differ from those of this program "
+                        "by {:.2g} % in the median, and {:g} % are allowed",
+                        medium.name, 100.0 * errors.median, 100.0 * kLargestMedian));
 }
 
 fs::path FileOf(const fs::path& folder, const TextureShape& shape, const ExchangeOptions& options) {
@@ -410,7 +407,7 @@ ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
   options.lowest_sun_deg = LowestSunIn(scattering.texels, medium, light, options);
   const Reference reference(medium, LowestSunOf(options));
   RequireAgreement(scattering.description.file, AlphaErrors(scattering.texels, reference), medium);
-  if (const auto fault = FaultOf(options)) Fail(scattering.description.file, *fault);
+  if (const auto fault = FaultOf(options)) RefuseFile(scattering.description.file, *fault);
   for (LoadedTexture& texture : loaded) {
     texture.description.errors = ErrorsOf(texture, reference, light, medium);
     RequireAgreement(texture.description.file, texture.description.errors, medium);

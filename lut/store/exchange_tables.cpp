@@ -55,8 +55,8 @@ TexelFormat FormatOf(const ExchangeOptions& options) {
 }
 
 /// Red, green and blue are the bands from the longest wavelength to the shortest.
-std::array<float, 4> Rgba(const Medium& medium, const Bands<float>& unit, bool times_sun,
-                          float alpha) {
+std::array<float, 4> RgbaTexel(const Medium& medium, const Bands<float>& unit, bool times_sun,
+                               float alpha) {
   std::array<float, 4> rgba{0.0F, 0.0F, 0.0F, alpha};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t band = 2 - c;
@@ -80,7 +80,7 @@ ExchangeTexture TransmittanceTexture(const Medium& medium) {
   for (std::size_t texel = 0; texel < texture.width * texture.height; ++texel) {
     Bands<float> transmittance(3);
     std::copy_n(&table.texels()[3 * texel], 3, transmittance.value.begin());
-    Put(texture, texel, Rgba(medium, transmittance, false, 1.0F));
+    Put(texture, texel, RgbaTexel(medium, transmittance, false, 1.0F));
   }
   return texture;
 }
@@ -93,7 +93,8 @@ ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& ligh
     for (std::size_t x = 0; x < texture.width; ++x) {
       const double mu_s =
           2.0 * static_cast<double>(x) / static_cast<double>(texture.width - 1) - 1.0;
-      Put(texture, y * texture.width + x, Rgba(medium, light.SkyIrradiance(h, mu_s), true, 1.0F));
+      Put(texture, y * texture.width + x,
+          RgbaTexel(medium, light.SkyIrradiance(h, mu_s), true, 1.0F));
     }
   }
   return texture;
@@ -151,9 +152,9 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const Di
         molecules[band] = texel[band] + orders[band];
         mie[band] = texel[3 + band];
       }
-      const std::array<float, 4> mie_rgb = Rgba(medium, mie, true, 1.0F);
-      Put(textures[0], row * width + x, Rgba(medium, molecules, true, mie_rgb[0]));
-      Put(textures[1], row * width + x, Rgba(medium, orders, true, 0.0F));
+      const std::array<float, 4> mie_rgb = RgbaTexel(medium, mie, true, 1.0F);
+      Put(textures[0], row * width + x, RgbaTexel(medium, molecules, true, mie_rgb[0]));
+      Put(textures[1], row * width + x, RgbaTexel(medium, orders, true, 0.0F));
       Put(textures[2], row * width + x, mie_rgb);
     }
     progress.Advance();

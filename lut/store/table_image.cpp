@@ -58,7 +58,7 @@ std::uint64_t RowsOfAChunk(Imf::Compression compression) {
 
 /// Runs `read` and turns what the library throws, out of memory included, into an InputError.
 template <typename Read>
-auto NamingTheFile(const fs::path& file, const Read& read) {
+auto NamingDamage(const fs::path& file, const Read& read) {
   try {
     return read();
   } catch (const InputError&) {
@@ -140,7 +140,7 @@ struct TableImageReader::State {
 
 TableImageReader::TableImageReader(const fs::path& file) : file_(file) {
   RequireReadable(file);
-  state_ = NamingTheFile(file, [&] {
+  state_ = NamingDamage(file, [&] {
     Imf::Header::setMaxImageSize(kLongestSide, kLongestSide);  // before its line table is allocated
     return std::make_unique<State>(file);
   });
@@ -224,7 +224,7 @@ std::vector<float> TableImageReader::Values(const std::vector<std::string>& chan
   if (bytes > kLargestTable_bytes || bytes / kLargestExpansion > fs::file_size(file_)) {
     fail(fmt::format("claims {} bytes of texels, more than it can hold", values * sizeof(float)));
   }
-  return NamingTheFile(file_, [&] {
+  return NamingDamage(file_, [&] {
     std::vector<float> result(values);
     Imf::InputPart part(state_->parts, 0);
     part.setFrameBuffer(FrameBufferOf(result.data(), channels, width()));

@@ -19,8 +19,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMetresPerKilometre = 1000.0;
-
 // Of the texels: errors of the integral stay far below those of the interpolation.
 constexpr Sampling kTexelSampling{.nodes = 16, .split_ozone = true, .dark_samples = false};
 
@@ -54,10 +52,6 @@ SunAxis AxisFrom(double lowest_mu_s) { return {-0.05, 0.04, lowest_mu_s}; }
 // Fourth root and fourth power.
 float Root(float value) { return std::sqrt(std::sqrt(std::max(value, 0.0F))); }
 float Power(float root) { return root * root * (root * root); }
-
-double UnitOf(std::size_t index, std::size_t texels) {
-  return static_cast<double>(index) / static_cast<double>(texels - 1);
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/text/error.h"
 #include "lut/table/table_size.h"
@@ -15,18 +16,12 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMetresPerKilometre = 1000.0;
-
 std::size_t RequireSize(const Medium& medium, const TransmittanceTableSize& size) {
   Validate(medium);
   const std::uint64_t bytes =
       RequireTableSize("transmittance", {{"mu", size.mu, 2}, {"r", size.altitudes, 2}},
                        medium.wavelengths_nm.size(), medium);
   return static_cast<std::size_t>(bytes) / sizeof(float);
-}
-
-double UnitOf(std::size_t index, std::size_t texels) {
-  return static_cast<double>(index) / static_cast<double>(texels - 1);
 }
 
 Bands<float> Constant(std::size_t bands, float value) {

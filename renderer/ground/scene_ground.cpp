@@ -20,10 +20,10 @@ struct LoadedMesh {
 };
 
 // South, north, west and east ends of a grid [degrees].
-struct Rectangle {
+struct GroundRectangle {
   double south, north, west, east;
 
-  explicit Rectangle(const ElevationGrid& grid)
+  explicit GroundRectangle(const ElevationGrid& grid)
       : south(grid.LatitudeOfRow(grid.rows - 1) / kRadiansPerDegree),
         north(grid.north_rad / kRadiansPerDegree),
         west(grid.west_rad / kRadiansPerDegree),
@@ -33,7 +33,7 @@ struct Rectangle {
 // Whether anything of the model may stand over the horizon of an eye, on a sphere.
 bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double eye_m) {
   constexpr double kRadius_m = 6.371e6;
-  const Rectangle model(grid);
+  const GroundRectangle model(grid);
   float highest_m = 0.0F;
   for (const float height_m : grid.height_m) highest_m = std::max(highest_m, height_m);
   const auto dip = [](double height_m) {
@@ -72,7 +72,7 @@ RangeText TextOfRange(double value, double low, double high) {
 void RequireEyeOver(const ElevationGrid& grid, const Scene& scene) {
   const GeodeticPosition& place = scene.place;
   if (grid.Covers(place.latitude_rad, place.longitude_rad)) return;
-  const Rectangle model(grid);
+  const GroundRectangle model(grid);
   const Height& height = scene.camera.height;
   if (!height.above_ground && IsInSight(grid, place, height.value_m)) return;
   const bool swapped_lies_inside = grid.Covers(place.longitude_rad, place.latitude_rad);

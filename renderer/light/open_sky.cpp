@@ -10,7 +10,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr float kSector = 2.0F * static_cast<float>(kPi) / static_cast<float>(kHorizonAzimuths);
+constexpr float kSkySector = 2.0F * static_cast<float>(kPi) / static_cast<float>(kHorizonAzimuths);
 
 struct Directions {
   Horizons x, y;
@@ -145,7 +145,8 @@ std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, const Diffu
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
     for (std::size_t part = 0; part < kParts; ++part) {
       const double within = (static_cast<double>(part) + 0.5) / kParts - 0.5;
-      azimuths.push_back(HorizonAzimuth(i) + within * static_cast<double>(kSector) - sun_azimuth);
+      azimuths.push_back(HorizonAzimuth(i) + within * static_cast<double>(kSkySector) -
+                         sun_azimuth);
     }
   }
   const SkyAzimuths row_azimuths(view, azimuths);
@@ -219,7 +220,7 @@ Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSe
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
     const float from = std::max(horizons[i], surface.lowest[i]);
     at[i] = std::clamp((from - HorizonMap::kLowest) * kScale, 0.0F, kLast);
-    open[i] = from < surface.highest[i] ? kSector : 0.0F;
+    open[i] = from < surface.highest[i] ? kSkySector : 0.0F;
   }
   const float* table = &integral_[Level(altitude_m) * level_floats()];
   std::array<float, kMaxBands + 4> sum{};

@@ -20,7 +20,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plots.
-enum Style {
+enum AirStyle {
   kPanels = 0,
   kUniform = 1,
   kFroxels = 2,

@@ -21,9 +21,9 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot of one lamp.
-enum Style {
+enum LampStyle {
   kHere = 0,
-  kUniform = 1,
+  kUniformNodes = 1,
   kEquiAngular = 2,
   kSun = 3,
   kHalfAngle = 4,
@@ -345,7 +345,7 @@ ReportTopic MeasureAirlight(const ReportEffort& effort) {
   for (const int nodes : {8, 12, 16, 24, 32}) topic.AddHere(nodes);
   topic.AddSun();
   for (const int nodes : {16, 64, 256})
-    topic.AddRule("uniform march", LampRule::kUniform, kUniform, nodes);
+    topic.AddRule("uniform march", LampRule::kUniform, kUniformNodes, nodes);
   for (const int nodes : {16, 32, 64, 256})
     topic.AddRule("equi-angular", LampRule::kEquiAngular, kEquiAngular, nodes);
   for (const int nodes : {16, 32, 64})

@@ -22,7 +22,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kSamples = 0, kNoise = 1, kNodes = 2, kWithout = 5 };
+enum PictureStyle { kSamples = 0, kNoise = 1, kNodes = 2, kWithout = 5 };
 
 constexpr std::size_t kScenes = 4;
 struct SceneText {

@@ -22,7 +22,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum Style { kHeights = 0, kMarch = 1, kProbes = 2, kUnbroken = 5 };
+enum ShaftStyle { kHeights = 0, kMarch = 1, kProbes = 2, kUnbroken = 5 };
 
 constexpr std::array<ReportRegime, 4> kSuns{{{"15", "Sun at 15°", SunRange{15.0, 15.0}},
                                              {"8", "Sun at 8°", SunRange{8.0, 8.0}},

@@ -8,17 +8,17 @@
 #include <cmath>
 #include <functional>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow {
 namespace {
 
-constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kGap = 34.0,
+constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kPlotGap = 34.0,
                  kPanelHeight = 170.0, kBottom = 44.0;
 constexpr int kPanels = 3;
-constexpr double kHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kGap + kBottom;
-constexpr double kDay_s = 86400.0;
+constexpr double kHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kPlotGap + kBottom;
 
 // Attributes instead of a style sheet, which not all readers of SVG know; colours of Okabe and Ito
 // as in svg_plot.h.
@@ -73,13 +73,13 @@ class TimeAxis {
     const double clock_s = 3600.0 * std::stoi(local.substr(11, 2)) +
                            60.0 * std::stoi(local.substr(14, 2)) + std::stoi(local.substr(17, 2));
     std::vector<std::pair<UtcInstant, std::string>> ticks;
-    const double before_s = std::fmod(clock_s, std::min(step_s, kDay_s));
-    for (double at_s = before_s > 0.0 ? std::min(step_s, kDay_s) - before_s : 0.0; at_s <= span_s_;
-         at_s += step_s) {
+    const double before_s = std::fmod(clock_s, std::min(step_s, kSecondsPerDay));
+    for (double at_s = before_s > 0.0 ? std::min(step_s, kSecondsPerDay) - before_s : 0.0;
+         at_s <= span_s_; at_s += step_s) {
       // Half a second more, against seconds that are cut off.
       const std::string text = Local(AddSeconds(first_, at_s + 0.5));
       ticks.emplace_back(AddSeconds(first_, at_s),
-                         step_s < kDay_s ? text.substr(11, 5) : text.substr(5, 5));
+                         step_s < kSecondsPerDay ? text.substr(11, 5) : text.substr(5, 5));
     }
     return ticks;
   }
@@ -87,11 +87,12 @@ class TimeAxis {
  private:
   [[nodiscard]] double Step() const {
     constexpr double kMost = 13.0;
-    for (const double step_s : {10.0, 60.0, 300.0, 600.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0,
-                                43200.0, kDay_s, 2.0 * kDay_s, 7.0 * kDay_s}) {
+    for (const double step_s :
+         {10.0, 60.0, 300.0, 600.0, 1800.0, 3600.0, 7200.0, 10800.0, 21600.0, 43200.0,
+          kSecondsPerDay, 2.0 * kSecondsPerDay, 7.0 * kSecondsPerDay}) {
       if (span_s_ <= kMost * step_s) return step_s;
     }
-    return kDay_s * std::ceil(span_s_ / kDay_s / kMost);
+    return kSecondsPerDay * std::ceil(span_s_ / kSecondsPerDay / kMost);
   }
 
   UtcInstant first_;
@@ -120,10 +121,10 @@ std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const Tim
 }
 
 /// The range of a panel, in whole steps that are at most eight.
-struct Range {
+struct PlotRange {
   double low, high, step;
 
-  Range(const Panel& panel, const std::vector<PlottedMoment>& moments)
+  PlotRange(const Panel& panel, const std::vector<PlottedMoment>& moments)
       : low(panel.low), high(panel.high), step(panel.step) {
     bool empty = true;
     for (const Curve& curve : panel.curves) {
@@ -169,7 +170,7 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
   return text;
 }
 
-std::string GridText(const Panel& panel, const Range& range, const TimeAxis& time, double top,
+std::string GridText(const Panel& panel, const PlotRange& range, const TimeAxis& time, double top,
                      const std::function<double(double)>& y) {
   std::string text;
   for (double value = range.low; value <= range.high + 1e-9; value += range.step) {
@@ -198,7 +199,7 @@ std::string LevelText(const LightLevel& level, const std::function<double(double
 
 std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& moments,
                       const TimeAxis& time, double top) {
-  const Range range(panel, moments);
+  const PlotRange range(panel, moments);
   const auto y = [&](double value) {
     return top + kPanelHeight * (range.high - value) / (range.high - range.low);
   };
@@ -275,7 +276,7 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
   double top = kTop;
   for (const Panel& panel : Panels(levels)) {
     text += PanelText(panel, moments, time, top);
-    top += kPanelHeight + kGap;
+    top += kPanelHeight + kPlotGap;
   }
   for (const auto& [instant, name] : time.Ticks())
     text += TextAt(time.X(instant), kHeight - kBottom + 16.0, "text-anchor=\"middle\"", name);

@@ -13,7 +13,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kDay_s = 86400.0;
 // In kTimesOfDay.
 constexpr std::size_t kSunrise = 3, kSunset = 5;
 constexpr const char* kEclipseFields =
@@ -37,7 +36,7 @@ constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"a
 std::optional<SeenEclipse> EclipseOf(const EventDay& day, const DayTimes& times) {
   const UtcInstant midnight =
       MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), *day.around);
-  const auto eclipse = FindSolarEclipse(day.place, midnight, kDay_s);
+  const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
   if (!eclipse) return std::nullopt;
   std::vector<SolarEclipse::Moment> seen;
   if (eclipse->maximum.IsSeen()) seen.push_back(eclipse->maximum);
@@ -120,7 +119,7 @@ std::vector<DayTimes> TimesOfDays(const EventDay& first, int count) {
   std::vector<DayTimes> days;
   for (int i = 0; i < count; ++i) {
     EventDay day = first;
-    day.around = AddSeconds(*first.around, i * kDay_s);
+    day.around = AddSeconds(*first.around, i * kSecondsPerDay);
     days.push_back(TimesOf(day));
   }
   return days;

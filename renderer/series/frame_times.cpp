@@ -7,13 +7,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
-
-constexpr double kSecondsPerDay = 86400.0;
 
 /// An instant at one end says of which day the event at the other end is.
 EventDay DayOfFrom(const TimesText& times, const EventDay& day) {

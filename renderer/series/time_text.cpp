@@ -20,7 +20,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
 constexpr std::size_t kDateLength = 10;  // "2026-06-21"
 
 constexpr std::array<std::pair<std::string_view, int>, 3> kDayWords = {

@@ -35,8 +35,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string LastSystemError() { return std::generic_category().message(errno); }
-
 std::optional<fs::path> OnPath(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);

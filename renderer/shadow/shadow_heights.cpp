@@ -24,10 +24,6 @@ struct Flat {
   double u_low, u_high, v_low, v_high;
 };
 
-glm::dvec3 ToDouble(const std::array<float, 3>& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-
 Flat BoundsAlong(const TriangleMesh& mesh, const glm::dvec3& sunwards, const glm::dvec3& across) {
   const double infinity = std::numeric_limits<double>::infinity();
   Flat flat{infinity, -infinity, infinity, -infinity};

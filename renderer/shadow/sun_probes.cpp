@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kHalvings = 6;
 
-glm::dvec3 ToDouble(const std::array<float, 3>& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-
 // Where `lit` changes between two distances at which it differs.
 template <typename Lit>
 double Edge(double lit_m, double dark_m, const Lit& lit) {

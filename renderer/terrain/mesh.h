@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "atmosphere/sun/geodesy.h"
@@ -19,6 +20,11 @@ struct TriangleMesh {
   std::vector<std::array<float, 3>> normals;            // unit, one a position
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
 };
+
+/// A position or a normal of a mesh in double precision.
+[[nodiscard]] inline glm::dvec3 ToDouble(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
 
 /// Every sample becomes a vertex, placed through ECEF, so curvature and
 /// ellipsoid are right. Beside a void triangles are left out. A grid

@@ -138,11 +138,6 @@ ParsedObj Parse(const std::filesystem::path& file, const std::string& text) {
   return parsed;
 }
 
-glm::dvec3 ToDouble(const std::array<float, 3>& position) {
-  return {static_cast<double>(position[0]), static_cast<double>(position[1]),
-          static_cast<double>(position[2])};
-}
-
 std::vector<std::array<std::uint32_t, 3>> TrianglesOf(const std::filesystem::path& file,
                                                       const ParsedObj& parsed,
                                                       std::size_t vertices) {

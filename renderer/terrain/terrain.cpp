@@ -23,10 +23,6 @@ namespace {
 constexpr double kUnitRoundoff = 0x1p-24;
 constexpr double Gamma(int n) { return n * kUnitRoundoff / (1.0 - n * kUnitRoundoff); }
 
-glm::dvec3 ToDouble(const std::array<float, 3>& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-
 bool IsFinite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

@@ -9,8 +9,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMetresPerKilometre = 1000.0;
-
 // Angle below the horizontal at which rays from altitude h touch the sphere of altitude z <= h.
 double DipTo(double z, double h, double radius) {
   const double depth = std::max(h - z, 0.0);

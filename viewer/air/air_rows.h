@@ -7,13 +7,12 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/ray_samples.h"
 #include "viewer/air/air_map.h"
 #include "viewer/air/air_tables.h"
 
 namespace alpenglow {
-
-inline constexpr double kMetresPerKilometre = 1000.0;
 
 /// Node i of n over [0, 1].
 [[nodiscard]] inline double Unit(int i, int n) { return static_cast<double>(i) / (n - 1); }

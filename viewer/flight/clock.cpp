@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,  0.0,
                                             1.0,     10.0,   60.0,  600.0, 3600.0};
-constexpr double kDay_s = 86400.0;
 
 const UtcInstant& FirstInstant() {
   static const UtcInstant first = ParseInstant("1900-01-01T00:00:00Z");
@@ -83,7 +82,7 @@ std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& plac
   constexpr int kDays = 366;
   constexpr double kSame_s = 1.0;
   for (int day = 0; day <= kDays; ++day) {
-    const UtcInstant around = AddSeconds(after, day * kDay_s);
+    const UtcInstant around = AddSeconds(after, day * kSecondsPerDay);
     if (!CanHappen(*of_sun, place, around)) continue;
     const auto found = FindSunEvent(*of_sun, place, around);
     if (found && SecondsBetween(after, *found) > kSame_s) return found;

@@ -16,7 +16,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kDay_s = 86400.0;
 constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
 constexpr int kRows = kElevations_deg.size();
 
@@ -98,7 +97,8 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
   const Sky sky(request);
   const BendingAir refracting = GentleAirOf(request.air->medium());
   for (int x = 0; x < request.columns; ++x) {
-    const UtcInstant instant = AddSeconds(request.begin, (x + 0.5) / request.columns * kDay_s);
+    const UtcInstant instant =
+        AddSeconds(request.begin, (x + 0.5) / request.columns * kSecondsPerDay);
     const SunPosition sun = ApparentSunAt(request.place, instant, refracting);
     strip.sun_elevation_rad.push_back(sun.elevation_rad);
     Column column;

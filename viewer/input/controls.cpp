@@ -29,21 +29,21 @@ struct ButtonRow {
   Action action;
   Modes modes;
 };
-constexpr Modes kAll{true, true, true}, kNoRudder{true, false, true};
+constexpr Modes kEveryMode{true, true, true}, kNoRudder{true, false, true};
 constexpr ButtonRow kButtons[] = {
-    {GLFW_GAMEPAD_BUTTON_A, Action::kCentre, kAll},
-    {GLFW_GAMEPAD_BUTTON_B, Action::kNextMode, kAll},
-    {GLFW_GAMEPAD_BUTTON_X, Action::kScreenshot, kAll},
-    {GLFW_GAMEPAD_BUTTON_Y, Action::kHud, kAll},
-    {GLFW_GAMEPAD_BUTTON_BACK, Action::kHelp, kAll},
-    {GLFW_GAMEPAD_BUTTON_START, Action::kPause, kAll},
-    {GLFW_GAMEPAD_BUTTON_RIGHT_THUMB, Action::kResetView, kAll},
+    {GLFW_GAMEPAD_BUTTON_A, Action::kCentre, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_B, Action::kNextMode, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_X, Action::kScreenshot, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_Y, Action::kHud, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_BACK, Action::kHelp, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_START, Action::kPause, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_RIGHT_THUMB, Action::kResetView, kEveryMode},
     {GLFW_GAMEPAD_BUTTON_LEFT_BUMPER, Action::kWiderView, kNoRudder},
     {GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER, Action::kNarrowerView, kNoRudder},
-    {GLFW_GAMEPAD_BUTTON_DPAD_UP, Action::kBrighter, kAll},
-    {GLFW_GAMEPAD_BUTTON_DPAD_DOWN, Action::kDarker, kAll},
-    {GLFW_GAMEPAD_BUTTON_DPAD_RIGHT, Action::kLaterMinute, kAll},
-    {GLFW_GAMEPAD_BUTTON_DPAD_LEFT, Action::kEarlierMinute, kAll},
+    {GLFW_GAMEPAD_BUTTON_DPAD_UP, Action::kBrighter, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_DPAD_DOWN, Action::kDarker, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_DPAD_RIGHT, Action::kLaterMinute, kEveryMode},
+    {GLFW_GAMEPAD_BUTTON_DPAD_LEFT, Action::kEarlierMinute, kEveryMode},
 };
 
 double Within(double value) { return std::clamp(value, -1.0, 1.0); }

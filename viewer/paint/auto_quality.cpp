@@ -40,7 +40,7 @@ constexpr double kRoom = 0.85;
 constexpr double kDown_s = 0.5;
 constexpr double kUp_s = 2.0;
 constexpr double kLongestWait_s = 64.0;
-constexpr std::size_t kLeastFrames = 3, kMostFrames = 9;
+constexpr std::size_t kLeastFrames = 3, kMostTimedFrames = 9;
 
 double MedianOf(std::deque<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -78,7 +78,7 @@ const PaintedQuality& AutoQuality::painted() const { return StepAt(step_).painte
 
 void AutoQuality::Note(double frame_s) {
   frames_s_.push_back(frame_s);
-  if (frames_s_.size() > kMostFrames) frames_s_.pop_front();
+  if (frames_s_.size() > kMostTimedFrames) frames_s_.pop_front();
   since_change_s_ += std::max(frame_s, wanted_s_);
   if (frames_s_.size() < kLeastFrames) return;
   const double usual_s = MedianOf(frames_s_);

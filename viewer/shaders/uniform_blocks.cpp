@@ -7,13 +7,12 @@
 #include <glm/common.hpp>
 
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "renderer/ground/ground_cover.h"
 
 namespace alpenglow {
 namespace {
-
-constexpr double kMetresPerKilometre = 1000.0;
 
 float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
 

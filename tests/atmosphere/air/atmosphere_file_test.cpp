@@ -21,7 +21,7 @@ using testing::StartsWith;
 
 Medium Read(const std::string& text) { return MediumFromToml(text, "a.toml"); }
 
-std::string FaultOf(const std::string& text) {
+std::string FileFaultOf(const std::string& text) {
   return tests::FaultOf([&] { return Read(text); });
 }
 
@@ -108,9 +108,10 @@ TEST(AtmosphereFile, BandsChooseTheWavelengths) {
     const Medium medium = Read("[spectrum]\nbands = " + std::to_string(bands) + "\n");
     EXPECT_EQ(medium.wavelengths_nm, WavelengthSet(bands));
   }
-  EXPECT_EQ(FaultOf("[spectrum]\nbands = 7\n"),
+  EXPECT_EQ(FileFaultOf("[spectrum]\nbands = 7\n"),
             "a.toml:2: spectrum.bands is 7; it must be one of 3, 4, 5, 6, 8, 16, 40");
-  EXPECT_THAT(FaultOf("[spectrum]\nbands = 4\nwavelengths_nm = [500]\n"), HasSubstr("give one of"));
+  EXPECT_THAT(FileFaultOf("[spectrum]\nbands = 4\nwavelengths_nm = [500]\n"),
+              HasSubstr("give one of"));
 }
 
 TEST(AtmosphereFile, LightIsPolarisedByTheGasOfThePresetUnlessTheFileSaysOtherwise) {
@@ -147,9 +148,9 @@ TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
   EXPECT_NEAR(MoleculeColumn_m(both), 1.3 * 7000.0 - 0.3 * 2500.0, 1e-9);
   EXPECT_NEAR(MoleculeDensity(both, 5000.0), 1.3 * std::exp(-5.0 / 7.0) - 0.3 * std::exp(-2.0),
               1e-15);
-  EXPECT_THAT(FaultOf("[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n"),
+  EXPECT_THAT(FileFaultOf("[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n"),
               HasSubstr("no effect"));
-  EXPECT_THAT(FaultOf("[rayleigh]\ndeficit = 2\n"), HasSubstr("[0, 1]"));
+  EXPECT_THAT(FileFaultOf("[rayleigh]\ndeficit = 2\n"), HasSubstr("[0, 1]"));
 }
 
 TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
@@ -157,7 +158,7 @@ TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
       Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
   const double extinction = medium.mie_extinction_per_m[0] + medium.rayleigh_scattering_per_m[0];
   EXPECT_NEAR(std::exp(-23000.0 * extinction), 0.02, 1e-5) << "3.912 has four digits";
-  EXPECT_THAT(FaultOf("[aerosol]\nvisibility_m = 400000\n"),
+  EXPECT_THAT(FileFaultOf("[aerosol]\nvisibility_m = 400000\n"),
               HasSubstr("the molecules alone limit it to 340"));
 }
 
@@ -175,7 +176,7 @@ TEST(AtmosphereFile, TurbidityIsTheOpticalDepthOverThatOfCleanAir) {
   const double aerosol = medium.mie_extinction_per_m[0] * medium.mie_scale_height_m;
   const double molecules = medium.rayleigh_scattering_per_m[0] * MoleculeColumn_m(medium);
   EXPECT_NEAR((aerosol + molecules) / molecules, 3.0, 1e-12);
-  EXPECT_THAT(FaultOf("[aerosol]\nturbidity = 0.5\n"), HasSubstr("[1, 1000]"));
+  EXPECT_THAT(FileFaultOf("[aerosol]\nturbidity = 0.5\n"), HasSubstr("[1, 1000]"));
 }
 
 TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
@@ -191,11 +192,11 @@ TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
 }
 
 TEST(AtmosphereFile, AerosolIsGivenInOneWayOnly) {
-  EXPECT_THAT(FaultOf("[aerosol]\nturbidity = 2\nvisibility_m = 23000\n"),
+  EXPECT_THAT(FileFaultOf("[aerosol]\nturbidity = 2\nvisibility_m = 23000\n"),
               StartsWith("a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"));
-  EXPECT_THAT(FaultOf("[aerosol]\nangstrom_exponent = 1\n"),
+  EXPECT_THAT(FileFaultOf("[aerosol]\nangstrom_exponent = 1\n"),
               HasSubstr("aerosol needs mixture or one of"));
-  EXPECT_THAT(FaultOf("[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n"),
               StartsWith("a.toml:2: mie.scattering_per_m is given beside [aerosol]"));
 }
 
@@ -208,9 +209,9 @@ TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
     EXPECT_NEAR(narrow.ozone_absorption_per_m[i],
                 earth.ozone_absorption_per_m[i] * EquivalentDepth_m(earth.ozone) / 7500.0, 1e-18);
   }
-  EXPECT_THAT(FaultOf("[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n"),
+  EXPECT_THAT(FileFaultOf("[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n"),
               HasSubstr("give one of them"));
-  EXPECT_THAT(FaultOf("[ozone]\ndobson = 300\nbottom_m = 40000\n"),
+  EXPECT_THAT(FileFaultOf("[ozone]\ndobson = 300\nbottom_m = 40000\n"),
               HasSubstr("ozone.peak_m is 25000; it must lie between"));
 }
 
@@ -225,8 +226,8 @@ TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
   EXPECT_NEAR(tent.ozone_absorption_per_m[1] * 15000.0,
               earth.ozone_absorption_per_m[1] * EquivalentDepth_m(earth.ozone), 1e-12)
       << "another profile keeps the column";
-  EXPECT_THAT(FaultOf("[ozone]\nprofile = \"box\"\n"), HasSubstr("one of smooth, tent"));
-  EXPECT_THAT(FaultOf("[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n"),
+  EXPECT_THAT(FileFaultOf("[ozone]\nprofile = \"box\"\n"), HasSubstr("one of smooth, tent"));
+  EXPECT_THAT(FileFaultOf("[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n"),
               HasSubstr("ozone.top_m has no effect"));
 }
 
@@ -237,11 +238,11 @@ TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
   EXPECT_EQ(medium.mie_phase.front().g_back, -0.2);
   EXPECT_EQ(Read("[mie]\ng = 0.7\n").mie_phase.front().g, 0.7);
   EXPECT_EQ(Read("[mie]\nphase = \"rayleigh\"\n").mie_phase.front().kind, PhaseKind::kRayleigh);
-  EXPECT_THAT(FaultOf("[mie]\nalpha = 0.5\n"), StartsWith("a.toml:2: mie.alpha has no effect"));
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"henyey-greenstein\"\n"), HasSubstr("give mie.g too"));
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"mie\"\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\nalpha = 0.5\n"), StartsWith("a.toml:2: mie.alpha has no effect"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"henyey-greenstein\"\n"), HasSubstr("give mie.g too"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"mie\"\n"),
               StartsWith("a.toml:2: mie.phase is \"mie\"; it must be one of rayleigh"));
-  EXPECT_EQ(FaultOf("[mie]\n\ng = 1.0\n"), "a.toml:3: mie.g is 1; it must lie in (-1, 1)");
+  EXPECT_EQ(FileFaultOf("[mie]\n\ng = 1.0\n"), "a.toml:3: mie.g is 1; it must lie in (-1, 1)");
 }
 
 TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
@@ -254,19 +255,20 @@ TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
   EXPECT_EQ(MiePhase(medium, 2).g_back, -0.2);
   EXPECT_EQ(Read("[mie]\ng = [0.7, 0.7, 0.7, 0.7]\n").mie_phase.size(), 1U)
       << "four times the same is one for all";
-  EXPECT_THAT(FaultOf("[mie]\ng = [0.7, 0.8]\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\ng = [0.7, 0.8]\n"),
               StartsWith("a.toml:2: mie.g has 2 values; it must have 4, one per wavelength"));
 }
 
 TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
   const Medium medium = Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\n");
   EXPECT_EQ(medium.mie_phase.front(), FogPhase(12.0));
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\n"), HasSubstr("give mie.droplet_diameter_um too"));
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\n"),
+              HasSubstr("give mie.droplet_diameter_um too"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n"),
               StartsWith("a.toml:3: mie.droplet_diameter_um is 60; it must lie in [1.5, 50]"));
-  EXPECT_THAT(FaultOf("[mie]\ndroplet_diameter_um = 10\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\ndroplet_diameter_um = 10\n"),
               HasSubstr("no effect without phase = \"fog\""));
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n"),
               HasSubstr("mie.g has no effect"));
 }
 
@@ -295,16 +297,16 @@ TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
       << "linear between 400 and 700 nm";
   EXPECT_THROW(static_cast<void>(ReadMedium(folder / "b.toml")), InputError);
   std::filesystem::remove_all(folder);
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"table\"\n"), HasSubstr("give mie.phase_file too"));
-  EXPECT_THAT(FaultOf("[mie]\nphase_file = \"x.csv\"\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"table\"\n"), HasSubstr("give mie.phase_file too"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase_file = \"x.csv\"\n"),
               HasSubstr("no effect without phase = \"table\""));
   EXPECT_THAT(
-      FaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
-              "phase_per_sr = [0.08, 0.08]\n"),
+      FileFaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+                  "phase_per_sr = [0.08, 0.08]\n"),
       StartsWith("a.toml:4: mie.phase_per_sr has 2 values; it must have 5, one per angle, or "
                  "20, one per angle and wavelength"));
-  EXPECT_THAT(FaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
-                      "phase_per_sr = [1, 1, 1, 1, 1]\n"),
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+                          "phase_per_sr = [1, 1, 1, 1, 1]\n"),
               StartsWith("a.toml:4: mie.phase: the integral over the sphere is 12.566"));
 }
 
@@ -334,10 +336,10 @@ TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
   const Medium turbid = Read(green + "turbidity = 3\n");
   EXPECT_NEAR(turbid.mie_extinction_per_m[1] * turbid.mie_scale_height_m,
               2.0 * turbid.rayleigh_scattering_per_m[1] * MoleculeColumn_m(turbid), 1e-12);
-  EXPECT_THAT(FaultOf("[aerosol]\n" + mixture + "angstrom_exponent = 1\n"),
+  EXPECT_THAT(FileFaultOf("[aerosol]\n" + mixture + "angstrom_exponent = 1\n"),
               StartsWith("a.toml:3: aerosol.angstrom_exponent has no effect"));
-  EXPECT_THAT(FaultOf("[aerosol]\nmixture = \"dessert\"\n"), HasSubstr("did you mean desert?"));
-  EXPECT_THAT(FaultOf("[mie]\ng = 0.7\n[aerosol]\n" + mixture),
+  EXPECT_THAT(FileFaultOf("[aerosol]\nmixture = \"dessert\"\n"), HasSubstr("did you mean desert?"));
+  EXPECT_THAT(FileFaultOf("[mie]\ng = 0.7\n[aerosol]\n" + mixture),
               StartsWith("a.toml:2: mie.g has no effect"));
   const Medium fog =
       Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 10\n[aerosol]\n" + mixture);
@@ -346,10 +348,10 @@ TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
 
 TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {
   EXPECT_THAT(
-      FaultOf("[spectrum]\nwavelengths_nm = [550, 900]\n"),
+      FileFaultOf("[spectrum]\nwavelengths_nm = [550, 900]\n"),
       StartsWith("a.toml:2: spectrum.wavelengths_nm leaves the data of preset earth (360 to "
                  "830 nm); give spectrum.solar_irradiance too"));
-  EXPECT_THAT(FaultOf("preset = \"bruneton2017\"\n[spectrum]\nbands = 4\n"),
+  EXPECT_THAT(FileFaultOf("preset = \"bruneton2017\"\n[spectrum]\nbands = 4\n"),
               HasSubstr("(440, 550 and 680 nm); give spectrum.solar_irradiance too"));
   const Medium infrared = Read(
       "[spectrum]\nwavelengths_nm = [900]\nsolar_irradiance = [0.91]\n[planet]\nground_albedo = "
@@ -359,18 +361,18 @@ TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {
       "300\n");
   EXPECT_EQ(infrared.wavelengths_nm, std::vector<double>{900.0});
   EXPECT_EQ(infrared.ozone_absorption_per_m, std::vector<double>{0.0});
-  EXPECT_THAT(FaultOf("[spectrum]\nwavelengths_nm = [300]\nsolar_irradiance = [0.5]\n"
-                      "[ozone]\ndobson = 300\n"),
+  EXPECT_THAT(FileFaultOf("[spectrum]\nwavelengths_nm = [300]\nsolar_irradiance = [0.5]\n"
+                          "[ozone]\ndobson = 300\n"),
               HasSubstr("give ozone.absorption_per_m"));
 }
 
 TEST(AtmosphereFile, UnknownKeysSuggestTheNearest) {
-  EXPECT_EQ(FaultOf("[planet]\nradius = 6e6\n"),
+  EXPECT_EQ(FileFaultOf("[planet]\nradius = 6e6\n"),
             "a.toml:2: unknown key planet.radius; did you mean radius_m?");
-  EXPECT_EQ(FaultOf("[rayleigh]\n\nscatering_per_m = [1]\n"),
+  EXPECT_EQ(FileFaultOf("[rayleigh]\n\nscatering_per_m = [1]\n"),
             "a.toml:3: unknown key rayleigh.scatering_per_m; did you mean scattering_per_m?");
-  EXPECT_THAT(FaultOf("[planets]\n"), HasSubstr("unknown key planets; did you mean planet?"));
-  EXPECT_EQ(FaultOf("\npreset = \"earht\"\n"),
+  EXPECT_THAT(FileFaultOf("[planets]\n"), HasSubstr("unknown key planets; did you mean planet?"));
+  EXPECT_EQ(FileFaultOf("\npreset = \"earht\"\n"),
             "a.toml:2: preset is \"earht\"; it must be one of earth, clear-mountain, hazy, mars, "
             "bruneton2017; did you mean earth?");
 }
@@ -443,19 +445,20 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
   };
   // A contradiction with a value that the file does not give has the line of its section.
   for (const BadInput& input : inputs) {
-    EXPECT_THAT(FaultOf(input.text), StartsWith(input.message)) << input.text;
+    EXPECT_THAT(FileFaultOf(input.text), StartsWith(input.message)) << input.text;
   }
 }
 
 TEST(AtmosphereFile, Utf16AndDeepNestingAreRefused) {
-  EXPECT_THAT(FaultOf(std::string("\xff\xfep\0r\0e\0", 8)), HasSubstr("UTF-8"));
-  EXPECT_THAT(FaultOf("x = " + std::string(100000, '[')), StartsWith("a.toml:1: not valid TOML"));
+  EXPECT_THAT(FileFaultOf(std::string("\xff\xfep\0r\0e\0", 8)), HasSubstr("UTF-8"));
+  EXPECT_THAT(FileFaultOf("x = " + std::string(100000, '[')),
+              StartsWith("a.toml:1: not valid TOML"));
 }
 
 TEST(AtmosphereFile, EveryTruncationOfAFileIsReadOrRefusedWithALine) {
   const std::string whole = kComplete;
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    const std::string fault = FaultOf(whole.substr(0, length));
+    const std::string fault = FileFaultOf(whole.substr(0, length));
     EXPECT_TRUE(fault == "no fault" || fault.rfind("a.toml:", 0) == 0) << length << ": " << fault;
   }
 }

@@ -15,8 +15,8 @@ namespace alpenglow {
 namespace {
 
 constexpr double kRadius_km = 6371.0;
-constexpr double kRadius_m = 6371000.0;
-constexpr double kTop_m = 120000.0;
+constexpr double kShellRadius_m = 6371000.0;
+constexpr double kShellTop_m = 120000.0;
 
 double AltitudeOf(double h_km, double mu, double d_km) {
   const long double r = static_cast<long double>(kRadius_km) + h_km;
@@ -104,16 +104,16 @@ TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
 
 // Hard case 1.
 TEST(Extent, AHorizontalRayAtAltitudeZeroLeavesTheAir) {
-  const RayExtent extent = ExtentOf({0.0, 0.0}, kRadius_m, kTop_m);
+  const RayExtent extent = ExtentOf({0.0, 0.0}, kShellRadius_m, kShellTop_m);
   EXPECT_EQ(extent.end, RayEnd::kSpace);
   EXPECT_EQ(extent.begin_m, 0.0);
-  EXPECT_NEAR(extent.end_m, std::sqrt(kTop_m * (2.0 * kRadius_m + kTop_m)), 1e-6);
+  EXPECT_NEAR(extent.end_m, std::sqrt(kShellTop_m * (2.0 * kShellRadius_m + kShellTop_m)), 1e-6);
 }
 
 TEST(Extent, ARayBelowTheHorizontalAtAltitudeZeroHitsTheGroundAtOnce) {
   const double barely_down = std::nextafter(0.0, -1.0);
   for (const double mu : {barely_down, -1e-12, -0.5, -1.0}) {
-    const RayExtent extent = ExtentOf({0.0, mu}, kRadius_m, kTop_m);
+    const RayExtent extent = ExtentOf({0.0, mu}, kShellRadius_m, kShellTop_m);
     EXPECT_EQ(extent.end, RayEnd::kGround) << mu;
     EXPECT_EQ(extent.end_m, 0.0) << mu;
   }
@@ -123,8 +123,8 @@ TEST(Extent, ARayBelowTheHorizontalAtAltitudeZeroHitsTheGroundAtOnce) {
 TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
   for (const double altitude_m : {-430.0, -11000.0}) {
     for (const double mu : {0.0, 0.1, 1.0}) {
-      const RayExtent below = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
-      const RayExtent ground = ExtentOf({0.0, mu}, kRadius_m, kTop_m);
+      const RayExtent below = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
+      const RayExtent ground = ExtentOf({0.0, mu}, kShellRadius_m, kShellTop_m);
       EXPECT_EQ(below.end_m, ground.end_m);
       EXPECT_EQ(below.end, RayEnd::kSpace);
     }
@@ -136,9 +136,9 @@ TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto message = [](const ViewRay& ray) {
-    return tests::FaultOf([&] { return ExtentOf(ray, kRadius_m, kTop_m); });
+    return tests::FaultOf([&] { return ExtentOf(ray, kShellRadius_m, kShellTop_m); });
   };
-  for (const double altitude_m : {kNan, kInfinity, -kRadius_m, -2.0 * kRadius_m}) {
+  for (const double altitude_m : {kNan, kInfinity, -kShellRadius_m, -2.0 * kShellRadius_m}) {
     EXPECT_NE(message({altitude_m, 1.0}).find("altitude_m"), std::string::npos) << altitude_m;
   }
   EXPECT_NE(message({0.0, kNan}).find("mu "), std::string::npos);
@@ -150,12 +150,12 @@ TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
 // Hard case 4.
 TEST(Extent, IsContinuousThroughTheTop) {
   for (const double mu : {-1.0, -0.5, -0.19}) {
-    const double below = ExtentOf({kTop_m - 1e-6, mu}, kRadius_m, kTop_m).end_m;
-    const RayExtent above = ExtentOf({kTop_m + 1e-6, mu}, kRadius_m, kTop_m);
+    const double below = ExtentOf({kShellTop_m - 1e-6, mu}, kShellRadius_m, kShellTop_m).end_m;
+    const RayExtent above = ExtentOf({kShellTop_m + 1e-6, mu}, kShellRadius_m, kShellTop_m);
     EXPECT_NEAR(above.end_m - above.begin_m, below, 1e-4) << "2 um of altitude, over |mu| > 0.02";
   }
   for (const double mu : {0.0, 1e-9, 0.5, 1.0}) {
-    const RayExtent above = ExtentOf({kTop_m + 1e-6, mu}, kRadius_m, kTop_m);
+    const RayExtent above = ExtentOf({kShellTop_m + 1e-6, mu}, kShellRadius_m, kShellTop_m);
     EXPECT_EQ(above.begin_m, above.end_m) << "upwards from above the top there is no air";
   }
 }
@@ -163,20 +163,20 @@ TEST(Extent, IsContinuousThroughTheTop) {
 // Hard case 8.
 TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
-    const double r = kRadius_m + altitude_m;
-    const double r_top = kRadius_m + kTop_m;
+    const double r = kShellRadius_m + altitude_m;
+    const double r_top = kShellRadius_m + kShellTop_m;
     const double grazing = -std::sqrt((r - r_top) * (r + r_top)) / r;
     double mu = grazing;
     for (int i = 0; i < 8; ++i) mu = std::nextafter(mu, -1.0);
     for (int i = 0; i < 16; ++i, mu = std::nextafter(mu, 1.0)) {
-      const RayExtent extent = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
+      const RayExtent extent = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
       const double length = extent.end_m - extent.begin_m;
       EXPECT_GE(length, 0.0);
-      EXPECT_LT(length, 2e4 * std::sqrt(r / kRadius_m))
+      EXPECT_LT(length, 2e4 * std::sqrt(r / kShellRadius_m))
           << "one ulp of mu lowers the grazing point by r mu 1e-16, a chord of sqrt(8 R times "
              "that)";
     }
-    const RayExtent missed = ExtentOf({altitude_m, grazing + 1e-9}, kRadius_m, kTop_m);
+    const RayExtent missed = ExtentOf({altitude_m, grazing + 1e-9}, kShellRadius_m, kShellTop_m);
     EXPECT_EQ(missed.begin_m, missed.end_m);
   }
 }
@@ -184,15 +184,15 @@ TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
 // Hard case 5.
 TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
-    const double r = kRadius_m + altitude_m;
-    const double tangent = kRadius_m + 30e3;
+    const double r = kShellRadius_m + altitude_m;
+    const double tangent = kShellRadius_m + 30e3;
     const double mu = -std::sqrt((r - tangent) * (r + tangent)) / r;
-    const RayExtent extent = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
+    const RayExtent extent = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
     EXPECT_EQ(extent.end, RayEnd::kSpace);
     const double middle = 0.5 * (extent.begin_m + extent.end_m);
-    EXPECT_NEAR(middle, -r * mu, 1e-6 * r / kRadius_m);
-    EXPECT_NEAR(extent.end_m - extent.begin_m, 2.0 * std::sqrt(90e3 * (2.0 * kRadius_m + 150e3)),
-                0.1)
+    EXPECT_NEAR(middle, -r * mu, 1e-6 * r / kShellRadius_m);
+    EXPECT_NEAR(extent.end_m - extent.begin_m,
+                2.0 * std::sqrt(90e3 * (2.0 * kShellRadius_m + 150e3)), 0.1)
         << "rounding of mu moves the tangent by 1e-8 m, and the chord by ten times that";
   }
 }
@@ -201,8 +201,8 @@ TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
 TEST(Extent, OneUlpAcrossTheHorizonEndsAtTheGroundOrInSpaceAndNowhereElse) {
   for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 400e3}) {
     const double horizon = shared::HorizonCosine(altitude_m * 1e-3, kRadius_km);
-    const RayExtent over = ExtentOf({altitude_m, horizon + 1e-14}, kRadius_m, kTop_m);
-    const RayExtent under = ExtentOf({altitude_m, horizon - 1e-14}, kRadius_m, kTop_m);
+    const RayExtent over = ExtentOf({altitude_m, horizon + 1e-14}, kShellRadius_m, kShellTop_m);
+    const RayExtent under = ExtentOf({altitude_m, horizon - 1e-14}, kShellRadius_m, kShellTop_m);
     EXPECT_EQ(over.end, RayEnd::kSpace) << altitude_m;
     EXPECT_EQ(under.end, RayEnd::kGround) << altitude_m;
     const double to_horizon = shared::HorizonDistance(altitude_m * 1e-3, kRadius_km) * 1e3;
@@ -223,11 +223,12 @@ TEST(Extent, TheAzimuthOfAVerticalViewDoesNotMatter) {
 
 TEST(Shadow, OfThePlanetLiesBehindItAndNowhereElse) {
   const ViewRay noon = RayFromAngles(2.0, 45.0, 0.0, 30.0);
-  const ShadowSpan none = PlanetShadow(noon, ExtentOf(noon, kRadius_m, kTop_m), kRadius_m);
+  const ShadowSpan none =
+      PlanetShadow(noon, ExtentOf(noon, kShellRadius_m, kShellTop_m), kShellRadius_m);
   EXPECT_EQ(none.dark_begin_m, none.dark_end_m);
   const ViewRay midnight = RayFromAngles(2.0, 45.0, 0.0, 180.0);
-  const RayExtent extent = ExtentOf(midnight, kRadius_m, kTop_m);
-  const ShadowSpan all = PlanetShadow(midnight, extent, kRadius_m);
+  const RayExtent extent = ExtentOf(midnight, kShellRadius_m, kShellTop_m);
+  const ShadowSpan all = PlanetShadow(midnight, extent, kShellRadius_m);
   EXPECT_EQ(all.dark_begin_m, extent.begin_m);
   EXPECT_EQ(all.dark_end_m, extent.end_m);
 }
@@ -235,11 +236,13 @@ TEST(Shadow, OfThePlanetLiesBehindItAndNowhereElse) {
 TEST(Shadow, TowardsTheZenithAtTwilightEndsAtTheHeightOfElementaryGeometry) {
   for (const double depression_deg : {1.0, 4.0, 8.0}) {
     const ViewRay ray = RayFromAngles(0.0, 0.0, 0.0, 90.0 + depression_deg);
-    const ShadowSpan span = PlanetShadow(ray, ExtentOf(ray, kRadius_m, kTop_m), kRadius_m);
+    const ShadowSpan span =
+        PlanetShadow(ray, ExtentOf(ray, kShellRadius_m, kShellTop_m), kShellRadius_m);
     const double height =
-        kRadius_m * (1.0 / std::cos(depression_deg * 3.14159265358979324 / 180) - 1.0);
+        kShellRadius_m * (1.0 / std::cos(depression_deg * 3.14159265358979324 / 180) - 1.0);
     EXPECT_NEAR(span.dark_begin_m, 0.0, 1e-3);
-    EXPECT_NEAR(span.dark_end_m, std::fmin(height, kTop_m), 1e-3) << "R (1 / cos(depression) - 1)";
+    EXPECT_NEAR(span.dark_end_m, std::fmin(height, kShellTop_m), 1e-3)
+        << "R (1 / cos(depression) - 1)";
   }
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
 constexpr double kMinute = kRadiansPerDegree / 60.0;
-constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
+constexpr double kArcsecond_rad = kRadiansPerDegree / 3600.0;
 
 TEST(Refraction, IsTheAlmanacs34MinutesAtTheHorizon) {
   EXPECT_NEAR(Refraction(-34.0 * kMinute) / kMinute, 34.0, 0.05) << "error of the closed form";
@@ -40,7 +40,7 @@ TEST(Refraction, FarFromTheHorizonItIsTheSeriesOfErfa) {
     const double tangent = std::tan(zenith * kDegree);
     const double series = a * tangent + b * tangent * tangent * tangent;
     const double elevation = (90.0 - zenith) * kDegree - series;
-    EXPECT_NEAR(Refraction(elevation) / kArcsecond, series / kArcsecond, 0.5)
+    EXPECT_NEAR(Refraction(elevation) / kArcsecond_rad, series / kArcsecond_rad, 0.5)
         << "at 75 degrees the closed form is fitted to 0.3 arcseconds";
   }
 }

@@ -19,7 +19,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
+constexpr double kSunArcsecond_rad = kRadiansPerDegree / 3600.0;
 
 /// Angle on the sky: near the zenith and at the poles an azimuth alone says little.
 double Separation(const Vector<Enu>& a, const Vector<Enu>& b) {
@@ -56,7 +56,7 @@ double ErrorInArcseconds(const SpaRow& row) {
   return Separation(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad),
                     DirectionFromAngles(row.elevation * kRadiansPerDegree,
                                         row.azimuth * kRadiansPerDegree)) /
-         kArcsecond;
+         kSunArcsecond_rad;
 }
 
 // Rows of an independent implementation of SPA (npm nrel-spa 2.0.2), without refraction.
@@ -183,11 +183,12 @@ TEST(Sun, ALeapSecondMovesItNoFurtherThanAnyOther) {
     const SunPosition sun = SunAt(place, ParseInstant(text));
     seen.push_back(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
   }
-  EXPECT_NEAR(Separation(seen[0], seen[1]) / kArcsecond, 13.8, 0.1) << "15 arcseconds * cos 23";
-  EXPECT_NEAR(Separation(seen[1], seen[2]) / kArcsecond, 13.8, 0.1);
-  EXPECT_LT(Separation(seen[2], seen[3]) / kArcsecond, 0.05)
+  EXPECT_NEAR(Separation(seen[0], seen[1]) / kSunArcsecond_rad, 13.8, 0.1)
+      << "15 arcseconds * cos 23";
+  EXPECT_NEAR(Separation(seen[1], seen[2]) / kSunArcsecond_rad, 13.8, 0.1);
+  EXPECT_LT(Separation(seen[2], seen[3]) / kSunArcsecond_rad, 0.05)
       << "UT1 = UTC repeats the second; only TT goes on, by 0.04 arcseconds of the orbit";
-  EXPECT_NEAR(Separation(seen[3], seen[4]) / kArcsecond, 13.8, 0.1);
+  EXPECT_NEAR(Separation(seen[3], seen[4]) / kSunArcsecond_rad, 13.8, 0.1);
 }
 
 TEST(Sun, YearsThatErfaCallsDubiousAreAnsweredAndContinuous) {
@@ -199,7 +200,7 @@ TEST(Sun, YearsThatErfaCallsDubiousAreAnsweredAndContinuous) {
     const SunPosition next = SunAt(place, AddSeconds(instant, 1.0));
     const double moved = Separation(DirectionFromAngles(now.elevation_rad, now.azimuth_rad),
                                     DirectionFromAngles(next.elevation_rad, next.azimuth_rad));
-    EXPECT_NEAR(moved / kArcsecond, 13.8, 0.1) << text << ": 15 arcseconds * cos 23";
+    EXPECT_NEAR(moved / kSunArcsecond_rad, 13.8, 0.1) << text << ": 15 arcseconds * cos 23";
   }
 }
 
@@ -211,7 +212,7 @@ TEST(Sun, FollowsTheRotationOfTheEarthNotOnlyTheClock) {
   const SunPosition b = SunAt(place, instant, 70.0);
   EXPECT_LT(Separation(DirectionFromAngles(a.elevation_rad, a.azimuth_rad),
                        DirectionFromAngles(b.elevation_rad, b.azimuth_rad)) /
-                kArcsecond,
+                kSunArcsecond_rad,
             0.05);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kHeader =
+const std::string kLampHeader =
     "id,quantity,scattering_per_m,extinction_per_m,phase,g,segment_m,light_along_m,light_across_m,"
     "profile,axis_x,axis_y,axis_z,exponent,inner_deg,outer_deg\n";
 
@@ -50,7 +50,7 @@ class LampCases : public TemporaryFolder {
 std::string StoredAsCases() {
   const std::map<std::string, std::string> phases{{"HG", "henyey-greenstein"},
                                                   {"CS", "cornette-shanks"}};
-  std::string text = kHeader;
+  std::string text = kLampHeader;
   for (const stored::Row& row : stored::Read("airlight.csv")) {
     const double length = stored::Number(row, "D_m");
     text += row.at("id") + ",airlight," + row.at("sigma_s") + "," + row.at("sigma_t") + "," +
@@ -86,7 +86,7 @@ TEST_F(LampCases, StoredCasesAreAsNearAsIsAskedFor) {
 }
 
 TEST_F(LampCases, AFileOfLampsIsKnownByItsHeader) {
-  WriteText(folder_ / "lamps.csv", kHeader);
+  WriteText(folder_ / "lamps.csv", kLampHeader);
   WriteText(folder_ / "sky.csv", "id,quantity,altitude_m\n");
   EXPECT_TRUE(HoldsLampCases(folder_ / "lamps.csv"));
   EXPECT_FALSE(HoldsLampCases(folder_ / "sky.csv"));
@@ -94,7 +94,7 @@ TEST_F(LampCases, AFileOfLampsIsKnownByItsHeader) {
 }
 
 TEST_F(LampCases, BadCasesAreRefusedByLineAndName) {
-  const auto with = [&](const std::string& line) { return FaultOf(kHeader + line); };
+  const auto with = [&](const std::string& line) { return FaultOf(kLampHeader + line); };
   EXPECT_EQ(with("a,airlight,0.01,0.02,cornette-shanks,0.5,,10,1,iso,,,,,,\n"), "no fault");
   EXPECT_THAT(with("a,single,0.01,0.02,cornette-shanks,0.5,,10,1,iso,,,,,,\n"),
               HasSubstr(":2: quantity is \"single\"; in a file of lamps it must be airlight"));

@@ -10,7 +10,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kPixel_rad = 0.05 * kRadiansPerDegree;
+constexpr double kGlarePixel_rad = 0.05 * kRadiansPerDegree;
 
 TEST(Glare, SpreadsAllLightOverTheHemisphere) {
   double sum = 0.0;
@@ -30,13 +30,13 @@ TEST(Glare, IsTheSumOverAllPixels) {
       image.at(x, y) = {static_cast<float>(x), static_cast<float>(y + 1), 2.0F};
   }
   image.at(4, 6) = {3e5F, 2e5F, 1e5F};
-  const Image seen = WithGlareOfEye(image, kPixel_rad);
+  const Image seen = WithGlareOfEye(image, kGlarePixel_rad);
   // What a pixel keeps: all that it does not send to the torus of 32 x 32.
   double sent = 0.0;
   for (int v = -15; v <= 16; ++v) {
     for (int u = -15; u <= 16; ++u) {
       if (u != 0 || v != 0)
-        sent += GlareOfEye(kPixel_rad * std::hypot(u, v)) * kPixel_rad * kPixel_rad;
+        sent += GlareOfEye(kGlarePixel_rad * std::hypot(u, v)) * kGlarePixel_rad * kGlarePixel_rad;
     }
   }
   for (int y = 0; y < image.height; ++y) {
@@ -46,8 +46,8 @@ TEST(Glare, IsTheSumOverAllPixels) {
         for (int v = 0; v < image.height; ++v) {
           for (int u = 0; u < image.width; ++u) {
             if (u == x && v == y) continue;
-            sum += GlareOfEye(kPixel_rad * std::hypot(u - x, v - y)) * kPixel_rad * kPixel_rad *
-                   static_cast<double>(image.at(u, v).at(c));
+            sum += GlareOfEye(kGlarePixel_rad * std::hypot(u - x, v - y)) * kGlarePixel_rad *
+                   kGlarePixel_rad * static_cast<double>(image.at(u, v).at(c));
           }
         }
         EXPECT_NEAR(static_cast<double>(seen.at(x, y).at(c)) / sum, 1.0, 1e-6) << x << " " << y;
@@ -66,7 +66,7 @@ TEST(Glare, OfASunOnABlackSkyFallsAsTheSquareOfTheAngleFarFromIt) {
 }
 
 TEST(Glare, LeavesDarknessDark) {
-  const Image seen = WithGlareOfEye(Image(17, 5), kPixel_rad);
+  const Image seen = WithGlareOfEye(Image(17, 5), kGlarePixel_rad);
   for (const auto& pixel : seen.rgb) EXPECT_EQ(pixel[1], 0.0F);
 }
 

@@ -20,12 +20,12 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-constexpr DiffuseLightOptions kSmall{.altitudes = 12,
-                                     .sun_angles = 24,
-                                     .degree = 2,
-                                     .zenith_nodes = 5,
-                                     .azimuth_nodes = 4,
-                                     .ray_nodes = 6};
+constexpr DiffuseLightOptions kSmallSolution{.altitudes = 12,
+                                             .sun_angles = 24,
+                                             .degree = 2,
+                                             .zenith_nodes = 5,
+                                             .azimuth_nodes = 4,
+                                             .ray_nodes = 6};
 
 // Skies that no training has seen: three atmospheres, one of them without haze.
 std::vector<SkySpectrum> FreshSkies() {
@@ -34,7 +34,7 @@ std::vector<SkySpectrum> FreshSkies() {
   drawing.atmospheres = 3;
   drawing.suns = 3;
   drawing.views = 8;
-  drawing.diffuse = kSmall;
+  drawing.diffuse = kSmallSolution;
   return DrawSkySpectra(drawing);
 }
 
@@ -135,7 +135,7 @@ TEST(BandTraining, AWavelengthOffTheFineGridIsRefused) {
 }
 
 TEST(SkySimulator, SkyIrradianceIsTheIntegralOfRadianceOverTheHemisphere) {
-  const SkySimulator simulator({.aerosol_optical_depth_550 = 0.1}, kSmall);
+  const SkySimulator simulator({.aerosol_optical_depth_550 = 0.1}, kSmallSolution);
   for (const double sun_zenith_deg : {50.0, 85.0, 94.0}) {
     const std::vector<double> stored =
         simulator.SkyIrradiance(0.0, std::cos(sun_zenith_deg * kRadiansPerDegree));
@@ -161,7 +161,7 @@ TEST(SkySimulator, SkyIrradianceIsTheIntegralOfRadianceOverTheHemisphere) {
 
 TEST(SkySimulator, LandSeenThroughNoAirIsAsBrightAsItsAlbedoSays) {
   const SkyConditions conditions{.aerosol_optical_depth_550 = 0.1, .ground_albedo_scale = 2.0};
-  const SkySimulator simulator(conditions, kSmall);
+  const SkySimulator simulator(conditions, kSmallSolution);
   ViewRay down = RayFromAngles(1.0, 180.0, 0.0, 60.0);
   down.length_m = 1.0;
   const std::vector<double> seen = simulator.Radiance(down);
@@ -177,7 +177,7 @@ TEST(SkySpectra, AreTheSameEveryTimeAndOfEveryRegime) {
   drawing.atmospheres = 1;
   drawing.suns = 1;
   drawing.views = 2;
-  drawing.diffuse = kSmall;
+  drawing.diffuse = kSmallSolution;
   const std::vector<SkySpectrum> first = DrawSkySpectra(drawing);
   const std::vector<SkySpectrum> second = DrawSkySpectra(drawing);
   ASSERT_EQ(first.size(), second.size());
@@ -215,7 +215,7 @@ ColourErrors SurfaceErrors(int bands, const std::vector<double>& light) {
 }
 
 std::vector<double> Daylight(double sun_elevation_deg) {
-  const SkySimulator simulator({.aerosol_optical_depth_550 = 0.1}, kSmall);
+  const SkySimulator simulator({.aerosol_optical_depth_550 = 0.1}, kSmallSolution);
   const double mu_s = std::sin(sun_elevation_deg * kRadiansPerDegree);
   std::vector<double> light = simulator.SkyIrradiance(2.0, mu_s);
   const std::vector<double> sun = simulator.SunIrradiance(2.0, mu_s);

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 constexpr double kG = 9.80665;
 
 double Sea(const GeodeticPosition&) { return 0.0; }
-double Degrees(double radians) { return radians / kRadiansPerDegree; }
+double DegreesOf(double radians) { return radians / kRadiansPerDegree; }
 double Apart(const GeodeticPosition& a, const GeodeticPosition& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a) - EcefFromGeodetic(kWgs84, b)).xyz);
 }
@@ -42,23 +42,23 @@ Track Circle() {
 TEST(TrackPath, ACircleIsFlownWithTheBankOfItsRadiusAndTheSpeed) {
   const CameraPath path = PathAlong(Circle(), {.speed_m_per_s = 80.0}, Sea);
   EXPECT_NEAR(path.end_s(), 2.0 * kPi * 3000.0 / 80.0, 0.5) << "chords of 10 degrees";
-  const double bank = Degrees(std::atan(80.0 * 80.0 / (3000.0 * kG)));
+  const double bank = DegreesOf(std::atan(80.0 * 80.0 / (3000.0 * kG)));
   for (double t = 20.0; t < path.end_s() - 20.0; t += 5.0) {
     const CameraPose pose = path.PoseAt(t);
-    EXPECT_NEAR(Degrees(pose.roll_rad), bank, 1.5)
+    EXPECT_NEAR(DegreesOf(pose.roll_rad), bank, 1.5)
         << t << ": a cubic through corners of 10 degrees";
-    EXPECT_NEAR(Degrees(pose.pitch_rad), 0.0, 0.1);
+    EXPECT_NEAR(DegreesOf(pose.pitch_rad), 0.0, 0.1);
     EXPECT_NEAR(pose.place.height_m, 1000.0, 0.01);
     const double around = -90.0 + 360.0 * t / path.end_s();
-    EXPECT_NEAR(std::remainder(Degrees(pose.heading_rad) - around, 360.0), 0.0, 1.0) << t;
+    EXPECT_NEAR(std::remainder(DegreesOf(pose.heading_rad) - around, 360.0), 0.0, 1.0) << t;
   }
 }
 
 TEST(TrackPath, ATrackThatEndsInATurnBanksToItsEnd) {
   const CameraPath path = PathAlong(Circle(), {.speed_m_per_s = 80.0}, Sea);
-  const double bank = Degrees(std::atan(80.0 * 80.0 / (3000.0 * kG)));
+  const double bank = DegreesOf(std::atan(80.0 * 80.0 / (3000.0 * kG)));
   for (const double t : {path.begin_s(), path.end_s()}) {
-    EXPECT_NEAR(Degrees(path.PoseAt(t).roll_rad), bank, 6.0)
+    EXPECT_NEAR(DegreesOf(path.PoseAt(t).roll_rad), bank, 6.0)
         << "chords are shorter there, and turn half as much";
   }
 }
@@ -85,7 +85,7 @@ TEST(TrackPath, TimesOfTheTrackAreKept) {
   track.points.push_back(track.points.back());  // a receiver that says the same thing twice
   const CameraPath path = PathAlong(track, {}, Sea);
   EXPECT_EQ(path.end_s(), 240.0);
-  EXPECT_NEAR(Degrees(path.PoseAt(120.0).place.latitude_rad), 46.04, 1e-6);
+  EXPECT_NEAR(DegreesOf(path.PoseAt(120.0).place.latitude_rad), 46.04, 1e-6);
   EXPECT_NEAR(SecondsBetween(start, *path.UtcAt(90.0)), 90.0, 1e-6);
 }
 
@@ -147,9 +147,9 @@ TEST(TrackPath, APauseIsSpentBetweenThePointsAroundIt) {
     const std::size_t last = points.size() / 2 - 1;  // before the pause
     for (double t = points[last].second; t <= points[last + 1].second; t += 7.3) {
       const CameraPose pose = path.PoseAt(t);
-      EXPECT_GE(Degrees(pose.place.longitude_rad), points[last].first - 1e-9) << t;
-      EXPECT_LE(Degrees(pose.place.longitude_rad), points[last + 1].first + 1e-9) << t;
-      EXPECT_NEAR(Degrees(pose.heading_rad), 90.0, 0.01) << t << ": the heading is kept";
+      EXPECT_GE(DegreesOf(pose.place.longitude_rad), points[last].first - 1e-9) << t;
+      EXPECT_LE(DegreesOf(pose.place.longitude_rad), points[last + 1].first + 1e-9) << t;
+      EXPECT_NEAR(DegreesOf(pose.heading_rad), 90.0, 0.01) << t << ": the heading is kept";
     }
   }
 }
@@ -160,7 +160,7 @@ TEST(TrackPath, ASeldomFixIsPassedAtItsTimeAndNeverTwice) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     for (double share = 0.0; share <= 1.0; share += 0.125) {
       const double t = points[i - 1].second + share * (points[i].second - points[i - 1].second);
-      const double longitude = Degrees(path.PoseAt(t).place.longitude_rad);
+      const double longitude = DegreesOf(path.PoseAt(t).place.longitude_rad);
       EXPECT_GE(longitude, points[i - 1].first - 1e-7) << t;
       EXPECT_LE(longitude, points[i].first + 1e-7) << t;
     }
@@ -175,14 +175,14 @@ TEST(TrackPath, GoesStraightAndEvenlyThroughAGap) {
   const CameraPath path = PathAlong(track, {}, Sea);
   for (const double t : {130.0, 370.0, 620.0, 870.0, 1110.0}) {
     const GeodeticPosition place = path.PoseAt(t).place;
-    EXPECT_NEAR(Degrees(place.longitude_rad), 8.02, 2e-6) << t;
-    EXPECT_NEAR(Degrees(place.latitude_rad), 1e-4 * (t - 120.0), 2e-6) << t;
+    EXPECT_NEAR(DegreesOf(place.longitude_rad), 8.02, 2e-6) << t;
+    EXPECT_NEAR(DegreesOf(place.latitude_rad), 1e-4 * (t - 120.0), 2e-6) << t;
   }
 }
 
 TEST(TrackPath, LooksWhereItWillGoBeforeItGoes) {
   const CameraPath path = PathAlong(Eastward({{8.0, 0.0}, {8.0, 60.0}, {8.02, 120.0}}), {}, Sea);
-  EXPECT_NEAR(Degrees(path.PoseAt(1.0).heading_rad), 90.0, 0.01);
+  EXPECT_NEAR(DegreesOf(path.PoseAt(1.0).heading_rad), 90.0, 0.01);
 }
 
 TEST(TrackPath, LooksUpTheSlopeAndOnWhenItStands) {
@@ -192,9 +192,10 @@ TEST(TrackPath, LooksUpTheSlopeAndOnWhenItStands) {
   const GeodeticPosition high = PlaceFromDegrees(46.0, 8.01, 1077.5);  // 774.6 m to the east
   track.points = {{low, start}, {high, AddSeconds(start, 60.0)}, {high, AddSeconds(start, 120.0)}};
   const CameraPath path = PathAlong(track, {}, Sea);
-  EXPECT_NEAR(Degrees(path.PoseAt(30.0).heading_rad), 90.0, 0.5);
-  EXPECT_GT(Degrees(path.PoseAt(30.0).pitch_rad), 4.0);
-  EXPECT_LT(Degrees(path.PoseAt(30.0).pitch_rad), 9.0) << "5.7 on average, steepest in the middle";
+  EXPECT_NEAR(DegreesOf(path.PoseAt(30.0).heading_rad), 90.0, 0.5);
+  EXPECT_GT(DegreesOf(path.PoseAt(30.0).pitch_rad), 4.0);
+  EXPECT_LT(DegreesOf(path.PoseAt(30.0).pitch_rad), 9.0)
+      << "5.7 on average, steepest in the middle";
   EXPECT_NEAR(path.PoseAt(110.0).pitch_rad, 0.0, 1e-3);
 }
 
@@ -208,8 +209,8 @@ TEST(TrackPath, AJitterOfTheReceiverTurnsTheHeadLittle) {
   }
   const CameraPath path = PathAlong(track, {}, Sea);
   for (double t = 5.0; t < 110.0; t += 0.5) {
-    EXPECT_NEAR(Degrees(path.PoseAt(t).heading_rad), 0.0, 1.5) << "3 m in a chord of 130 m";
-    EXPECT_NEAR(Degrees(path.PoseAt(t).roll_rad), 0.0, 8.0);
+    EXPECT_NEAR(DegreesOf(path.PoseAt(t).heading_rad), 0.0, 1.5) << "3 m in a chord of 130 m";
+    EXPECT_NEAR(DegreesOf(path.PoseAt(t).roll_rad), 0.0, 8.0);
   }
 }
 
@@ -241,7 +242,7 @@ TEST(TrackPath, AnEvenAccelerationPassesTheSmoothingUnchanged) {
   }
   const CameraPath path = PathAlong(track, {}, Sea);
   for (double t = 0.0; t <= 100.0; t += 10.0) {
-    EXPECT_NEAR(Degrees(path.PoseAt(t).place.longitude_rad) * 111319.49079, way_m(t), 0.05)
+    EXPECT_NEAR(DegreesOf(path.PoseAt(t).place.longitude_rad) * 111319.49079, way_m(t), 0.05)
         << t << ": the way between points is taken as straight, and as even";
   }
 }
@@ -260,13 +261,13 @@ TEST(TrackPath, WingsRollIntoATurnAndOutOfItWithoutAJump) {
   }
   for (int i = 1; i <= 30; ++i) add(1000.0 + 100.0 * i, 4000.0);
   const CameraPath path = PathAlong(track, {.speed_m_per_s = 60.0}, Sea);
-  const double turn_s = 50.0, full = Degrees(std::atan(60.0 * 60.0 / (1000.0 * kG)));
+  const double turn_s = 50.0, full = DegreesOf(std::atan(60.0 * 60.0 / (1000.0 * kG)));
   for (double t = 0.0; t < path.end_s(); t += 0.25) {
-    const double rate = Degrees(path.PoseAt(t + 0.5).roll_rad - path.PoseAt(t).roll_rad) / 0.5;
+    const double rate = DegreesOf(path.PoseAt(t + 0.5).roll_rad - path.PoseAt(t).roll_rad) / 0.5;
     EXPECT_LT(std::abs(rate), 6.0) << t << ": a window of Hann spreads 20 degrees to 5 a second";
   }
-  EXPECT_NEAR(Degrees(path.PoseAt(turn_s + 13.0).roll_rad), full, 1.0) << "in the turn's middle";
-  EXPECT_NEAR(Degrees(path.PoseAt(turn_s - 8.0).roll_rad), 0.0, 0.5);
+  EXPECT_NEAR(DegreesOf(path.PoseAt(turn_s + 13.0).roll_rad), full, 1.0) << "in the turn's middle";
+  EXPECT_NEAR(DegreesOf(path.PoseAt(turn_s - 8.0).roll_rad), 0.0, 0.5);
 }
 
 // Hard case 27.
@@ -276,7 +277,7 @@ TEST(TrackPath, OverTheDateLineItGoesTheShortWay) {
                   {PlaceFromDegrees(10.0, -179.9, 1000.0)}};
   const CameraPath path = PathAlong(track, {.speed_m_per_s = 100.0}, Sea);
   EXPECT_NEAR(path.end_s(), 219.0, 2.0) << "0.2 degrees at 10 degrees north are 21.9 km";
-  EXPECT_NEAR(Degrees(path.PoseAt(0.5 * path.end_s()).heading_rad), 90.0, 0.1);
+  EXPECT_NEAR(DegreesOf(path.PoseAt(0.5 * path.end_s()).heading_rad), 90.0, 0.1);
 }
 
 TEST(TrackPath, ATrackIsRefusedThatGoesNowhere) {

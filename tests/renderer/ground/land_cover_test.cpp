@@ -19,10 +19,10 @@ namespace {
 using testing::HasSubstr;
 using LandCover = TemporaryFolder;
 
-constexpr std::uint32_t kSide = 16;  // pixels of 500 m
+constexpr std::uint32_t kCoverSide = 16;  // pixels of 500 m
 constexpr MountainCover kSummer{2100.0, 2900.0};
 
-SceneGround Plain() {
+SceneGround CoveredPlain() {
   SceneGround ground{LocalFrame(kWgs84, PlaceFromDegrees(46.0, 8.0, 0.0)), std::nullopt, 2.0, "",
                      true};
   ground.terrain.emplace(LandMesh([](double, double) { return 0.0; }, 33, 250.0));
@@ -32,12 +32,12 @@ SceneGround Plain() {
 /// The ground of a map whose western half is one class and whose eastern half is another.
 GroundMaterial Halves(const std::filesystem::path& file, std::uint8_t west, std::uint8_t east) {
   std::vector<std::uint8_t> classes;
-  for (std::uint32_t i = 0; i < kSide * kSide; ++i)
-    classes.push_back(i % kSide < kSide / 2 ? west : east);
-  tests::WriteClassMap(file, kSide, classes);
+  for (std::uint32_t i = 0; i < kCoverSide * kCoverSide; ++i)
+    classes.push_back(i % kCoverSide < kCoverSide / 2 ? west : east);
+  tests::WriteClassMap(file, kCoverSide, classes);
   Scene scene;
   scene.terrain.land_cover = file;
-  return {GroundCover{}, ColourDrape::Of(scene, Plain()), WavelengthSet(4)};
+  return {GroundCover{}, ColourDrape::Of(scene, CoveredPlain()), WavelengthSet(4)};
 }
 
 /// At 1000 m, so far away that there is no grain.
@@ -98,7 +98,7 @@ TEST_F(LandCover, WhatIsNoMapIsRefused) {
               HasSubstr("has 17, which is no class of land cover"));
   Scene scene;
   scene.terrain.land_cover = folder_ / "none.tif";
-  EXPECT_THAT(tests::FaultOf([&] { return ColourDrape::Of(scene, Plain()); }),
+  EXPECT_THAT(tests::FaultOf([&] { return ColourDrape::Of(scene, CoveredPlain()); }),
               HasSubstr("there is no such file"));
 }
 

@@ -84,13 +84,13 @@ GlowError ErrorOver(const ErrorOf& error_of) {
   return result;
 }
 
-constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
+constexpr glm::dvec3 kUpwards(0.0, 0.0, 1.0);
 constexpr glm::dvec3 kPoint(0.0, 0.0, 1e-3);
 
 TEST(LampGlow, LevelGroundGetsWhatTheHemisphereSends) {
   const GlowError error = ErrorOver([](const LampAir& air, const LampGlow& glow, const Lamp& lamp) {
-    return glow.On(lamp.position_m - kPoint, kUp, kUp)[0] /
-               OverTheHemisphere(air, lamp, kPoint, kUp) -
+    return glow.On(lamp.position_m - kPoint, kUpwards, kUpwards)[0] /
+               OverTheHemisphere(air, lamp, kPoint, kUpwards) -
            1.0;
   });
   EXPECT_LT(error.rms, 0.06) << "16 distances and 9 elevations";
@@ -104,7 +104,7 @@ TEST(LampGlow, WallsGetWhatTheirHemisphereSends) {
          {glm::dvec3(1.0, 0.0, 0.2), glm::dvec3(0.3, 1.0, 0.2), glm::dvec3(-1.0, 0.0, 0.5)}) {
       const glm::dvec3 unit = glm::normalize(normal);
       const double truth = OverTheHemisphere(air, lamp, kPoint, unit);
-      const double found = glow.On(lamp.position_m - kPoint, unit, kUp)[0];
+      const double found = glow.On(lamp.position_m - kPoint, unit, kUpwards)[0];
       brightest = std::max(brightest, truth);
       worst = std::abs(found - truth) > std::abs(worst) ? found - truth : worst;
     }
@@ -120,7 +120,7 @@ TEST(LampGlow, IsWhatHomogeneousAirGivesWhereTheGroundIsFar) {
   const LampGlow glow(air.layers, 5000.0, 0.0);
   for (const double cosine : {1.0, 0.5, 0.0}) {
     const glm::dvec3 normal(cosine, std::sqrt(1.0 - cosine * cosine), 0.0);
-    const double found = glow.On({30.0, 0.0, 0.0}, normal, kUp)[0];
+    const double found = glow.On({30.0, 0.0, 0.0}, normal, kUpwards)[0];
     EXPECT_NEAR(found / AirlightOnSurface(air, 30.0, cosine)[0], 1.0, 0.05) << cosine;
   }
 }
@@ -129,8 +129,8 @@ TEST(LampGlow, IsFiniteEverywhere) {
   const LampAir air = FogUnderClearAir(0.05, 5.0);
   const LampGlow glow(air.layers, 3.0, 3.0);
   for (const double distance : {0.0, 1e-3, 0.2, 7.0, 3e3, 1e5}) {
-    for (const glm::dvec3& towards : {kUp, -kUp, glm::dvec3(1.0, 0.0, 0.0)}) {
-      const double found = glow.On(distance * towards, kUp, kUp)[0];
+    for (const glm::dvec3& towards : {kUpwards, -kUpwards, glm::dvec3(1.0, 0.0, 0.0)}) {
+      const double found = glow.On(distance * towards, kUpwards, kUpwards)[0];
       EXPECT_TRUE(std::isfinite(found) && found >= 0.0) << distance;
     }
   }

@@ -17,10 +17,10 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kEyeHeight_m = 40.0;
+constexpr double kLampEyeHeight_m = 40.0;
 
 /// An eye 40 m over the ellipsoid that looks north.
-Scene NightScene() { return BareScene(kEyeHeight_m, 0.0, 0.0, 40.0); }
+Scene NightScene() { return BareScene(kLampEyeHeight_m, 0.0, 0.0, 40.0); }
 
 void AddFog(Scene& scene, double extinction_per_m, double scale_height_m) {
   Fog fog;
@@ -71,12 +71,12 @@ struct Stage {
   LampLight light;
 };
 
-const glm::dvec3 kEye(0.0, 0.0, kEyeHeight_m);
+const glm::dvec3 kEye(0.0, 0.0, kLampEyeHeight_m);
 
 TEST(LampLight, ACandelaIsACandelaThroughClearAir) {
   // 1000 cd at 100 m light a surface that faces them by 0.1 lux.
   Scene scene = NightScene();
-  scene.lights = {LightAt(100.0, 0.0, kEyeHeight_m, 1000.0)};
+  scene.lights = {LightAt(100.0, 0.0, kLampEyeHeight_m, 1000.0)};
   const Stage stage(scene);
   const LitPoint facing{kEye, kEye, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
   const double distance = glm::length(stage.Place(scene.lights[0]) - kEye);
@@ -87,7 +87,7 @@ TEST(LampLight, ACandelaIsACandelaThroughClearAir) {
 
 TEST(LampLight, TheTemperatureColoursAndTheCandelaStays) {
   Scene scene = NightScene();
-  scene.lights = {LightAt(50.0, 0.0, kEyeHeight_m, 100.0)};
+  scene.lights = {LightAt(50.0, 0.0, kLampEyeHeight_m, 100.0)};
   const LitPoint facing{kEye, kEye, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
   std::vector<std::array<double, 3>> colours;
   for (const double kelvin : {2000.0, 6500.0}) {
@@ -126,7 +126,7 @@ TEST(LampLight, LightInFogIsThatOfTheJudge) {
 TEST(LampLight, TheLampInThePictureHasItsIntensity) {
   // Luminance times solid angle over its pixels is the illuminance at the eye.
   Scene scene = NightScene();
-  scene.lights = {LightAt(500.0, 3.0, kEyeHeight_m, 1000.0)};
+  scene.lights = {LightAt(500.0, 3.0, kLampEyeHeight_m, 1000.0)};
   const Stage stage(scene);
   const CameraRays camera(scene.camera, 320, 180);
   double illuminance = 0.0;
@@ -149,7 +149,7 @@ TEST(LampLight, TheLampInThePictureHasItsIntensity) {
 TEST(LampLight, ABeamLightsTheAirInItAndNoneBesideIt) {
   Scene scene = NightScene();
   AddFog(scene, 0.01, 1000.0);
-  Light beam = LightAt(100.0, -50.0, kEyeHeight_m, 1e5);
+  Light beam = LightAt(100.0, -50.0, kLampEyeHeight_m, 1e5);
   beam.type = Light::Type::kSpot;
   beam.heading_rad = 0.5 * kPi;  // across the view, 100 m ahead
   beam.inner_rad = 0.02;
@@ -169,9 +169,9 @@ TEST(LampLight, ABeamLightsTheAirInItAndNoneBesideIt) {
 // Hard case 42.
 TEST(LampLight, AnEyeInALampSeesItsLuminanceAllAround) {
   Scene scene = NightScene();
-  scene.lights = {LightAt(0.0, 0.0, kEyeHeight_m, 1000.0)};
+  scene.lights = {LightAt(0.0, 0.0, kLampEyeHeight_m, 1000.0)};
   const Stage at_the_eye(scene);
-  scene.lights = {LightAt(0.03, 0.0, kEyeHeight_m, 1000.0)};  // of a radius of 0.05 m
+  scene.lights = {LightAt(0.03, 0.0, kLampEyeHeight_m, 1000.0)};  // of a radius of 0.05 m
   const Stage beside_it(scene);
   const double luminance = 1000.0 / (kPi * 0.05 * 0.05);
   for (const glm::dvec3& towards :
@@ -188,7 +188,7 @@ TEST(LampLight, AnEyeInALampSeesItsLuminanceAllAround) {
 TEST(LampLight, AHeadlampLightsTheAirBeforeItAndIsNotSeenByItsEye) {
   Scene scene = NightScene();
   AddFog(scene, 0.01, 1000.0);
-  Light lamp = LightAt(0.0, 0.0, kEyeHeight_m, 1000.0);
+  Light lamp = LightAt(0.0, 0.0, kLampEyeHeight_m, 1000.0);
   scene.lights = {lamp};
   const Stage around(scene);
   lamp.type = Light::Type::kSpot;  // to the north
@@ -230,7 +230,7 @@ double IlluminanceInPicture(const Stage& stage, const LampLight& light, const Ca
 
 TEST(LampLight, ALensSpreadsALampOverItsIrisAndKeepsItsLight) {
   Scene scene = NightScene();
-  scene.lights = {LightAt(500.0, 3.0, kEyeHeight_m, 1000.0)};
+  scene.lights = {LightAt(500.0, 3.0, kLampEyeHeight_m, 1000.0)};
   const Stage stage(scene);
   const CameraRays pinhole(scene.camera, 320, 180, {kEye});
   const double sharp = IlluminanceInPicture(stage, stage.light, pinhole);
@@ -507,7 +507,7 @@ PlanError ErrorOfPlan(const Scene& scene, int width, int height, const RayTrace&
 }
 
 TEST(LampLight, WhatStandsForManyLampsIsAsGoodAsAll) {
-  const PlanError error = ErrorOfPlan(RunwayScene(), 160, 90, ToPlane(kEyeHeight_m));
+  const PlanError error = ErrorOfPlan(RunwayScene(), 160, 90, ToPlane(kLampEyeHeight_m));
   EXPECT_LT(error.rms, 0.01) << "a share of error of 0.5 per cent, and lattices";
   EXPECT_LT(error.most, 0.05);
 }
@@ -515,7 +515,7 @@ TEST(LampLight, WhatStandsForManyLampsIsAsGoodAsAll) {
 TEST(LampLight, ALampNearARayIsNotLostAmongLampsThatAreFarFromIt) {
   // Six metres over the grass, 75 m beside a runway that runs east: lamps of one group lie on both
   // sides of rays that pass near some of them.
-  constexpr double kGround_m = kEyeHeight_m - 6.0;
+  constexpr double kGround_m = kLampEyeHeight_m - 6.0;
   Scene scene = NightScene();
   AddFog(scene, 0.0043, 25.0);
   scene.fog->base_height_m = kGround_m;
@@ -546,7 +546,7 @@ TEST(LampLight, TenTimesTheLampsCostThreeTimesAsMuch) {
   for (const int rows : {50, 500}) {
     const Stage stage(RunwayScene(rows));
     const CameraRays camera(stage.scene.camera, 320, 180);
-    const LampPlan plan = stage.light.PlanFor(camera, 320, 180, {}, ToPlane(kEyeHeight_m));
+    const LampPlan plan = stage.light.PlanFor(camera, 320, 180, {}, ToPlane(kLampEyeHeight_m));
     nodes.push_back(0.0);
     for (const LampTile& tile : plan.tiles) {
       nodes.back() += static_cast<double>(tile.near_air.size() + tile.far_air.size());
@@ -616,7 +616,7 @@ class LampsAtTheEye : public TemporaryFolder {
     scene.lights = {std::move(lamp)};
     return scene;
   }
-  const Light point_ = LightAt(0.0, 0.0, kEyeHeight_m, 1000.0);
+  const Light point_ = LightAt(0.0, 0.0, kLampEyeHeight_m, 1000.0);
   const std::string night_ = "2026-01-15T23:00:00Z", day_ = "2026-06-21T11:00:00Z";
 };
 
@@ -648,8 +648,8 @@ TEST_F(LampsAtTheEye, MakePicturesOfNumbersInFogAndThroughALens) {
   scene.camera.lens = ThinLens{2.0, 0.05, 10.0};
   EXPECT_EQ(FaultOf(scene, night_), "");
   scene = With(point_);
-  scene.lights.push_back(LightAt(5.0, 0.0, kEyeHeight_m, 1000.0));
-  scene.lights.push_back(LightAt(-5.0, 0.0, kEyeHeight_m, 1000.0));
+  scene.lights.push_back(LightAt(5.0, 0.0, kLampEyeHeight_m, 1000.0));
+  scene.lights.push_back(LightAt(-5.0, 0.0, kLampEyeHeight_m, 1000.0));
   EXPECT_EQ(FaultOf(scene, night_), "") << "the middle of lamps at the eye";
 }
 

@@ -17,8 +17,8 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kMinute = kRadiansPerDegree / 60.0;
-constexpr double kTolerance = 0.1 * kMinute;
+constexpr double kArcminute = kRadiansPerDegree / 60.0;
+constexpr double kTolerance = 0.1 * kArcminute;
 
 /// Where what is seen at an apparent elevation truly stands.
 double TrueElevation(const Medium& medium, double apparent_rad, double height_m) {
@@ -34,7 +34,7 @@ TEST(RefractedPlaces, TheSunIsWhereTheRayEquationOfThePicturesAirHasIt) {
     for (int minutes = 0; minutes < 60; minutes += 6) {
       const UtcInstant instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
       const double apparent = renderer.ApparentSun(instant).elevation_rad;
-      if (apparent < BentView(renderer.medium(), height_m).horizon_rad() + kMinute) continue;
+      if (apparent < BentView(renderer.medium(), height_m).horizon_rad() + kArcminute) continue;
       ++seen;
       EXPECT_NEAR(TrueElevation(renderer.medium(), apparent, height_m),
                   SunAt(eye, instant).elevation_rad, kTolerance)
@@ -62,7 +62,7 @@ TEST(RefractedPlaces, StarsAreWhereTheRayEquationOfThePicturesAirHasThem) {
       const double seen = std::asin(lights[i].direction.z);
       if (truly < view.TrueElevation(view.horizon_rad())) {
         EXPECT_LE(seen, view.horizon_rad()) << "what the earth hides does not come up";
-      } else if (seen > view.horizon_rad() + 0.5 * kMinute && seen < 0.5) {
+      } else if (seen > view.horizon_rad() + 0.5 * kArcminute && seen < 0.5) {
         low += seen < 0.05 ? 1 : 0;
         EXPECT_NEAR(TrueElevation(medium, seen, height_m), truly, kTolerance);
       }
@@ -77,7 +77,7 @@ TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
   const SceneRenderer renderer(scene);
   const UtcInstant evening = ParseInstant("2026-06-21T19:15:00Z");
   EXPECT_NEAR(renderer.ApparentSun(evening).elevation_rad,
-              SunAt(PlaceFromDegrees(46.5, 8.0, 2.0), evening).elevation_rad, 1.0 * kMinute);
+              SunAt(PlaceFromDegrees(46.5, 8.0, 2.0), evening).elevation_rad, 1.0 * kArcminute);
 }
 
 TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationHasIt) {

@@ -13,13 +13,14 @@
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/luminance.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
 namespace {
 
-const UtcInstant kNoon = ParseInstant("2026-06-21T11:30:00Z");
+const UtcInstant kExtremeNoon = ParseInstant("2026-06-21T11:30:00Z");
 
 RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers = {}) {
   return {.width = width,
@@ -29,15 +30,12 @@ RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers 
           .layers = std::move(layers)};
 }
 
-double Luminance(const std::array<float, 3>& rgb) {
-  return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
-         0.0722 * static_cast<double>(rgb[2]);
-}
+using tests::Luminance;
 
 /// From another camera at the place of a bare scene; angles in degrees.
 Shot ShotFrom(double height_m, double pitch, double roll, double fov) {
   const Camera camera = CameraFromDegrees({}, 40.0, pitch, roll, 60.0);
-  Shot shot(kNoon);
+  Shot shot(kExtremeNoon);
   shot.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad, camera.pitch_rad,
                  camera.roll_rad, fov * kRadiansPerDegree}};
   return shot;
@@ -53,7 +51,7 @@ void ExpectLightEverywhere(const Image& image) {
 // Hard case 1.
 TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
   const SceneRenderer renderer(BareScene(0.0, 40.0, 0.0, 2.0));
-  const Image image = renderer.Render(kNoon, Settings(2, 100, {PictureLayer::kDepth}));
+  const Image image = renderer.Render(kExtremeNoon, Settings(2, 100, {PictureLayer::kDepth}));
   ExpectLightEverywhere(image);
   for (int y = 0; y < image.height; ++y) {
     const float depth = image.layers[0].values[static_cast<std::size_t>(2 * y)];
@@ -64,7 +62,7 @@ TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
 // Hard case 6.
 TEST(RenderExtremes, AClimbToOrbitIsContinuousFromPictureToPicture) {
   const SceneRenderer renderer(BareScene(1.7, 40.0, 0.0, 20.0));
-  const double lowest_m = tests::kSanitized ? 60e3 : 1.7;  // a seventh of the pictures
+  const double lowest_m = tests::ScaledDown(1.7, 60e3);  // a seventh of the pictures
   // The sky, the horizon, which the limb passes at 100 km, and the ground.
   for (const double pitch : {40.0, -10.0, -60.0}) {
     double peak = 0.0;
@@ -103,11 +101,11 @@ class RenderExtremesFiles : public TemporaryFolder {};
 // Hard case 2.
 TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShoreAndNothingIsBlack) {
   const Image shore =
-      SceneRenderer(BareScene(0.0, 40.0, 55.0, 30.0)).Render(kNoon, Settings(12, 8));
+      SceneRenderer(BareScene(0.0, 40.0, 55.0, 30.0)).Render(kExtremeNoon, Settings(12, 8));
   for (const double depth_m : {430.0, 11000.0}) {
     const SceneRenderer renderer(AtTheBottomOf(folder_ / "sink.obj", depth_m));
     EXPECT_NEAR(renderer.eye_height_m(), 2.0 - depth_m, 1e-3);
-    const Image sky = renderer.Render(kNoon, Settings(12, 8));
+    const Image sky = renderer.Render(kExtremeNoon, Settings(12, 8));
     for (std::size_t i = 0; i < sky.rgb.size(); ++i) {
       EXPECT_NEAR(Luminance(sky.rgb[i]) / Luminance(shore.rgb[i]), 1.0, 1e-3)
           << depth_m << " m down, pixel " << i << ": the ground's shape does not change the sky";
@@ -117,7 +115,7 @@ TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShoreAndNothingIsBlack) 
       const Shot down = ShotFrom(renderer.eye_height_m(), pitch, 0.0, 60.0);
       ExpectLightEverywhere(renderer.Render(down, Settings(12, 8)));
     }
-    EXPECT_GT(renderer.Illuminance(kNoon), 90e3) << "lux";
+    EXPECT_GT(renderer.Illuminance(kExtremeNoon), 90e3) << "lux";
   }
 }
 
@@ -132,13 +130,14 @@ Scene WithoutAir(double height_m, double heading, double pitch, double fov) {
 
 // Hard cases 28, 32.
 TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
-  const SunPosition sun = SceneRenderer(WithoutAir(2.0, 0.0, 0.0, 2.0)).ApparentSun(kNoon);
+  const SunPosition sun = SceneRenderer(WithoutAir(2.0, 0.0, 0.0, 2.0)).ApparentSun(kExtremeNoon);
   const Scene scene = WithoutAir(2.0, sun.azimuth_rad / kRadiansPerDegree,
                                  sun.elevation_rad / kRadiansPerDegree, 2.0);
   const SceneRenderer renderer(scene);
   constexpr int kSide = 200;
   const Image image = renderer.Render(
-      kNoon, Settings(kSide, kSide, {PictureLayer::kTransmittance, PictureLayer::kInscatter}));
+      kExtremeNoon,
+      Settings(kSide, kSide, {PictureLayer::kTransmittance, PictureLayer::kInscatter}));
   const CameraRays camera(scene.camera, kSide, kSide);
   const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
   const double radius = 0.5 * 0.5334 * kRadiansPerDegree / sun.distance_au;
@@ -177,15 +176,15 @@ RenderSettings InSunlightAlone(RenderSettings settings) {
 // Hard case 28.
 TEST(RenderExtremes, WithoutAirTheGroundIsSunlitAndTheNightIsBlack) {
   const SceneRenderer renderer(WithoutAir(1000.0, 40.0, -30.0, 40.0));
-  ExpectLightEverywhere(renderer.Render(kNoon, Settings(8, 8)));
+  ExpectLightEverywhere(renderer.Render(kExtremeNoon, Settings(8, 8)));
   const Image night =
       renderer.Render(ParseInstant("2026-06-21T23:30:00Z"), InSunlightAlone(Settings(8, 8)));
   for (const auto& rgb : night.rgb) EXPECT_EQ(rgb, (std::array<float, 3>{}));
-  const SunPosition sun = renderer.ApparentSun(kNoon);
+  const SunPosition sun = renderer.ApparentSun(kExtremeNoon);
   const double lux =
       BandColour(renderer.medium().wavelengths_nm).Xyz(renderer.medium().solar_irradiance)[1] *
       std::sin(sun.elevation_rad) / (sun.distance_au * sun.distance_au);
-  EXPECT_NEAR(renderer.Illuminance(kNoon) / lux, 1.0, 1e-4);
+  EXPECT_NEAR(renderer.Illuminance(kExtremeNoon) / lux, 1.0, 1e-4);
 }
 
 // Hard case 33.
@@ -194,7 +193,7 @@ TEST_F(RenderExtremesFiles, TwilightAMillionTimesDimmerThanNoonHasNoBands) {
   const RenderSettings column = InSunlightAlone(Settings(1, kRows));
   for (const double heading : {310.0, 130.0}) {
     const SceneRenderer renderer(BareScene(2.0, heading, 14.0, 0.1));
-    const double noon = Luminance(renderer.Render(kNoon, column).at(0, kRows / 2));
+    const double noon = Luminance(renderer.Render(kExtremeNoon, column).at(0, kRows / 2));
     const Image image = renderer.Render(ParseInstant("2026-06-21T20:50:00Z"), column);
     const double dusk = Luminance(image.at(0, kRows / 2));
     WriteExr(folder_ / "dusk.exr", image, {});
@@ -260,11 +259,11 @@ TEST(RenderExtremes, SixteenThousandColumnsAreSmoothAndAPanoramaCloses) {
   constexpr int kWidth = 16384;
   const SceneRenderer renderer(BareScene(100.0, 40.0, 20.0, 360.0));
   const RenderSettings wide = Settings(kWidth, 1);
-  ExpectLightEverywhere(renderer.Render(kNoon, Settings(1, 1)));
+  ExpectLightEverywhere(renderer.Render(kExtremeNoon, Settings(1, 1)));
   for (const double fov : {1.0, 179.0, 360.0}) {
     const bool closes = fov == 360.0;
     // Of two rows of a panorama the upper one looks 45 degrees up.
-    const Image image = closes ? renderer.Render(kNoon, Settings(kWidth, 2))
+    const Image image = closes ? renderer.Render(kExtremeNoon, Settings(kWidth, 2))
                                : renderer.Render(ShotFrom(100.0, 20.0, 0.0, fov), wide);
     ExpectLightEverywhere(image);
     for (int x = 0; x < (closes ? kWidth : kWidth - 1); ++x) {

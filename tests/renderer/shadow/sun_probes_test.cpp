@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSunRadius = 0.265 * kRadiansPerDegree;
 
-glm::dvec3 SunInTheEast(double elevation_deg) {
+glm::dvec3 EasternSun(double elevation_deg) {
   const double elevation = elevation_deg * kRadiansPerDegree;
   return {std::cos(elevation), 0.0, std::sin(elevation)};
 }
@@ -40,7 +40,7 @@ TriangleMesh Bridge(bool with_plain) {
 
 TEST(SunProbes, LightPassesUnderABridge) {
   const Terrain terrain(Bridge(true));
-  const SunProbes probes(terrain, SunInTheEast(45.0), kSunRadius, 64);
+  const SunProbes probes(terrain, EasternSun(45.0), kSunRadius, 64);
   // 100 m over the plain the slab's shadow lies 100 m to the west.
   const SunlitPath path = probes.Along({-1000.0, 0.0, 100.0}, {1.0, 0.0, 0.0}, 2000.0);
   ASSERT_FALSE(path.empty());
@@ -52,7 +52,7 @@ TEST(SunProbes, LightPassesUnderABridge) {
 
 TEST(SunProbes, HalfShadeIsAsWideAsTheDisk) {
   const Terrain terrain(Bridge(true));
-  const SunProbes probes(terrain, SunInTheEast(45.0), kSunRadius, 256);
+  const SunProbes probes(terrain, EasternSun(45.0), kSunRadius, 256);
   const SunlitPath path = probes.Along({-1000.0, 0.0, 100.0}, {1.0, 0.0, 0.0}, 1000.0);
   ASSERT_GE(path.size(), 2U);
   // The slab's western edge, 141 m away along the beam; a ray across it.
@@ -63,7 +63,7 @@ TEST(SunProbes, HalfShadeIsAsWideAsTheDisk) {
 
 TEST(SunProbes, AirThatNoBeamOverTerrainReachesIsNotProbed) {
   const Terrain terrain(Bridge(false));
-  const SunProbes probes(terrain, SunInTheEast(10.0), kSunRadius);
+  const SunProbes probes(terrain, EasternSun(10.0), kSunRadius);
   EXPECT_EQ(probes.Along({0.0, 0.0, 300.0}, {0.0, 0.0, 1.0}, 1e5), (SunlitPath{{0.0, 1e5}}));
   EXPECT_EQ(probes.Along({100.0, 0.0, 10.0}, {1.0, 0.0, 0.0}, 1e5), (SunlitPath{{0.0, 1e5}}));
   EXPECT_TRUE(probes.Along({0.0, 0.0, 300.0}, {0.0, 0.0, 1.0}, 0.0).empty());
@@ -89,7 +89,7 @@ TEST(SunProbes, OverOneSurfaceTheyAgreeWithShadowHeights) {
   mesh.normals.assign(6, {0.0F, 0.0F, 1.0F});
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}};
   const Terrain terrain(mesh);
-  const glm::dvec3 to_sun = SunInTheEast(8.0);
+  const glm::dvec3 to_sun = EasternSun(8.0);
   const SunProbes probes(terrain, to_sun, kSunRadius, 64);
   const ShadowHeights heights(terrain.mesh(), to_sun, kSunRadius, {.cell_m = 50.0});
   const glm::dvec3 eye(-9000.0, 100.0, 400.0);
@@ -113,7 +113,7 @@ TEST(SunProbes, ARidgeOfNoThicknessLetsNoLightThrough) {
     wall.triangles = facing_sun ? std::vector<std::array<std::uint32_t, 3>>{{0, 2, 1}, {2, 3, 1}}
                                 : std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {2, 1, 3}};
     const Terrain terrain(wall);
-    const glm::dvec3 to_sun = SunInTheEast(8.0);
+    const glm::dvec3 to_sun = EasternSun(8.0);
     const SunProbes probes(terrain, to_sun, kSunRadius);
     const ShadowHeights heights(wall, to_sun, kSunRadius);
     // Rays that stay where the whole disk is hidden, up to the sheet itself, and along it.

@@ -28,7 +28,7 @@ glm::dvec3 ToDouble(const std::array<float, 3>& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-GeodeticPosition Degrees(double latitude, double longitude, double height_m = 0.0) {
+GeodeticPosition PlaceOfDegrees(double latitude, double longitude, double height_m = 0.0) {
   return {latitude * kRadiansPerDegree, longitude * kRadiansPerDegree, height_m};
 }
 
@@ -81,7 +81,7 @@ double LongestEdge(const TriangleMesh& mesh) {
 TEST(MeshFromElevation, VerticesLieAtTheirHeightOverTheEllipsoid) {
   const ElevationGrid grid =
       Grid(47.0, 7.5, 0.01, 101, 101, [](int row, int column) { return 10.0 * row + column; });
-  const LocalFrame frame(kWgs84, Degrees(46.5, 8.0));
+  const LocalFrame frame(kWgs84, PlaceOfDegrees(46.5, 8.0));
   const TriangleMesh mesh = MeshFromElevation(grid, frame);
   ASSERT_EQ(mesh.positions.size(), 101U * 101U);
   ASSERT_EQ(mesh.triangles.size(), 2U * 100U * 100U);
@@ -118,7 +118,8 @@ TEST(MeshFromElevation, APeak150KilometresAwaySinksAsTheEllipsoidSaysItMust) {
   const ElevationGrid grid = Grid(peak_latitude, 8.0, 0.01, 3, 3, [&](int row, int column) {
     return row == 0 && column == 0 ? peak_m : 0.0;
   });
-  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(latitude, 8.0)));
+  const TriangleMesh mesh =
+      MeshFromElevation(grid, LocalFrame(kWgs84, PlaceOfDegrees(latitude, 8.0)));
   EXPECT_NEAR(static_cast<double>(mesh.positions[0][2]), static_cast<double>(up), 1e-3)
       << "float at 1.2 km";
   EXPECT_NEAR(static_cast<double>(up), peak_m - 150.0e3 * 150.0e3 / (2.0 * 6.367e6), 3.0)
@@ -130,8 +131,10 @@ TEST(MeshFromElevation, TheGroundIsOnePieceOverThe180thMeridian) {
   const auto height = [](int row, int column) { return 20.0 * ((row * 7 + column * 3) % 11); };
   const ElevationGrid over = Grid(-17.0, 179.9, 0.01, 21, 21, height);
   const ElevationGrid away = Grid(-17.0, 19.9, 0.01, 21, 21, height);
-  const TriangleMesh mesh = MeshFromElevation(over, LocalFrame(kWgs84, Degrees(-17.1, 180.0)));
-  const TriangleMesh same = MeshFromElevation(away, LocalFrame(kWgs84, Degrees(-17.1, 20.0)));
+  const TriangleMesh mesh =
+      MeshFromElevation(over, LocalFrame(kWgs84, PlaceOfDegrees(-17.1, 180.0)));
+  const TriangleMesh same =
+      MeshFromElevation(away, LocalFrame(kWgs84, PlaceOfDegrees(-17.1, 20.0)));
   ASSERT_EQ(mesh.triangles, same.triangles);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     EXPECT_LT(glm::length(ToDouble(mesh.positions[i]) - ToDouble(same.positions[i])), 2e-3)
@@ -146,7 +149,7 @@ TEST(MeshFromElevation, ARingAroundThePoleIsClosedThereAndAtItsSeam) {
     ElevationGrid grid = Grid(90.0, -180.0, 0.01, 8, 36, [](int row, int) { return 5.0 * row; });
     grid.step_lon_rad = 10.0 * kRadiansPerDegree;
     grid.north_rad = north ? 89.995 * kRadiansPerDegree : (-89.995 + 0.07) * kRadiansPerDegree;
-    const LocalFrame frame(kWgs84, Degrees(north ? 90.0 : -90.0, 0.0));
+    const LocalFrame frame(kWgs84, PlaceOfDegrees(north ? 90.0 : -90.0, 0.0));
     const TriangleMesh mesh = MeshFromElevation(grid, frame);
     EXPECT_EQ(mesh.positions.size(), 8U * 36U + 1U);
     EXPECT_EQ(mesh.triangles.size(), 2U * 7U * 36U + 36U);
@@ -160,7 +163,7 @@ TEST(MeshFromElevation, BesideAVoidTrianglesAreLeftOut) {
   const ElevationGrid grid = Grid(46.0, 8.0, 0.001, 5, 5, [](int row, int column) {
     return row == 2 && column == 2 ? std::numeric_limits<double>::quiet_NaN() : 100.0;
   });
-  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(46.0, 8.0)));
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, PlaceOfDegrees(46.0, 8.0)));
   EXPECT_EQ(mesh.positions.size(), 24U);
   EXPECT_EQ(mesh.triangles.size(), 12U * 2U + 4U) << "four cells lose the half at the void";
   for (const auto& position : mesh.positions) {
@@ -173,7 +176,7 @@ TEST(MeshFromElevation, NormalsOfASlopeAreItsOwn) {
   const double step_m = 6.3671e6 * 0.001 * kRadiansPerDegree;
   const ElevationGrid grid = Grid(45.0 + 0.01, 8.0 - 0.01, 0.001, 21, 21,
                                   [](int row, int) { return 1000.0 - 30.0 * row; });
-  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(45.0, 8.0)));
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, PlaceOfDegrees(45.0, 8.0)));
   const auto& normal = mesh.normals[grid.index(10, 10)];
   EXPECT_NEAR(normal[0], 0.0, 1e-4);
   EXPECT_NEAR(normal[1] / normal[2], -30.0 / step_m, 1e-4);
@@ -183,7 +186,7 @@ TEST(MeshFromElevation, NormalsOfASlopeAreItsOwn) {
 TEST(MeshFromElevation, ACrestAlongADiagonalStaysWhole) {
   const ElevationGrid grid = Grid(
       46.0, 8.0, 0.001, 9, 9, [](int row, int column) { return row + column == 8 ? 100.0 : 0.0; });
-  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, Degrees(46.0, 8.0)));
+  const TriangleMesh mesh = MeshFromElevation(grid, LocalFrame(kWgs84, PlaceOfDegrees(46.0, 8.0)));
   int crest_edges = 0;
   for (const auto& triangle : mesh.triangles) {
     int high = 0;
@@ -197,12 +200,12 @@ TEST(MeshFromElevation, ACrestAlongADiagonalStaysWhole) {
 TEST(MeshFromElevation, TheGroundIsOnePieceOverTheMeridianOfGreenwich) {
   const auto height = [](int row, int column) { return 20.0 * ((row * 7 + column * 3) % 11); };
   const TriangleMesh same = MeshFromElevation(Grid(51.6, 19.9, 0.01, 21, 21, height),
-                                              LocalFrame(kWgs84, Degrees(51.5, 20.0)));
+                                              LocalFrame(kWgs84, PlaceOfDegrees(51.5, 20.0)));
   // Rasters count longitudes from -180 or from 0 degrees.
   for (const double west : {-0.1, 359.9}) {
     for (const double eye : {0.0, 360.0}) {
       const TriangleMesh mesh = MeshFromElevation(Grid(51.6, west, 0.01, 21, 21, height),
-                                                  LocalFrame(kWgs84, Degrees(51.5, eye)));
+                                                  LocalFrame(kWgs84, PlaceOfDegrees(51.5, eye)));
       ASSERT_EQ(mesh.triangles, same.triangles) << west;
       for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         EXPECT_LT(glm::length(ToDouble(mesh.positions[i]) - ToDouble(same.positions[i])), 2e-3)

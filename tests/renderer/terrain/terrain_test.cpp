@@ -19,7 +19,7 @@ namespace alpenglow {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 std::array<float, 3> ToFloat(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -188,7 +188,7 @@ TEST(Terrain, ShadowsEndWhereTheRayEnds) {
 TEST(Terrain, RaysThatAreNoRaysAreRefused) {
   const Terrain terrain(Plane());
   const glm::dvec3 fine(0.0, 0.0, 1.0);
-  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+  for (const double bad : {kNoNumber, kInfinity, -kInfinity}) {
     for (int axis = 0; axis < 3; ++axis) {
       glm::dvec3 wrong = fine;
       wrong[axis] = bad;
@@ -201,7 +201,7 @@ TEST(Terrain, RaysThatAreNoRaysAreRefused) {
   }
   EXPECT_THROW(static_cast<void>(terrain.Intersect(fine, glm::dvec3(0.0))), InternalError);
   EXPECT_THROW(static_cast<void>(terrain.Occluded(fine, fine, fine, -1.0)), InternalError);
-  EXPECT_THROW(static_cast<void>(terrain.Occluded(fine, fine, fine, kNan)), InternalError);
+  EXPECT_THROW(static_cast<void>(terrain.Occluded(fine, fine, fine, kNoNumber)), InternalError);
 }
 
 TEST(Terrain, HugeButFiniteRaysMissInPeace) {

@@ -23,8 +23,8 @@ constexpr int kFirstUnit = 3;
 constexpr GLuint kBinding = 5;
 
 /// Tables on both processors, and an eye whose sun stands in the south west.
-struct Both {
-  Both(double altitude_m, double mu_s)
+struct BothTables {
+  BothTables(double altitude_m, double mu_s)
       : medium(MakeMediumTables(tests::Earth().air)),
         tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, medium, {altitude_m, mu_s},
                              AirTablesSizeOf(AirQuality::kLow, altitude_m))),
@@ -60,13 +60,13 @@ struct Both {
   AirTextures textures;
 };
 
-struct Look {
+struct ViewOfAir {
   double angle, azimuth, distance_km;
 };
 
 /// All over the sphere, every other one near the horizon.
-std::vector<Look> Looks(const AirMap& map, double sky_range) {
-  std::vector<Look> looks;
+std::vector<ViewOfAir> Looks(const AirMap& map, double sky_range) {
+  std::vector<ViewOfAir> looks;
   for (int i = 1; i <= 400; ++i) {
     const double u = 2.0 * Halton(i, 2) - 1.001;  // not the horizon itself, where two sides meet
     const double v = i % 2 == 0 ? u : u * u * u;
@@ -78,9 +78,10 @@ std::vector<Look> Looks(const AirMap& map, double sky_range) {
   return looks;
 }
 
-std::vector<tests::Arguments<float>> ArgumentsOf(const Both& both, const std::vector<Look>& looks) {
+std::vector<tests::Arguments<float>> ArgumentsOf(const BothTables& both,
+                                                 const std::vector<ViewOfAir>& looks) {
   std::vector<tests::Arguments<float>> points;
-  for (const Look& look : looks) {
+  for (const ViewOfAir& look : looks) {
     const glm::vec3 d(both.Direction(look.angle, look.azimuth));
     points.push_back({d.x, d.y, d.z, static_cast<float>(look.distance_km)});
   }
@@ -127,8 +128,8 @@ TEST_F(AirTexturesOnGpu, BlockLiesWhereTheDriverLooks) {
 
 void ExpectSkyOfCpu(double altitude_m, double mu_s, double tolerance) {
   SCOPED_TRACE(fmt::format("{} m, sun {}", altitude_m, mu_s));
-  const Both both(altitude_m, mu_s);
-  const std::vector<Look> looks = Looks(both.tables.map, both.tables.map.sky_range);
+  const BothTables both(altitude_m, mu_s);
+  const std::vector<ViewOfAir> looks = Looks(both.tables.map, both.tables.map.sky_range);
   const auto points = ArgumentsOf(both, looks);
   const auto sky = both.OnGpu("SkyRadiance(vec3(a[0], a[1], a[2])).y", points);
   const auto through = both.OnGpu("TransmittanceToSpace(vec3(a[0], a[1], a[2])).y", points);
@@ -142,8 +143,8 @@ void ExpectSkyOfCpu(double altitude_m, double mu_s, double tolerance) {
 
 void ExpectWaysOfCpu(double altitude_m, double mu_s, double tolerance) {
   SCOPED_TRACE(fmt::format("{} m, sun {}", altitude_m, mu_s));
-  const Both both(altitude_m, mu_s);
-  const std::vector<Look> looks = Looks(both.tables.map, both.tables.map.air_sky_range);
+  const BothTables both(altitude_m, mu_s);
+  const std::vector<ViewOfAir> looks = Looks(both.tables.map, both.tables.map.air_sky_range);
   const auto points = ArgumentsOf(both, looks);
   const auto value = [&](const char* member) {
     return both.OnGpu(fmt::format("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).{}.y", member), points);
@@ -180,7 +181,7 @@ TEST_F(AirTexturesOnGpu, WaysAreThoseOfTheProcessor) {
 }
 
 TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSun) {
-  Both both(1500.0, 0.1);
+  BothTables both(1500.0, 0.1);
   const AirEye moved{1600.0, 0.08};
   const double sine = std::sqrt((1.0 - moved.mu_s) * (1.0 + moved.mu_s));
   both.textures.SetView(moved.altitude_m, {-0.6 * sine, -0.8 * sine, moved.mu_s});
@@ -188,8 +189,8 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
   const AirMap map(tests::Earth().medium, moved.altitude_m, moved.ceiling_m,
                    both.tables.map.twilight_fall);
   std::vector<tests::Arguments<float>> points;
-  const std::vector<Look> looks = Looks(map, map.sky_range);
-  for (const Look& look : looks) {
+  const std::vector<ViewOfAir> looks = Looks(map, map.sky_range);
+  for (const ViewOfAir& look : looks) {
     const glm::vec3 d(
         both.Direction(look.angle - map.horizon_dip + both.tables.map.horizon_dip, look.azimuth));
     points.push_back({d.x, d.y, d.z, static_cast<float>(look.distance_km)});
@@ -206,7 +207,7 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
 }
 
 TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
-  const Both both(0.0, 0.5);
+  const BothTables both(0.0, 0.5);
   std::vector<tests::Arguments<float>> points;
   for (int i = 1; i <= 300; ++i) {
     const double h = 9.0 * Halton(i, 2);

@@ -10,7 +10,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kStep_s = 1.0 / 120.0;
+constexpr double kPilotStep_s = 1.0 / 120.0;
 constexpr double kDegree = kRadiansPerDegree;
 
 /// An aircraft with its autopilot, far over the ground.
@@ -23,14 +23,14 @@ struct Held {
       : kind(of), state(LevelFlight(of, kWgs84, PlaceFromDegrees(46.0, 8.0, height_m), 0.0)) {}
 
   void Step(const Stick& hands = {}) {
-    const Autopilot::Flown flown = autopilot.Fly(state, kind, kWgs84, hands, kStep_s);
+    const Autopilot::Flown flown = autopilot.Fly(state, kind, kWgs84, hands, kPilotStep_s);
     state = Stepped(
         flown.state, kind, kWgs84, flown.stick, [](const GeodeticPosition&) { return -1e5; },
-        kStep_s);
+        kPilotStep_s);
   }
   template <typename Visit>
   void Fly(double seconds, const Visit& visit) {
-    for (double t = 0.0; t < seconds; t += kStep_s) {
+    for (double t = 0.0; t < seconds; t += kPilotStep_s) {
       Step();
       visit(t);
     }
@@ -110,10 +110,10 @@ TEST(Autopilot, EngagedInATurnItJerksNothing) {
   held.Fly(20.0, [&](double t) {
     const AircraftReadout now = held.Read();
     if (t > 0.5) {
-      EXPECT_LT(std::abs(now.bank_rad - before.bank_rad) / kStep_s, 12.0 * kDegree)
+      EXPECT_LT(std::abs(now.bank_rad - before.bank_rad) / kPilotStep_s, 12.0 * kDegree)
           << "8 degrees a second are asked for";
     }
-    EXPECT_LT(std::abs(now.load - before.load) / kStep_s, 2.0) << "loads a second";
+    EXPECT_LT(std::abs(now.load - before.load) / kPilotStep_s, 2.0) << "loads a second";
     before = now;
   });
 }

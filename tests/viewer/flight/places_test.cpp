@@ -16,8 +16,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-double Sea(const GeodeticPosition&) { return 0.0; }
-double Degrees(double radians) { return radians / kRadiansPerDegree; }
+double PlacesSea(const GeodeticPosition&) { return 0.0; }
+double PlaceDegrees(double radians) { return radians / kRadiansPerDegree; }
 
 TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
   const UtcInstant winter = ParseInstant("2026-01-15T12:00:00Z");
@@ -28,7 +28,7 @@ TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
     const std::string local = FormatInZone(winter, place.zone);
     if (place.kind == PlaceKind::kPole) continue;
     const double hours = std::stod(local.substr(19, 3));
-    const double of_sun = Degrees(place.place.longitude_rad) / 15.0;
+    const double of_sun = PlaceDegrees(place.place.longitude_rad) / 15.0;
     EXPECT_LT(std::abs(std::remainder(hours - of_sun, 24.0)), 3.3)
         << place.name << ": Lhasa keeps the time of Beijing";
   }
@@ -101,8 +101,9 @@ TEST(Places, ASearchGivesTheBestFirstAndNoMoreThanAskedFor) {
 TEST(Places, AnEyeStandsOnTheRunwayAndFliesOverTheCity) {
   const Eye zurich = EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
-  EXPECT_NEAR(Degrees(zurich.heading_rad), 155.0, 1e-9) << "runway 16, five degrees of it grid";
-  const Eye lhasa = EyeAt(PlaceNamed("Lhasa"), {}, Sea);
+  EXPECT_NEAR(PlaceDegrees(zurich.heading_rad), 155.0, 1e-9)
+      << "runway 16, five degrees of it grid";
+  const Eye lhasa = EyeAt(PlaceNamed("Lhasa"), {}, PlacesSea);
   EXPECT_EQ(lhasa.place.height_m, 3656.0 + 600.0) << "without terrain";
 }
 

@@ -9,7 +9,7 @@
 namespace alpenglow {
 namespace {
 
-const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+const GeodeticPosition kFollowedPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
 constexpr GroundExtent kSmall{8e3, 128};
 
 GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_deg) {
@@ -25,7 +25,7 @@ GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_de
 /// What lies around a place of the built-in range, every `stride`-th sample.
 std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double half_width_m,
                                          int most_samples) {
-  static const ElevationGrid range = BuiltInRange(kPlace);
+  static const ElevationGrid range = BuiltInRange(kFollowedPlace);
   if (!range.Covers(place.latitude_rad, place.longitude_rad)) return std::nullopt;
   ElevationGrid around;
   around.columns = around.rows = most_samples;
@@ -45,19 +45,20 @@ std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double h
 
 /// Solved once for all of these tests.
 const std::shared_ptr<const SolvedAir>& Air() {
-  static const auto air = SolveAir(
-      OnOsculatingSphere(MediumPreset("bruneton2017"), kPlace.latitude_rad), AirSolution::kDraft);
+  static const auto air =
+      SolveAir(OnOsculatingSphere(MediumPreset("bruneton2017"), kFollowedPlace.latitude_rad),
+               AirSolution::kDraft);
   return air;
 }
 
 TEST(GroundFollower, WithoutLandThereIsNoLight) {
   GroundFollower follower({}, nullptr, kSmall);
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   EXPECT_FALSE(follower.Light());
   follower.SetGround(
       [](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> { return {}; });
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
 }
 
@@ -65,7 +66,7 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
   GroundCover sea;
   sea.kind = GroundCover::Kind::kWater;
   GroundFollower follower(sea, nullptr, kSmall);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   ASSERT_EQ(follower.sea_mirror().size(), SeaMirror::kSide * SeaMirror::kSide);
   for (const BandTexel& texel : follower.sea_mirror()) EXPECT_GT(texel[1], 0.0F);
@@ -74,16 +75,17 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
 TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
   ASSERT_NE(follower.lit(), nullptr);
   EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
   EXPECT_GT(follower.making_s(), 0.0);
   const LightOfVertices light = follower.Light();
   ASSERT_TRUE(light);
-  GeodeticPosition foot = kPlace;
+  GeodeticPosition foot = kFollowedPlace;
   LandVertex vertex{};
   vertex.normal = {0.0F, 0.0F, 1.0F};
-  vertex.position_m = {0.0F, 0.0F, static_cast<float>(RangeAround(kPlace, 100.0, 3)->height_m[4])};
+  vertex.position_m = {0.0F, 0.0F,
+                       static_cast<float>(RangeAround(kFollowedPlace, 100.0, 3)->height_m[4])};
   const std::vector<VertexLight> lit = light(LocalFrame(kWgs84, foot), {&vertex, 1});
   ASSERT_EQ(lit.size(), 1U);
   EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
@@ -100,7 +102,7 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
     widths_m.push_back(half_width_m);
     return RangeAround(place, half_width_m, most_samples);
   });
-  auto view = ViewFrom(kPlace, 30.0);
+  auto view = ViewFrom(kFollowedPlace, 30.0);
   for (const double height_m : {1000.0, 1200.0, 1100.0, 800.0}) {
     view.eye.height_m = height_m;
     static_cast<void>(follower.Settle(Air(), view));
@@ -111,11 +113,12 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
 TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kPlace, 30.0)));
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
   const auto first = follower.lit();
-  EXPECT_FALSE(follower.Settle(Air(), ViewFrom(kPlace, 30.02))) << "a thirteenth of the disk";
+  EXPECT_FALSE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.02)))
+      << "a thirteenth of the disk";
   EXPECT_EQ(follower.lit(), first);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kPlace, 20.0)));
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 20.0)));
   EXPECT_NE(follower.lit(), first);
   EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
 }

@@ -210,7 +210,7 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
                       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});
 }
 
-double Quantile(const std::vector<double>& ascending, double share) {
+double LightQuantile(const std::vector<double>& ascending, double share) {
   return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
 }
 
@@ -243,8 +243,8 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
   for (const double elevation_deg : {50.0, 12.0, -3.0}) {
     const std::vector<double> differences =
         LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-    EXPECT_LT(Quantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
-    EXPECT_LT(Quantile(differences, 0.9), 0.03)
+    EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
+    EXPECT_LT(LightQuantile(differences, 0.9), 0.03)
         << "the sky's light on relief is corrected by that of an open place";
   }
 }
@@ -264,8 +264,8 @@ TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
     for (const double elevation_deg : {50.0, 12.0}) {
       const std::vector<double> differences =
           LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-      EXPECT_LT(Quantile(differences, 0.5), median) << elevation_deg;
-      EXPECT_LT(Quantile(differences, 0.9), most) << elevation_deg;
+      EXPECT_LT(LightQuantile(differences, 0.5), median) << elevation_deg;
+      EXPECT_LT(LightQuantile(differences, 0.9), most) << elevation_deg;
     }
   }
 }
@@ -286,8 +286,9 @@ TEST_F(GroundOnGpu, DrapedColoursAreTheRenderers) {
   std::filesystem::remove(file);
   const std::vector<double> differences =
       LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
-  EXPECT_LT(Quantile(differences, 0.5), 5e-3);
-  EXPECT_LT(Quantile(differences, 0.98), 0.02) << "a picture resampled at its own width of a pixel";
+  EXPECT_LT(LightQuantile(differences, 0.5), 5e-3);
+  EXPECT_LT(LightQuantile(differences, 0.98), 0.02)
+      << "a picture resampled at its own width of a pixel";
 }
 
 TEST_F(GroundOnGpu, MappedLandCoverIsTheRenderers) {
@@ -303,8 +304,8 @@ TEST_F(GroundOnGpu, MappedLandCoverIsTheRenderers) {
   std::filesystem::remove(file);
   const std::vector<double> differences =
       LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
-  EXPECT_LT(Quantile(differences, 0.5), 5e-3);
-  EXPECT_LT(Quantile(differences, 0.9), 0.03)
+  EXPECT_LT(LightQuantile(differences, 0.5), 5e-3);
+  EXPECT_LT(LightQuantile(differences, 0.9), 0.03)
       << "shores, and steep edges of snow, are elsewhere by "
          "a texel of the map resampled";
 }
@@ -318,9 +319,9 @@ TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
       const LitGround lit(site, tests::RoughSun(*site, elevation_deg));
       for (const double eye_m : {1e3, 40e3}) {
         const std::vector<double> differences = PlanetDifferences(lit, eye_m);
-        EXPECT_LT(Quantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
+        EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
             << elevation_deg << " " << eye_m;
-        EXPECT_LT(Quantile(differences, 0.98), elevation_deg > 0.0 ? 0.06 : 0.12)
+        EXPECT_LT(LightQuantile(differences, 0.98), elevation_deg > 0.0 ? 0.06 : 0.12)
             << "the judge's sky is linear between sectors of 22.5 degrees, and in twilight between "
                "suns a degree apart";
       }

@@ -17,7 +17,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kWidth = 1280, kHeight = 720;
+constexpr int kPanelWidth = 1280, kPanelHeight = 720;
 
 using Instruments = tests::HudPicture;
 
@@ -56,24 +56,24 @@ TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
        },
        0.3, 0.75, 0.7, 0.9}};
   Hud hud;
-  const Image before = Drawn(hud, tests::Flying(), kWidth, kHeight);
+  const Image before = Drawn(hud, tests::Flying(), kPanelWidth, kPanelHeight);
   for (const Told& told : cases) {
     SCOPED_TRACE(told.name);
     HudModel model = tests::Flying();
     told.change(model);
-    const Box box = Difference(before, Drawn(hud, model, kWidth, kHeight));
+    const Box box = Difference(before, Drawn(hud, model, kPanelWidth, kPanelHeight));
     EXPECT_FALSE(box.empty());
-    EXPECT_GE(box.left, told.left * kWidth);
-    EXPECT_GE(box.top, told.top * kHeight);
-    EXPECT_LE(box.right, told.right * kWidth);
-    EXPECT_LE(box.bottom, told.bottom * kHeight);
+    EXPECT_GE(box.left, told.left * kPanelWidth);
+    EXPECT_GE(box.top, told.top * kPanelHeight);
+    EXPECT_LE(box.right, told.right * kPanelWidth);
+    EXPECT_LE(box.bottom, told.bottom * kPanelHeight);
   }
 }
 
 // Written apart from cameras: rotations about the axes of the aircraft, one after the other.
 glm::dvec3 ThroughPixel(const HudFlight& flight, double x, double y) {
-  const double focal = 0.5 * kWidth / std::tan(0.5 * flight.fov_rad);
-  const glm::dvec3 seen{x - 0.5 * kWidth, 0.5 * kHeight - y, focal};  // right, up, ahead
+  const double focal = 0.5 * kPanelWidth / std::tan(0.5 * flight.fov_rad);
+  const glm::dvec3 seen{x - 0.5 * kPanelWidth, 0.5 * kPanelHeight - y, focal};  // right, up, ahead
   const double cr = std::cos(flight.roll_rad), sr = std::sin(flight.roll_rad);
   const glm::dvec3 level{seen.x * cr + seen.y * sr, seen.y * cr - seen.x * sr, seen.z};
   const double cp = std::cos(flight.pitch_rad), sp = std::sin(flight.pitch_rad);
@@ -92,7 +92,8 @@ std::optional<double> ElevationOfLine(const Image& image, const HudFlight& fligh
   constexpr int kReach = 12;
   double sum = 0.0;
   int count = 0;
-  for (int y = std::max(near_y - kReach, 0); y <= std::min(near_y + kReach, kHeight - 1); ++y) {
+  for (int y = std::max(near_y - kReach, 0); y <= std::min(near_y + kReach, kPanelHeight - 1);
+       ++y) {
     if (!IsGreen(image.at(x, y))) continue;
     sum += y + 0.5;
     ++count;
@@ -115,14 +116,14 @@ TEST_F(Instruments, TheHorizonOfTheLadderLiesOnTheHorizon) {
     model.flight.fov_rad = attitude.fov_deg * kRadiansPerDegree;
     SCOPED_TRACE(fmt::format("pitch {} roll {} view {}", attitude.pitch_deg, attitude.roll_deg,
                              attitude.fov_deg));
-    const Image image = Drawn(hud, model, kWidth, kHeight);
-    const double pixel_rad = 2.0 * std::tan(0.5 * model.flight.fov_rad) / kWidth;
+    const Image image = Drawn(hud, model, kPanelWidth, kPanelHeight);
+    const double pixel_rad = 2.0 * std::tan(0.5 * model.flight.fov_rad) / kPanelWidth;
     int found = 0;
     for (const double aside : {-0.15, -0.11, 0.11, 0.15}) {
       // Where the judge says that the column meets the horizontal plane.
-      const int x = static_cast<int>((0.5 + aside) * kWidth);
+      const int x = static_cast<int>((0.5 + aside) * kPanelWidth);
       int y = 0;
-      while (y < kHeight && ThroughPixel(model.flight, x + 0.5, y + 0.5).z > 0.0) ++y;
+      while (y < kPanelHeight && ThroughPixel(model.flight, x + 0.5, y + 0.5).z > 0.0) ++y;
       const auto elevation = ElevationOfLine(image, model.flight, x, y);
       ASSERT_TRUE(elevation.has_value()) << "column " << x << ", row " << y;
       EXPECT_NEAR(*elevation, 0.0, 1.0 * pixel_rad)
@@ -137,10 +138,10 @@ TEST_F(Instruments, TwiceTheScaleIsTheSameOnTwiceTheDots) {
   Hud once({.scale = 1.0}), twice({.scale = 2.0});
   HudModel model = tests::Flying(), changed = model;
   changed.time.local = "07:03:51";
-  const Box small =
-      Difference(Drawn(once, model, kWidth, kHeight), Drawn(once, changed, kWidth, kHeight));
-  const Box large = Difference(Drawn(twice, model, 2 * kWidth, 2 * kHeight),
-                               Drawn(twice, changed, 2 * kWidth, 2 * kHeight));
+  const Box small = Difference(Drawn(once, model, kPanelWidth, kPanelHeight),
+                               Drawn(once, changed, kPanelWidth, kPanelHeight));
+  const Box large = Difference(Drawn(twice, model, 2 * kPanelWidth, 2 * kPanelHeight),
+                               Drawn(twice, changed, 2 * kPanelWidth, 2 * kPanelHeight));
   constexpr double kSlack = 8.0;  // pixels: letters are hinted at their size
   EXPECT_NEAR(large.left, 2.0 * small.left, kSlack);
   EXPECT_NEAR(large.right, 2.0 * small.right, kSlack);

@@ -9,7 +9,7 @@
 namespace alpenglow {
 namespace {
 
-double Sea(const GeodeticPosition&) { return 0.0; }
+double CockpitSea(const GeodeticPosition&) { return 0.0; }
 
 Cockpit NewCockpit() {
   return {{PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z")};
@@ -18,37 +18,37 @@ std::string Shows(const Cockpit& cockpit) { return FormatUtc(cockpit.clock().now
 
 TEST(Cockpit, DoesWhatIsOfFlightAndTimeAndLeavesTheRestToOthers) {
   Cockpit cockpit = NewCockpit();
-  EXPECT_EQ(cockpit.Do(Action::kFasterTime, Sea), "time x10");
-  EXPECT_EQ(cockpit.Do(Action::kLaterHour, Sea), "");
+  EXPECT_EQ(cockpit.Do(Action::kFasterTime, CockpitSea), "time x10");
+  EXPECT_EQ(cockpit.Do(Action::kLaterHour, CockpitSea), "");
   EXPECT_EQ(Shows(cockpit), "2026-06-21T13:00:00Z");
-  EXPECT_EQ(cockpit.Do(Action::kToSunset, Sea), "sunset");
+  EXPECT_EQ(cockpit.Do(Action::kToSunset, CockpitSea), "sunset");
   EXPECT_EQ(Shows(cockpit).substr(0, 13), "2026-06-21T19");
-  EXPECT_EQ(cockpit.Do(Action::kToMoonrise, Sea), "no moonrise here within a year");
-  EXPECT_EQ(cockpit.Do(Action::kTrackMode, Sea), "there is no track to follow");
-  EXPECT_EQ(cockpit.Do(Action::kScreenshot, Sea), std::nullopt);
-  EXPECT_EQ(cockpit.Do(Action::kHud, Sea), std::nullopt);
-  EXPECT_EQ(cockpit.Do(Action::kForward, Sea), std::nullopt) << "held keys are controls";
+  EXPECT_EQ(cockpit.Do(Action::kToMoonrise, CockpitSea), "no moonrise here within a year");
+  EXPECT_EQ(cockpit.Do(Action::kTrackMode, CockpitSea), "there is no track to follow");
+  EXPECT_EQ(cockpit.Do(Action::kScreenshot, CockpitSea), std::nullopt);
+  EXPECT_EQ(cockpit.Do(Action::kHud, CockpitSea), std::nullopt);
+  EXPECT_EQ(cockpit.Do(Action::kForward, CockpitSea), std::nullopt) << "held keys are controls";
 }
 
 TEST(Cockpit, GoesAroundTheModesThatThereAre) {
   Cockpit cockpit = NewCockpit();
-  EXPECT_EQ(cockpit.Do(Action::kNextMode, Sea), "aircraft");
-  EXPECT_EQ(cockpit.Do(Action::kNextMode, Sea), "free camera");
-  EXPECT_EQ(cockpit.Do(Action::kPreviousMode, Sea), "aircraft");
-  EXPECT_EQ(cockpit.Do(Action::kHoldHeading, Sea), "HDG 000");
-  EXPECT_EQ(cockpit.Do(Action::kAutopilotOff, Sea), "autopilot off");
-  EXPECT_EQ(cockpit.Do(Action::kFirstMode, Sea), "free camera");
+  EXPECT_EQ(cockpit.Do(Action::kNextMode, CockpitSea), "aircraft");
+  EXPECT_EQ(cockpit.Do(Action::kNextMode, CockpitSea), "free camera");
+  EXPECT_EQ(cockpit.Do(Action::kPreviousMode, CockpitSea), "aircraft");
+  EXPECT_EQ(cockpit.Do(Action::kHoldHeading, CockpitSea), "HDG 000");
+  EXPECT_EQ(cockpit.Do(Action::kAutopilotOff, CockpitSea), "autopilot off");
+  EXPECT_EQ(cockpit.Do(Action::kFirstMode, CockpitSea), "free camera");
 }
 
 TEST(Cockpit, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
   Cockpit cockpit = NewCockpit();
-  EXPECT_EQ(cockpit.Do(Action::kPause, Sea), "paused");
+  EXPECT_EQ(cockpit.Do(Action::kPause, CockpitSea), "paused");
   const double latitude = cockpit.pilot().eye().place.latitude_rad;
-  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0, Sea);
+  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0, CockpitSea);
   EXPECT_GT(cockpit.pilot().eye().place.latitude_rad, latitude);
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, CockpitSea));
   const double stands = cockpit.pilot().eye().place.latitude_rad;
-  cockpit.Advance({.look_right = 0.1}, 1.0, Sea);
+  cockpit.Advance({.look_right = 0.1}, 1.0, CockpitSea);
   EXPECT_EQ(cockpit.pilot().eye().place.latitude_rad, stands);
   EXPECT_GT(cockpit.pilot().eye().heading_rad, 0.05) << "one can look around";
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:00Z");
@@ -56,18 +56,18 @@ TEST(Cockpit, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
 
 TEST(Cockpit, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
   Cockpit cockpit = NewCockpit();
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
-  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, Sea), "speed x2");
-  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, Sea), "speed x4");
-  cockpit.Advance({}, 2.5, Sea);
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, CockpitSea));
+  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, CockpitSea), "speed x2");
+  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, CockpitSea), "speed x4");
+  cockpit.Advance({}, 2.5, CockpitSea);
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:10Z");
 }
 
 TEST(Cockpit, FliesToPlacesByName) {
   Cockpit cockpit = NewCockpit();
-  cockpit.GoTo(PlaceNamed("Matterhorn"), Sea);
+  cockpit.GoTo(PlaceNamed("Matterhorn"), CockpitSea);
   EXPECT_EQ(cockpit.pilot().eye().place.height_m, 4578.0);
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, CockpitSea));
   const GroundHeight airport = [](const GeodeticPosition&) { return 423.0; };
   cockpit.GoTo(PlaceNamed("LSZH"), airport);
   const FlightReadout readout = cockpit.pilot().Readout(airport);
@@ -113,7 +113,7 @@ TEST(Cockpit, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
 
 TEST(Cockpit, ALongFrameIsNotCutShort) {
   Cockpit cockpit = NewCockpit();
-  cockpit.Advance({}, 7.0, Sea);
+  cockpit.Advance({}, 7.0, CockpitSea);
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:07Z");
 }
 
@@ -128,41 +128,41 @@ std::shared_ptr<const CameraPath> AnHour() {
 
 TEST(Cockpit, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEnd) {
   Cockpit cockpit = NewCockpit();
-  static_cast<void>(cockpit.Do(Action::kPause, Sea));
-  cockpit.Replay(AnHour(), Sea);
-  cockpit.Advance({}, 5.0, Sea);
+  static_cast<void>(cockpit.Do(Action::kPause, CockpitSea));
+  cockpit.Replay(AnHour(), CockpitSea);
+  cockpit.Advance({}, 5.0, CockpitSea);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:30:00Z") << "as fast as it went then";
   EXPECT_EQ(cockpit.pilot().eye().fov_rad, 0.3);
   EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kTrack);
-  static_cast<void>(cockpit.Do(Action::kTrackBack, Sea));
+  static_cast<void>(cockpit.Do(Action::kTrackBack, CockpitSea));
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
-  static_cast<void>(cockpit.Do(Action::kPause, Sea));
-  cockpit.Advance({}, 5.0, Sea);
+  static_cast<void>(cockpit.Do(Action::kPause, CockpitSea));
+  cockpit.Advance({}, 5.0, CockpitSea);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z") << "paused it stands";
-  static_cast<void>(cockpit.Do(Action::kPause, Sea));
-  cockpit.Advance({}, 11.0, Sea);
+  static_cast<void>(cockpit.Do(Action::kPause, CockpitSea));
+  cockpit.Advance({}, 11.0, CockpitSea);
   EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kFree);
   EXPECT_NEAR(cockpit.pilot().eye().place.height_m, 2000.0, 1e-6);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:00Z");
-  cockpit.Advance({}, 1.0, Sea);
+  cockpit.Advance({}, 1.0, CockpitSea);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:01Z") << "real time again";
 }
 
 TEST(Cockpit, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
   Cockpit cockpit = NewCockpit();
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, Sea));
-  static_cast<void>(cockpit.Do(Action::kHoldHeading, Sea));
-  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0, Sea);
-  const FlightReadout flown = cockpit.pilot().Readout(Sea);
+  static_cast<void>(cockpit.Do(Action::kAircraftMode, CockpitSea));
+  static_cast<void>(cockpit.Do(Action::kHoldHeading, CockpitSea));
+  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0, CockpitSea);
+  const FlightReadout flown = cockpit.pilot().Readout(CockpitSea);
   for (int time = 0; time < 2; ++time) {  // asked for in the middle, it begins again
-    cockpit.FlyAgain(AnHour(), Sea);
+    cockpit.FlyAgain(AnHour(), CockpitSea);
     EXPECT_TRUE(cockpit.pilot().Replays());
-    cockpit.Advance({}, 5.0, Sea);
+    cockpit.Advance({}, 5.0, CockpitSea);
   }
   EXPECT_TRUE(cockpit.pilot().Replays());
-  cockpit.Advance({}, 5.0, Sea);
+  cockpit.Advance({}, 5.0, CockpitSea);
   EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kAircraft);
-  const FlightReadout on = cockpit.pilot().Readout(Sea);
+  const FlightReadout on = cockpit.pilot().Readout(CockpitSea);
   EXPECT_EQ(on.aircraft->bank_rad, flown.aircraft->bank_rad);
   EXPECT_EQ(on.above_ground_m, flown.above_ground_m);
   EXPECT_EQ(on.autopilot, flown.autopilot);
@@ -173,10 +173,10 @@ TEST(Cockpit, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
   cockpit.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
       {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2025-01-02T08:00:00Z")},
       {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2025-01-02T08:01:40Z")}}));
-  EXPECT_EQ(cockpit.Do(Action::kTrackMode, Sea), "track");
+  EXPECT_EQ(cockpit.Do(Action::kTrackMode, CockpitSea), "track");
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
-  cockpit.Advance({}, 5.0, Sea);
-  static_cast<void>(cockpit.Do(Action::kTrackAhead, Sea));
+  cockpit.Advance({}, 5.0, CockpitSea);
+  static_cast<void>(cockpit.Do(Action::kTrackAhead, CockpitSea));
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:15Z");
 }
 

@@ -20,7 +20,7 @@ namespace alpenglow {
 namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
-constexpr double kSunRadius_rad = 0.00465;
+constexpr double kFogSunRadius_rad = 0.00465;
 
 glm::dvec3 ToSun(double elevation_rad) {
   return {0.6 * std::cos(elevation_rad), 0.8 * std::cos(elevation_rad), std::sin(elevation_rad)};
@@ -44,7 +44,7 @@ struct Stage {
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, scene.medium);
     at.to_sun = to_sun;
-    at.sun_radius_rad = kSunRadius_rad;
+    at.sun_radius_rad = kFogSunRadius_rad;
     return at;
   }
 };
@@ -64,14 +64,14 @@ LocalMedium FogOf(double per_m, double height_m, double base_m) {
 }
 
 /// A fog before an eye, as the renderer has it and as the graphics card does.
-struct Both {
-  Both(const LocalMedium& fog, double eye_m, const glm::dvec3& to_sun = kToSun)
+struct BothFogs {
+  BothFogs(const LocalMedium& fog, double eye_m, const glm::dvec3& to_sun = kToSun)
       : eye(0.0, 0.0, eye_m),
         media({fog}, 3),
         light(TheStage().Under(to_sun)),
         renderer(media, TheStage().geometry, TheStage().air, TheStage().diffuse, light),
         map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air, TheStage().diffuse,
-                       {eye_m, to_sun, kSunRadius_rad})),
+                       {eye_m, to_sun, kFogSunRadius_rad})),
         painter({}) {
     painter.Upload(map);
   }
@@ -95,7 +95,7 @@ struct Both {
 };
 
 /// Directions of a picture and lengths [km]: to the sky, to the planet, or to somewhere before.
-std::vector<tests::Arguments<float>> Rays(const Both& both, int count) {
+std::vector<tests::Arguments<float>> Rays(const BothFogs& both, int count) {
   std::mt19937 random(5);
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<>(low, high)(random);
@@ -120,7 +120,7 @@ struct Deviation {
 };
 
 // Of radiance relative to the brightest a tenth of which is worth the name.
-Deviation Compare(const Both& both) {
+Deviation Compare(const BothFogs& both) {
   const auto rays = Rays(both, 300);
   const std::vector<float> gpu =
       both.OnGpu("FogTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
@@ -148,28 +148,28 @@ Deviation Compare(const Both& both) {
 using FogOnTheCard = tests::Headless;
 
 TEST_F(FogOnTheCard, AroundTheEyeIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(Both(FogOf(0.02, 60.0, 0.0), 10.0));
+  const Deviation deviation = Compare(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3) << "columns of thin layers in float";
 }
 
 TEST_F(FogOnTheCard, UnderTheEyeIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(Both(FogOf(0.02, 60.0, 0.0), 500.0));
+  const Deviation deviation = Compare(BothFogs(FogOf(0.02, 60.0, 0.0), 500.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3);
 }
 
 TEST_F(FogOnTheCard, OverTheEyeIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(Both(FogOf(0.002, 80.0, 300.0), 250.0));
+  const Deviation deviation = Compare(BothFogs(FogOf(0.002, 80.0, 300.0), 250.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3);
 }
 
 TEST_F(FogOnTheCard, WithoutAnEndAboveIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(Both(FogOf(1e-4, kEndless, 0.0), 100.0));
+  const Deviation deviation = Compare(BothFogs(FogOf(1e-4, kEndless, 0.0), 100.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3);
@@ -177,14 +177,15 @@ TEST_F(FogOnTheCard, WithoutAnEndAboveIsThatOfTheRenderer) {
 
 TEST_F(FogOnTheCard, IsThatOfTheRendererAtSunsetAndAfter) {
   for (const double elevation_rad : {0.0, -0.05}) {
-    const Deviation deviation = Compare(Both(FogOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
+    const Deviation deviation =
+        Compare(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
     EXPECT_LT(deviation.mean, 5e-3) << "light falls by e every few metres into the fog";
     EXPECT_LT(deviation.p99, 0.05);
   }
 }
 
 TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
-  const Both both(FogOf(0.02, 60.0, 0.0), 10.0);
+  const BothFogs both(FogOf(0.02, 60.0, 0.0), 10.0);
   std::vector<tests::Arguments<float>> points;
   for (const double altitude : {1.0, 20.0, 60.0, 150.0, 400.0}) {
     for (const double cos_up : {1.0, 0.9, 0.5}) {
@@ -210,18 +211,18 @@ TEST(FogFollower, MakesANewMapWhenTheEyeHasRisenAndKeepsItWhileItStands) {
   FogFollower follower([&](const FogView& view) {
     return MakeFogMap(fog, 0.0, TheStage().air, TheStage().diffuse, view, {4, 3, 3});
   });
-  const FogView low{10.0, kToSun, kSunRadius_rad}, high{100.0, kToSun, kSunRadius_rad};
+  const FogView low{10.0, kToSun, kFogSunRadius_rad}, high{100.0, kToSun, kFogSunRadius_rad};
   follower.Wait(low);
   ASSERT_TRUE(follower.map());
   EXPECT_FALSE(follower.Follow(low)) << "it serves";
-  EXPECT_TRUE(Serves(*follower.map(), {12.0, kToSun, kSunRadius_rad}));
+  EXPECT_TRUE(Serves(*follower.map(), {12.0, kToSun, kFogSunRadius_rad}));
   EXPECT_FALSE(Serves(*follower.map(), high));
   follower.Wait(high);
   EXPECT_EQ(follower.map()->view.altitude_m, 100.0);
 }
 
 TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
-  const Both both(FogOf(0.002, 80.0, 0.0), 10.0);
+  const BothFogs both(FogOf(0.002, 80.0, 0.0), 10.0);
   const auto rays = Rays(both, 60);
   const std::vector<float> gpu = both.OnGpu(
       "dot(FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0)).weight, "

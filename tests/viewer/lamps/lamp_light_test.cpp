@@ -59,9 +59,9 @@ Scene Night(double eye_height_m, double fog_per_m, double fog_height_m) {
 }
 
 /// A scene before an eye, as the renderer has it and as the graphics card does.
-struct Both {
-  explicit Both(const Scene& of) : Both(of, LoadGround(of)) {}
-  Both(const Scene& of, SceneGround on)
+struct BothLamps {
+  explicit BothLamps(const Scene& of) : BothLamps(of, LoadGround(of)) {}
+  BothLamps(const Scene& of, SceneGround on)
       : scene(of),
         ground(std::move(on)),
         medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
@@ -98,7 +98,8 @@ struct Both {
 
 /// Rays (x, y, z, length): half of them within a tenth of a radian of a lamp, lengths to the sky,
 /// the ground, or some place before.
-std::vector<tests::Arguments<float>> Rays(const Both& both, int count, bool near_lamps = true) {
+std::vector<tests::Arguments<float>> Rays(const BothLamps& both, int count,
+                                          bool near_lamps = true) {
   std::mt19937 random(7);
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<>(low, high)(random);
@@ -146,7 +147,7 @@ Deviation Compare(const std::vector<float>& gpu, const std::vector<double>& trut
 using LampsOnTheCard = tests::Headless;
 
 /// Of the middle band of the scene's air.
-Deviation GlowDeviation(const Both& both, bool near_lamps = true) {
+Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
   constexpr int kBand = 2;
   const auto rays = Rays(both, 400, near_lamps);
   const std::vector<float> gpu =
@@ -160,19 +161,19 @@ Deviation GlowDeviation(const Both& both, bool near_lamps = true) {
 }
 
 TEST_F(LampsOnTheCard, GlowInClearAirAsTheRenderer) {
-  const Deviation deviation = GlowDeviation(Both(Night(6.0, 0.0, 1.0)));
+  const Deviation deviation = GlowDeviation(BothLamps(Night(6.0, 0.0, 1.0)));
   EXPECT_LT(deviation.mean, 1e-3) << "12 nodes for four lamps, one a spot";
   EXPECT_LT(deviation.p99, 0.01);
 }
 
 TEST_F(LampsOnTheCard, GlowInFogAroundTheEyeAsTheRenderer) {
-  const Deviation deviation = GlowDeviation(Both(Night(6.0, 0.004, 25.0)));
+  const Deviation deviation = GlowDeviation(BothLamps(Night(6.0, 0.004, 25.0)));
   EXPECT_LT(deviation.mean, 4e-3) << "fog of 25 m is thin where the rule looks for it";
   EXPECT_LT(deviation.p99, 0.06);
 }
 
 TEST_F(LampsOnTheCard, GlowInFogUnderTheEyeAsTheRenderer) {
-  const Deviation deviation = GlowDeviation(Both(Night(300.0, 0.004, 25.0)));
+  const Deviation deviation = GlowDeviation(BothLamps(Night(300.0, 0.004, 25.0)));
   EXPECT_LT(deviation.mean, 4e-3);
   EXPECT_LT(deviation.p99, 0.06);
 }
@@ -181,7 +182,7 @@ TEST_F(LampsOnTheCard, AnEyeInsideALampSeesAsTheRenderer) {
   Scene scene = Night(6.0, 0.004, 25.0);
   scene.lights = {LightAt(0.0, 0.0, 6.0, 1000.0)};
   scene.lights[0].radius_m = 0.5;
-  const Both both(scene);
+  const BothLamps both(scene);
   const auto rays = Rays(both, 100);
   const std::vector<float> gpu =
       both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
@@ -216,7 +217,7 @@ std::vector<tests::Arguments<float>> Points(int count, bool with_slopes) {
 }
 
 /// Relative to what level ground there gets.
-Deviation GroundDeviation(const Both& both, bool with_slopes) {
+Deviation GroundDeviation(const BothLamps& both, bool with_slopes) {
   std::vector<tests::Arguments<float>> points = Points(400, with_slopes);
   std::vector<double> truth, level;
   for (auto& point : points) {
@@ -238,7 +239,7 @@ Deviation GroundDeviation(const Both& both, bool with_slopes) {
 }
 
 TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
-  const Both clear(Night(6.0, 0.0, 1.0)), fog(Night(6.0, 0.004, 25.0));
+  const BothLamps clear(Night(6.0, 0.0, 1.0)), fog(Night(6.0, 0.004, 25.0));
   EXPECT_LT(GroundDeviation(clear, false).p99, 0.01);
   const Deviation level = GroundDeviation(fog, false), slopes = GroundDeviation(fog, true);
   EXPECT_LT(level.mean, 0.01) << "its light in the fog comes from a map of LampGlow";
@@ -250,7 +251,7 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
 TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
-  const Both both(scene, Ridge(scene));
+  const BothLamps both(scene, Ridge(scene));
   std::vector<tests::Arguments<float>> points;
   std::vector<bool> lit;
   for (const float north_m : {0.0F, 30.0F, 60.0F, 240.0F, 300.0F, 390.0F, 450.0F, 550.0F}) {
@@ -314,7 +315,7 @@ std::vector<tests::Arguments<float>> OnRidge(const LampStage& stage, const glm::
 TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
-  Both both(scene, Ridge(scene));
+  BothLamps both(scene, Ridge(scene));
   const LampStage stage(both.scene, both.ground, both.medium);
   const std::vector<tests::Arguments<float>> points = OnRidge(stage, both.eye_m);
   const auto wrong = [&] {
@@ -337,7 +338,7 @@ TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
 
 TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
   Scene scene = Night(6.0, 0.0, 1.0);
-  const Both both(scene);
+  const BothLamps both(scene);
   LampProfile profile;
   profile.kind = LampProfile::Kind::kTable;
   profile.table = {{0.0, 0.3, 0.6, 1.5},
@@ -360,7 +361,7 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
   for (int i = 0; i < 300; ++i) {
     scene.lights.push_back(LightAt(200.0 + 30.0 * (i / 2), i % 2 == 0 ? 20.0 : -20.0, 0.5, 500.0));
   }
-  Both both(scene);
+  BothLamps both(scene);
   const SceneLamps::InView in_view =
       both.lamps.Before({both.eye_m, glm::dmat3(1.0), both.eye_m.z, kPixel_rad}, {0.0, 0.0}, 0.0);
   EXPECT_EQ(in_view.block.count.x, 64.0F);
@@ -382,7 +383,7 @@ TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
 }
 
 TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
-  Both both(Night(6.0, 0.0, 1.0));
+  BothLamps both(Night(6.0, 0.0, 1.0));
   LandingLight landing;
   both.lamps.SetLandingLight(landing);
   for (const double north_m : {0.0, 5000.0}) {

@@ -27,7 +27,7 @@ using LampPicture = tests::Headless;
 
 constexpr int kWidth = 320, kHeight = 180;
 constexpr double kHalfWidth = 0.45;  // tangent of half the field of view
-constexpr double kPixel_rad = 2.0 * kHalfWidth / kWidth;
+constexpr double kLampPixel_rad = 2.0 * kHalfWidth / kWidth;
 
 constexpr const char* kStage = R"(
 in vec2 screen;
@@ -59,7 +59,7 @@ Scene Runway() {
   return scene;
 }
 
-struct Night {
+struct LampNight {
   Scene scene = Runway();
   SceneGround ground = LoadGround(scene);
   SceneLamps lamps{scene, ground, scene.medium};
@@ -77,7 +77,7 @@ struct Night {
     glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     LampPainter painter(lamps, quality, {});
-    painter.Prepare(lamps, {{0.0, 0.0, 6.0}, glm::dmat3(1.0), 6.0, kPixel_rad}, 0.0);
+    painter.Prepare(lamps, {{0.0, 0.0, 6.0}, glm::dmat3(1.0), 6.0, kLampPixel_rad}, 0.0);
     std::vector<ShaderPiece> texts =
         WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
     texts.insert(texts.end(), painter.texts().begin(), painter.texts().end());
@@ -90,7 +90,7 @@ struct Night {
     picture.Bind();
     painter.Bind();
     DrawFullScreen(program, GlVertexArray());
-    painter.PaintOver(kPixel_rad);
+    painter.PaintOver(kLampPixel_rad);
     return picture.Read();
   }
 };
@@ -119,7 +119,7 @@ double Mean(const std::vector<double>& values) {
 }
 
 TEST_F(LampPicture, LampsAndTheirGlowAreThoseOfTheRendererPixelByPixel) {
-  Night night;
+  LampNight night;
   const BandColour colour(night.scene.medium.wavelengths_nm);
   const LampLight light(night.scene, night.ground, night.scene.medium, colour);
   const auto truth = [&](int x, int y) {
@@ -130,8 +130,8 @@ TEST_F(LampPicture, LampsAndTheirGlowAreThoseOfTheRendererPixelByPixel) {
       end.length_m = 1e3 * shared::DistanceDownTo(h, direction.z, 0.0, radius);
     }
     const CameraRay ray{{0.0, 0.0, 6.0}, {0.0, 0.0, 6.0}, direction, direction};
-    const Bands<float> sum =
-        light.InAir(light.All(), end, kPixel_rad, 32) + light.Seen(light.All(), ray, kPixel_rad);
+    const Bands<float> sum = light.InAir(light.All(), end, kLampPixel_rad, 32) +
+                             light.Seen(light.All(), ray, kLampPixel_rad);
     const std::vector<double> values(sum.value.begin(), sum.value.begin() + 4);
     return colour.LinearSrgb(values)[1];
   };
@@ -141,7 +141,7 @@ TEST_F(LampPicture, LampsAndTheirGlowAreThoseOfTheRendererPixelByPixel) {
 }
 
 TEST_F(LampPicture, ALatticeOfEverySecondPixelWithCoresIsTheWholePicture) {
-  Night night;
+  LampNight night;
   const Image whole = night.Paint({.nodes = 12, .step = 1});
   const std::vector<double> deviations =
       Deviations(night.Paint({.nodes = 12, .step = 2}),

@@ -13,15 +13,15 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 54;
+constexpr int kFrameWidth = 96, kFrameHeight = 54;
 
 /// All hues over twelve stops around 2000 cd/m^2, and some colours out of the display's gamut.
 Image Colours() {
-  Image image(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const auto stop = static_cast<float>(12.0 * y / kHeight - 8.0);
-      const auto hue = static_cast<float>(6.3 * x / kWidth);
+  Image image(kFrameWidth, kFrameHeight);
+  for (int y = 0; y < kFrameHeight; ++y) {
+    for (int x = 0; x < kFrameWidth; ++x) {
+      const auto stop = static_cast<float>(12.0 * y / kFrameHeight - 8.0);
+      const auto hue = static_cast<float>(6.3 * x / kFrameWidth);
       const float light = 2000.0F * std::exp2(stop);
       image.at(x, y) = {light * (1.0F + 0.9F * std::cos(hue)),
                         light * (1.0F + 0.6F * std::cos(hue + 2.0F)),
@@ -36,14 +36,14 @@ using DeveloperTest = tests::Headless;
 TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   const Image image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
-  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
-  const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   Developer developer{Look{}};
   for (const ToneCurve curve : {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
                                 ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
     developer.Use(Look{.curve = curve});
-    developer.Develop(picture, ev100, {screen.framebuffer(), kWidth, kHeight});
+    developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const DisplayImage judge = Develop(image, ev100, curve);
     const Image codes = screen.Read();
     int off_by_one = 0;
@@ -55,22 +55,22 @@ TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
         if (code != judge.rgb[3 * i + c]) ++off_by_one;
       }
     }
-    EXPECT_LT(off_by_one, kWidth * kHeight * 3 / 10)
+    EXPECT_LT(off_by_one, kFrameWidth * kFrameHeight * 3 / 10)
         << "a code falls to the other side as often as the tone table is off, by 0.06 of a code";
   }
 }
 
 TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
   const Image image = Colours();
-  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
-  const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   Developer developer{Look{}};
   for (const AgxLook agx : {AgxLook::kNone, AgxLook::kPunchy, AgxLook::kPhoto}) {
     Look look{.agx = agx};
     look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
     developer.Use(look);
-    developer.Develop(picture, 13.0, {screen.framebuffer(), kWidth, kHeight});
+    developer.Develop(picture, 13.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const DisplayImage judge = Develop(Seen(image, look), 13.0, look), shown = screen.ReadBytes();
     for (std::size_t i = 0; i < judge.rgb.size(); ++i)
       ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << NameOf(agx) << ", byte " << i;
@@ -82,9 +82,9 @@ TEST_F(DeveloperTest, APictureOfAnotherSizeFillsTheScreen) {
   for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
   const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
   picture.Write(image);
-  const RenderTarget screen(kWidth, kHeight, RenderTarget::Depth::kNone);
-  Developer(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kWidth, kHeight});
-  Image even(kWidth, kHeight);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  Developer(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+  Image even(kFrameWidth, kFrameHeight);
   for (auto& pixel : even.rgb) pixel = image.rgb[0];
   const DisplayImage judge = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
   for (std::size_t i = 0; i < judge.rgb.size(); ++i)
@@ -95,7 +95,7 @@ using ExposureMeterTest = tests::Headless;
 
 TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
   const Image image = Colours();
-  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   ExposureMeter meter;
   EXPECT_NEAR(meter.Read(picture, {}).ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), 0.05)
@@ -105,7 +105,7 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
   Image many(large.width(), large.height());
   for (int y = 0; y < many.height; ++y) {
     for (int x = 0; x < many.width; ++x)
-      many.at(x, y) = image.at(x * kWidth / many.width, y * kHeight / many.height);
+      many.at(x, y) = image.at(x * kFrameWidth / many.width, y * kFrameHeight / many.height);
   }
   large.Write(many);
   EXPECT_NEAR(meter.Read(large, {}).ev100, MeterEv100(many, kSunDiskLuminance_cd_per_m2), 0.05)
@@ -113,12 +113,12 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
 }
 
 TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
-  Image image(kWidth, kHeight);
+  Image image(kFrameWidth, kFrameHeight);
   const auto white = LinearSrgbFromXyz() * WhiteOfTemperature(4200.0);
   for (auto& pixel : image.rgb) {
     for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(700.0 * white[c]);
   }
-  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   Look look;
   look.white.kind = WhiteBalance::Kind::kAuto;
@@ -129,7 +129,7 @@ TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
 }
 
 TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
-  const RenderTarget picture(kWidth, kHeight, RenderTarget::Depth::kNone);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(Colours());
   ExposureMeter meter;
   EXPECT_FALSE(meter.Take({}).has_value()) << "nothing was looked at";

@@ -18,7 +18,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 36, kSmaller = 4;
+constexpr int kPrintWidth = 64, kPrintHeight = 36, kSmaller = 4;
 constexpr glm::dvec2 kHalfView{0.577, 0.325};
 
 /// A screen with a hill before a mountain under a sky, whose edges run between pixels of the small
@@ -72,24 +72,24 @@ class EnlargerTest : public tests::Headless {
     }
   }
   [[nodiscard]] static Image Enlarged(const RenderTarget& small, const LandOutline& outline) {
-    const RenderTarget light(kWidth, kHeight);
+    const RenderTarget light(kPrintWidth, kPrintHeight);
     Enlarger(Enlarger::Shows::kLight).Enlarge(small, outline, kHalfView, light.framebuffer());
     return light.Read();
   }
 };
 
 TEST_F(EnlargerTest, EdgesOfLandAreAsSharpAsTheScreen) {
-  const RenderTarget small(kWidth / kSmaller, kHeight / kSmaller);
+  const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
   Fill(small, [](int x, int y) { return PixelOf(At(kSmaller * (x + 0.5), kSmaller * (y + 0.5))); });
-  const LandOutline outline(kWidth, kHeight);
+  const LandOutline outline(kPrintWidth, kPrintHeight);
   FillDepth(outline, [](int x, int y) { return PixelOf(At(x + 0.5, y + 0.5))[3]; });
   const Image shown = Enlarged(small, outline);
   int wrong = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kPrintHeight; ++y) {
+    for (int x = 0; x < kPrintWidth; ++x) {
       const std::array<float, 4> right = PixelOf(At(x + 0.5, y + 0.5));
       for (std::size_t c = 0; c < 3; ++c) {
-        if (std::abs(shown.at(x, kHeight - 1 - y)[c] - right[c]) > 0.01F) ++wrong;
+        if (std::abs(shown.at(x, kPrintHeight - 1 - y)[c] - right[c]) > 0.01F) ++wrong;
       }
     }
   }
@@ -99,10 +99,10 @@ TEST_F(EnlargerTest, EdgesOfLandAreAsSharpAsTheScreen) {
 }
 
 TEST_F(EnlargerTest, OnOneSurfaceLightIsInterpolated) {
-  const LandOutline outline(kWidth, kHeight);
-  const RenderTarget small(kWidth / kSmaller, kHeight / kSmaller);
+  const LandOutline outline(kPrintWidth, kPrintHeight);
+  const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
   // Level ground: nearness falls to 0 at the horizon, here the upper rim of the picture.
-  const auto nearness = [](double y) { return static_cast<float>(2.0 * (1.0 - y / kHeight)); };
+  const auto nearness = [](double y) { return static_cast<float>(2.0 * (1.0 - y / kPrintHeight)); };
   for (const bool is_land : {false, true}) {
     Fill(small, [&](int x, int y) {
       const auto light = static_cast<float>(kSmaller * (x + 0.5) + 3.0 * kSmaller * (y + 0.5));
@@ -110,9 +110,9 @@ TEST_F(EnlargerTest, OnOneSurfaceLightIsInterpolated) {
     });
     FillDepth(outline, [&](int, int y) { return is_land ? nearness(y + 0.5) : 0.0F; });
     const Image shown = Enlarged(small, outline);
-    for (int y = kSmaller; y < kHeight - kSmaller; ++y) {
-      for (int x = kSmaller; x < kWidth - kSmaller; ++x) {
-        ASSERT_NEAR(shown.at(x, kHeight - 1 - y)[0], x + 0.5 + 3.0 * (y + 0.5), 1e-3)
+    for (int y = kSmaller; y < kPrintHeight - kSmaller; ++y) {
+      for (int x = kSmaller; x < kPrintWidth - kSmaller; ++x) {
+        ASSERT_NEAR(shown.at(x, kPrintHeight - 1 - y)[0], x + 0.5 + 3.0 * (y + 0.5), 1e-3)
             << x << ' ' << y << (is_land ? " on land: rounding of floats" : " in the sky");
       }
     }

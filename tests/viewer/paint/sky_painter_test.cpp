@@ -20,14 +20,14 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 90;
+constexpr int kViewWidth = 160, kViewHeight = 90;
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kSamples = 32;
 
 RenderSettings JudgeSettings() {
   RenderSettings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
+  settings.width = kViewWidth;
+  settings.height = kViewHeight;
   settings.samples_per_pixel = kSamples;
   settings.filter = PixelFilter::Kind::kBox;
   settings.layers = LayersOfEdges();
@@ -38,13 +38,13 @@ PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& no
   Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
           scene.camera.fov_rad};
   eye.place.height_m = eye_height_m;
-  return {eye, now, kWidth, kHeight};
+  return {eye, now, kViewWidth, kViewHeight};
 }
 
 /// The renderer and the painter of a scene, for as many views as one likes.
-class Both {
+class BothPrograms {
  public:
-  explicit Both(const Scene& scene, const UtcInstant& first)
+  explicit BothPrograms(const Scene& scene, const UtcInstant& first)
       : ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
         judge_(scene, ground_),
         painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first),
@@ -88,7 +88,7 @@ using SkyPainterTest = tests::Headless;
 
 TEST_F(SkyPainterTest, TheRangeAtSunsetAndInTwilightIsTheRenderers) {
   const ParityView sunset = ViewNamed("ground, sunset, shafts"), twilight = ViewNamed("twilight");
-  Both both(sunset.scene, sunset.instant);
+  BothPrograms both(sunset.scene, sunset.instant);
   ExpectWithin(both.Difference(sunset), {0.0027, 0.011},
                "noise of thirty-two rays a pixel over rough ground, and tables between nodes");
   ExpectWithin(both.Difference(twilight), {0.0046, 0.032},
@@ -97,7 +97,7 @@ TEST_F(SkyPainterTest, TheRangeAtSunsetAndInTwilightIsTheRenderers) {
 
 TEST_F(SkyPainterTest, TheRangeByDayIsTheRenderersFromTheGroundAndFromAnAeroplane) {
   const ParityView noon = ViewNamed("ground, noon"), high = ViewNamed("10 km");
-  Both both(noon.scene, noon.instant);
+  BothPrograms both(noon.scene, noon.instant);
   ExpectWithin(both.Difference(noon), {0.0044, 0.036},
                "noise of thirty-two rays a pixel where materials meet on rough ground");
   ExpectWithin(both.Difference(ViewOf(high.scene, high.scene.camera.height.value_m, high.instant)),
@@ -107,7 +107,7 @@ TEST_F(SkyPainterTest, TheRangeByDayIsTheRenderersFromTheGroundAndFromAnAeroplan
 TEST_F(SkyPainterTest, TheRangeInFogIsTheRenderers) {
   const ParityView fog = ViewNamed("fog");
   ExpectWithin(
-      Both(fog.scene, fog.instant).Difference(fog), {0.0045, 0.013},
+      BothPrograms(fog.scene, fog.instant).Difference(fog), {0.0045, 0.013},
       "light of the fog is a map, and light of the air before it is weighed in a few stretches");
 }
 
@@ -116,7 +116,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   const UtcInstant now = ParseInstant("2026-08-12T18:23:00Z");
   Scene scene = BareScene(2.0, 284.0, 9.0, 8.0);
   scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
-  ExpectWithin(Both(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
+  ExpectWithin(BothPrograms(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
                "tables between nodes, within four degrees of the sun");
   const SunPosition sun = ApparentSunAt(scene.place, now);
   const std::shared_ptr<const SolvedAir> air = SolveAir(scene.medium, AirSolution::kDraft);
@@ -131,7 +131,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
 // last the sun is the lesser of the two.
 TEST_F(SkyPainterTest, WhereSunAndMoonBothCountTheRangeIsLitByBoth) {
   const ParityView moonlit = ViewNamed("night, moon");
-  Both both(moonlit.scene, ParseInstant("2026-12-23T16:35:00Z"));
+  BothPrograms both(moonlit.scene, ParseInstant("2026-12-23T16:35:00Z"));
   const auto at = [](const char* utc) {
     return ParityView{"", RangeScene({200.0, true}, 250.0, 0.0), ParseInstant(utc)};
   };
@@ -144,7 +144,7 @@ TEST_F(SkyPainterTest, WhereSunAndMoonBothCountTheRangeIsLitByBoth) {
 // Hard case 5.
 TEST_F(SkyPainterTest, FromAnAeroplaneAndFromOrbitTheSkyIsTheRenderers) {
   const UtcInstant now = ParseInstant("2026-06-21T06:00:00Z");
-  Both both(BareScene(10e3, 160.0, -5.0, 50.0), now);
+  BothPrograms both(BareScene(10e3, 160.0, -5.0, 50.0), now);
   ExpectWithin(both.Difference(ViewOf(BareScene(10e3, 160.0, -5.0, 50.0), 10e3, now)),
                {0.0018, 0.0041}, "tables between nodes");
   ExpectWithin(both.Difference(ViewOf(BareScene(400e3, 160.0, -20.0, 50.0), 400e3, now)),
@@ -192,7 +192,7 @@ class DrapedLand : public tests::HeadlessTile {
 TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {
   const Scene scene = DrapedScene();
   const UtcInstant now = ParseInstant("2026-06-21T10:00:00Z");
-  Both both(scene, now);
+  BothPrograms both(scene, now);
   PaintedView view = ViewOf(scene, 4500.0, now);
   ExpectWithin(
       both.Difference(view), {0.010, 0.115},
@@ -260,7 +260,7 @@ TEST_F(BareSky, AnotherPictureIsShownInstead) {
   painter.Show(other);
   EXPECT_EQ(painter.picture().width(), 5);
   EXPECT_EQ(painter.picture().Read().rgb, other.rgb);
-  EXPECT_EQ(Painted(painter, view).width, kWidth) << "and the next picture is painted again";
+  EXPECT_EQ(Painted(painter, view).width, kViewWidth) << "and the next picture is painted again";
 }
 
 }  // namespace

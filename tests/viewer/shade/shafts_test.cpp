@@ -24,7 +24,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kSunRadius_rad = 0.00465;
+constexpr double kShaftSunRadius_rad = 0.00465;
 constexpr int kSide = 301;
 constexpr double kCell_m = 60.0;
 
@@ -75,9 +75,9 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
   static const Terrain terrain(LandMesh(RoughLand, kSide, kCell_m));
   const double e = sun_degrees * kRadiansPerDegree;
   const glm::dvec3 to_sun(std::cos(e) * 0.8, std::cos(e) * 0.6, std::sin(e));
-  const ShadowHeights judge(terrain.mesh(), to_sun, kSunRadius_rad);
-  const auto map = std::make_shared<ShadeMap>(
-      ShadeMapOf(RasterOf(terrain.mesh(), std::size_t{1} << 18), to_sun, kSunRadius_rad, 1024));
+  const ShadowHeights judge(terrain.mesh(), to_sun, kShaftSunRadius_rad);
+  const auto map = std::make_shared<ShadeMap>(ShadeMapOf(
+      RasterOf(terrain.mesh(), std::size_t{1} << 18), to_sun, kShaftSunRadius_rad, 1024));
   const glm::dvec3 eye(-3000.0, 500.0, RoughLand(-3000.0, 500.0) + 300.0);
   const std::vector<Ray> rays = RaysFrom(eye, terrain, 400);
   ShadeTexture texture;
@@ -139,7 +139,7 @@ TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
   const double e = 8.0 * kRadiansPerDegree;
   const auto map = std::make_shared<ShadeMap>(
       ShadeMapOf(RasterOf(LandMesh(RoughLand, kSide, kCell_m), std::size_t{1} << 18),
-                 {std::cos(e), 0.0, std::sin(e)}, kSunRadius_rad, 1024));
+                 {std::cos(e), 0.0, std::sin(e)}, kShaftSunRadius_rad, 1024));
   ShadeTexture texture;
   texture.TakeOver(map);
   texture.Upload(map->lines, 1);
@@ -285,7 +285,7 @@ TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
   ShadeTexture shade;
   shade.TakeOver(std::make_shared<ShadeMap>(
       ShadeMapOf(RasterOf(LandMesh(land, 201, 150.0), std::size_t{1} << 16),
-                 {-std::cos(0.09), 0.0, std::sin(0.09)}, kSunRadius_rad, 512)));
+                 {-std::cos(0.09), 0.0, std::sin(0.09)}, kShaftSunRadius_rad, 512)));
   shade.Upload(100000, 1);
   ASSERT_TRUE(shade.Shades());
   const ShaftPicture scene;
@@ -315,7 +315,7 @@ TEST_F(Shafts, AMapIsInUseOnceAllOfItIsThere) {
   shade.Upload(10, 1);
   EXPECT_FALSE(shade.Shades()) << "nothing was asked for";
   const auto map = std::make_shared<ShadeMap>(
-      ShadeMapOf(heights, {std::cos(0.1), 0.0, std::sin(0.1)}, kSunRadius_rad, 64));
+      ShadeMapOf(heights, {std::cos(0.1), 0.0, std::sin(0.1)}, kShaftSunRadius_rad, 64));
   shade.TakeOver(map);
   shade.Upload(map->lines - 1, 1);
   EXPECT_FALSE(shade.Shades());

@@ -43,7 +43,7 @@ GLint SizeOf(const ShaderProgram& program, const char* block) {
 }
 
 // A program that reads all blocks of the picture.
-ShaderProgram PictureBlocks() {
+ShaderProgram ProgramOfBlocks() {
   std::vector<ShaderPiece> pieces = WithViewerPieces(
       SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
                       "viewer/shaders/ground.glsl"});
@@ -52,7 +52,7 @@ ShaderProgram PictureBlocks() {
 }
 
 TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
-  const ShaderProgram program = PictureBlocks();
+  const ShaderProgram program = ProgramOfBlocks();
   EXPECT_EQ(SizeOf(program, "Air"), static_cast<GLint>(sizeof(AirBlock)));
   ExpectOffsets(program, {{"rayleigh_scattering", offsetof(AirBlock, rayleigh_scattering)},
                           {"mie_scattering", offsetof(AirBlock, mie_scattering)},
@@ -69,7 +69,7 @@ TEST_F(UniformBlocks, AirLiesWhereTheDriverLooks) {
 }
 
 TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
-  const ShaderProgram program = PictureBlocks();
+  const ShaderProgram program = ProgramOfBlocks();
   EXPECT_EQ(SizeOf(program, "View"), static_cast<GLint>(sizeof(ViewBlock)));
   ExpectOffsets(program, {{"view_right", offsetof(ViewBlock, view_right)},
                           {"view_up", offsetof(ViewBlock, view_up)},
@@ -80,7 +80,7 @@ TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
 }
 
 TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
-  const ShaderProgram program = PictureBlocks();
+  const ShaderProgram program = ProgramOfBlocks();
   EXPECT_EQ(SizeOf(program, "Ground"), static_cast<GLint>(sizeof(GroundBlock)));
   ExpectOffsets(program, {{"conifers", offsetof(GroundBlock, conifers)},
                           {"leaves", offsetof(GroundBlock, leaves)},
@@ -112,7 +112,7 @@ TEST(AirBlock, AMediumOfThreeWavelengthsHasADarkFourthBand) {
 
 // --- the ground's materials and relief, far from the origin of their pattern ---
 
-using GroundCover = tests::Headless;
+using GroundCoverBlock = tests::Headless;
 
 constexpr double kEast_m = 612345.678, kNorth_m = 5191234.567, kUp_m = 1234.5;  // of the eye
 
@@ -159,7 +159,7 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   });
 }
 
-TEST_F(GroundCover, AlbedoIsThatOfTheRendererInEverySeason) {
+TEST_F(GroundCoverBlock, AlbedoIsThatOfTheRendererInEverySeason) {
   const std::vector<double> wavelengths = WavelengthSet(4);
   for (const int day : {61081, 61161, 61212, 61334}) {  // February, May, June, October 2026
     const MountainSurface surface(wavelengths,
@@ -178,7 +178,7 @@ TEST_F(GroundCover, AlbedoIsThatOfTheRendererInEverySeason) {
   }
 }
 
-TEST_F(GroundCover, WavesAreThoseOfTheRenderer) {
+TEST_F(GroundCoverBlock, WavesAreThoseOfTheRenderer) {
   const MountainSurface surface(WavelengthSet(4), {});
   constexpr double kBreeze = 0.003 + 0.00512 * 5.0;  // Cox, Munk: 5 m/s
   const std::vector<float> east =
@@ -190,7 +190,7 @@ TEST_F(GroundCover, WavesAreThoseOfTheRenderer) {
   }
 }
 
-TEST_F(GroundCover, ReliefIsThatOfTheRenderer) {
+TEST_F(GroundCoverBlock, ReliefIsThatOfTheRenderer) {
   const MountainSurface surface(WavelengthSet(4),
                                 CoverInSeason(PlaceFromDegrees(46.5, 8.0, 0.0), 61212));
   const std::vector<float> east = GroundValues(surface,
