@@ -201,9 +201,6 @@ TEST_F(Skylut, TablesGiveLightOfAllOrdersUnlessTheyWereLeftOut) {
 }
 
 TEST_F(Skylut, TablesOfAWantedErrorSayWhatWasChosenAndMeasured) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the finest solution takes minutes with sanitizers";
-#endif
   const Outcome built = Run("build --out tables --max-error 5% --quiet");
   ASSERT_EQ(built.status, 0) << built.error;
   for (const char* fact : {"for errors below 5 %: ", "no table: closed form", "sun angles x ",

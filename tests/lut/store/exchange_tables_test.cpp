@@ -22,7 +22,6 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 #include "lut/store/exchange_check.h"
-#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -30,9 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Rgba = std::array<double, 4>;
-
-using tests::kSanitized;
-constexpr const char* kTooSlow = "a million rays take minutes with sanitizers";
 
 constexpr double kPlanet_km = 6360.0, kTop_km = 6420.0;
 const double kHorizon_km = std::sqrt(kTop_km * kTop_km - kPlanet_km * kPlanet_km);
@@ -261,7 +257,6 @@ TEST(ExchangeMedium, IsThatOfThreeAtmosphereByDefault) {
 class TakramSet : public TemporaryFolder {
  protected:
   static void SetUpTestSuite() {
-    if (kSanitized) return;
     textures_ = new std::vector<ExchangeTexture>(
         MakeExchangeTextures(MediumPreset("bruneton2017"), {}, ProgressStyle::kQuiet));
   }
@@ -271,7 +266,6 @@ class TakramSet : public TemporaryFolder {
   }
   void SetUp() override {
     TemporaryFolder::SetUp();
-    if (kSanitized) GTEST_SKIP() << kTooSlow;
     WriteExchangeTables(*textures_, air_, {.type = {}, .format = TexelFormat::kBin}, folder_);
   }
   [[nodiscard]] Raw Bin(const std::string& name, std::size_t width, std::size_t height) const {
@@ -525,7 +519,6 @@ TEST_F(TakramSet, ADamagedTextureIsRefusedByItsName) {
 
 // Of Bruneton's demo, and what it would take them for if the lowest sun were not found out.
 TEST_F(ExchangeFiles, TheLowestSunIsFoundOutFromTexels) {
-  if (kSanitized) GTEST_SKIP() << kTooSlow;
   const Medium air = MediumPreset("bruneton2017");
   const ExchangeOptions demo{.layout = ExchangeLayout::kBruneton};
   const auto textures = MakeExchangeTextures(air, demo, ProgressStyle::kQuiet);

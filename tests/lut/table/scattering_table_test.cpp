@@ -10,7 +10,6 @@
 #include "atmosphere/judge/judge.h"
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
-#include "tests/fixtures/sanitized.h"
 #include "tests/lut/table/table_errors.h"
 
 namespace alpenglow {
@@ -20,9 +19,6 @@ constexpr ScatteringTableSize kStandard{.nu = 8, .mu_s = 32, .mu = 128, .altitud
 constexpr ScatteringTableSize kTiny{.nu = 2, .mu_s = 4, .mu = 8, .altitudes = 4};
 
 constexpr ScatteringTableSize kSmall{.nu = 6, .mu_s = 12, .mu = 16, .altitudes = 8};
-
-using tests::kSanitized;
-constexpr const char* kTooSlow = "the default table takes minutes to build under the sanitizers";
 
 // Built once a process: several tests look things up in them.
 const ScatteringTable& SmallTable() {
@@ -127,7 +123,6 @@ void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
 }
 
 TEST(ScatteringTable, ErrorAgainstTheJudgeIsBelowTheStatedBounds) {
-  if (kSanitized) GTEST_SKIP() << kTooSlow;
   for (const Regime& regime :
        {Regime{"day", 0.0, 85.0, 0.01, 0.0025}, Regime{"sunset", 85.0, 90.0, 0.015, 0.008},
         Regime{"civil twilight", 90.0, 96.0, 0.4, 0.15}}) {
@@ -136,7 +131,6 @@ TEST(ScatteringTable, ErrorAgainstTheJudgeIsBelowTheStatedBounds) {
 }
 
 TEST(ScatteringTable, OnAzimuthsAndFourthRootsTwilightIsAsGoodAsDay) {
-  if (kSanitized) GTEST_SKIP() << kTooSlow;
   const ScatteringTable table(MediumPreset("earth"),
                               {.size = {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48},
                                .lowest_mu_s = {},
@@ -253,7 +247,6 @@ TEST(ScatteringTable, ObserversAboveTheTopSeeWhatTheRaySeesWhereItEnters) {
 }
 
 TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
-  if (kSanitized) GTEST_SKIP() << kTooSlow;
   const ScatteringTable& table = StandardTable();
   const AirIntegrator<double> air(table.medium());
   for (const double altitude_m : {0.1, 1.7, 10.0, 50.0}) {
@@ -267,7 +260,6 @@ TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
 
 // Hard case 14.
 TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
-  if (kSanitized) GTEST_SKIP() << kTooSlow;
   const ScatteringTable& table = StandardTable();
   const AirIntegrator<double> air(table.medium());
   ViewRay ray = RayFromAngles(500.0, 80.0, 45.0, 50.0);

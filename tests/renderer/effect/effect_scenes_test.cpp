@@ -8,14 +8,10 @@
 #include <algorithm>
 
 #include "atmosphere/colour/spectrum.h"
-#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
 namespace {
-
-constexpr const char* kTooSlow =
-    "tens of pictures take minutes with sanitizers; those within a budget run the same code";
 
 const RenderSettings kSmall = [] {
   RenderSettings settings;
@@ -64,7 +60,6 @@ TEST_P(SceneEffects, APictureOfWhatIsNeededStaysWithinTheBudget) {
 }
 
 TEST_P(SceneEffects, ThePilotSeesOfEachEffectWhatThePictureShows) {
-  if (tests::kSanitized) GTEST_SKIP() << kTooSlow;
   const Image all = With(EffectSet::All());
   for (const EffectEstimate& estimate : Within(0.01, true).choice.estimates) {
     if (!estimate.present) continue;
@@ -102,10 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Of, SceneEffects,
 /// What a scene does without.
 class SceneNeeds : public TemporaryFolder {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    if (tests::kSanitized) GTEST_SKIP() << kTooSlow;
-  }
+  void SetUp() override { TemporaryFolder::SetUp(); }
   [[nodiscard]] EffectChoice ChoiceFor(const std::string& name, bool explain = false) const {
     for (const EffectScene& scene : EffectScenes(folder_.string())) {
       if (scene.name != name) continue;
