@@ -13,6 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"
 
 namespace alpenglow::judge {
@@ -60,6 +61,7 @@ TEST(ColumnTable, AgreesWithTheJudgeToOnePartInAMillion) {
 }
 
 TEST(PathTracer, OrderOneIsTheIntegralOfTheJudge) {
+  constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(8000, 800);
   const Medium medium = MediumPreset("bruneton2017");
   int compared = 0;
   for (const double sun_deg : {30.0, 85.0, 92.0, 96.0}) {
@@ -69,7 +71,7 @@ TEST(PathTracer, OrderOneIsTheIntegralOfTheJudge) {
           const ViewRay ray = RayFromAngles(altitude, view_deg, azimuth_deg, sun_deg);
           const SingleScattering truth = SingleScatteringAlong(medium, ray);
           const PathTracedRadiance traced =
-              TraceRadiance(medium, ray, {.max_paths = 8000, .max_order = 1});
+              TraceRadiance(medium, ray, {.max_paths = kPaths, .max_order = 1});
           for (std::size_t band = 0; band < traced.single.size(); ++band) {
             const double expected = truth.inscatter[band] + truth.ground[band];
             EXPECT_NEAR(traced.single[band], expected,
@@ -152,6 +154,7 @@ TEST(PathTracer, StopsSoonWhenToldTo) {
 
 TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
   constexpr int kSeeds = 40;
+  constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(8032, 512);
   const Medium medium = MediumPreset("hazy");
   for (const double sun_deg : {50.0, 94.0}) {
     const ViewRay ray = RayFromAngles(2.0, 75.0, 60.0, sun_deg);
@@ -159,7 +162,7 @@ TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
     for (int seed = 0; seed < kSeeds; ++seed) {
       const auto traced = TraceRadiance(
           medium, ray,
-          {.seed = static_cast<std::uint64_t>(seed), .max_paths = 8032, .relative_error = 0.0});
+          {.seed = static_cast<std::uint64_t>(seed), .max_paths = kPaths, .relative_error = 0.0});
       sum += traced.total[1] / kSeeds;
       squares += traced.total[1] * traced.total[1] / kSeeds;
       claimed += traced.standard_error[1] * traced.standard_error[1] / kSeeds;
@@ -175,6 +178,7 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
   const Medium medium = WithoutAbsorption();
   const double top = medium.planet_radius_m + medium.atmosphere_height_m;
   const std::size_t bands = medium.wavelengths_nm.size();
+  constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(30000, 15000);
   // Shares of the light that meets the disk of the shell's radius, which is 1.
   std::vector<double> leaves(bands, 0.0), error(bands, 0.0);
   struct Panel {
@@ -188,7 +192,7 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
       const double width = panel.high - panel.low;
       const auto flux =
           TraceIrradiance(medium, medium.atmosphere_height_m, panel.low + width * rule.node[i],
-                          PlaneSide::kFromBelow, {.max_paths = 30000, .relative_error = 0.003});
+                          PlaneSide::kFromBelow, {.max_paths = kPaths, .relative_error = 0.003});
       for (std::size_t band = 0; band < bands; ++band) {
         leaves[band] += 2.0 * width * rule.weight[i] * flux.value[band];
         error[band] += std::pow(2.0 * width * rule.weight[i] * flux.standard_error[band], 2.0);

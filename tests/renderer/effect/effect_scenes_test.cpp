@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "atmosphere/colour/spectrum.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -15,8 +16,8 @@ namespace {
 
 const RenderSettings kSmall = [] {
   RenderSettings settings;
-  settings.width = 96;
-  settings.height = 54;
+  settings.width = tests::ScaledDown(96, 48);
+  settings.height = tests::ScaledDown(54, 27);
   settings.samples_per_pixel = 2;
   return settings;
 }();

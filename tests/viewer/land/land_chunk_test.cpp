@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/allocator_interface.h>
-#endif
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>
@@ -14,6 +11,11 @@
 
 #include "renderer/terrain/mesh.h"
 #include "tests/viewer/land/land_files.h"
+
+#ifdef __SANITIZE_ADDRESS__
+// Of the sanitizers' runtime; gcc does not install the header that declares it.
+extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
+#endif
 
 namespace alpenglow {
 namespace {

@@ -12,6 +12,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/paint/key_light.h"
@@ -20,7 +21,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kViewWidth = 160, kViewHeight = 90;
+constexpr int kViewWidth = tests::ScaledDown(160, 64), kViewHeight = tests::ScaledDown(90, 36);
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kSamples = 32;
 
