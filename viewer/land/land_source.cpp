@@ -57,16 +57,6 @@ bool IsModel(const std::filesystem::path& file) {
                      [&](const char* ending) { return HasExtension(file, ending); });
 }
 
-std::string NoteOn(const ElevationModel& model, const std::string& file) {
-  std::string note;
-  if (model.voids > 0)
-    note = fmt::format("{}: {} samples without data, {} filled", file, model.voids,
-                       model.voids_filled);
-  if (model.vertical_datum.empty()) return note;
-  return fmt::format("{}{}{}: heights are declared as {}; they are taken as over the ellipsoid",
-                     note, note.empty() ? "" : "; ", file, model.vertical_datum);
-}
-
 }  // namespace
 
 LandTiles::LandTiles(const LandSource& source) : source_(source) {
