@@ -5,8 +5,8 @@
 // bands or more (the first three are red, green, blue), or one (grey). With a coordinate system it
 // lies where it says; without, it covers the terrain from rim to rim, its upper edge in the north.
 // A map of land cover is one band of 8 bits, of the classes of land_cover.h. Pixels may be left out
-// by an alpha band, a mask or a nodata value: there the ground shows its own cover. Averages over 2 x 2,
-// 4 x 4, ... pixels serve distant ground.
+// by an alpha band, a mask or a nodata value: there the ground shows its own cover. Averages over
+// 2 x 2, 4 x 4, ... pixels serve distant ground.
 #pragma once
 
 #include <array>
