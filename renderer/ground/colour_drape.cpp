@@ -91,45 +91,80 @@ class Decoder {
   std::vector<std::uint16_t> table_;
 };
 
-std::vector<std::array<std::uint16_t, 3>> ReadPixels(const std::filesystem::path& file,
-                                                     GDALDataset& dataset) {
+// Row by row what a band has, as the type of `row`'s elements.
+template <typename Value>
+void ReadRow(const std::filesystem::path& file, GDALRasterBand& band, GDALDataType type, int y,
+             std::vector<Value>& row) {
+  const int columns = band.GetXSize();
+  if (band.RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1, type, 0, 0) != CE_None)
+    Refuse(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
+}
+
+// How much of each pixel is there, 255 for all of it, by the alpha band, the mask or the nodata
+// values of the file: a pixel is left out that is so in every band.
+std::vector<std::uint8_t> ReadWeights(const std::filesystem::path& file, GDALDataset& dataset) {
   const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
-  std::vector<std::array<std::uint16_t, 3>> rgb(static_cast<std::size_t>(columns) *
-                                                static_cast<std::size_t>(rows));
-  std::vector<float> row(static_cast<std::size_t>(columns));
+  const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  std::vector<std::uint8_t> weights;
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(columns));
+  const int bands = dataset.GetRasterCount() < 3 ? 1 : 3;
+  for (int number = 1; number <= bands; ++number) {
+    GDALRasterBand& band = *dataset.GetRasterBand(number);
+    if ((band.GetMaskFlags() & GMF_ALL_VALID) != 0) return std::vector<std::uint8_t>(pixels, 255);
+    weights.resize(pixels, 0);
+    for (int y = 0; y < rows; ++y) {
+      ReadRow(file, *band.GetMaskBand(), GDT_Byte, y, row);
+      std::uint8_t* known = weights.data() + static_cast<std::size_t>(y) * row.size();
+      for (std::size_t x = 0; x < row.size(); ++x) known[x] = std::max(known[x], row[x]);
+    }
+  }
+  return weights;
+}
+
+using Pixel = std::array<std::uint16_t, 4>;
+
+// Colours times their weight, and the weight.
+std::vector<Pixel> ReadPixels(const std::filesystem::path& file, GDALDataset& dataset) {
+  const int rows = dataset.GetRasterYSize();
+  const std::vector<std::uint8_t> weights = ReadWeights(file, dataset);
+  std::vector<Pixel> pixels(weights.size());
+  std::vector<float> row(static_cast<std::size_t>(dataset.GetRasterXSize()));
   for (int channel = 0; channel < 3; ++channel) {
     GDALRasterBand* band = dataset.GetRasterBand(dataset.GetRasterCount() < 3 ? 1 : channel + 1);
     const Decoder decoder(band->GetRasterDataType());
     if (!decoder.IsKnown()) Refuse(file, "has values that are neither 8 nor 16 bits nor floats");
     for (int y = 0; y < rows; ++y) {
-      if (band->RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1, GDT_Float32, 0, 0) !=
-          CE_None)
-        Refuse(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
+      ReadRow(file, *band, GDT_Float32, y, row);
       for (std::size_t x = 0; x < row.size(); ++x) {
-        rgb[static_cast<std::size_t>(y) * row.size() + x][static_cast<std::size_t>(channel)] =
-            decoder(row[x]);
+        const std::size_t i = static_cast<std::size_t>(y) * row.size() + x;
+        const unsigned weighted = decoder(row[x]) * unsigned{weights[i]};
+        pixels[i][static_cast<std::size_t>(channel)] = static_cast<std::uint16_t>(weighted / 255);
+        pixels[i][3] = static_cast<std::uint16_t>(257U * weights[i]);
       }
     }
   }
-  return rgb;
+  return pixels;
 }
 
-std::vector<std::array<std::uint16_t, 3>> ReadClasses(const std::filesystem::path& file,
-                                                      GDALDataset& dataset) {
-  const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
-  std::vector<std::array<std::uint16_t, 3>> shares;
-  shares.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(columns));
-  for (int y = 0; y < rows; ++y) {
-    if (dataset.GetRasterBand(1)->RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1,
-                                           GDT_Byte, 0, 0) != CE_None)
-      Refuse(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
+Pixel SharesOfClass(const std::filesystem::path& file, std::uint8_t number) {
+  const auto cover = CoverOfClass(number);
+  if (!cover) Refuse(file, fmt::format("has {}, which is no class of land cover", number));
+  Pixel stored{0, 0, 0, 65535};
+  for (std::size_t k = 0; k < 3; ++k)
+    stored[k] = static_cast<std::uint16_t>(std::lround(65535.0 * (*cover)[k]));
+  return stored;
+}
+
+std::vector<Pixel> ReadClasses(const std::filesystem::path& file, GDALDataset& dataset) {
+  const std::vector<std::uint8_t> weights = ReadWeights(file, dataset);
+  std::vector<Pixel> shares;
+  shares.reserve(weights.size());
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(dataset.GetRasterXSize()));
+  for (int y = 0; y < dataset.GetRasterYSize(); ++y) {
+    ReadRow(file, *dataset.GetRasterBand(1), GDT_Byte, y, row);
     for (const std::uint8_t number : row) {
-      const auto cover = CoverOfClass(number);
-      if (!cover) Refuse(file, fmt::format("has {}, which is no class of land cover", number));
-      std::array<std::uint16_t, 3>& stored = shares.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k)
-        stored[k] = static_cast<std::uint16_t>(std::lround(65535.0 * (*cover)[k]));
+      const bool is_there = weights[shares.size()] > 0;
+      shares.push_back(is_there ? SharesOfClass(file, number) : Pixel{});
     }
   }
   return shares;
@@ -247,16 +282,16 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
     Level coarse{fine.columns / 2, fine.rows / 2, {}};
     for (int y = 0; y < coarse.rows; ++y) {
       for (int x = 0; x < coarse.columns; ++x) {
-        std::array<std::uint16_t, 3> mean;
-        for (std::size_t c = 0; c < 3; ++c) {
+        Pixel mean;
+        for (std::size_t c = 0; c < mean.size(); ++c) {
           unsigned sum = 2;
           for (const int corner : {0, 1, 2, 3}) {
             const int from = (2 * y + corner / 2) * fine.columns + 2 * x + corner % 2;
-            sum += fine.rgb[static_cast<std::size_t>(from)][c];
+            sum += fine.pixels[static_cast<std::size_t>(from)][c];
           }
           mean[c] = static_cast<std::uint16_t>(sum / 4);
         }
-        coarse.rgb.push_back(mean);
+        coarse.pixels.push_back(mean);
       }
     }
     levels.push_back(std::move(coarse));
@@ -289,24 +324,24 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
   pixel_m_ = across / std::max(std::hypot(b.x - a.x, b.y - a.y), 1e-6);
 }
 
-std::array<double, 3> ColourDrape::Bilinear(std::size_t number, const Place& at) const {
+std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const Place& at) const {
   const Level& level = (*levels_)[number];
   const double scale = 1.0 / static_cast<double>(std::size_t{1} << number);
   const double x = std::clamp(at.x * scale - 0.5, 0.0, level.columns - 1.0);
   const double y = std::clamp(at.y * scale - 0.5, 0.0, level.rows - 1.0);
   const int column = static_cast<int>(x), row = static_cast<int>(y);
   const double fx = x - column, fy = y - row;
-  std::array<double, 3> rgb{};
+  std::array<double, 4> seen{};
   for (const int corner : {0, 1, 2, 3}) {
     const int c = std::min(column + corner % 2, level.columns - 1);
     const int r = std::min(row + corner / 2, level.rows - 1);
     const double weight = (corner % 2 == 1 ? fx : 1.0 - fx) * (corner / 2 == 1 ? fy : 1.0 - fy);
     const auto& pixel =
-        level.rgb[static_cast<std::size_t>(r) * static_cast<std::size_t>(level.columns) +
-                  static_cast<std::size_t>(c)];
-    for (std::size_t k = 0; k < 3; ++k) rgb[k] += weight * pixel[k] / 65535.0;
+        level.pixels[static_cast<std::size_t>(r) * static_cast<std::size_t>(level.columns) +
+                     static_cast<std::size_t>(c)];
+    for (std::size_t k = 0; k < 4; ++k) seen[k] += weight * pixel[k] / 65535.0;
   }
-  return rgb;
+  return seen;
 }
 
 std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, double altitude_m,
@@ -335,12 +370,13 @@ std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, do
   const double wanted = std::log2(std::max(footprint_m / pixel_m_, 1.0));
   const double finest = std::min(std::floor(wanted), static_cast<double>(levels_->size() - 1));
   const auto level = static_cast<std::size_t>(finest);
-  std::array<double, 3> rgb = Bilinear(level, at);
+  std::array<double, 4> seen = Bilinear(level, at);
   if (level + 1 < levels_->size()) {
-    const std::array<double, 3> coarse = Bilinear(level + 1, at);
-    for (std::size_t k = 0; k < 3; ++k) rgb[k] += (wanted - finest) * (coarse[k] - rgb[k]);
+    const std::array<double, 4> coarse = Bilinear(level + 1, at);
+    for (std::size_t k = 0; k < 4; ++k) seen[k] += (wanted - finest) * (coarse[k] - seen[k]);
   }
-  return rgb;
+  if (seen[3] < 0.5) return std::nullopt;
+  return std::array<double, 3>{seen[0] / seen[3], seen[1] / seen[3], seen[2] / seen[3]};
 }
 
 }  // namespace alpenglow

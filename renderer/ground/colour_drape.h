@@ -4,8 +4,9 @@
 // Read by GDAL: GeoTIFF and PNG, 8 or 16 bits (sRGB-encoded) or floating point (linear), three
 // bands or more (the first three are red, green, blue), or one (grey). With a coordinate system it
 // lies where it says; without, it covers the terrain from rim to rim, its upper edge in the north.
-// A map of land cover is one band of 8 bits, of the classes of land_cover.h. Averages over 2 x 2,
-// 4 x 4, ... pixels serve distant ground.
+// A map of land cover is one band of 8 bits, of the classes of land_cover.h. Pixels may be left out
+// by an alpha band, a mask or a nodata value: there the ground shows its own cover. Averages over
+// 2 x 2, 4 x 4, ... pixels serve distant ground.
 #pragma once
 
 #include <array>
@@ -60,16 +61,16 @@ class ColourDrape {
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
 
   /// Linear sRGB, or shares of land cover as CoverOfClass has them, averaged over about a footprint;
-  /// nothing outside the picture.
+  /// nothing outside the picture and where less than half of it is there.
   /// @param point  in the ground's frame, at that altitude.
   [[nodiscard]] std::optional<std::array<double, 3>> At(const glm::dvec3& point, double altitude_m,
                                                         double footprint_m) const;
 
  private:
-  /// Linear sRGB in 16 bits.
+  /// Linear sRGB times how much of a pixel is there, and that weight, in 16 bits.
   struct Level {
     int columns = 0, rows = 0;
-    std::vector<std::array<std::uint16_t, 3>> rgb;
+    std::vector<std::array<std::uint16_t, 4>> pixels;
   };
   /// Where a place lies in the picture [pixels from its upper left corner].
   struct Place {
@@ -77,7 +78,7 @@ class ColourDrape {
   };
 
   ColourDrape(const std::filesystem::path& file, bool is_land_cover, const SceneGround& ground);
-  [[nodiscard]] std::array<double, 3> Bilinear(std::size_t level, const Place& at) const;
+  [[nodiscard]] std::array<double, 4> Bilinear(std::size_t level, const Place& at) const;
 
   std::shared_ptr<const std::vector<Level>> levels_;  // each half as fine as the one before
   LocalFrame frame_;                                  // of the ground that it was laid over

@@ -8,6 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/model_in_sight.h"
 #include "renderer/shadow/sun_probes.h"
 #include "renderer/terrain/built_in_range.h"
 
@@ -32,13 +33,9 @@ struct GroundRectangle {
 
 // Whether anything of the model may stand over the horizon of an eye, on a sphere.
 bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double eye_m) {
-  constexpr double kRadius_m = 6.371e6;
   const GroundRectangle model(grid);
   float highest_m = 0.0F;
   for (const float height_m : grid.height_m) highest_m = std::max(highest_m, height_m);
-  const auto dip = [](double height_m) {
-    return std::acos(kRadius_m / (kRadius_m + std::max(height_m, 0.0)));
-  };
   const double latitude = place.latitude_rad / kRadiansPerDegree;
   const double longitude = place.longitude_rad / kRadiansPerDegree;
   const double middle = 0.5 * (model.west + model.east);
@@ -50,7 +47,7 @@ bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double 
   const double cosine = std::sin(place.latitude_rad) * std::sin(nearest) +
                         std::cos(place.latitude_rad) * std::cos(nearest) * std::cos(beside);
   return std::acos(std::clamp(cosine, -1.0, 1.0)) <
-         dip(eye_m) + dip(static_cast<double>(highest_m));
+         HorizonDip(eye_m) + HorizonDip(static_cast<double>(highest_m));
 }
 
 // A range of degrees in as many digits, 6 at least, as tell its ends from a value outside.
@@ -69,13 +66,14 @@ RangeText TextOfRange(double value, double low, double high) {
 }
 
 // An eye that stands on the ground stands on the model's; one that flies sees some of it.
-void RequireEyeOver(const ElevationGrid& grid, const Scene& scene) {
+// @param extent  of the whole model; seen: what has been read of it.
+void RequireEyeOver(const ElevationGrid& extent, const ElevationGrid& seen, const Scene& scene) {
   const GeodeticPosition& place = scene.place;
-  if (grid.Covers(place.latitude_rad, place.longitude_rad)) return;
-  const GroundRectangle model(grid);
+  if (extent.Covers(place.latitude_rad, place.longitude_rad)) return;
+  const GroundRectangle model(extent);
   const Height& height = scene.camera.height;
-  if (!height.above_ground && IsInSight(grid, place, height.value_m)) return;
-  const bool swapped_lies_inside = grid.Covers(place.longitude_rad, place.latitude_rad);
+  if (!height.above_ground && IsInSight(seen, place, height.value_m)) return;
+  const bool swapped_lies_inside = extent.Covers(place.longitude_rad, place.latitude_rad);
   const RangeText latitude =
       TextOfRange(place.latitude_rad / kRadiansPerDegree, model.south, model.north);
   const RangeText longitude =
@@ -88,18 +86,8 @@ void RequireEyeOver(const ElevationGrid& grid, const Scene& scene) {
       swapped_lies_inside ? "; latitude and longitude seem to be swapped" : ""));
 }
 
-std::string MessageOn(const ElevationModel& model, const std::string& file) {
-  std::string message;
-  if (model.voids > 0) {
-    message = fmt::format("{}: {} samples without data, {} filled", file, model.voids,
-                          model.voids_filled);
-  }
-  if (model.vertical_datum.empty()) return message;
-  if (!message.empty()) message += "; ";
-  return message + fmt::format(
-                       "{}: heights are declared as {}; they are taken as over the "
-                       "ellipsoid, which may lie a hundred metres off",
-                       file, model.vertical_datum);
+std::string Joined(const std::string& one, const std::string& other) {
+  return one.empty() || other.empty() ? one + other : one + "; " + other;
 }
 
 LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progress) {
@@ -115,10 +103,11 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
                   : ""};
     }
     case TerrainSource::Kind::kElevationModel: {
-      const ElevationModel model = ReadElevation(scene.terrain.file, scene.terrain.voids);
-      RequireEyeOver(model.grid, scene);
+      const auto [model, extent, message] = ReadModelInSight(scene);
+      RequireEyeOver(extent, model.grid, scene);
       Prepare(progress, "mesh");
-      return {MeshFromElevation(model.grid, frame), MessageOn(model, scene.terrain.file.string())};
+      return {MeshFromElevation(model.grid, frame),
+              Joined(message, NoteOn(model, scene.terrain.file.string()))};
     }
     case TerrainSource::Kind::kMesh:
       return {ReadObj(scene.terrain.file), ""};

@@ -1,29 +1,44 @@
 // SPDX-License-Identifier: MIT
 // Measured lamps: files in the format of ANSI/IES LM-63 (1986 to 2019).
 //
-// Read are absolute and relative files of photometric type C, with any number of vertical angles
-// from 0 (the lamp's axis, straight down as it was measured) to 90 or 180 degrees and horizontal
-// angles from 0 to 0, 90, 180 or 360 degrees (missing quadrants are mirrored, as the standard
-// says). Horizontal angles go counterclockwise around a lamp that shines down and is seen from
-// above (LM-63-2002, section 3; types A and B go clockwise). TILT=NONE only. Sizes, watts and
-// keywords are not used.
+// Files of photometric types A, B and C are read (ies_angles.h); type A and B end up within the
+// error of their sampling in type C. Vertical angles may begin and end anywhere: nothing shines
+// beyond them. Candela values are multiplied by the candela multiplier, by the ballast factor and,
+// in files of 1986 (which have no line with the edition) and of 1991 (IESNA91), by the ballast-lamp
+// photometric factor; later editions use that field for something else. TILT=INCLUDE gives factors
+// for a lamp that is tilted; TILT=FILE is refused. Sizes, watts and keywords are not used.
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "atmosphere/lamp/lamp.h"
 
 namespace alpenglow {
 
-struct IesLamp {
-  LampTable table;            // relative to the largest intensity
-  double intensity_cd = 0.0;  // the largest
+/// How a lamp's intensity changes while the luminaire is tilted from the attitude in which it was
+/// measured.
+struct LampTilt {
+  std::vector<double> angle_deg;  // ascending in [0, 180]; empty: it does not change
+  std::vector<double> factor;     // one for each angle
+  bool stays_level = false;       // the lamp lies level however the luminaire is tilted
+
+  /// Linear between the angles. Throws InputError for a tilt outside of them.
+  [[nodiscard]] double FactorAt(double tilt_deg) const;
 };
 
-/// Throws InputError "file:line: ..." for what is not such a file: no TILT line, tilt data,
-/// photometric types A and B, counts that do not fit the numbers, angles that do not ascend or do
-/// not begin and end as said above, values that are negative or not finite, no light at all.
+struct IesLamp {
+  LampTable table;            // relative to the largest intensity
+  double intensity_cd = 0.0;  // the largest, in the attitude in which the lamp was measured
+  LampTilt tilt;
+};
+
+/// Throws InputError "file:line: ..." for what is not such a file: no TILT line, tilt data in a
+/// file of their own, counts that do not fit the numbers, anything but white space and Ctrl-Z
+/// after the last number, angles that do not ascend or that HasWholeTurn does not accept, values
+/// that are negative or not finite, no light at all.
 [[nodiscard]] IesLamp ReadIes(const std::filesystem::path& file);
 
 /// As ReadIes, from text; `origin` stands in messages where the file's name would.

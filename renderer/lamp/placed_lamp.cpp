@@ -71,6 +71,17 @@ LampProfile ProfileOf(const Light& light, const MeasuredLamps& measured) {
   return profile;
 }
 
+// A lamp is measured straight down; its pitch tilts it from there.
+double CandelaOf(const Light& light, std::size_t number, const MeasuredLamps& measured) {
+  if (light.intensity_cd) return *light.intensity_cd;
+  const IesLamp& lamp = measured.at(light.ies->string());
+  try {
+    return lamp.intensity_cd * lamp.tilt.FactorAt(90.0 + light.pitch_rad / kRadiansPerDegree);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("light {}: {} {}", number + 1, light.ies->string(), error.what()));
+  }
+}
+
 // Axis by heading and pitch; C of a measured lamp is 0 above the axis where it is level, towards
 // the heading where it points down, and goes from there to the left.
 Lamp Aimed(const Light& light, Lamp lamp) {
@@ -101,8 +112,7 @@ PlacedLamp PlacedOn(const LampStage& stage, const Light& light, std::size_t numb
   placed.lamp.radius_m = light.radius_m;
   placed.lamp = Aimed(light, placed.lamp);
   placed.lamp.profile = ProfileOf(light, measured);
-  placed.candela =
-      light.intensity_cd.value_or(light.ies ? measured.at(light.ies->string()).intensity_cd : 0.0);
+  placed.candela = CandelaOf(light, number, measured);
   placed.above_ground_m = stage.HeightOverGround(placed.lamp.position_m);
   placed.mean_share = MeanOverDirections(placed.lamp.profile);
   return placed;

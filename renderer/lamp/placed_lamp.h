@@ -48,8 +48,8 @@ using MeasuredLamps = std::map<std::string, IesLamp>;
 /// Of the lights of a scene. Throws InputError for what ReadIes refuses.
 [[nodiscard]] MeasuredLamps MeasuredLampsOf(const std::vector<Light>& lights);
 
-/// A light of a scene, before no eye. Throws InputError
-/// naming its `number` (from 0) for one below the ground.
+/// A light of a scene, before no eye. Throws InputError naming its `number` (from 0) for one below
+/// the ground and for one that is tilted beyond the angles of its file.
 [[nodiscard]] PlacedLamp PlacedOn(const LampStage& stage, const Light& light, std::size_t number,
                                   const MeasuredLamps& measured);
 /// Spectral intensity of a black body that has so many candela.

@@ -441,7 +441,7 @@ void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume)
   }
   RefuseKeys(table, {"scale_height_m"}, "is for a volume without a grid");
   volume.grid = folder / *grid;
-  if (HasExtension(volume.grid, ".nrrd")) {
+  if (HasExtension(volume.grid, ".nrrd") || HasExtension(volume.grid, ".nhdr")) {
     RefuseKeys(table, {"grid_size"}, "is for a raw grid; an NRRD file says its own");
     return;
   }

@@ -4,21 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
 #include <limits>
-#include <sstream>
-#include <string>
 
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kBlock = 4;  // samples a side
 
@@ -61,27 +53,15 @@ void WalkPlanes(const glm::dvec3& origin, const glm::dvec3& direction, double be
   }
 }
 
-std::string Bytes(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  return std::move(text).str();
-}
-
-float FloatAt(const char* bytes) {
-  std::uint32_t bits = 0;
-  for (std::size_t i = 4; i-- > 0;) bits = bits << 8U | static_cast<unsigned char>(bytes[i]);
-  return std::bit_cast<float>(bits);
-}
-
 std::size_t CountOf(const std::array<int, 3>& size) {
   std::size_t count = 1;
   for (const int side : size) count *= static_cast<std::size_t>(side);
   return count;
 }
 
-void CheckSize(const std::array<int, 3>& size) {
+}  // namespace
+
+void CheckGridSize(const std::array<int, 3>& size) {
   for (const int side : size) {
     if (!(side >= 2 && side <= kMostGridSamples)) {
       throw InputError(fmt::format("a grid of {} x {} x {} samples; each side must have 2 to {}",
@@ -90,106 +70,9 @@ void CheckSize(const std::array<int, 3>& size) {
   }
 }
 
-VolumeGrid FromBytes(const fs::path& file, const std::array<int, 3>& size, bool bytes_are_floats,
-                     std::string_view data) {
-  try {
-    CheckSize(size);
-    const std::size_t bytes = CountOf(size) * (bytes_are_floats ? 4 : 1);
-    if (data.size() != bytes) {
-      throw InputError(fmt::format("{} bytes of data; {} x {} x {} {} are {}", data.size(), size[0],
-                                   size[1], size[2], bytes_are_floats ? "floats" : "bytes", bytes));
-    }
-    std::vector<float> values(CountOf(size));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = bytes_are_floats
-                      ? FloatAt(data.data() + 4 * i)
-                      : static_cast<float>(static_cast<unsigned char>(data[i])) / 255.0F;
-    }
-    return VolumeGrid(size, std::move(values));
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-  }
-}
-
-/// The header of an NRRD file as far as it is understood.
-struct NrrdHeader {
-  std::array<int, 3> size{};
-  bool has_size = false, has_type = false, has_encoding = false;
-  bool is_float = false;
-  std::size_t length = 0;  // bytes, with the empty line that ends it
-};
-
-class NrrdReader {
- public:
-  NrrdReader(const fs::path& file, std::string_view text) : file_(file), text_(text) {}
-
-  [[nodiscard]] NrrdHeader Header() {
-    NrrdHeader header;
-    if (Line().substr(0, 7) != "NRRD000") Fail("not an NRRD file");
-    for (std::string_view line = Line(); !line.empty(); line = Line()) {
-      if (line.front() == '#' || line.find(":=") != std::string_view::npos) continue;
-      const std::size_t colon = line.find(": ");
-      if (colon == std::string_view::npos) Fail("a line of the header without \": \"");
-      Take(header, line.substr(0, colon), std::string(line.substr(colon + 2)));
-    }
-    if (!header.has_size || !header.has_type || !header.has_encoding) {
-      Fail("the header must have sizes, type and encoding");
-    }
-    header.length = at_;
-    return header;
-  }
-
- private:
-  std::string_view Line() {
-    const std::size_t end = text_.find('\n', at_);
-    if (end == std::string_view::npos) Fail("the header has no end");
-    std::string_view line = text_.substr(at_, end - at_);
-    at_ = end + 1;
-    ++line_;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    return line;
-  }
-
-  void Take(NrrdHeader& header, std::string_view key, const std::string& value) {
-    if (key == "type") {
-      header.is_float = value == "float";
-      header.has_type = true;
-      if (!header.is_float && value != "uint8" && value != "uchar" && value != "unsigned char" &&
-          value != "uint8_t") {
-        Fail(fmt::format("type is \"{}\"; it must be \"float\" or \"uint8\"", value));
-      }
-    } else if (key == "dimension") {
-      if (value != "3") Fail(fmt::format("dimension is {}; it must be 3", value));
-    } else if (key == "sizes") {
-      std::istringstream numbers(value);
-      numbers >> header.size[0] >> header.size[1] >> header.size[2];
-      header.has_size = static_cast<bool>(numbers) && (numbers >> std::ws).eof();
-      if (!header.has_size) Fail(fmt::format("sizes are \"{}\"; they must be three", value));
-    } else if (key == "encoding") {
-      header.has_encoding = true;
-      if (value != "raw") Fail(fmt::format("encoding is \"{}\"; it must be \"raw\"", value));
-    } else if (key == "endian") {
-      if (value != "little") Fail(fmt::format("endian is \"{}\"; it must be \"little\"", value));
-    } else if (key == "data file" || key == "datafile") {
-      Fail("the data must be in the file itself");
-    }
-  }
-
-  [[noreturn]] void Fail(const std::string& fault) const {
-    throw InputError(fmt::format("{}:{}: {}", file_.string(), line_, fault));
-  }
-
-  const fs::path& file_;
-  std::string_view text_;
-  std::size_t at_ = 0;
-  int line_ = 0;
-};
-
-}  // namespace
-
 VolumeGrid::VolumeGrid(const std::array<int, 3>& size, std::vector<float> values)
     : size_(size), values_(std::move(values)) {
-  CheckSize(size);
+  CheckGridSize(size);
   if (values_.size() != CountOf(size)) {
     throw InputError(fmt::format("{} values for a grid of {} x {} x {} samples", values_.size(),
                                  size[0], size[1], size[2]));
@@ -281,17 +164,6 @@ double VolumeGrid::Column(const glm::dvec3& origin, const glm::dvec3& direction,
         });
   }
   return sum;
-}
-
-VolumeGrid ReadNrrd(const fs::path& file) {
-  const std::string bytes = Bytes(file);
-  const NrrdHeader header = NrrdReader(file, bytes).Header();
-  return FromBytes(file, header.size, header.is_float,
-                   std::string_view(bytes).substr(header.length));
-}
-
-VolumeGrid ReadRawGrid(const fs::path& file, const std::array<int, 3>& size) {
-  return FromBytes(file, size, true, Bytes(file));
 }
 
 }  // namespace alpenglow

@@ -68,8 +68,13 @@ class VolumeGrid {
   double largest_ = 0.0;
 };
 
-/// Reads an NRRD file: three axes, type float or uint8 (then 255 is density 1), encoding raw,
-/// little endian, data in the file itself. Throws InputError "file: ..." or "file:line: ...".
+/// Throws InputError for a grid with a side outside of [2, kMostGridSamples].
+void CheckGridSize(const std::array<int, 3>& size);
+
+/// Reads an NRRD file: three axes, type float or uint8 (then 255 is density 1), encoding raw or
+/// gzip, data in the file or in another one that it names. Its space directions turn the samples so
+/// that they run to the right, ahead and up. Throws InputError "file: ..." or "file:line: ..." for
+/// damaged data, and what ReadNrrdHeader refuses.
 [[nodiscard]] VolumeGrid ReadNrrd(const std::filesystem::path& file);
 
 /// Reads a file that is nothing but nx * ny * nz floats, little endian, x fastest. Throws

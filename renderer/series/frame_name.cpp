@@ -14,7 +14,6 @@ namespace {
 }
 
 struct Conversion {
-  bool zeros = false;
   int width = 0;
   std::size_t length = 0;  // characters after the per cent sign
 };
@@ -23,10 +22,6 @@ Conversion ConversionAt(const std::string& pattern, std::size_t at) {
   constexpr int kWidest = 19;
   Conversion conversion;
   std::size_t i = at;
-  if (i < pattern.size() && pattern[i] == '0') {
-    conversion.zeros = true;
-    ++i;
-  }
   for (; i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9'; ++i) {
     conversion.width = 10 * conversion.width + (pattern[i] - '0');
     if (conversion.width > kWidest) Refuse(pattern, "the frame number is too wide");
@@ -52,7 +47,6 @@ FrameName::FrameName(const std::string& pattern) {
       if (has_number_) Refuse(pattern, "it must have one frame number, not more");
       const Conversion conversion = ConversionAt(pattern, i + 1);
       has_number_ = true;
-      zeros_ = conversion.zeros;
       width_ = conversion.width;
       part = &after_;
       i += conversion.length;
@@ -65,9 +59,7 @@ FrameName::FrameName(const std::string& pattern) {
 
 std::filesystem::path FrameName::Exr(int number) const {
   if (!has_number_) return before_;
-  const std::string digits =
-      zeros_ ? fmt::format("{:0{}}", number, width_) : fmt::format("{:{}}", number, width_);
-  return before_ + digits + after_;
+  return before_ + fmt::format("{:0{}}", number, width_) + after_;
 }
 
 std::filesystem::path FrameName::Png(int number) const {

@@ -7,7 +7,8 @@
 
 namespace alpenglow {
 
-/// A pattern with at most one integer conversion, %d, %4d or %04d; %% is a per cent sign.
+/// A pattern with at most one integer conversion, %d, or %4d and %04d, which fill up with zeros as
+/// ffmpeg does; %% is a per cent sign.
 class FrameName {
  public:
   /// Throws InputError for other conversions, for more
@@ -28,7 +29,6 @@ class FrameName {
  private:
   std::string before_, after_;  // of the number
   bool has_number_ = false;
-  bool zeros_ = false;
   int width_ = 0;
 };
 

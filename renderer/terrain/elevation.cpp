@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/elevation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "atmosphere/text/error.h"
 #include "renderer/terrain/elevation_raster.h"
 
 namespace alpenglow {
@@ -68,17 +74,91 @@ std::optional<double> ElevationGrid::HeightAt(double latitude_rad, double longit
   return height;
 }
 
-ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids) {
-  const QuietGdal quiet;
-  ElevationRaster raster = ReadElevationRaster(file);
+namespace {
+
+ElevationModel ModelOf(ElevationRaster raster, VoidPolicy voids, const std::string& file) {
   ElevationModel model;
   model.voids = raster.voids;
-  if (voids == VoidPolicy::kFill && raster.voids > 0) {
+  if (voids == VoidPolicy::kFill && raster.voids > 0 && raster.voids < raster.height_m.size()) {
     model.voids_filled = FillVoids(raster.height_m, raster.rows, raster.columns);
   }
   model.vertical_datum = VerticalDatumOf(raster.crs);
-  model.grid = GeographicGrid(raster, file.string());
+  model.unit_note = raster.unit_note;
+  model.grid = GeographicGrid(raster, file);
   return model;
+}
+
+// The parts of a window on both sides of the last column of a grid around the earth.
+std::vector<GridWindow> PartsOf(const GridWindow& window, int all_columns) {
+  GridWindow before = window;
+  before.columns = std::min(window.columns, all_columns - window.first_column);
+  if (before.columns == window.columns) return {window};
+  GridWindow after = window;
+  after.first_column = 0;
+  after.columns = window.columns - before.columns;
+  return {before, after};
+}
+
+// Two rasters of as many rows, side by side.
+void Append(ElevationRaster& west, const ElevationRaster& east) {
+  std::vector<float> height_m;
+  const auto row_of = [](const ElevationRaster& of, int row) {
+    return of.height_m.begin() + static_cast<std::ptrdiff_t>(row) * of.columns;
+  };
+  for (int row = 0; row < west.rows; ++row) {
+    height_m.insert(height_m.end(), row_of(west, row), row_of(west, row + 1));
+    height_m.insert(height_m.end(), row_of(east, row), row_of(east, row + 1));
+  }
+  west.height_m = std::move(height_m);
+  west.columns += east.columns;
+  west.voids += east.voids;
+}
+
+}  // namespace
+
+ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids) {
+  const QuietGdal quiet;
+  return ModelOf(ReadElevationRaster(file), voids, file.string());
+}
+
+ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids,
+                             const GridWindow& window) {
+  const QuietGdal quiet;
+  const ElevationRaster header = ReadElevationHeader(file);
+  std::optional<ElevationRaster> whole;
+  for (const GridWindow& part : PartsOf(window, header.columns)) {
+    const std::optional<PixelWindow> pixels = PixelsOf(header, part, file.string());
+    if (!pixels) throw InternalError(file.string() + ": a window of a grid that was resampled");
+    ElevationRaster raster = ReadElevationRaster(file, pixels);
+    if (whole) {
+      Append(*whole, raster);
+    } else {
+      whole = std::move(raster);
+    }
+  }
+  return ModelOf(std::move(*whole), voids, file.string());
+}
+
+bool CanBeCut(const std::filesystem::path& file) {
+  const QuietGdal quiet;
+  const ElevationRaster header = ReadElevationHeader(file);
+  return PixelsOf(header, {0, 0, header.columns, header.rows}, file.string()).has_value();
+}
+
+std::string NoteOn(const ElevationModel& model, const std::string& file) {
+  std::vector<std::string> notes;
+  if (model.voids > 0) {
+    notes.push_back(
+        fmt::format("{} samples without data, {} filled", model.voids, model.voids_filled));
+  }
+  if (!model.unit_note.empty()) notes.push_back(model.unit_note);
+  if (!model.vertical_datum.empty()) {
+    notes.push_back(
+        fmt::format("heights are declared as {}; they are taken as over the ellipsoid, "
+                    "which may lie a hundred metres off",
+                    model.vertical_datum));
+  }
+  return notes.empty() ? "" : fmt::format("{}: {}", file, fmt::join(notes, "; "));
 }
 
 ElevationGrid ReadElevationExtent(const std::filesystem::path& file) {

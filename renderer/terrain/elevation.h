@@ -42,6 +42,12 @@ struct ElevationGrid {
   [[nodiscard]] std::optional<double> HeightAt(double latitude_rad, double longitude_rad) const;
 };
 
+/// Some of the samples of a grid. Around the earth its columns may run past the last one.
+struct GridWindow {
+  int first_column = 0, first_row = 0;
+  int columns = 0, rows = 0;
+};
+
 enum class VoidPolicy { kFill, kLeaveOpen };
 
 struct ElevationModel {
@@ -51,18 +57,33 @@ struct ElevationModel {
   /// What the file declares its heights to count from, as "EGM96 height"; empty where it declares
   /// nothing, or the ellipsoid.
   std::string vertical_datum;
+  std::string unit_note;  // what is told about the unit of the heights; empty: nothing
 };
 
+/// What there is to say about a model, in one line with the name of its file; empty: nothing.
+[[nodiscard]] std::string NoteOn(const ElevationModel& model, const std::string& file);
+
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
-/// earth (resampled to geographic WGS84 unless its samples already lie on such a grid), metres or
-/// feet. Heights are taken as above the ellipsoid, whatever vertical datum is declared. Voids are
-/// the declared nodata value, NaN, and the values that are nodata by custom: -32768, -32767, -9999,
-/// the lowest float. kFill closes them with a membrane (Laplace's equation) spanned over their
-/// rims; places outside the footprint of a resampled file stay open. Throws InputError naming the
-/// file and the fault for no or a foreign coordinate system, a rotated or missing geotransform,
-/// several bands, complex samples, latitudes over 90, one row or column, no valid sample, heights
-/// that no ground on earth has, damaged or truncated files.
+/// earth (resampled to geographic WGS84 unless its samples already lie on such a grid). Heights are
+/// in metres or feet; without a unit they are in feet on a map in feet, else in metres, which is
+/// noted where the map is not in metres. They are taken as above the ellipsoid, whatever vertical
+/// datum is declared. Voids are the declared nodata value, samples that a mask or an alpha band
+/// leaves out, NaN, and the values that are nodata by custom: -32768, -32767, -9999, the lowest
+/// float. kFill closes them with a membrane (Laplace's equation) spanned over their rims; places
+/// outside the footprint of a resampled file stay open. Throws InputError naming the file and the
+/// fault for no or a foreign coordinate system, a rotated or missing geotransform, several bands of
+/// heights, complex samples, latitudes over 90, one row or column, no valid sample, heights that no
+/// ground on earth has, damaged or truncated files.
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids);
+
+/// Reads those samples alone: at least 2 x 2 of the grid that ReadElevationExtent gives, of a file
+/// for which CanBeCut holds. They may be nothing but voids, which then stay open.
+[[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids,
+                                           const GridWindow& window);
+
+/// Whether the samples of a file lie on a grid of latitudes and longitudes as they are, from west
+/// to east, so that some of them can be read.
+[[nodiscard]] bool CanBeCut(const std::filesystem::path& file);
 
 /// The grid that ReadElevation makes of a file, without its heights, which are not read. Throws
 /// InputError as ReadElevation does, as far as it can tell without them.

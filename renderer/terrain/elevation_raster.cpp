@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "atmosphere/text/error.h"
@@ -58,18 +59,21 @@ Dataset Open(const std::filesystem::path& file) {
   return dataset;
 }
 
+// A band of heights, and perhaps one that says where they are valid.
+bool HasOneBandOfHeights(GDALDataset& dataset) {
+  const int bands = dataset.GetRasterCount();
+  return bands == 1 ||
+         (bands == 2 && dataset.GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand);
+}
+
 void CheckLayout(const std::filesystem::path& file, GDALDataset& dataset) {
-  if (dataset.GetRasterCount() != 1) {
+  if (!HasOneBandOfHeights(dataset)) {
     Refuse(file, fmt::format("has {} bands; an elevation model has 1", dataset.GetRasterCount()));
   }
   const int columns = dataset.GetRasterXSize();
   const int rows = dataset.GetRasterYSize();
   if (columns < 2 || rows < 2) {
     Refuse(file, fmt::format("has {} x {} samples; at least 2 x 2 are needed", columns, rows));
-  }
-  if (std::int64_t{columns} * rows > kMostElevationSamples) {
-    Refuse(file, fmt::format("has {} x {} samples; at most {} can be held", columns, rows,
-                             kMostElevationSamples));
   }
   if (GDALDataTypeIsComplex(dataset.GetRasterBand(1)->GetRasterDataType()) != 0) {
     Refuse(file, "has complex samples; heights are real");
@@ -110,6 +114,12 @@ OGRSpatialReference ReadCrs(const std::filesystem::path& file, GDALDataset& data
   return crs;
 }
 
+/// The unit of heights, and what there is to say about it.
+struct HeightUnit {
+  double metres = 1.0;
+  std::string note;  // empty: nothing
+};
+
 // GDAL gives the vertical unit of a compound system and of USGS DEM files as the band's unit.
 double MetresPerUnit(const std::filesystem::path& file, const std::string& unit) {
   static const std::pair<const char*, double> kUnits[] = {
@@ -136,46 +146,118 @@ double MetresPerUnit(const std::filesystem::path& file, const std::string& unit)
   Refuse(file, "has heights in '" + unit + "'; metres and feet are read");
 }
 
+// Heights without a unit are in feet on a map in feet, as surveys in feet write them, else in
+// metres; where the map is not in metres, this is told.
+HeightUnit UnitOf(const std::filesystem::path& file, GDALRasterBand& band,
+                  const OGRSpatialReference& crs) {
+  const std::string unit = band.GetUnitType();
+  if (!unit.empty()) return {MetresPerUnit(file, unit), ""};
+  const char* name = nullptr;
+  const double map_unit_m = crs.IsProjected() != 0 ? crs.GetLinearUnits(&name) : 1.0;
+  constexpr double kFoot_m = 0.3048, kFeetDiffer_m = 1e-5, kRounding = 1e-9;
+  if (std::abs(map_unit_m - 1.0) < kRounding) return {};
+  const bool is_in_feet = std::abs(map_unit_m - kFoot_m) < kFeetDiffer_m;
+  return {is_in_feet ? map_unit_m : 1.0,
+          fmt::format("heights have no unit, and the map is in {}; they are taken in {} (declare "
+                      "the unit of the band otherwise)",
+                      name, is_in_feet ? name : "metre")};
+}
+
 // Values that are nodata by custom though the file does not declare them.
 bool IsCustomaryVoid(double value) {
   return value == -32768.0 || value == -32767.0 || value == -9999.0 ||
          value == static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
-std::vector<float> ReadSamples(const std::filesystem::path& file, GDALDataset& dataset) {
-  const int columns = dataset.GetRasterXSize();
-  const int rows = dataset.GetRasterYSize();
-  std::vector<float> samples(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const CPLErr status = dataset.GetRasterBand(1)->RasterIO(
-      GF_Read, 0, 0, columns, rows, samples.data(), columns, rows, GDT_Float32, 0, 0, nullptr);
-  if (status != CE_None) Refuse(file, "is damaged or cut short (" + LastGdalError() + ")");
-  return samples;
+// The values of a band within a window. Returns nothing if the file is damaged.
+template <typename Value>
+std::optional<std::vector<Value>> ValuesIn(GDALRasterBand& band, const PixelWindow& window,
+                                           GDALDataType type) {
+  std::vector<Value> values(static_cast<std::size_t>(window.columns) *
+                            static_cast<std::size_t>(window.rows));
+  if (band.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, values.data(),
+                    window.columns, window.rows, type, 0, 0, nullptr) != CE_None) {
+    return std::nullopt;
+  }
+  return values;
 }
+
+std::vector<float> ReadSamples(const std::filesystem::path& file, GDALRasterBand& band,
+                               const PixelWindow& window) {
+  if (std::int64_t{window.columns} * window.rows > kMostElevationSamples) {
+    Refuse(file,
+           fmt::format("has {} x {} samples{}; at most {} can be held", window.columns, window.rows,
+                       window.columns < band.GetXSize() ? " in sight" : "", kMostElevationSamples));
+  }
+  std::optional<std::vector<float>> samples = ValuesIn<float>(band, window, GDT_Float32);
+  if (!samples) Refuse(file, "is damaged or cut short (" + LastGdalError() + ")");
+  return std::move(*samples);
+}
+
+// GDAL makes no mask of an alpha band of floats.
+std::vector<std::uint8_t> ReadAlpha(const std::filesystem::path& file, GDALRasterBand& alpha,
+                                    const PixelWindow& window) {
+  const std::optional<std::vector<float>> values = ValuesIn<float>(alpha, window, GDT_Float32);
+  if (!values) Refuse(file, "has a damaged alpha band (" + LastGdalError() + ")");
+  std::vector<std::uint8_t> mask;
+  mask.reserve(values->size());
+  for (const float value : *values) mask.push_back(value > 0.0F ? 255 : 0);
+  return mask;
+}
+
+// Whether each sample is valid (not 0), as the file's mask or alpha band says; empty without one.
+std::vector<std::uint8_t> ReadMask(const std::filesystem::path& file, GDALRasterBand& band,
+                                   const PixelWindow& window) {
+  GDALDataset& dataset = *band.GetDataset();
+  if (dataset.GetRasterCount() == 2) return ReadAlpha(file, *dataset.GetRasterBand(2), window);
+  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return {};
+  std::optional<std::vector<std::uint8_t>> mask =
+      ValuesIn<std::uint8_t>(*band.GetMaskBand(), window, GDT_Byte);
+  if (!mask) Refuse(file, "has a damaged mask (" + LastGdalError() + ")");
+  return std::move(*mask);
+}
+
+// What a band's samples stand for.
+class Decoder {
+ public:
+  Decoder(GDALRasterBand& band, double unit_m)
+      : unit_m_(unit_m), scale_(band.GetScale()), offset_(band.GetOffset()) {
+    int has_nodata = 0;
+    const double nodata = band.GetNoDataValue(&has_nodata);
+    if (has_nodata != 0) nodata_ = static_cast<float>(nodata);
+  }
+  [[nodiscard]] bool IsVoid(float raw) const {
+    return std::isnan(raw) || raw == nodata_ || IsCustomaryVoid(static_cast<double>(raw));
+  }
+  [[nodiscard]] double Height(float raw) const {
+    return (static_cast<double>(raw) * scale_ + offset_) * unit_m_;
+  }
+
+ private:
+  double unit_m_, scale_, offset_;
+  std::optional<float> nodata_;
+};
 
 // Turns raw samples into metres and NaN, in place; returns the number of voids.
 std::size_t ConvertToMetres(const std::filesystem::path& file, GDALRasterBand& band,
-                            std::vector<float>& samples) {
-  const double unit_m = MetresPerUnit(file, band.GetUnitType());
-  const double scale = band.GetScale();
-  const double offset = band.GetOffset();
-  int has_nodata = 0;
-  const auto nodata = static_cast<float>(band.GetNoDataValue(&has_nodata));
+                            const PixelWindow& window, double unit_m, std::vector<float>& samples) {
+  const std::vector<std::uint8_t> mask = ReadMask(file, band, window);
+  const Decoder decoder(band, unit_m);
   std::size_t voids = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const float raw = samples[i];
-    if (std::isnan(raw) || (has_nodata != 0 && raw == nodata) ||
-        IsCustomaryVoid(static_cast<double>(raw))) {
+    if (decoder.IsVoid(samples[i]) || (!mask.empty() && mask[i] == 0)) {
       samples[i] = kVoid;
       ++voids;
       continue;
     }
-    const double height_m = (static_cast<double>(raw) * scale + offset) * unit_m;
+    const double height_m = decoder.Height(samples[i]);
     if (!(height_m >= kDeepestGround_m && height_m <= kHighestGround_m)) {
-      const auto columns = static_cast<std::size_t>(band.GetXSize());
-      Refuse(file,
-             fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
-                         "lies in [{}, {}] m",
-                         height_m, i / columns, i % columns, kDeepestGround_m, kHighestGround_m));
+      const auto columns = static_cast<std::size_t>(window.columns);
+      Refuse(file, fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
+                               "lies in [{}, {}] m",
+                               height_m, i / columns + static_cast<std::size_t>(window.row),
+                               i % columns + static_cast<std::size_t>(window.column),
+                               kDeepestGround_m, kHighestGround_m));
     }
     samples[i] = static_cast<float>(height_m);
   }
@@ -200,13 +282,23 @@ ElevationRaster ReadElevationHeader(const std::filesystem::path& file) {
   return HeaderOf(file, *dataset);
 }
 
-ElevationRaster ReadElevationRaster(const std::filesystem::path& file) {
+ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
+                                    const std::optional<PixelWindow>& window) {
   const QuietGdal quiet;
   const Dataset dataset = Open(file);
   ElevationRaster raster = HeaderOf(file, *dataset);
-  raster.height_m = ReadSamples(file, *dataset);
-  raster.voids = ConvertToMetres(file, *dataset->GetRasterBand(1), raster.height_m);
-  if (raster.voids == raster.height_m.size()) Refuse(file, "has no valid sample, only voids");
+  const PixelWindow wanted = window.value_or(PixelWindow{0, 0, raster.columns, raster.rows});
+  raster.geotransform[0] += wanted.column * raster.geotransform[1];
+  raster.geotransform[3] += wanted.row * raster.geotransform[5];
+  raster.columns = wanted.columns;
+  raster.rows = wanted.rows;
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  const HeightUnit unit = UnitOf(file, band, raster.crs);
+  raster.unit_note = unit.note;
+  raster.height_m = ReadSamples(file, band, wanted);
+  raster.voids = ConvertToMetres(file, band, wanted, unit.metres, raster.height_m);
+  if (!window && raster.voids == raster.height_m.size())
+    Refuse(file, "has no valid sample, only voids");
   return raster;
 }
 

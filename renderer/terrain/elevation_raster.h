@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct ElevationRaster {
   OGRSpatialReference crs;               // x is east
   std::vector<float> height_m;           // rows x columns; NaN: void
   std::size_t voids = 0;
+  std::string unit_note;  // what is told about the unit of the heights; empty: nothing
 
   [[nodiscard]] double CentreX(double column) const {
     return geotransform[0] + (column + 0.5) * geotransform[1];
@@ -48,8 +50,16 @@ struct ElevationRaster {
   }
 };
 
-/// Reads and checks a file; throws InputError as ReadElevation does.
-[[nodiscard]] ElevationRaster ReadElevationRaster(const std::filesystem::path& file);
+/// Some of the pixels of a file.
+struct PixelWindow {
+  int column = 0, row = 0;
+  int columns = 0, rows = 0;
+};
+
+/// Reads and checks a file, or a window of it, which must lie in it and may hold nothing but voids;
+/// throws InputError as ReadElevation does.
+[[nodiscard]] ElevationRaster ReadElevationRaster(
+    const std::filesystem::path& file, const std::optional<PixelWindow>& window = std::nullopt);
 
 /// The same without samples, which are not read and not checked.
 [[nodiscard]] ElevationRaster ReadElevationHeader(const std::filesystem::path& file);
@@ -63,6 +73,13 @@ std::size_t FillVoids(std::vector<float>& height, int rows, int columns);
 /// kept as they are where they lie on such a grid already; else bilinear, NaN outside the
 /// footprint. Throws InputError, naming `file`, for places that are not on the earth.
 [[nodiscard]] ElevationGrid GeographicGrid(const ElevationRaster& raster, const std::string& file);
+
+/// The pixels that are those samples of the raster's own grid; nothing where its samples do not lie
+/// on a grid of latitudes and longitudes or run westwards. The window may not run past the last
+/// column.
+[[nodiscard]] std::optional<PixelWindow> PixelsOf(const ElevationRaster& raster,
+                                                  const GridWindow& window,
+                                                  const std::string& file);
 
 /// That grid without heights, from a raster that may have none either.
 [[nodiscard]] ElevationGrid GeographicExtent(const ElevationRaster& raster,

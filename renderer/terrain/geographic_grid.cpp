@@ -343,6 +343,17 @@ ElevationGrid GeographicGrid(const ElevationRaster& raster, const std::string& f
   return Resample(footprint, raster, file);
 }
 
+std::optional<PixelWindow> PixelsOf(const ElevationRaster& raster, const GridWindow& window,
+                                    const std::string& file) {
+  const Footprint footprint(raster, file);
+  const RegularGrid spanned = SpannedGrid(footprint, raster);
+  // Where columns go west, a window past the last one would have to be turned round.
+  if (!LiesOn(spanned, footprint, raster) || spanned.step_lon < 0.0) return std::nullopt;
+  const int row = spanned.step_lat > 0.0 ? raster.rows - window.first_row - window.rows
+                                         : window.first_row;
+  return PixelWindow{window.first_column, row, window.columns, window.rows};
+}
+
 ElevationGrid GeographicExtent(const ElevationRaster& raster, const std::string& file) {
   const Footprint footprint(raster, file);
   const RegularGrid spanned = SpannedGrid(footprint, raster);

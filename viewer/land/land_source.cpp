@@ -12,6 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/file_extension.h"
 #include "renderer/terrain/built_in_range.h"
+#include "viewer/land/tile_pads.h"
 
 namespace alpenglow {
 namespace {
@@ -57,16 +58,6 @@ bool IsModel(const std::filesystem::path& file) {
                      [&](const char* ending) { return HasExtension(file, ending); });
 }
 
-std::string NoteOn(const ElevationModel& model, const std::string& file) {
-  std::string note;
-  if (model.voids > 0)
-    note = fmt::format("{}: {} samples without data, {} filled", file, model.voids,
-                       model.voids_filled);
-  if (model.vertical_datum.empty()) return note;
-  return fmt::format("{}{}{}: heights are declared as {}; they are taken as over the ellipsoid",
-                     note, note.empty() ? "" : "; ", file, model.vertical_datum);
-}
-
 }  // namespace
 
 LandTiles::LandTiles(const LandSource& source) : source_(source) {
@@ -84,7 +75,10 @@ LandTiles::LandTiles(const LandSource& source) : source_(source) {
   }
   if (tiles_.empty()) return;
   LayLattice();
-  for (std::size_t index = 0; index < tiles_.size(); ++index) PlaceTile(index);
+  for (std::size_t index = 0; index < tiles_.size(); ++index) {
+    tiles_[index].pads = PadsOf(lattice_, extents_, index);
+    PlaceTile(index);
+  }
   lattice_.last_column = 0;
   lattice_.last_row = 0;
   int first_column = std::numeric_limits<int>::max(), first_row = first_column;
@@ -108,8 +102,35 @@ void LandTiles::AddFile(const std::filesystem::path& file, bool is_from_folder) 
   LandTile tile;
   tile.file = file;
   tile.is_from_folder = is_from_folder;
-  extents_.push_back(Closed(ReadElevationExtent(file)));
+  const ElevationGrid grid = ReadElevationExtent(file);
+  constexpr double kManySamples = 1 << 25;
+  const bool is_large = static_cast<double>(grid.columns) * grid.rows > kManySamples;
+  if (is_large && CanBeCut(file)) {
+    AddParts(tile, grid);
+    return;
+  }
+  extents_.push_back(Closed(grid));
   tiles_.push_back(tile);
+}
+
+// Parts share the samples of their rims. Those of a grid around the earth end where it begins.
+void LandTiles::AddParts(const LandTile& tile, const ElevationGrid& grid) {
+  constexpr int kSteps = 4096;  // along a side
+  const int last_column = grid.ClosesAroundTheEarth() ? grid.columns : grid.columns - 1;
+  for (int row = 0; row < grid.rows - 1; row += kSteps) {
+    for (int column = 0; column < last_column; column += kSteps) {
+      LandTile part = tile;
+      part.part = GridWindow{column, row, std::min(kSteps, last_column - column) + 1,
+                             std::min(kSteps, grid.rows - 1 - row) + 1};
+      ElevationGrid extent = grid;
+      extent.west_rad = grid.LongitudeOfColumn(column);
+      extent.north_rad = grid.LatitudeOfRow(row);
+      extent.columns = part.part->columns;
+      extent.rows = part.part->rows;
+      extents_.push_back(std::move(extent));
+      tiles_.push_back(std::move(part));
+    }
+  }
 }
 
 void LandTiles::AddFolder(const std::filesystem::path& folder) {
@@ -145,9 +166,13 @@ void LandTiles::LayLattice() {
 }
 
 void LandTiles::PlaceTile(std::size_t index) {
-  const ElevationGrid& grid = extents_[index];
-  const double column = std::remainder(grid.west_rad - lattice_.west_rad, 2.0 * std::numbers::pi) /
-                        lattice_.step_lon_rad;
+  const ElevationGrid grid = PaddedExtent(extents_[index], tiles_[index].pads);
+  // Parts of one file stay side by side: all turn around the earth as the first one does.
+  const std::optional<GridWindow>& part = tiles_[index].part;
+  const double east_rad = part ? part->first_column * grid.step_lon_rad : 0.0;
+  const double turned_rad =
+      std::remainder(grid.west_rad - east_rad - lattice_.west_rad, 2.0 * std::numbers::pi);
+  const double column = (turned_rad + east_rad) / lattice_.step_lon_rad;
   const double row = (lattice_.north_rad - grid.north_rad) / lattice_.step_lat_rad;
   const double wide = (grid.columns - 1) * grid.step_lon_rad / lattice_.step_lon_rad;
   const double high = (grid.rows - 1) * grid.step_lat_rad / lattice_.step_lat_rad;
@@ -255,10 +280,13 @@ ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
   if (wanted.file.empty()) {
     model.grid = BuiltInRange(*tiles.source().range_centre);
   } else {
-    model = ReadElevation(wanted.file, tiles.source().voids);
+    model = wanted.part ? ReadElevation(wanted.file, tiles.source().voids, *wanted.part)
+                        : ReadElevation(wanted.file, tiles.source().voids);
   }
+  ElevationGrid grid = Closed(std::move(model.grid));
+  if (wanted.pads.Any()) grid = WithPads(tiles, tile, grid);
   const HeightPyramid all(wanted.box, wanted.level,
-                          OnLattice(tiles.lattice(), wanted, Closed(std::move(model.grid))));
+                          OnLattice(tiles.lattice(), wanted, std::move(grid)));
   return {std::make_shared<const HeightPyramid>(all.From(level)),
           NoteOn(model, wanted.file.string())};
 }

@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
@@ -102,6 +105,78 @@ TEST_F(DrapedColours, WithoutAPlaceOfItsOwnCoversTheTerrainFromRimToRim) {
   EXPECT_NEAR((*rgb)[0], Linear(48), 1e-4);
   EXPECT_NEAR((*rgb)[1], Linear(24), 1e-4);
   EXPECT_NEAR((*rgb)[2], Linear(90), 1e-4);
+}
+
+// A picture in which a square in the middle is left out, by `cut` of its dataset.
+template <typename Cut>
+void WriteHole(const std::filesystem::path& file, const Cut& cut) {
+  WritePicture(file, nullptr);
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
+  std::vector<std::uint8_t> there(kSide * kSide, 255);
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const auto inside = [](std::size_t k) { return k >= 16 && k < 48; };
+    if (inside(i % kSide) && inside(i / kSide)) there[i] = 0;
+  }
+  cut(*dataset, there);
+  GDALClose(dataset);
+}
+
+void ExpectHole(const std::filesystem::path& file) {
+  const SceneGround ground = Plain();
+  const auto drape = ColourDrape::Of(DrapedWith(file), ground);
+  for (const double footprint_m : {1.0, 300.0, 1500.0}) {
+    EXPECT_FALSE(drape->At({100.0, -200.0, 0.0}, 0.0, footprint_m).has_value()) << footprint_m;
+    EXPECT_TRUE(drape->At({-3500.0, 3500.0, 0.0}, 0.0, footprint_m).has_value()) << footprint_m;
+  }
+  // Colours beside the hole are not mixed with what is stored in it.
+  const auto beside = drape->At({-4000.0 + 15.9 * 125.0, 0.0, 0.0}, 0.0, 1.0);
+  ASSERT_TRUE(beside.has_value());
+  EXPECT_NEAR((*beside)[0], Linear(45), 1e-4);
+}
+
+void WriteBand(GDALRasterBand& band, std::vector<std::uint8_t> values) {
+  ASSERT_EQ(
+      band.RasterIO(GF_Write, 0, 0, kSide, kSide, values.data(), kSide, kSide, GDT_Byte, 0, 0),
+      CE_None);
+}
+
+TEST_F(DrapedColours, TransparentPixelsShowNothing) {
+  WriteHole(folder_ / "mask.tif", [](GDALDataset& dataset, const auto& there) {
+    ASSERT_EQ(dataset.CreateMaskBand(GMF_PER_DATASET), CE_None);
+    WriteBand(*dataset.GetRasterBand(1)->GetMaskBand(), there);
+  });
+  ExpectHole(folder_ / "mask.tif");
+  WriteHole(folder_ / "nodata.tif", [](GDALDataset& dataset, const auto& there) {
+    for (int number = 1; number <= 3; ++number) {
+      GDALRasterBand& band = *dataset.GetRasterBand(number);
+      std::vector<std::uint8_t> values(there.size());
+      ASSERT_EQ(
+          band.RasterIO(GF_Read, 0, 0, kSide, kSide, values.data(), kSide, kSide, GDT_Byte, 0, 0),
+          CE_None);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (there[i] == 0) values[i] = 7;
+      }
+      WriteBand(band, values);
+      band.SetNoDataValue(7.0);
+    }
+  });
+  ExpectHole(folder_ / "nodata.tif");
+  const auto rgba = folder_ / "rgba.tif";
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  WriteHole(folder_ / "rgb.tif", [&](GDALDataset& dataset, const auto& there) {
+    GDALDataset* copy = driver->Create(rgba.c_str(), kSide, kSide, 4, GDT_Byte, nullptr);
+    for (int number = 1; number <= 3; ++number) {
+      std::vector<std::uint8_t> values(there.size());
+      ASSERT_EQ(dataset.GetRasterBand(number)->RasterIO(GF_Read, 0, 0, kSide, kSide, values.data(),
+                                                        kSide, kSide, GDT_Byte, 0, 0),
+                CE_None);
+      WriteBand(*copy->GetRasterBand(number), values);
+    }
+    copy->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
+    WriteBand(*copy->GetRasterBand(4), there);
+    GDALClose(copy);
+  });
+  ExpectHole(rgba);
 }
 
 TEST_F(DrapedColours, LiesWhereItsGeoreferenceSays) {

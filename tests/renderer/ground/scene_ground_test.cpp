@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground/scene_ground.h"
 
+#include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <ogr_spatialref.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/model_in_sight.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -74,6 +79,77 @@ TEST_F(AModel, IsWhatAnEyeInsideStandsOnWithoutAWord) {
   const SceneGround ground = LoadGround(At(46.5, 8.5));
   EXPECT_NEAR(ground.eye_height_m, 502.0, 0.1) << "a facet sags by less";
   EXPECT_EQ(ground.message, "");
+}
+
+ElevationGrid Earth(int columns) {
+  ElevationGrid grid;
+  grid.columns = columns;
+  grid.rows = columns / 2;
+  grid.step_lon_rad = grid.step_lat_rad = 2.0 * kPi / columns;
+  grid.west_rad = -kPi + 0.5 * grid.step_lon_rad;
+  grid.north_rad = 0.5 * kPi - 0.5 * grid.step_lat_rad;
+  return grid;
+}
+
+void ExpectWindow(const GridWindow& window, const std::array<int, 4>& expected) {
+  EXPECT_EQ(window.first_column, expected[0]);
+  EXPECT_EQ(window.first_row, expected[1]);
+  EXPECT_EQ(window.columns, expected[2]);
+  EXPECT_EQ(window.rows, expected[3]);
+}
+
+TEST(WindowAround, HoldsWhatLiesWithinADistance) {
+  const ElevationGrid grid = Earth(360);  // samples at half degrees
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(0.5, 10.5, 0.0), 2.2 * kRadiansPerDegree),
+               {187, 86, 7, 7});
+  // At 60 degrees a degree of longitude is half as long.
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(60.5, 10.5, 0.0), 2.2 * kRadiansPerDegree),
+               {185, 26, 11, 7});
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(0.5, 179.5, 0.0), 1.2 * kRadiansPerDegree),
+               {357, 87, 5, 5});
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(0.5, -179.5, 0.0), 1.2 * kRadiansPerDegree),
+               {358, 87, 5, 5});
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(89.0, 10.5, 0.0), 2.2 * kRadiansPerDegree),
+               {0, 0, 360, 4});
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(0.3, 10.7, 0.0), 0.0), {190, 89, 2, 2});
+}
+
+TEST(WindowAround, StaysInTheGridOfAPlaceBesideIt) {
+  ElevationGrid grid = Earth(360);
+  grid.columns = 20;  // from -179.5 to -160.5
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(0.5, 175.5, 0.0), 1.2 * kRadiansPerDegree),
+               {0, 87, 2, 5});
+  ExpectWindow(WindowAround(grid, PlaceFromDegrees(0.5, -150.5, 0.0), 1.2 * kRadiansPerDegree),
+               {18, 87, 2, 5});
+}
+
+// As GEBCO's older grid, of a minute: its samples fit into memory, its triangles do not.
+TEST_F(AModel, OfTheWholeEarthIsReadAroundTheCamera) {
+  GDALRegister_GTiff();
+  const std::filesystem::path file = folder_ / "earth.tif";
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", nullptr};
+  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      file.c_str(), 21600, 10800, 1, GDT_Int16, const_cast<char**>(options));
+  std::array<double, 6> transform{-180.0, 1.0 / 60.0, 0.0, 90.0, 0.0, -1.0 / 60.0};
+  dataset->SetGeoTransform(transform.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  dataset->SetSpatialRef(&crs);
+  std::vector<float> heights(128 * 128, 500.0F);
+  ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 11216, 2546, 128, 128, heights.data(),
+                                                128, 128, GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+  Scene scene = At(46.5, 8.0);
+  scene.terrain.file = file;
+  const ModelInSight seen = ReadModelInSight(scene);
+  EXPECT_EQ(seen.extent.columns, 21600);
+  EXPECT_LT(seen.model.grid.height_m.size(), 500000U);
+  EXPECT_GT(seen.model.grid.height_m.size(), 200000U) << "460 km around an eye at 502 m";
+  EXPECT_NEAR(*seen.model.grid.HeightAt(46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree), 500.0,
+              1e-3);
+  EXPECT_THAT(seen.message, HasSubstr("of 21600 x 10800 samples"));
+  EXPECT_THAT(seen.message, HasSubstr("km of the camera"));
 }
 
 TEST(SceneGround, TellsThatTerrainIsMadeUp) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/lamp/lamp_light.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +11,10 @@
 #include "atmosphere/judge/airlight_judge.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/lamp/placed_lamp.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -636,6 +639,27 @@ TEST_F(LampsAtTheEye, OfEveryKindMakePicturesOfNumbers) {
   measured.ies = folder_ / "lamp.ies";
   measured.pitch_rad = -0.5 * kPi;
   EXPECT_EQ(FaultOf(With(measured), night_), "");
+}
+
+TEST_F(LampsAtTheEye, AMeasuredLampIsTiltedByItsPitch) {
+  WriteText(folder_ / "lamp.ies",
+            "IESNA:LM-63-2002\nTILT=INCLUDE\n1\n2\n0 90\n1 0.6\n"
+            "1 1000 1 2 1 1 2 0 0 0\n1 1 50\n0 180\n0\n1000 1000\n");
+  Light light = point_;
+  light.intensity_cd.reset();
+  light.ies = folder_ / "lamp.ies";
+  const auto candela = [&](double pitch_rad) {
+    light.pitch_rad = pitch_rad;
+    const Stage stage(With(light));
+    const LampStage lamps(stage.scene, stage.ground, stage.medium);
+    return PlacedOn(lamps, light, 0, MeasuredLampsOf(stage.scene.lights)).candela;
+  };
+  EXPECT_NEAR(candela(-0.5 * kPi), 1000.0, 1e-6);
+  EXPECT_NEAR(candela(-0.25 * kPi), 800.0, 1e-6);
+  EXPECT_NEAR(candela(0.0), 600.0, 1e-6);
+  EXPECT_THAT(
+      tests::FaultOf([&] { return candela(0.25 * kPi); }),
+      testing::EndsWith("lamp.ies is tilted by 135 degrees; its factors are for 0 to 90 degrees"));
 }
 
 // Hard case 42.

@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/local_volume.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <fstream>
+#include <cstddef>
 #include <glm/geometric.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "renderer/media/fog_layer.h"
 #include "renderer/media/local_media.h"
+#include "renderer/scene/scene_files.h"
 #include "renderer/terrain/lattice_noise.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -244,10 +252,156 @@ TEST_F(Nrrd, SaysWhatItDoesNotRead) {
   };
   EXPECT_EQ(read("type: double"),
             file.string() + ":2: type is \"double\"; it must be \"float\" or \"uint8\"");
-  EXPECT_EQ(read("encoding: gzip"), file.string() + ":2: encoding is \"gzip\"; it must be \"raw\"");
+  EXPECT_EQ(read("encoding: bzip2"),
+            file.string() + ":2: encoding is \"bzip2\"; it must be \"raw\" or \"gzip\"");
   EXPECT_EQ(read("dimension: 4"), file.string() + ":2: dimension is 4; it must be 3");
   EXPECT_EQ(FaultOf([&] { (void)ReadNrrd(folder_ / "none.nrrd"); }),
             (folder_ / "none.nrrd").string() + ": cannot be read");
+}
+
+TEST_F(Nrrd, RefusesByNameWhatChangesTheMeaning) {
+  const auto file = folder_ / "x.nrrd";
+  const auto fault = [&](const std::string& line) {
+    WriteText(file, "NRRD0004\n" + line +
+                        "\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" +
+                        std::string(8, 'a'));
+    return tests::FaultOf([&] { return ReadNrrd(file); });
+  };
+  for (const char* line :
+       {"content: smoke: dense", "Spacings: 1 1 2", "SPACE: RAS", "labels: \"x\" \"y\" \"z\"",
+        "space origin: (1,2,3)", "centers: cell cell cell", "kinds: space domain ???", "number: 8",
+        "endian: big", "my field:=a: b", "axis mins: 0 nan 0", "space units: \"m\" \"m\" \"m\""}) {
+    EXPECT_EQ(fault(line), "no fault") << line;
+  }
+  for (const auto& [line, named] : std::vector<std::pair<const char*, const char*>>{
+           {"centers: cell node cell", "centers are \"cell node cell\""},
+           {"kinds: vector domain domain", "kinds are \"vector domain domain\""},
+           {"old min: 3", "\"old min\" is not read"},
+           {"colour: red", "\"colour\" is not read"},
+           {"endian: middle", "endian is \"middle\""},
+           {"encoding: raw", "\"encoding\" stands twice"},
+           {"spacings: 1 -1 1", "axis 2 runs backwards"},
+           {"axis mins: 0 0 3\naxis maxs: 1 1 1", "axis 3 runs backwards"},
+           {"space: scanner-xyz", "space is \"scanner-xyz\""},
+           {"space: 3D-left-handed", "space is \"3D-left-handed\""},
+           {"space dimension: 4", "space dimension is 4"},
+           {"space directions: (1,0,0) (0,1,0) none", "must be three vectors"},
+           {"space directions: (1,1,0) (0,1,0) (0,0,1)", "are oblique"},
+           {"space directions: (1,0,0) (2,0,0) (0,0,1)", "are oblique"},
+           {"space directions: (1,0,0) (0,0,0) (0,0,1)", "are oblique"},
+           {"data file: LIST", "it must be the name of one file"},
+           {"data file: z%03d.raw 1 2 1", "it must be the name of one file"},
+           {"byte skip: -2", "byte skip is \"-2\""},
+           {"byte skip: 4", "4 bytes of data; 2 x 2 x 2 bytes are 8"},
+           {"line skip: 1", "has 0 lines; line skip is 1"}}) {
+    EXPECT_THAT(fault(line), testing::HasSubstr(named)) << line;
+  }
+}
+
+// The file 0, 1, 2, ... of 4 x 3 x 2 samples, as bytes of 255ths.
+std::string Counting(const std::string& fields) {
+  std::string text =
+      "NRRD0005\ntype: uchar\ndimension: 3\nsizes: 4 3 2\nencoding: raw\n" + fields + "\n";
+  for (char i = 0; i < 24; ++i) text += i;
+  return text;
+}
+
+TEST_F(Nrrd, SpaceDirectionsTurnTheSamples) {
+  const auto file = folder_ / "turned.nrrd";
+  // The value at the right, ahead and up of the box, in 255ths, and the sizes.
+  const auto first = [&](const std::string& fields) {
+    WriteText(file, Counting(fields));
+    const VolumeGrid grid = ReadNrrd(file);
+    EXPECT_EQ(grid.values().size(), 24U);
+    return fmt::format("{:.0f} of {} {} {}", 255.0 * grid.At({1.0, 1.0, 1.0}), grid.size()[0],
+                       grid.size()[1], grid.size()[2]);
+  };
+  EXPECT_EQ(first("space dimension: 3\nspace directions: (2,0,0) (0,3,0) (0,0,1)\n"),
+            "23 of 4 3 2");
+  EXPECT_EQ(first("space directions: (-1,0,0) (0,1,0) (0,0,1)\n"), "20 of 4 3 2");
+  EXPECT_EQ(first("space directions: (1,0,0) (0,1,0) (0,0,-1)\n"), "11 of 4 3 2");
+  EXPECT_EQ(first("space directions: (0,0,1) (1,0,0) (0,-1,0)\n"), "11 of 3 2 4");
+  EXPECT_EQ(first("space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"),
+            "12 of 4 3 2");
+  EXPECT_EQ(first("space: RAS\nspace directions: ( -1 , 0 , 0 ) (0,1e-9,0) (0,0,1)\n"),
+            "20 of 4 3 2");
+}
+
+TEST_F(Nrrd, DataMayBeInAFileOfTheirOwn) {
+  const std::vector<float> values{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
+  const std::string fields = "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
+  WriteText(folder_ / "det data.raw", LittleEndian(values));
+  WriteText(folder_ / "det.nhdr", fields + "endian: little\ndata file: det data.raw");
+  EXPECT_EQ(ReadNrrd(folder_ / "det.nhdr").values(), values);
+  WriteText(folder_ / "skip.raw", "P7\n# two lines\n12345" + LittleEndian(values));
+  WriteText(folder_ / "skip.nhdr", fields + "line skip: 2\nbyte skip: 5\ndatafile: skip.raw\n");
+  EXPECT_EQ(ReadNrrd(folder_ / "skip.nhdr").values(), values);
+  WriteText(folder_ / "last.nhdr", fields + "byte skip: -1\ndata file: ./skip.raw\n\n");
+  EXPECT_EQ(ReadNrrd(folder_ / "last.nhdr").values(), values);
+  std::string big = LittleEndian(values);
+  for (std::size_t i = 0; i < big.size(); i += 4) {
+    std::reverse(big.begin() + static_cast<std::ptrdiff_t>(i),
+                 big.begin() + static_cast<std::ptrdiff_t>(i) + 4);
+  }
+  WriteText(folder_ / "big.nrrd", fields + "endian: big\n\n" + big);
+  EXPECT_EQ(ReadNrrd(folder_ / "big.nrrd").values(), values);
+  WriteText(folder_ / "none.nhdr", fields + "data file: none.raw\n");
+  EXPECT_EQ(tests::FaultOf([&] { return ReadNrrd(folder_ / "none.nhdr"); }),
+            (folder_ / "none.raw").string() + ": cannot be read");
+}
+
+TEST_F(Nrrd, OutputsMayNotReplaceItsDataFile) {
+  WriteText(folder_ / "det.nhdr",
+            "NRRD0004\ntype: uint8\nsizes: 2 2 2\nencoding: raw\ndata file: a.raw");
+  Scene scene;
+  scene.volumes.emplace_back().grid = folder_ / "det.nhdr";
+  const std::vector<NamedFile> files = FilesOf(scene);
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(files[1].file, folder_ / "a.raw");
+}
+
+// As gzip packs it.
+std::string Packed(std::string data) {
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(deflateBound(&stream, static_cast<uLong>(data.size())), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(data.data());
+  stream.avail_in = static_cast<uInt>(data.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+TEST_F(Nrrd, GzipIsUnpackedAndItsDamageIsTold) {
+  const std::vector<float> values{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
+  const std::string fields = "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: GZ\n";
+  const std::string packed = Packed(LittleEndian(values));
+  const auto file = folder_ / "gz.nrrd";
+  const auto fault = [&](const std::string& text) {
+    WriteText(file, text);
+    return tests::FaultOf([&] { return ReadNrrd(file); });
+  };
+  WriteText(file, fields + "\n" + packed);
+  EXPECT_EQ(ReadNrrd(file).values(), values);
+  WriteText(file, fields + "byte skip: 3\n\n" + Packed("abc" + LittleEndian(values)));
+  EXPECT_EQ(ReadNrrd(file).values(), values) << "bytes are skipped that were packed too";
+  const std::string half = LittleEndian(values);
+  WriteText(file, fields + "\n" + Packed(half.substr(0, 9)) + Packed(half.substr(9)));
+  EXPECT_EQ(ReadNrrd(file).values(), values) << "files of gzip may be joined";
+  for (std::size_t length = 0; length + 9 < packed.size(); ++length) {
+    EXPECT_THAT(fault(fields + "\n" + packed.substr(0, length)),
+                testing::HasSubstr("bytes of data; 2 x 2 x 2 floats are 32"));
+  }
+  std::string damaged = packed;
+  damaged[packed.size() / 2] = static_cast<char>(~damaged[packed.size() / 2]);
+  EXPECT_NE(fault(fields + "\n" + damaged), "no fault");
+  EXPECT_THAT(fault(fields + "\n" + LittleEndian(values)), testing::HasSubstr("are damaged at"));
+  EXPECT_THAT(fault(fields + "\n" + Packed(LittleEndian(values) + "x")),
+              testing::HasSubstr("33 bytes of data"));
+  EXPECT_THAT(fault(fields + "byte skip: -1\n\n" + packed), testing::HasSubstr("byte skip is -1"));
 }
 
 TEST_F(RawGrid, RefusesAFileOfAnotherLength) {

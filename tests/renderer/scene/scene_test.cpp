@@ -257,6 +257,7 @@ TEST(Scene, VolumesThatMakeNoSenseAreRefusedByKey) {
       {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
       {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 1]\n", "volume[0].grid_size[2] is 1"},
       {whole + "grid = \"a.nrrd\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
+      {whole + "grid = \"a.NHDR\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
       {whole + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
       {whole + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
       {whole + "extinctoin = 1\n", "volume[0].extinctoin"}};

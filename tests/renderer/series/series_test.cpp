@@ -31,7 +31,8 @@ TEST(FrameName, NumbersAreFilledIn) {
   EXPECT_EQ(FrameName("d/frame.%04d.exr").Exr(7), "d/frame.0007.exr");
   EXPECT_EQ(FrameName("d/frame.%04d.exr").Exr(123456), "d/frame.123456.exr");
   EXPECT_EQ(FrameName("f%d.exr").Exr(7), "f7.exr");
-  EXPECT_EQ(FrameName("f%3d.exr").Exr(7), "f  7.exr");
+  EXPECT_EQ(FrameName("f%3d.exr").Exr(7), "f007.exr") << "a name has no spaces, as of ffmpeg";
+  EXPECT_EQ(FrameName("f%0d.exr").Exr(7), "f7.exr");
   EXPECT_EQ(FrameName("100%%-%02d.exr").Exr(7), "100%-07.exr");
   EXPECT_EQ(FrameName("d/frame.%04d.exr").Png(7), "d/frame.0007.png");
   EXPECT_EQ(FrameName("still.exr").Exr(7), "still.exr");

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -150,6 +151,58 @@ TEST_F(ElevationFile, FeetBecomeMetres) {
   ExpectRefused(Write(recipe), "furlong");
 }
 
+// 2 m apart on a map of New Mexico (State Plane, US survey feet), or of a place elsewhere.
+Recipe PlaneOfFeet(int epsg) {
+  Recipe recipe;
+  recipe.epsg = epsg;
+  recipe.geotransform = {1714733.97, 6.0, 0.0, 1673762.98, 0.0, -6.0};
+  recipe.height = [](int, int) { return 7000.0F; };
+  return recipe;
+}
+
+TEST_F(ElevationFile, HeightsWithoutAUnitAreInFeetOnAMapInFeet) {
+  struct Case {
+    int epsg;
+    double height_m;
+    const char* note;
+  };
+  for (const Case& map : std::vector<Case>{
+           {6529, 7000.0 * 1200.0 / 3937.0, "the map is in US survey foot; they are taken in US"},
+           {2222, 7000.0 * 0.3048, "the map is in foot; they are taken in foot"},
+           {32613, 7000.0, ""},
+           {4326, 7000.0, ""}}) {
+    Recipe recipe = PlaneOfFeet(map.epsg);
+    if (map.epsg == 32613) recipe.geotransform = {4e5, 2.0, 0.0, 4e6, 0.0, -2.0};
+    if (map.epsg == 4326) recipe.geotransform = Recipe{}.geotransform;
+    const ElevationModel model = ReadElevation(Write(recipe), VoidPolicy::kLeaveOpen);
+    EXPECT_NEAR(static_cast<double>(model.grid.at(5, 5)), map.height_m, 1e-3) << map.epsg;
+    EXPECT_THAT(NoteOn(model, "dem.tif"), HasSubstr(map.note)) << map.epsg;
+    EXPECT_EQ(model.unit_note.empty(), std::string(map.note).empty()) << map.epsg;
+    recipe.unit = "m";
+    const ElevationModel declared = ReadElevation(Write(recipe), VoidPolicy::kLeaveOpen);
+    EXPECT_NEAR(static_cast<double>(declared.grid.at(5, 5)), 7000.0, 1e-3) << map.epsg;
+    EXPECT_EQ(declared.unit_note, "") << map.epsg;
+  }
+}
+
+TEST_F(ElevationFile, AMapThatIsNotInMetresIsNoted) {
+  Recipe recipe;
+  const fs::path file = Write(recipe);
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
+  OGRSpatialReference kilometres;
+  kilometres.SetUTM(32);
+  kilometres.SetWellKnownGeogCS("WGS84");
+  kilometres.SetLinearUnitsAndUpdateParameters("kilometre", 1000.0);
+  std::array<double, 6> transform{400.0, 0.1, 0.0, 5200.0, 0.0, -0.1};
+  dataset->SetSpatialRef(&kilometres);
+  dataset->SetGeoTransform(transform.data());
+  GDALClose(dataset);
+  const ElevationModel model = ReadElevation(file, VoidPolicy::kLeaveOpen);
+  EXPECT_THAT(NoteOn(model, "a.tif"),
+              HasSubstr("a.tif: heights have no unit, and the map is in kilometre; they are taken "
+                        "in metre"));
+}
+
 TEST_F(ElevationFile, AProjectedPlaneIsStillThatPlane) {
   Recipe recipe;
   recipe.columns = 60;
@@ -247,6 +300,63 @@ TEST_F(ElevationFile, VoidsAreCountedAndFilledWithAMembrane) {
   EXPECT_FALSE(open.grid.HeightAt(open.grid.LatitudeOfRow(15), open.grid.LongitudeOfColumn(20)));
 }
 
+// The two western columns of a file have no data; its raw samples there are 0.
+Recipe WesternSea() {
+  Recipe recipe;
+  recipe.height = [](int, int column) { return column < 2 ? 0.0F : 700.0F; };
+  return recipe;
+}
+
+void ExpectTwoColumnsOpen(const fs::path& file) {
+  const ElevationModel model = ReadElevation(file, VoidPolicy::kLeaveOpen);
+  EXPECT_EQ(model.voids, 2U * 12U);
+  EXPECT_TRUE(std::isnan(model.grid.at(5, 1)));
+  EXPECT_EQ(model.grid.at(5, 2), 700.0F);
+  const ElevationModel filled = ReadElevation(file, VoidPolicy::kFill);
+  EXPECT_NEAR(static_cast<double>(filled.grid.at(5, 0)), 700.0, 1e-3);
+}
+
+// Adds a mask of the whole file, inside it or beside it.
+void AddMask(const fs::path& file, const char* inside) {
+  CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", inside);
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
+  ASSERT_EQ(dataset->CreateMaskBand(GMF_PER_DATASET), CE_None);
+  std::vector<std::uint8_t> mask(16 * 12, 255);
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 16 < 2 ? 0 : 255;
+  ASSERT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 16, 12, mask.data(),
+                                                               16, 12, GDT_Byte, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+  CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
+}
+
+TEST_F(ElevationFile, WhatAMaskLeavesOutIsAVoid) {
+  const fs::path inside = Write(WesternSea());
+  AddMask(inside, "YES");
+  ExpectTwoColumnsOpen(inside);
+  Recipe other = WesternSea();
+  other.name = "beside.tif";
+  const fs::path beside = Write(other);
+  AddMask(beside, "NO");
+  ASSERT_TRUE(fs::exists(beside.string() + ".msk"));
+  ExpectTwoColumnsOpen(beside);
+}
+
+TEST_F(ElevationFile, WhatAnAlphaBandLeavesOutIsAVoid) {
+  Recipe recipe = WesternSea();
+  recipe.bands = 2;
+  const fs::path file = Write(recipe);
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
+  dataset->GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
+  std::vector<float> alpha(16 * 12, 255.0F);
+  for (std::size_t i = 0; i < alpha.size(); ++i) alpha[i] = i % 16 < 2 ? 0.0F : 255.0F;
+  ASSERT_EQ(dataset->GetRasterBand(2)->RasterIO(GF_Write, 0, 0, 16, 12, alpha.data(), 16, 12,
+                                                GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+  ExpectTwoColumnsOpen(file);
+}
+
 TEST_F(ElevationFile, AnSrtmTileLiesOnTheDegreesOfItsName) {
   const fs::path tile = folder_ / "S34W071.hgt";
   std::ofstream stream(tile, std::ios::binary);
@@ -287,6 +397,83 @@ TEST_F(ElevationFile, AUsgsDemIsRead) {
   EXPECT_NEAR(*height, 500.0 + 720.0 - 160.0, 1.5) << "the file holds whole metres";
 }
 
+// The height at each sample tells its column and row.
+Recipe Numbered() {
+  Recipe recipe;
+  recipe.height = [](int row, int column) { return static_cast<float>(100 * row + column); };
+  return recipe;
+}
+
+TEST_F(ElevationFile, AWindowIsThatPartOfTheWhole) {
+  Recipe south_up = Numbered();
+  south_up.name = "south.tif";
+  south_up.geotransform = {7.0, 0.001, 0.0, 46.0, 0.0, 0.001};
+  for (const Recipe& recipe : {Numbered(), south_up}) {
+    const fs::path file = Write(recipe);
+    ASSERT_TRUE(CanBeCut(file));
+    const ElevationGrid whole = ReadElevation(file, VoidPolicy::kFill).grid;
+    const ElevationGrid part = ReadElevation(file, VoidPolicy::kFill, {5, 3, 6, 2}).grid;
+    ASSERT_EQ(part.columns, 6);
+    ASSERT_EQ(part.rows, 2);
+    EXPECT_NEAR(part.west_rad, whole.LongitudeOfColumn(5), 1e-14);
+    EXPECT_NEAR(part.north_rad, whole.LatitudeOfRow(3), 1e-14);
+    for (int row = 0; row < 2; ++row) {
+      for (int column = 0; column < 6; ++column) {
+        EXPECT_EQ(part.at(row, column), whole.at(row + 3, column + 5)) << row << " " << column;
+      }
+    }
+  }
+}
+
+TEST_F(ElevationFile, AWindowOfTheEarthGoesOnAfterTheLastColumn) {
+  Recipe recipe = Numbered();
+  recipe.columns = 36;
+  recipe.geotransform = {-180.0, 10.0, 0.0, 60.0, 0.0, -10.0};
+  const fs::path file = Write(recipe);
+  const ElevationGrid part = ReadElevation(file, VoidPolicy::kFill, {34, 2, 4, 3}).grid;
+  ASSERT_EQ(part.columns, 4);
+  EXPECT_NEAR(part.west_rad, 165.0 * kDegree, 1e-12);
+  EXPECT_EQ(part.at(0, 1), 235.0F);
+  EXPECT_EQ(part.at(0, 2), 200.0F);
+  EXPECT_EQ(part.at(2, 3), 401.0F);
+}
+
+TEST_F(ElevationFile, AResampledModelCannotBeCut) {
+  Recipe recipe;
+  recipe.epsg = 32632;
+  recipe.geotransform = {4e5, 30.0, 0.0, 5.2e6, 0.0, -30.0};
+  EXPECT_FALSE(CanBeCut(Write(recipe)));
+}
+
+// As GEBCO's grid of 15 seconds: 3.7e9 samples. What is not written takes no room in the file.
+TEST_F(ElevationFile, OfAModelOfTheWholeEarthAWindowIsRead) {
+  GDALRegister_GTiff();
+  const fs::path file = folder_ / "earth.tif";
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", nullptr};
+  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      file.c_str(), 86400, 43200, 1, GDT_Int16, const_cast<char**>(options));
+  std::array<double, 6> transform{-180.0, 1.0 / 240.0, 0.0, 90.0, 0.0, -1.0 / 240.0};
+  dataset->SetGeoTransform(transform.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  dataset->SetSpatialRef(&crs);
+  std::vector<float> heights(64 * 32);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(i);
+  ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 45120, 10440, 64, 32, heights.data(), 64,
+                                                32, GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+  const ElevationGrid extent = ReadElevationExtent(file);
+  EXPECT_EQ(extent.columns, 86400);
+  ASSERT_TRUE(CanBeCut(file));
+  const ElevationGrid part = ReadElevation(file, VoidPolicy::kFill, {45110, 10430, 80, 50}).grid;
+  EXPECT_EQ(part.height_m.size(), 80U * 50U);
+  EXPECT_EQ(part.at(0, 0), 0.0F);
+  EXPECT_EQ(part.at(10 + 5, 10 + 7), 64.0F * 5.0F + 7.0F);
+  EXPECT_NEAR(part.west_rad, (-180.0 + 45110.5 / 240.0) * kDegree, 1e-12);
+  ExpectRefused(file, "has 86400 x 43200 samples; at most 268435456 can be held");
+}
+
 TEST_F(ElevationFile, CustomaryNodataIsAVoidThoughUndeclared) {
   for (const float value :
        {kNan, -32768.0F, -32767.0F, -9999.0F, std::numeric_limits<float>::lowest()}) {
@@ -316,6 +503,8 @@ TEST_F(ElevationFile, WhatIsNoElevationModelIsRefused) {
   recipe = {};
   recipe.bands = 3;
   ExpectRefused(Write(recipe), "3 bands");
+  recipe.bands = 2;
+  ExpectRefused(Write(recipe), "2 bands");
   recipe = {};
   recipe.type = GDT_CFloat32;
   ExpectRefused(Write(recipe), "complex");

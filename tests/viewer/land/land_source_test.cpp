@@ -64,6 +64,137 @@ void WriteRisingTile(const std::filesystem::path& file, double west_deg, double 
   GDALClose(dataset);
 }
 
+/// A smooth land, of degrees.
+double HillHeight(double longitude_deg, double latitude_deg) {
+  return 800.0 + 600.0 * std::sin(25.0 * longitude_deg) * std::cos(20.0 * latitude_deg);
+}
+
+/// A tile of a degree, without the samples of its eastern and southern rims: so are those of
+/// Copernicus, whose columns thin out towards the poles.
+void WriteOpenTile(const std::filesystem::path& file, int west_deg, int north_deg, int columns,
+                   int rows) {
+  GDALRegister_GTiff();
+  GDALDataset* const dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      file.c_str(), columns, rows, 1, GDT_Float32, nullptr);
+  const double across = 1.0 / columns, down = 1.0 / rows;
+  std::array<double, 6> corner{west_deg - 0.5 * across, across, 0.0,
+                               north_deg + 0.5 * down,  0.0,    -down};
+  dataset->SetGeoTransform(corner.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  dataset->SetSpatialRef(&crs);
+  std::vector<float> heights;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      heights.push_back(
+          static_cast<float>(HillHeight(west_deg + column * across, north_deg - row * down)));
+  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, heights.data(),
+                                                columns, rows, GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+}
+
+/// Every sample of the lattice in a range of degrees is land, about as high as the hills.
+void ExpectHills(const LoadedHeights& heights, double west_deg, double east_deg, double south_deg,
+                 double north_deg, double tolerance_m) {
+  const LandLattice& lattice = heights.tiles().lattice();
+  const LatticePlace first =
+      lattice.At(north_deg * kRadiansPerDegree, west_deg * kRadiansPerDegree);
+  const LatticePlace last = lattice.At(south_deg * kRadiansPerDegree, east_deg * kRadiansPerDegree);
+  const int column = static_cast<int>(std::ceil(first.column));
+  const int row = static_cast<int>(std::ceil(first.row));
+  const int columns = static_cast<int>(std::floor(last.column)) - column + 1;
+  const int rows = static_cast<int>(std::floor(last.row)) - row + 1;
+  const HeightBlock block = heights.Block(0, column, row, columns, rows);
+  double worst_m = 0.0;
+  for (int j = row; j < row + rows; ++j) {
+    for (int i = column; i < column + columns; ++i) {
+      const GeodeticPosition place = lattice.PlaceOf(i, j, 0.0);
+      const double error_m =
+          static_cast<double>(block.at(i, j)) - HillHeight(place.longitude_rad / kRadiansPerDegree,
+                                                           place.latitude_rad / kRadiansPerDegree);
+      ASSERT_FALSE(std::isnan(error_m)) << "a hole at column " << i << ", row " << j;
+      worst_m = std::max(worst_m, std::abs(error_m));
+    }
+  }
+  EXPECT_LT(worst_m, tolerance_m);
+}
+
+// North of 50 degrees the columns of these tiles are one and a half times as far apart.
+TEST_F(LandSourceFiles, LandIsUnbrokenBetweenTilesThatDoNotOverlap) {
+  for (const int west_deg : {9, 10}) {
+    WriteOpenTile(folder_ / ("n49e" + std::to_string(west_deg) + ".tif"), west_deg, 50, 60, 60);
+    WriteOpenTile(folder_ / ("n50e" + std::to_string(west_deg) + ".tif"), west_deg, 51, 40, 60);
+  }
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  // Between columns 1/40 of a degree apart a line is up to (25 / 40)^2 / 8 * 600 m = 29 m off.
+  ExpectHills(heights, 9.0, 10.975, 49.02, 51.0, 30.0);
+  const LandLattice& lattice = heights.tiles().lattice();
+  EXPECT_EQ(lattice.last_column, 119) << "nothing goes on where there is no neighbour";
+  EXPECT_EQ(lattice.last_row, 119);
+}
+
+TEST_F(LandSourceFiles, LandIsUnbrokenBetweenRowsOffTheLattice) {
+  WriteOpenTile(folder_ / "south.tif", 9, 50, 60, 60);
+  WriteOpenTile(folder_ / "north.tif", 9, 51, 60, 40);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  ExpectHills(heights, 9.0, 9.98, 49.02, 51.0, 30.0);
+}
+
+TEST_F(LandSourceFiles, FourCoarseTilesMeetBesideAFineOne) {
+  WriteOpenTile(folder_ / "fine.tif", 9, 49, 60, 60);
+  for (const int west_deg : {9, 10})
+    for (const int north_deg : {50, 51})
+      WriteOpenTile(folder_ / ("z" + std::to_string(north_deg) + std::to_string(west_deg) + ".tif"),
+                    west_deg, north_deg, 25, 25);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  // Lines between the tile's samples, 1/25 of a degree apart, are up to ((25 / 25)^2 + (20 / 25)^2)
+  // / 8 * 600 m off, those between its level's, every other one of the lattice, up to ((25 / 30)^2
+  // + (20 / 30)^2) / 8 * 600 m more.
+  ExpectHills(heights, 9.0, 10.96, 49.05, 51.0, 123.0 + 86.0);
+}
+
+TEST_F(LandSourceFiles, ATileThatIsMissingIsStillAHole) {
+  WriteOpenTile(folder_ / "west.tif", 9, 50, 40, 60);
+  WriteOpenTile(folder_ / "far.tif", 11, 50, 60, 60);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  EXPECT_FALSE(heights.HeightUnder(49.5 * kRadiansPerDegree, 10.5 * kRadiansPerDegree));
+  EXPECT_FALSE(heights.HeightUnder(49.5 * kRadiansPerDegree, 9.99 * kRadiansPerDegree));
+}
+
+// What a file does not write takes no room in it.
+TEST_F(LandSourceFiles, AModelOfTheWholeEarthIsReadInParts) {
+  GDALRegister_GTiff();
+  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", nullptr};
+  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      (folder_ / "earth.tif").c_str(), 21600, 10800, 1, GDT_Int16, const_cast<char**>(options));
+  std::array<double, 6> corner{-180.0, 1.0 / 60.0, 0.0, 90.0, 0.0, -1.0 / 60.0};
+  dataset->SetGeoTransform(corner.data());
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  dataset->SetSpatialRef(&crs);
+  std::vector<float> line(21600);
+  for (std::size_t i = 0; i < line.size(); ++i) line[i] = static_cast<float>(i % 5000);
+  ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 8192, 21600, 1, line.data(), 21600, 1,
+                                                GDT_Float32, 0, 0, nullptr),
+            CE_None);
+  GDALClose(dataset);
+  LandSource source;
+  source.files = {folder_ / "earth.tif"};
+  const LandTiles tiles(source);
+  ASSERT_EQ(tiles.tiles().size(), 6U * 3U);
+  EXPECT_EQ(tiles.lattice().last_column, 21600) << "it ends where it begins";
+  EXPECT_EQ(tiles.lattice().last_row, 10799);
+  const LandTile& last = tiles.tiles()[17];
+  EXPECT_EQ(last.box.first_column, 20480);
+  EXPECT_EQ(last.box.last_column, 21600);
+  EXPECT_EQ(last.box.first_row, 8192);
+  const ReadTile read = ReadLandTile(tiles, 17, 0);
+  EXPECT_EQ(read.heights->At(0, 20481, 8192), 481.0F);
+  EXPECT_EQ(read.heights->At(0, 21600, 8192), 0.0F) << "column 0";
+  EXPECT_EQ(read.heights->At(0, 20481, 8193), 0.0F);
+}
+
 // Near the poles tiles are narrower than others: the last sample of the lattice may lie past the
 // last one of the tile, by less than a hundredth of a step of the lattice.
 TEST_F(LandSourceFiles, ATileOfAnotherAspectKeepsTheHeightOfItsRim) {
