@@ -10,6 +10,7 @@
 #include "atmosphere/judge/airlight_judge.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/lamp/placed_lamp.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -72,6 +73,20 @@ struct Stage {
 };
 
 const glm::dvec3 kEye(0.0, 0.0, kEyeHeight_m);
+
+TEST(LampIntensity, IsRefusedWhereTheBandsHaveNoLuminanceOfIt) {
+  const std::vector<double> deep_red{700.0, 830.0};
+  const BandColour colour(deep_red);
+  EXPECT_GT(LampIntensity(3000.0, 100.0, deep_red, colour)[0], 0.0F);
+  try {
+    (void)LampIntensity(1000.0, 100.0, deep_red, colour);
+    ADD_FAILURE() << "a lamp that takes light away";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    for (const char* part : {"light.temperature_k", "1000 K", "700 to 830 nm"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
 
 TEST(LampLight, ACandelaIsACandelaThroughClearAir) {
   // 1000 cd at 100 m light a surface that faces them by 0.1 lux.
