@@ -107,7 +107,8 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   });
   times
       .add_option("--height", options->height_m,
-                  "Metres above the ellipsoid; from high places the horizon is lower")
+                  "Metres above the ellipsoid; from high places the horizon is lower. Events of "
+                  "skyseries --at are those of height 0")
       ->check(CLI::Range(-12000.0, 1e9))
       ->excludes(file)
       ->capture_default_str();

@@ -122,12 +122,13 @@ Fault FaultOfScalars(const Medium& medium) {
   }
   if (Fault fault = FaultOfDeficit(medium)) return fault;
   const OzoneLayer& ozone = medium.ozone;
-  if (!(ozone.bottom_m < ozone.peak_m && ozone.peak_m < ozone.top_m)) {
+  if (!(ozone.peak_m - ozone.bottom_m >= ranges::kLeastOzoneSide_m &&
+        ozone.top_m - ozone.peak_m >= ranges::kLeastOzoneSide_m)) {
     return MediumFault{
         "ozone.peak_m",
         fmt::format("ozone.peak_m is {}; it must lie between ozone.bottom_m, {}, and "
-                    "ozone.top_m, {}",
-                    ozone.peak_m, ozone.bottom_m, ozone.top_m)};
+                    "ozone.top_m, {}, {} m or more from each",
+                    ozone.peak_m, ozone.bottom_m, ozone.top_m, ranges::kLeastOzoneSide_m)};
   }
   if (ozone.shape == OzoneShape::kSmooth && ozone != SmoothOzone(ozone.peak_m)) {
     return MediumFault{"ozone.profile",

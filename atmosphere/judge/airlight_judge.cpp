@@ -30,7 +30,7 @@ Extended Column(const LampLayer& layer, Extended length, Extended a, Extended b)
   if (std::isinf(layer.scale_height_m)) return length;
   const Extended x = (b - a) / h;
   const Extended mean = std::abs(x) < 1e-8L ? 1 - x / 2 : -std::expm1(-x) / x;
-  return length * std::exp(-a / h) * mean;
+  return length * std::exp((layer.base_m - a) / h) * mean;
 }
 
 /// The ray, and the lamp's place relative to it.
@@ -147,7 +147,8 @@ LampLight AirlightAlong(const LampAir& air, const Lamp& lamp, const LampSegment&
             Column(layer, t, Altitude(air, At(segment.origin_m, segment.direction, 0)), z) +
             Column(layer, d, Altitude(air, lamp_place), z);
         tau += layer.extinction_per_m[band] * column;
-        scattered += layer.scattering_per_m[band] * std::exp(-z / layer.scale_height_m) *
+        scattered += layer.scattering_per_m[band] *
+                     std::exp((layer.base_m - z) / layer.scale_height_m) *
                      Phase(layer.phase, static_cast<double>(-sine));
       }
       value[band] = static_cast<double>(scattered * intensity * std::exp(-tau) / (d * d));

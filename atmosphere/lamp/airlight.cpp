@@ -59,9 +59,8 @@ class LampRay {
     z_eye_ = air.AltitudeOf(segment.origin_m);
     z_lamp_ = air.AltitudeOf(lamp.position_m);
     for (std::size_t k = 0; k < air.layers.size(); ++k) {
-      inverse_h_[k] = 1.0 / air.layers[k].scale_height_m;
-      rho_eye_[k] = std::exp(-z_eye_ * inverse_h_[k]);
-      rho_lamp_[k] = std::exp(-z_lamp_ * inverse_h_[k]);
+      eye_[k] = DensityOf(k, z_eye_);
+      at_lamp_[k] = DensityOf(k, z_lamp_);
     }
     reference_ = air.bands() / 2;
     const double end = std::isinf(segment.end_m) ? HomogeneousEnd() : segment.end_m;
@@ -152,7 +151,7 @@ class LampRay {
       const double z = begin_z + (end_z - begin_z) * i / (kHeights - 1.0);
       std::array<double, kMostLampLayers> here{};
       for (std::size_t k = 0; k < air_.layers.size(); ++k)
-        here[k] = air_.layers[k].scattering_per_m[reference_] * std::exp(-z * inverse_h_[k]);
+        here[k] = air_.layers[k].scattering_per_m[reference_] * air_.layers[k].Density(z);
       const double greatest = *std::max_element(here.begin(), here.end());
       for (std::size_t k = 0; k < air_.layers.size(); ++k)
         is_great[k] = is_great[k] || here[k] >= 0.02 * greatest;
@@ -161,6 +160,18 @@ class LampRay {
       all_layers_.push_back(k);
       if (is_great[k]) great_layers_.push_back(k);
     }
+  }
+
+  /// A layer's density relative to its base, and the logarithm of that.
+  struct Density {
+    double log = 0.0, value = 1.0;
+  };
+  [[nodiscard]] Density DensityOf(std::size_t layer, double z) const {
+    const double log = air_.layers[layer].LogDensity(z);
+    return {log, log == 0.0 ? 1.0 : std::exp(log)};
+  }
+  static double Column(double length_m, const Density& from, const Density& to) {
+    return ExponentialColumn(length_m, from.value, to.value, from.log - to.log);
   }
 
   using Layers = Few<std::size_t, kMostLampLayers>;
@@ -178,10 +189,9 @@ class LampRay {
     const double scale = sech / approach_m_ * Profile(sinh * sech, sech);
     std::array<double, kMostLampLayers> column{}, scattered{};
     for (const std::size_t k : layers) {
-      const double rho = inverse_h_[k] == 0.0 ? 1.0 : std::exp(-z * inverse_h_[k]);
-      column[k] = ExponentialColumn(t, rho_eye_[k], rho, (z - z_eye_) * inverse_h_[k]) +
-                  ExponentialColumn(distance, rho_lamp_[k], rho, (z - z_lamp_) * inverse_h_[k]);
-      scattered[k] = rho * scale * Phase(air_.layers[k].phase, -sinh * sech);
+      const Density here = DensityOf(k, z);
+      column[k] = Column(t, eye_[k], here) + Column(distance, at_lamp_[k], here);
+      scattered[k] = here.value * scale * Phase(air_.layers[k].phase, -sinh * sech);
     }
     for (std::size_t band = first_band; band < end_band; ++band) {
       double tau = 0.0;
@@ -199,7 +209,7 @@ class LampRay {
   double nearest_m_, approach_m_;
   glm::dvec3 along_{0.0}, across_{0.0};
   double slope_, z_eye_, z_lamp_;
-  std::array<double, kMostLampLayers> inverse_h_{}, rho_eye_{}, rho_lamp_{};
+  std::array<Density, kMostLampLayers> eye_{}, at_lamp_{};
   Layers all_layers_, great_layers_;
   std::size_t reference_ = 0;
   double x_begin_ = 0.0, x_end_ = 0.0;

@@ -122,6 +122,17 @@ double LampAir::AltitudeOf(const glm::dvec3& point) const {
   return altitude_at_origin_m + glm::dot(up, point);
 }
 
+double LampLayer::LogDensity(double altitude_m) const {
+  return shared::LayerLogDensity(altitude_m - base_m, 1.0 / scale_height_m);
+}
+
+double LampLayer::Density(double altitude_m) const { return std::exp(LogDensity(altitude_m)); }
+
+double LampLayer::ColumnBetween(double length_m, double from_m, double to_m) const {
+  const double log_from = LogDensity(from_m), log_to = LogDensity(to_m);
+  return ExponentialColumn(length_m, std::exp(log_from), std::exp(log_to), log_from - log_to);
+}
+
 LampAir HomogeneousAir(double scattering_per_m, double extinction_per_m,
                        const PhaseFunction& phase) {
   LampLayer layer;
@@ -144,9 +155,7 @@ Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
   const double z_to = air.AltitudeOf(to);
   Bands<double> tau(air.bands());
   for (const LampLayer& layer : air.layers) {
-    const double h = layer.scale_height_m;
-    const double column =
-        ExponentialColumn(length, std::exp(-z_from / h), std::exp(-z_to / h), (z_to - z_from) / h);
+    const double column = layer.ColumnBetween(length, z_from, z_to);
     for (std::size_t band = 0; band < tau.count; ++band) {
       tau[band] += layer.extinction_per_m[band] * column;
     }

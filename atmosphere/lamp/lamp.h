@@ -75,9 +75,16 @@ inline constexpr std::size_t kMostLampLayers = 4;
 /// One constituent of the air around lamps.
 struct LampLayer {
   double scale_height_m = std::numeric_limits<double>::infinity();  // > 0; infinite: homogeneous
-  Bands<double> scattering_per_m;                                   // at altitude 0
-  Bands<double> extinction_per_m;                                   // at altitude 0, >= scattering
+  double base_m = 0.0;             // altitude at which it has the coefficients below
+  Bands<double> scattering_per_m;  // at its base
+  Bands<double> extinction_per_m;  // at its base, >= scattering
   PhaseFunction phase;
+
+  /// Logarithm of the density relative to the base's; at most 80, see LayerLogDensity.
+  [[nodiscard]] double LogDensity(double altitude_m) const;
+  [[nodiscard]] double Density(double altitude_m) const;
+  /// Column [m] of relative density along a straight line between two altitudes.
+  [[nodiscard]] double ColumnBetween(double length_m, double from_m, double to_m) const;
 };
 
 /// The air around lamps: 1 to kMostLampLayers layers with the same number of bands.

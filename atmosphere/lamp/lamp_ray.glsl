@@ -1,6 +1,13 @@
 // What an eye has of a lamp: how its light is spread over directions, columns of the air between
 // them, the soft disk that stands for a small one. Lengths in one unit, metres where lamps are.
 
+// Logarithm of a density that falls exponentially over its base. Far below the base the layer is a
+// wall; e^80 of it can still be multiplied by what follows.
+// @param fall  1 / scale height; 0 where the layer is homogeneous.
+SHARED Number LayerLogDensity(Length above_base, Number fall) {
+  return min(-above_base * fall, Number(80.0));
+}
+
 // Integral of a density that is exponential in the altitude, along a straight line of this length
 // over a flat ground: rho_a and rho_b at its ends, b higher than a by this many scale heights. Near
 // 0, (1 - e^-x) / x over its trapezoid (1 + e^-x) / 2; the next term is 17 x^6 / 20160.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_grid.h"
@@ -28,6 +29,17 @@ double DiffuseLight::MuSFromCoordinate(double v) { return SunNodes().MuS(v); }
 
 namespace {
 
+void RequireNodes(const DiffuseLightOptions& options) {
+  constexpr int kMostRayNodes = 32;  // of RaySampling
+  RequireInRange(options.zenith_nodes, 1, kMaxGaussNodes, "zenith_nodes");
+  RequireInRange(options.azimuth_nodes, 1, static_cast<double>(kMostAzimuths), "azimuth_nodes");
+  RequireInRange(options.ray_nodes, 1, kMostRayNodes, "ray_nodes");
+  RequireInRange(options.later_zenith_nodes, 1, kMaxGaussNodes, "later_zenith_nodes");
+  RequireInRange(options.later_azimuth_nodes, 1, static_cast<double>(kMostAzimuths),
+                 "later_azimuth_nodes");
+  RequireInRange(options.later_ray_nodes, 1, kMostRayNodes, "later_ray_nodes");
+}
+
 // What the solver and the look-ups take for granted.
 const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) {
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
@@ -35,7 +47,9 @@ const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) 
   RequireDegree(options.degree);
   if (options.forward_peak && options.exact_orders)
     throw InputError("forward_peak sums all orders; exact_orders wants some");
-  RequireInRange(options.azimuth_nodes, 1, static_cast<double>(kMostAzimuths), "azimuth_nodes");
+  RequireNodes(options);
+  RequireInRange(options.max_orders, 1, 1000, "max_orders");
+  RequireInRange(options.tolerance, 0.0, 1.0, "tolerance");
   RequireInRange(options.exact_orders.value_or(1), 1, 1000, "exact_orders");
   Validate(medium);
   if (medium.wavelengths_nm.size() > kMaxBands) {

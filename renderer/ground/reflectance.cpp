@@ -74,9 +74,8 @@ double RoughDiffuse::Single(double mu) const { return shared::RoughSingle(mu, ro
 Bands<float> RoughDiffuse::Brdf(const Bands<float>& albedo, const ReflectionAngles& at) const {
   const auto once = static_cast<float>(
       shared::RoughOnce(at.mu_light, at.mu_eye, at.cos_between, roughness_, scale_));
-  const double lost = (1.0 - Single(at.mu_light)) * (1.0 - Single(at.mu_eye));
   const auto again =
-      roughness_ > 0.0 ? static_cast<float>(lost / ((1.0 - mean_single_) * kPi)) : 0.0F;
+      static_cast<float>(shared::RoughTwice(at.mu_light, at.mu_eye, roughness_, scale_));
   const auto mean = static_cast<float>(mean_single_);
   Bands<float> f(albedo.count);
   for (std::size_t band = 0; band < albedo.count; ++band)

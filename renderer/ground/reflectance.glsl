@@ -53,16 +53,27 @@ SHARED Number HalfMu(Number mu_light, Number mu_eye, Number cos_light) {
   return min((mu_light + mu_eye) / (Number(2.0) * cos_light), Number(1.0));
 }
 
-// RoughDiffuse. Albedo of light reflected once between facets that absorb nothing; `scale` and
-// `mean` are those of a roughness.
-SHARED Number RoughSingle(Number mu, Number roughness, Number scale) {
+// RoughDiffuse; `scale` and `mean` are those of a roughness. Facets that absorb nothing keep a share
+// of the light that they reflect once: this one, times the roughness and the scale.
+SHARED Number RoughKept(Number mu) {
   Number cosine = min(mu, Number(1.0));
   Number sine = sqrt(max(Number(1.0) - cosine * cosine, Number(0.0)));
   // sin / mu (1 - sin^3), without the division by 0 of the horizontal.
   Number far = sine * cosine * (Number(1.0) + sine + sine * sine) / (Number(1.0) + sine);
   Number g =
       sine * (atan(sine, cosine) - sine * cosine) + Number(0.6666666666666667) * (far - sine);
-  return scale * (Number(1.0) + roughness * g * Number(0.3183098861837907));
+  return Number(0.2877934092108062) - g * Number(0.3183098861837907);
+}
+
+// Albedo of light reflected once between facets that absorb nothing.
+SHARED Number RoughSingle(Number mu, Number roughness, Number scale) {
+  return Number(1.0) - scale * roughness * RoughKept(mu);
+}
+
+// Reflected more than once [1/sr], of facets that absorb nothing. The divisor is the mean of
+// RoughKept over an even sky, times pi.
+SHARED Number RoughTwice(Number mu_light, Number mu_eye, Number roughness, Number scale) {
+  return scale * roughness * RoughKept(mu_light) * RoughKept(mu_eye) / Number(0.6764012244017015);
 }
 
 // Reflected once [1/sr], of facets that absorb nothing.

@@ -25,7 +25,6 @@ namespace alpenglow {
 /// Of an isotropic lamp of intensity 1 at one altitude. Immutable.
 class LampGlow {
  public:
-  /// @param layers  densities as of altitude 0.
   /// @param ground_altitude_m  at the lamp's foot, not above it.
   /// Of the moments.
   static constexpr int kDegree = 6;

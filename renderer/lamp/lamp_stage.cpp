@@ -28,15 +28,15 @@ double MoleculeHeight_m(const Medium& medium) {
 LampLayer Drops(const Fog& fog, double base_m, std::size_t bands) {
   LampLayer drops;
   drops.scale_height_m = fog.scale_height_m;
-  const double at_zero = fog.extinction_per_m * std::exp(base_m / fog.scale_height_m);
-  const std::vector<double> grey(bands, at_zero);
+  drops.base_m = base_m;
+  const std::vector<double> grey(bands, fog.extinction_per_m);
   drops.scattering_per_m = InDoubles(grey, fog.albedo);
   drops.extinction_per_m = InDoubles(grey, 1.0);
   drops.phase = fog.phase;
   return drops;
 }
 
-/// Molecules, aerosol and fog, densities as of altitude 0.
+/// Molecules, aerosol and fog.
 std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& fog,
                                 double fog_base_m) {
   LampLayer molecules;
@@ -121,12 +121,9 @@ Bands<float> LampStage::FogTransmittance(const glm::dvec3& from, const glm::dvec
   if (!has_fog_) return left;
   const LampLayer& fog = layers_.back();
   // Fog ends where it is 50 scale heights thin; homogeneous fog ends nowhere.
-  const double h = fog.scale_height_m;
-  const double z = AltitudeOf(from);
   const double length = std::min(length_m, 1e6);
-  const double z_end = AltitudeOf(from + length * direction);
   const double column =
-      ExponentialColumn(length, std::exp(-z / h), std::exp(-z_end / h), (z_end - z) / h);
+      fog.ColumnBetween(length, AltitudeOf(from), AltitudeOf(from + length * direction));
   for (std::size_t band = 0; band < left.count; ++band) {
     left[band] = static_cast<float>(std::exp(-fog.extinction_per_m[band] * column));
   }

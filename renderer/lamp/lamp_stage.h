@@ -20,7 +20,7 @@ class LampStage {
   LampStage(const Scene& scene, const SceneGround& ground, const Medium& medium);
 
   [[nodiscard]] const SceneGround& ground() const { return *ground_; }
-  /// Densities as of altitude 0; fog is the last.
+  /// Fog is the last.
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return layers_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
 

@@ -28,8 +28,7 @@ LampNode& LampTree::Add(PlacedLamp placed, const LampStage& stage) {
   LampNode node;
   const double altitude_m = stage.AltitudeOf(placed.lamp.position_m);
   for (const LampLayer& layer : placed.middle_air.layers) {
-    node.extinction_per_m +=
-        layer.extinction_per_m[0] * std::exp(-altitude_m / layer.scale_height_m);
+    node.extinction_per_m += layer.extinction_per_m[0] * layer.Density(altitude_m);
   }
   node.light = std::move(placed);
   nodes_.push_back(std::move(node));

@@ -60,8 +60,7 @@ double SourceAt(const LampWork& work, const Approach& approach, double t) {
   const double squared = 1.0 + sinh * sinh;
   double scattered = 0.0;
   for (const LampLayer& layer : work.air.layers) {
-    scattered += layer.scattering_per_m[0] *
-                 std::exp(-work.air.AltitudeOf(point) / layer.scale_height_m) *
+    scattered += layer.scattering_per_m[0] * layer.Density(work.air.AltitudeOf(point)) *
                  Phase(layer.phase, -sinh / std::sqrt(squared));
   }
   return scattered * TransmittanceBetween(work.air, work.segment.origin_m, point)[0] *

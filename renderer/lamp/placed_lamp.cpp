@@ -123,6 +123,13 @@ Bands<float> LampIntensity(double temperature_k, double candela,
   std::vector<double> spectrum;
   for (const double nm : wavelengths_nm) spectrum.push_back(BlackBodyRadiance(nm, temperature_k));
   const double luminous = colour.Xyz(spectrum)[1];
+  if (!(luminous > 0.0)) {
+    throw InputError(fmt::format(
+        "light.temperature_k: a black body of {} K has no luminous intensity on the {} wavelengths "
+        "of the atmosphere, {} to {} nm; give another temperature, or more wavelengths from 380 to "
+        "780 nm",
+        temperature_k, wavelengths_nm.size(), wavelengths_nm.front(), wavelengths_nm.back()));
+  }
   Bands<float> intensity(spectrum.size());
   for (std::size_t band = 0; band < spectrum.size(); ++band) {
     intensity[band] = static_cast<float>(candela * spectrum[band] / luminous);

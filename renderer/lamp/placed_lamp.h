@@ -52,7 +52,8 @@ using MeasuredLamps = std::map<std::string, IesLamp>;
 /// the ground and for one that is tilted beyond the angles of its file.
 [[nodiscard]] PlacedLamp PlacedOn(const LampStage& stage, const Light& light, std::size_t number,
                                   const MeasuredLamps& measured);
-/// Spectral intensity of a black body that has so many candela.
+/// Spectral intensity of a black body that has so many candela. Throws InputError where the bands
+/// have no luminance of it, as two at 700 and 830 nm have none of one of 1000 K.
 [[nodiscard]] Bands<float> LampIntensity(double temperature_k, double candela,
                                          const std::vector<double>& wavelengths_nm,
                                          const BandColour& colour);

@@ -2,6 +2,7 @@
 // C++ reading of fog_layer.glsl: densities and columns of height fog.
 #pragma once
 
+#include "atmosphere/lamp/lamp_ray.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::shared {

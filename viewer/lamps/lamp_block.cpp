@@ -13,12 +13,11 @@ namespace alpenglow {
 namespace {
 
 template <typename Values>
-glm::vec4 InFloats(const Values& values, std::size_t count, double scale = 1.0) {
+glm::vec4 InFloats(const Values& values, std::size_t count) {
   ALPENGLOW_ENSURE(count, <=, std::size_t{4});
   glm::vec4 bands(0.0F);
   for (std::size_t band = 0; band < count; ++band) {
-    bands[static_cast<glm::length_t>(band)] =
-        static_cast<float>(scale * static_cast<double>(values[band]));
+    bands[static_cast<glm::length_t>(band)] = static_cast<float>(static_cast<double>(values[band]));
   }
   return bands;
 }
@@ -31,16 +30,16 @@ class LampPacking {
   [[nodiscard]] GpuLamp Packed(const ChosenLamp& chosen, bool with_core) const {
     const PlacedLamp& placed = *chosen.placed;
     const LampAlongRay along = AlongRay(placed, placed.direction, view_.pixel_angle_rad);
-    const double z_eye = placed.air.AltitudeOf(view_.eye_m) - reference_m_;
-    const double z_lamp = placed.air.AltitudeOf(placed.lamp.position_m) - reference_m_;
+    const double z_eye = placed.air.AltitudeOf(view_.eye_m);
+    const double z_lamp = placed.air.AltitudeOf(placed.lamp.position_m);
     GpuLamp gpu{};
     gpu.position = {Turned(placed.lamp.position_m - view_.eye_m), along.lamp.radius_m};
     gpu.intensity = InFloats(placed.intensity.value, placed.intensity.count);
     gpu.axis = {Turned(placed.lamp.axis), static_cast<float>(placed.lamp.profile.kind)};
     gpu.side = {Turned(placed.lamp.side), static_cast<float>(chosen.table)};
     gpu.profile = {Edges(placed.lamp.profile), placed.distance_m, placed.HoldsEye() ? 1.0 : 0.0};
-    gpu.up = {Turned(placed.air.up), z_eye};
-    gpu.at_eye = {Densities(placed.air, z_eye), z_lamp};
+    gpu.up = {Turned(placed.air.up), z_eye - reference_m_};
+    gpu.at_eye = {Densities(placed.air, z_eye), z_lamp - reference_m_};
     gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
     gpu.glow = {placed.mean_share, chosen.glow, with_core ? CoreOf(placed) : 0.0, 0.0};
     gpu.shade = {chosen.shade, chosen.plan.first, chosen.plan.levels, 0.0};
@@ -61,10 +60,10 @@ class LampPacking {
   [[nodiscard]] static glm::vec2 Edges(const LampProfile& profile) {
     return {std::cos(profile.inner_rad), std::cos(profile.outer_rad)};
   }
-  [[nodiscard]] static glm::vec3 Densities(const LampAir& air, double z) {
+  [[nodiscard]] static glm::vec3 Densities(const LampAir& air, double altitude_m) {
     glm::dvec3 densities(0.0);
     for (std::size_t k = 0; k < air.layers.size(); ++k) {
-      densities[static_cast<glm::length_t>(k)] = std::exp(-z / air.layers[k].scale_height_m);
+      densities[static_cast<glm::length_t>(k)] = air.layers[k].Density(altitude_m);
     }
     return densities;
   }
@@ -75,23 +74,17 @@ class LampPacking {
 
 void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double reference_m,
             LampsBlock& block) {
-  const auto density = [&](std::size_t k) {
-    return std::exp(-reference_m / layers[k].scale_height_m);
-  };
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    const double height = layers[k].scale_height_m;
-    block.falls[static_cast<glm::length_t>(k)] = static_cast<float>(1.0 / height);
-    block.heights[static_cast<glm::length_t>(k)] =
-        std::isinf(height) ? 0.0F : static_cast<float>(height);
+    block.falls[static_cast<glm::length_t>(k)] = static_cast<float>(1.0 / layers[k].scale_height_m);
+    block.bases[static_cast<glm::length_t>(k)] = static_cast<float>(layers[k].base_m - reference_m);
   }
-  block.molecules = InFloats(layers[0].scattering_per_m.value, bands, density(0));
-  block.aerosol = InFloats(layers[1].scattering_per_m.value, bands, density(1));
-  block.dimming = InFloats(layers[1].extinction_per_m.value, bands, density(1));
+  block.molecules = InFloats(layers[0].scattering_per_m.value, bands);
+  block.aerosol = InFloats(layers[1].scattering_per_m.value, bands);
+  block.dimming = InFloats(layers[1].extinction_per_m.value, bands);
   block.mie_phase = ParametersOf(layers[1].phase);
   if (layers.size() < 3) return;
   const LampLayer& fog = layers[2];
-  block.fog = {fog.scattering_per_m[0] * density(2), fog.extinction_per_m[0] * density(2), 0.0,
-               0.0};
+  block.fog = {fog.scattering_per_m[0], fog.extinction_per_m[0], 0.0, 0.0};
   block.fog_phase = ParametersOf(fog.phase);
 }
 

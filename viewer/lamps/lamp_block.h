@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Lamps as lamp_light.glsl reads them: a uniform block of vec4 alone.
 //
-// Densities are relative to those at a reference altitude, that of the lowest of eye and lamps, so
-// that float holds fog of metres' scale height under an eye kilometres above it.
+// Altitudes count from that of the lowest of eye and lamps, so that float holds fog of metres' scale
+// height under an eye kilometres above it. Densities are relative to those at each layer's base.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct GpuLamp {
 
 /// `block Lamps` of lamp_light.glsl.
 struct LampsBlock {
-  glm::vec4 count, planet, falls, heights, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
+  glm::vec4 count, planet, falls, bases, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
   glm::vec4 red, green, blue;
   std::array<glm::vec4, 3> ground;
   std::array<GpuLamp, kMostGpuLamps> lamps;
@@ -62,7 +62,7 @@ struct ChosenLamp {
   PlanLayers plan{};         // of where it lights the ground
 };
 
-/// @param layers  of LampStage: molecules, aerosol and perhaps fog, densities as of altitude 0.
+/// @param layers  of LampStage: molecules, aerosol and perhaps fog.
 /// @param core_rad  angles from a lamp at which what is drawn of it by itself fades and ends; 0, 0:
 ///     nothing is. Lamps that shine evenly come first in the block.
 [[nodiscard]] LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps,

@@ -116,10 +116,15 @@ float FogDistanceOf(vec3 direction, float depth, float distance_km) {
 
 // Light of the air up to a distance, L(d), arrives dimmed by the fog in front of where it is
 // scattered: sum of weight[i] L(distance_km[i]), the last of them the distance itself. On stretches
-// between, light is taken to rise evenly; what fog leaves, on the mean, is Simpson's rule.
+// between, light is taken to rise evenly; what fog leaves, on the mean, is Simpson's rule. The last
+// stretch may reach to space, far beyond where the light rises and the fog ends: what it brings more
+// than `left` of it is at most `fade` of the light of the stretch before, as if the fog's share went
+// on to fall there as it fell before.
 struct FogStretches {
   vec4 distance_km;
-  vec4 weight;
+  vec4 weight;  // with no more than `left` of the last stretch
+  float rest;   // weight of the last stretch beyond that, by Simpson's rule
+  float fade;
 };
 
 // Of what is left between two distances at which it is a and b.
@@ -143,7 +148,17 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
                    FogMean(direction, at.x, at.y, ends.x, ends.y),
                    FogMean(direction, at.y, at.z, ends.y, ends.z),
                    FogMean(direction, at.z, at.w, ends.z, ends.w));
-  return FogStretches(at, mean - vec4(mean.yzw, 0.0));
+  float rest = mean.w - left;
+  mean.w = left;
+  float fall = log(max(ends.y - left, 1e-20) / max(ends.z - left, 1e-20));
+  float fade = fall > 1e-3 ? (ends.z - left) / fall : 0.0;
+  return FogStretches(at, mean - vec4(mean.yzw, 0.0), rest, fade);
+}
+
+// Of the last stretch, more than `left`. @param all, light, before  of the whole way, and to the ends
+// of the two stretches before the last.
+vec4 FogRest(FogStretches stretches, vec4 all, vec4 light, vec4 before) {
+  return max(min(stretches.rest * (all - light), stretches.fade * (light - before)), vec4(0.0));
 }
 
 // What fog leaves of sunlight on the ground there; mu_s of a sun over the horizon.

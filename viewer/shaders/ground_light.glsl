@@ -54,62 +54,97 @@ vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
   return sky_irradiance * max(1.0 + gained / max(open, 0.1 * sky_level), 0.1);
 }
 
+// Ground that a ray ends on, land or the planet beyond it, as all its light sees it.
+struct SeenGround {
+  GroundPlace at;
+  vec3 mesh_normal;  // unit, without finer relief
+  vec3 normal;       // with it
+  vec4 albedo;       // of the body of land
+  bool is_water;
+};
+
+#define MAY_BE_WATER (GROUND_COVER == WATER_COVER || HAS_SEA || HAS_LAND_COVER || PLANET_IS_WATER)
+
+SeenGround WaterSeen(GroundPlace at, vec3 mesh_normal) {
+  return SeenGround(at, mesh_normal, at.up, vec4(0.0), true);
+}
+
 // The terrain.
-// @param point_m  from the eye; mesh_normal: unit, without finer relief; sun_x, sky_irradiance: of
-//     LitVertex (lit_ground.h); to_eye: unit.
-vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
+// @param point_m  from the eye; mesh_normal, to_eye: unit.
+SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
-  vec4 sky_on_level = SkyOn(at.up, mesh_normal, at.up, sky_irradiance);
 #if GROUND_COVER == WATER_COVER
-  return WaterRadiance(at.up, at.offset, at.footprint, dot(mesh_normal, to_eye),
-                       SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
+  return WaterSeen(at, mesh_normal);
 #else
   float altitude = 1e3 * at.altitude;
   float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
   vec4 draped = DrapeAt(at.offset, altitude, at.footprint);
-  vec4 albedo = LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped);
-  vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),
-                                SkyOn(normal, mesh_normal, at.up, sky_irradiance), to_eye);
 #if HAS_SEA || HAS_LAND_COVER
-  if (IsWater(altitude, draped))
-    radiance = WaterRadiance(at.up, at.offset, at.footprint, dot(mesh_normal, to_eye),
-                             SunAcross(at, at.up, sun_x), sky_on_level, to_eye);
+  if (IsWater(altitude, draped)) return WaterSeen(at, mesh_normal);
 #endif
-  return radiance;
+  return SeenGround(at, mesh_normal, DetailedNormal(at.offset, mesh_normal, footprint),
+                    LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped),
+                    false);
 #endif
 }
 
-// An even planet of the medium's albedo, which is what the light of the sky has at its lower end.
-vec4 EvenPlanetRadiance(GroundPlace at, vec4 across, vec4 sky_irradiance) {
-  return (max(dot(at.up, sun.xyz), 0.0) * across + sky_irradiance) * ground_albedo / 3.14159265359;
-}
-
-vec4 PlanetAt(GroundPlace at, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
+// The planet where there is no terrain: low land of the season beyond some, else of one albedo.
+SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
+  GroundPlace at = GroundPlaceAt(point_m);
 #if PLANET_IS_WATER
-  return WaterRadiance(at.up, at.offset, at.footprint, dot(at.up, to_eye), across, sky_irradiance,
-                       to_eye);
-#elif GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_LAND
-  return EvenPlanetRadiance(at, across, sky_irradiance);
-#elif GROUND_COVER == MOUNTAIN_COVER
+  return WaterSeen(at, at.up);
+#elif GROUND_COVER == MOUNTAIN_COVER && PLANET_IS_LAND
   vec4 albedo = GroundAlbedo(at.offset, 0.0, TiltOf(at.up, at.up),
                              SeenFootprint(at.footprint, dot(at.up, to_eye)), vec4(0.0));
-  return CoverRadiance(albedo, at.up, across, sky_irradiance, to_eye);
+  return SeenGround(at, at.up, at.up, albedo, false);
+#elif GROUND_COVER == MOUNTAIN_COVER
+  return SeenGround(at, at.up, at.up, ground_albedo, false);
 #else
-  return CoverRadiance(cover_albedo, at.up, across, sky_irradiance, to_eye);
+  return SeenGround(at, at.up, at.up, cover_albedo, false);
 #endif
 }
 
-// The planet beyond the terrain: low land of the season, where there is any.
-vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
-  GroundPlace at = GroundPlaceAt(point_m);
-  return PlanetAt(at, SunAcross(at, at.up, 1e9), LevelSky(dot(at.up, sun.xyz)), to_eye);
+// Of sun and sky. @param sun_x, sky_irradiance  of LitVertex (lit_ground.h).
+vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
+  GroundPlace at = seen.at;
+#if MAY_BE_WATER
+  if (seen.is_water)
+    return WaterRadiance(at.up, at.offset, at.footprint, dot(seen.mesh_normal, to_eye),
+                         SunAcross(at, at.up, sun_x),
+                         SkyOn(at.up, seen.mesh_normal, at.up, sky_irradiance), to_eye);
+#endif
+  return CoverRadiance(seen.albedo, seen.normal, SunAcross(at, seen.mesh_normal, sun_x),
+                       SkyOn(seen.normal, seen.mesh_normal, at.up, sky_irradiance), to_eye);
 }
 
-// What it sends more than the even planet that the sky's table has.
+// What the ground's body sends of light whose directions do not count: of lamps, and at night.
+vec4 SentOfIrradiance(SeenGround seen, vec4 irradiance, vec3 to_eye) {
+  float mu_eye = clamp(dot(seen.normal, to_eye), 1e-4, 1.0);
+  vec4 albedo = CoverBodyAlbedo(seen.albedo, mu_eye);
+#if MAY_BE_WATER
+  if (seen.is_water) albedo = WaterLetsIn(WATER_INDEX, mu_eye) * under_water;
+#endif
+  return albedo / 3.14159265359 * irradiance;
+}
+
+const float kNoEdge = 1e9;  // sun_x where no terrain stands before the sun
+
+vec4 SkyOnPlanet(SeenGround seen) { return LevelSky(dot(seen.at.up, sun.xyz)); }
+
+vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
+  return SentOn(LandSeen(point_m, mesh_normal, to_eye), sun_x, sky_irradiance, to_eye);
+}
+
+vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
+  SeenGround seen = PlanetSeen(point_m, to_eye);
+  return SentOn(seen, kNoEdge, SkyOnPlanet(seen), to_eye);
+}
+
+// What the planet sends more than an even one of the medium's albedo, which the sky's table has.
 vec4 PlanetBeyondEven(vec3 point_m, vec3 to_eye) {
-  GroundPlace at = GroundPlaceAt(point_m);
-  vec4 across = SunAcross(at, at.up, 1e9);
-  vec4 sky = LevelSky(dot(at.up, sun.xyz));
-  return PlanetAt(at, across, sky, to_eye) - EvenPlanetRadiance(at, across, sky);
+  SeenGround seen = PlanetSeen(point_m, to_eye);
+  vec4 sky = SkyOnPlanet(seen);
+  float mu_s = max(dot(seen.at.up, sun.xyz), 0.0);
+  vec4 even = (mu_s * SunAcross(seen.at, seen.at.up, kNoEdge) + sky) * ground_albedo / 3.14159265359;
+  return SentOn(seen, kNoEdge, sky, to_eye) - even;
 }

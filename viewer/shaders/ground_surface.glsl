@@ -93,9 +93,7 @@ vec4 SnowBrdf(vec3 angles) {
 
 vec4 RoughBrdf(vec4 albedo, vec3 angles) {
   float once = RoughOnce(angles.x, angles.y, angles.z, rough.x, rough.y);
-  float lost = (1.0 - RoughSingle(angles.x, rough.x, rough.y)) *
-               (1.0 - RoughSingle(angles.y, rough.x, rough.y));
-  float again = lost / (max(1.0 - rough.z, 1e-9) * 3.14159265359);
+  float again = RoughTwice(angles.x, angles.y, rough.x, rough.y);
   vec4 sent;
   for (int band = 0; band < 4; ++band)
     sent[band] = albedo[band] * once + again * RoughAgain(albedo[band], rough.z);

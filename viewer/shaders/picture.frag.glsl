@@ -17,12 +17,15 @@ uniform sampler2D sky_on_surface;  // of the same
 vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
 #if HAS_FOG
   FogStretches stretches = FogStretchesTo(direction, distance_km);
-  vec4 light = stretches.weight[FOG_STRETCHES - 1] * all;
+  vec4 sum = stretches.weight[FOG_STRETCHES - 1] * all;
+  vec4 light = vec4(0.0), before = vec4(0.0);
   for (int i = 0; i < FOG_STRETCHES - 1; ++i) {
     AirTo air = AirToPoint(direction, stretches.distance_km[i]);
-    light += stretches.weight[i] * (air.single + air.diffuse);
+    before = light;
+    light = air.single + air.diffuse;
+    sum += stretches.weight[i] * light;
   }
-  return light;
+  return sum + FogRest(stretches, all, light, before);
 #else
   return all;
 #endif
@@ -38,29 +41,29 @@ vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
 #endif
 }
 
-#if PASS == LAND_PASS
-vec4 GroundSeen(vec3 direction, vec4 surface, vec4 sky) {
-  vec3 point = surface.w * direction;
-  vec3 normal = UnitFromOctahedral(surface.xy);
+// Land as a texel of the surface map has it.
+SeenGround LandOf(vec4 surface, vec3 direction) {
+  return LandSeen(surface.w * direction, UnitFromOctahedral(surface.xy), -direction);
+}
+
+// Of ground under sun and sky, through the fog over it.
+vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 #if HAS_FOG
-  GroundPlace at = GroundPlaceAt(point);
-  sky = FogSkyLeft(at.altitude) * sky + FogOnSurface(at.altitude, dot(normal, at.up));
+  float altitude = seen.at.altitude;
+  sky = FogSkyLeft(altitude) * sky + FogOnSurface(altitude, dot(seen.normal, seen.at.up));
 #endif
-  return GroundRadiance(point, normal, surface.z, sky, -direction);
+  return SentOn(seen, sun_x, sky, to_eye);
 }
 
-// Of lamps, on the ground there.
-vec4 LampsReflected(vec3 direction, vec4 surface) {
-  vec3 point = surface.w * direction;
-  vec3 normal = UnitFromOctahedral(surface.xy);
-  GroundPlace at = GroundPlaceAt(point);
-  float footprint = SeenFootprint(at.footprint, -dot(normal, direction));
-  vec3 tilted = DetailedNormal(at.offset, normal, footprint);
-  vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
-  vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(normal, at.up), footprint, draped);
-  return albedo / 3.14159265359 * LampsOnGround(point, tilted, RAY_ANGLE * surface.w);
+#if HAS_LAMPS
+// Of lamps, on the ground at a distance [m].
+vec4 LampsReflected(SeenGround seen, vec3 direction, float distance_m) {
+  vec4 irradiance = LampsOnGround(distance_m * direction, seen.normal, RAY_ANGLE * distance_m);
+  return SentOfIrradiance(seen, irradiance, -direction);
 }
+#endif
 
+#if PASS == LAND_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -70,14 +73,15 @@ void main() {
 #if HAS_SHADE
   air.single -= TakenByShade(distance_km, air.single);
 #endif
-  vec4 ground =
-      air.transmittance * GroundSeen(direction, surface, texelFetch(sky_on_surface, pixel, 0));
+  SeenGround seen = LandOf(surface, direction);
+  vec4 sky = texelFetch(sky_on_surface, pixel, 0);
+  vec4 ground = air.transmittance * SunlitGround(seen, surface.z, sky, -direction);
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
   float along_m = surface.w * dot(direction, view_forward.xyz);
   picture = vec4(LinearSrgb(sun_irradiance * radiance), Nearness(along_m));
 #if HAS_LAMPS
   vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
-  picture.rgb += LampRgb(left * LampsReflected(direction, surface)) +
+  picture.rgb += LampRgb(left * LampsReflected(seen, direction, surface.w)) +
                  LampGlowRgb(direction, LampRayEnd(direction, surface.w));
 #endif
 }
@@ -90,9 +94,20 @@ void main() {
 vec4 PlanetThroughAir(vec3 direction) {
   float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
   AirTo air = AirToPoint(direction, distance_km);
-  vec4 ground = air.transmittance * PlanetRadiance(1e3 * distance_km * direction, -direction);
+  SeenGround seen = PlanetSeen(1e3 * distance_km * direction, -direction);
+  vec4 ground = air.transmittance * SunlitGround(seen, kNoEdge, SkyOnPlanet(seen), -direction);
   return ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
 }
+
+#if HAS_LAMPS
+vec4 PlanetUnderLamps(vec3 direction) {
+  float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
+  vec4 left = AirToPoint(direction, distance_km).transmittance *
+              FogTransmittance(direction, distance_km);
+  SeenGround seen = PlanetSeen(1e3 * distance_km * direction, -direction);
+  return left * LampsReflected(seen, direction, 1e3 * distance_km);
+}
+#endif
 
 void main() {
   vec3 direction = ViewDirection(screen);
@@ -117,6 +132,10 @@ void main() {
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 #if HAS_LAMPS
   picture.rgb += LampGlowRgb(direction, LampRayEnd(direction, 0.0));
+#if PASS == SKY_PASS
+  if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
+    picture.rgb += LampRgb(PlanetUnderLamps(direction));
+#endif
 #endif
 }
 #endif
@@ -169,36 +188,39 @@ vec4 AirBeside(vec3 direction) {
 }
 
 // What ground sends back, which sees the part of an even sky that its tilt leaves.
-vec4 NightReflected(vec3 direction, vec4 surface) {
-  vec3 point = surface.w * direction;
-  vec3 mesh_normal = UnitFromOctahedral(surface.xy);
-  GroundPlace at = GroundPlaceAt(point);
-  float footprint = SeenFootprint(at.footprint, -dot(mesh_normal, direction));
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
-  vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
-  vec4 albedo =
-      LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(mesh_normal, at.up), footprint, draped);
-  vec4 level = 0.5 * (1.0 + dot(normal, at.up)) * (night_level + beside_level);
-  return albedo / 3.14159265359 * (level + max(dot(normal, beside_towards), 0.0) * beside_direct);
+vec4 NightReflected(SeenGround seen, vec3 to_eye) {
+  vec4 level = 0.5 * (1.0 + dot(seen.normal, seen.at.up)) * (night_level + beside_level);
+  vec4 direct = max(dot(seen.normal, beside_towards), 0.0) * beside_direct;
+  return SentOfIrradiance(seen, level + direct, to_eye);
+}
+
+// What the even planet under the sky of the lesser light, SkyBeside, sends of it.
+vec4 EvenBeside(vec3 up) {
+  vec4 irradiance = beside_level + max(dot(up, beside_towards), 0.0) * beside_direct;
+  return ground_albedo / 3.14159265359 * irradiance;
 }
 
 void main() {
   vec3 direction = ViewDirection(screen);
   vec4 surface = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0);
-  float clear = FogTransmittance(direction, 1e3);
+  bool land = surface.w > 0.0;
+  bool planet = !land && GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
+  float to_planet_km = DistanceDownTo(EYE_ALTITUDE, min(direction.z, -1e-9), 0.0, RADIUS);
+  float distance_km = land ? 1e-3 * surface.w : planet ? to_planet_km : 1e3;
+  float clear = FogTransmittance(direction, distance_km);
   vec4 left = TransmittanceToSpace(direction) * clear;
   vec4 behind, beside = clear * SkyBeside(direction);
-  if (surface.w > 0.0) {
-    float distance_km = 1e-3 * surface.w;
-    left =
-        AirToPoint(direction, distance_km).transmittance * FogTransmittance(direction, distance_km);
-    behind = NightReflected(direction, surface);
+  if (land) {
+    left = AirToPoint(direction, distance_km).transmittance * clear;
+    behind = NightReflected(LandOf(surface, direction), -direction);
     beside = (1.0 - left) * AirBeside(direction);
-  } else if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0) {
-    behind = ground_albedo / 3.14159265359 * night_level;
+  } else if (planet) {
+    SeenGround seen = PlanetSeen(1e3 * distance_km * direction, -direction);
+    behind = NightReflected(seen, -direction) - EvenBeside(seen.at.up);
   } else {
     behind = NightAbove(direction);
   }
-  picture = vec4(LinearSrgb((1.0 - left) * night_scattered + left * behind + beside), 0.0);
+  vec4 sum = (1.0 - left) * night_scattered + max(left * behind + beside, vec4(0.0));
+  picture = vec4(LinearSrgb(sum), 0.0);
 }
 #endif

@@ -434,6 +434,10 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
       {"[ozone]\nprofile = \"tent\"\npeak_m = 5000\n",
        "a.toml:3: ozone.peak_m is 5000; it must lie between"},
       {"[ozone]\ntop_m = 20000\n", "a.toml:1: ozone.peak_m is 25000; it must lie between"},
+      {"[ozone]\npeak_m = 1e-300\n", "a.toml:2: ozone.peak_m is 1e-300; it must lie between"},
+      {"[ozone]\nprofile = \"tent\"\nbottom_m = 24999.9\npeak_m = 25000\ntop_m = 40000\n",
+       "a.toml:4: ozone.peak_m is 25000; it must lie between ozone.bottom_m, 24999.9, and "
+       "ozone.top_m, 40000, 1 m or more from each"},
       {"[ozone]\ndobson = -1\n", "a.toml:2: ozone.dobson is -1"},
       {"a = 1\na = 2\n", "a.toml:2: not valid TOML"},
       {"[planet]\n[planet]\n", "a.toml:2: not valid TOML"},

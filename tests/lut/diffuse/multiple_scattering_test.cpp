@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/judge/path_tracer.h"
@@ -86,6 +88,36 @@ TEST(DiffuseLight, ComesBackFromItsValues) {
   std::vector<float> broken = light.values();
   broken[7] = std::nanf("");
   EXPECT_THROW(DiffuseLight(air, tests::kSmallLight, {broken, 1, true}), InputError);
+}
+
+/// What the constructor says about kSmallLight with one option changed.
+template <typename Value>
+std::string RefusalOf(Value DiffuseLightOptions::*option, Value value) {
+  DiffuseLightOptions options = tests::kSmallLight;
+  options.*option = value;
+  try {
+    const DiffuseLight light(MediumPreset("bruneton2017"), options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DiffuseLight, NumbersOfNodesOutOfRangeAreRefusedByName) {
+  using Options = DiffuseLightOptions;
+  const std::pair<int Options::*, std::string> counts[] = {
+      {&Options::zenith_nodes, "zenith_nodes"},
+      {&Options::azimuth_nodes, "azimuth_nodes"},
+      {&Options::ray_nodes, "ray_nodes"},
+      {&Options::later_zenith_nodes, "later_zenith_nodes"},
+      {&Options::later_azimuth_nodes, "later_azimuth_nodes"},
+      {&Options::later_ray_nodes, "later_ray_nodes"},
+      {&Options::max_orders, "max_orders"}};
+  for (const auto& [count, name] : counts) {
+    for (const int value : {-1, 0, 100000})
+      EXPECT_EQ(RefusalOf(count, value).find(name + " is " + std::to_string(value)), 0U) << name;
+  }
+  EXPECT_EQ(RefusalOf(&Options::tolerance, -0.5).find("tolerance is -0.5"), 0U);
 }
 
 TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {

@@ -277,5 +277,30 @@ TEST(SkyView, TooFewNodesAreRefused) {
   EXPECT_THROW(refuse({.azimuths = 2}), InputError);
 }
 
+// Image says which colours have a negative channel. The spectra behind them are those of light.
+TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
+  const Medium& medium = Air::Earth().medium;
+  const BandColour colour(medium.wavelengths_nm);
+  int with_negative_red = 0;
+  for (const double elevation_deg : {-24.0, -25.0, -26.0, -30.0}) {
+    for (const double altitude_m : {2.0, 9e3, 30e3}) {
+      const SkyView view = Air::Earth().View(altitude_m, elevation_deg);
+      for (double zenith_deg = 0.5; zenith_deg < 180.0; zenith_deg += 3.0) {
+        for (const double azimuth_deg : {0.0, 60.0, 120.0, 180.0}) {
+          const Bands<float> radiance = view.Radiance(Degrees(zenith_deg), Degrees(azimuth_deg));
+          std::vector<double> light;
+          for (std::size_t band = 0; band < radiance.count; ++band) {
+            EXPECT_GE(radiance[band], 0.0F) << elevation_deg << " " << zenith_deg;
+            light.push_back(double{radiance[band]} * medium.solar_irradiance[band]);
+          }
+          EXPECT_GE(colour.Xyz(light)[1], 0.0) << elevation_deg << " " << zenith_deg;
+          if (colour.LinearSrgb(light)[0] < 0.0) ++with_negative_red;
+        }
+      }
+    }
+  }
+  EXPECT_GT(with_negative_red, 100) << "ozone leaves a blue that displays do not have";
+}
+
 }  // namespace
 }  // namespace alpenglow

@@ -109,6 +109,13 @@ TEST(RoughDiffuse, WithoutRoughnessIsLambertsSurface) {
   }
 }
 
+TEST(RoughDiffuse, OfTheSmallestRoughnessIsLambertsSurface) {
+  const ReflectionAngles at = AnglesBetween({0.0, 0.0, 1.0}, {0.6, 0.0, 0.8}, {0.0, 0.28, 0.96});
+  const float lambert = RoughDiffuse(0.0).Brdf(Flat(0.5F), at)[0];
+  for (const double roughness : {5e-324, 1e-300, 1e-30, 1e-12})
+    EXPECT_EQ(RoughDiffuse(roughness).Brdf(Flat(0.5F), at)[0], lambert) << roughness;
+}
+
 TEST(RoughDiffuse, OfAlbedoOneSendsOnAllLight) {
   for (const double roughness : {0.3, 1.0}) {
     const RoughDiffuse surface(roughness);

@@ -151,5 +151,55 @@ TEST(LampExtremes, ALampBehindTheEyeIsNotSeenAndLightsTheFogBeforeIt) {
   }
 }
 
+/// Fog of a scale height of 7 m; its base is so far up that exp(base / scale height) overflows.
+Scene FoggyNightWithBaseAt(double base_m) {
+  Scene scene = FoggyNight();
+  scene.fog->scale_height_m = 7.0;
+  scene.fog->base_height_m = base_m;
+  return scene;
+}
+
+TEST(LampExtremes, FogOverAHighBaseIsLitAsTheSameFogOverTheGround) {
+  constexpr double kBase_m = 5960.0;
+  Scene high = FoggyNightWithBaseAt(kBase_m);
+  high.camera.height = {kBase_m + kEyeHeight_m, false};
+  high.lights = {LampToTheNorth(30.0, 100.0)};
+  high.lights[0].height = {kBase_m + 10.0, false};
+  const AirOf air(high);
+  Lamp lamp;
+  lamp.position_m = air.Place() - glm::dvec3(0.0, 0.0, kBase_m);
+  lamp.radius_m = high.lights[0].radius_m;
+  LampAir fog = HomogeneousAir(0.01, 0.01, high.fog->phase);
+  fog.layers[0].scale_height_m = 7.0;
+  for (const double fall : {-0.8, -0.2, 0.0}) {
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.1, 1.0, fall));
+    const LampSegment segment{{0.0, 0.0, kEyeHeight_m}, direction, 0.0, 50.0};
+    const LampRayEnd end{direction, 50.0};
+    const double truth = 100.0 * judge::AirlightAlong(fog, lamp, segment).radiance[0];
+    const Bands<float> bands = air.light.InAir(air.light.All(), end, 0.0, 32);
+    const std::vector<double> values(
+        bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count));
+    EXPECT_NEAR(air.colour.Xyz(values)[1] / truth, 1.0, 5e-3) << fall;
+  }
+}
+
+TEST(LampExtremes, FogFarBelowItsBaseIsAWallThatNoLampShinesThrough) {
+  Scene scene = FoggyNightWithBaseAt(5000.0);
+  scene.lights = {LampToTheNorth(30.0, 100.0)};
+  EXPECT_EQ(BrightestOf(Picture(scene)), 0.0);
+}
+
+TEST(LampExtremes, AnEyeOverFogOfAHighBaseSeesNoLampUnderIt) {
+  Scene scene = FoggyNightWithBaseAt(5000.0);
+  scene.camera = CameraFromDegrees({5200.0, false}, 0.0, -89.0, 0.0, 60.0);
+  scene.lights = {LampToTheNorth(30.0, 1e6), LampToTheNorth(0.0, 1e6)};
+  scene.lights[1].height = {5150.0, false};
+  const double with_both = BrightestOf(Picture(scene));
+  EXPECT_GT(with_both, 0.0);
+  scene.lights.erase(scene.lights.begin());
+  EXPECT_NEAR(BrightestOf(Picture(scene)), with_both, 1e-5 * with_both)
+      << "sums in single precision";
+}
+
 }  // namespace
 }  // namespace alpenglow

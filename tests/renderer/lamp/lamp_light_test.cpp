@@ -76,6 +76,20 @@ struct Stage {
 
 const glm::dvec3 kEye(0.0, 0.0, kLampEyeHeight_m);
 
+TEST(LampIntensity, IsRefusedWhereTheBandsHaveNoLuminanceOfIt) {
+  const std::vector<double> deep_red{700.0, 830.0};
+  const BandColour colour(deep_red);
+  EXPECT_GT(LampIntensity(3000.0, 100.0, deep_red, colour)[0], 0.0F);
+  try {
+    (void)LampIntensity(1000.0, 100.0, deep_red, colour);
+    ADD_FAILURE() << "a lamp that takes light away";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    for (const char* part : {"light.temperature_k", "1000 K", "700 to 830 nm"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
 TEST(LampLight, ACandelaIsACandelaThroughClearAir) {
   // 1000 cd at 100 m light a surface that faces them by 0.1 lux.
   Scene scene = NightScene();

@@ -221,27 +221,35 @@ TEST(FogFollower, MakesANewMapWhenTheEyeHasRisenAndKeepsItWhileItStands) {
   EXPECT_EQ(follower.map()->view.altitude_m, 100.0);
 }
 
+/// Of light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20 km at most.
+std::string LightInFog() {
+  const std::string to = "FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0))";
+  const std::string km = to + ".distance_km";
+  return "dot(" + to + ".weight, " + km + ") + FogRest(" + to + ", vec4(" + km + ".w), vec4(" + km +
+         ".z), vec4(" + km + ".y)).x";
+}
+
 TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
-  const BothFogs both(FogOf(0.002, 80.0, 0.0), 10.0);
-  const auto rays = Rays(both, 60);
-  const std::vector<float> gpu = both.OnGpu(
-      "dot(FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0)).weight, "
-      "FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0)).distance_km)",
-      rays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const glm::dvec3 way = glm::normalize(glm::dvec3(rays[i][0], rays[i][1], rays[i][2]));
-    const double length = 1000.0 * std::min(double{rays[i][3]}, 20.0);
-    const MarchedLight march = both.renderer.Along(both.eye, way, length, nullptr, 1e-4);
-    const auto upto = [&](double m) {
-      BandLight light(3);
-      for (std::size_t band = 0; band < 3; ++band) {
-        light[band] = static_cast<float>(std::min(m, length) / 1000.0);
-      }
-      return light;
-    };
-    const BandLight truth = DimmedByMedia(march.pieces, upto, upto(length), Behind::kAll);
-    EXPECT_NEAR(double{gpu[i]}, double{truth[0]}, 0.08 * double{truth[0]})
-        << "four stretches; " << way.z << " " << length;
+  for (const LocalMedium& fog :
+       {FogOf(0.002, 80.0, 0.0), FogOf(0.013, std::numeric_limits<double>::infinity(), 0.0)}) {
+    const BothFogs both(fog, 10.0);
+    const auto rays = Rays(both, 60);
+    const std::vector<float> gpu = both.OnGpu(LightInFog(), rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const glm::dvec3 way = glm::normalize(glm::dvec3(rays[i][0], rays[i][1], rays[i][2]));
+      const double length = 1000.0 * std::min(double{rays[i][3]}, 20.0);
+      const MarchedLight march = both.renderer.Along(both.eye, way, length, nullptr, 1e-4);
+      const auto upto = [&](double m) {
+        BandLight light(3);
+        for (std::size_t band = 0; band < 3; ++band) {
+          light[band] = static_cast<float>(std::min(m, length) / 1000.0);
+        }
+        return light;
+      };
+      const BandLight truth = DimmedByMedia(march.pieces, upto, upto(length), Behind::kAll);
+      EXPECT_NEAR(double{gpu[i]}, double{truth[0]}, 0.08 * double{truth[0]})
+          << "four stretches; " << way.z << " " << length;
+    }
   }
 }
 

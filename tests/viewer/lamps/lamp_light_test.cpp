@@ -178,6 +178,30 @@ TEST_F(LampsOnTheCard, GlowInFogUnderTheEyeAsTheRenderer) {
   EXPECT_LT(deviation.p99, 0.06);
 }
 
+TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
+  Scene scene = Night(6.0, 0.004, 7.0);
+  scene.fog->base_height_m = 5000.0;
+  const Both both(scene);
+  const auto rays = Rays(both, 100);
+  for (const float glow : both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays)) {
+    EXPECT_EQ(glow, 0.0F);
+  }
+  for (const float lit :
+       both.OnGpu("LampsOnGround(vec3(a[0], a[1], -6.0), vec3(0.0, 0.0, 1.0), 0.1)[2]", rays)) {
+    EXPECT_LT(lit, 1e-20F) << "the table of what air brings to the ground ends there";
+  }
+}
+
+TEST_F(LampsOnTheCard, GlowInFogOverAHighBaseAsTheRenderer) {
+  constexpr double kBase_m = 18000.0;  // 720 scale heights up
+  Scene scene = Night(kBase_m + 6.0, 0.004, 25.0);
+  for (Light& light : scene.lights) light.height.value_m += kBase_m;
+  scene.fog->base_height_m = kBase_m;
+  const Deviation deviation = GlowDeviation(Both(scene));
+  EXPECT_LT(deviation.mean, 4e-3);
+  EXPECT_LT(deviation.p99, 0.06);
+}
+
 TEST_F(LampsOnTheCard, AnEyeInsideALampSeesAsTheRenderer) {
   Scene scene = Night(6.0, 0.004, 25.0);
   scene.lights = {LightAt(0.0, 0.0, 6.0, 1000.0)};

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "atmosphere/sun/eclipse.h"
 #include "renderer/ground/scene_ground.h"
@@ -210,6 +211,66 @@ Scene QuickScene(double heading, double pitch, double fov) {
   Scene scene = BareScene(2.0, heading, pitch, fov);
   scene.medium = MediumPreset("bruneton2017");
   return scene;
+}
+
+using BarePlanet = tests::Headless;
+
+void ExpectTheRenderers(const Scene& scene, const char* utc) {
+  const UtcInstant now = ParseInstant(utc);
+  const double eye_m = scene.camera.height.value_m;
+  const ViewDifference is = Both(scene, now).Difference(ViewOf(scene, eye_m, now));
+  EXPECT_LT(is.mean, 0.005);
+  EXPECT_LT(is.at_999_permille, 0.02);
+  EXPECT_LT(is.edge_share, 0.6) << "there is enough left to compare";
+}
+
+/// An eye at night, 3 m over ground of one albedo, who looks down at it.
+Scene NightOnThePlanet(double albedo) {
+  Scene scene = QuickScene(0.0, -20.0, 60.0);
+  scene.camera.height = {3.0, false};
+  scene.ground.kind = GroundCover::Kind::kLambert;
+  scene.ground.albedo = {albedo, albedo, albedo};
+  return scene;
+}
+
+constexpr const char* kMoonless = "2026-01-15T23:30:00Z";
+/// Sun and moon both count.
+constexpr const char* kDuskAndMoon = "2026-12-23T16:25:00Z";
+
+TEST_F(BarePlanet, IsLitByLampsAsTheRenderersIs) {
+  Scene scene = NightOnThePlanet(0.2);
+  Light light;
+  light.latitude_rad = scene.place.latitude_rad + 0.0002 * kRadiansPerDegree;
+  light.longitude_rad = scene.place.longitude_rad;
+  light.height = {8.0, false};
+  light.intensity_cd = 3000.0;
+  light.radius_m = 0.1;
+  scene.lights = {light};
+  ExpectTheRenderers(scene, kMoonless);
+}
+
+TEST_F(BarePlanet, HasTheCoverOfTheSceneAtNight) {
+  for (const double albedo : {0.05, 0.8}) {
+    SCOPED_TRACE(albedo);
+    Scene scene = NightOnThePlanet(albedo);
+    scene.medium = MediumPreset("earth");  // the night sky is over the earth alone
+    ExpectTheRenderers(scene, kMoonless);
+    ExpectTheRenderers(scene, kDuskAndMoon);
+  }
+}
+
+TEST_F(BarePlanet, IsSeenThroughFogAsTheRenderersIs) {
+  for (const double scale_height_m : {500.0, 50.0, std::numeric_limits<double>::infinity()}) {
+    SCOPED_TRACE(scale_height_m);
+    Scene scene = QuickScene(100.0, -2.0, 60.0);
+    scene.camera.height = {5.0, false};
+    Fog fog;
+    fog.extinction_per_m = 3.912 / 300.0;
+    fog.scale_height_m = scale_height_m;
+    fog.phase = FogPhase(12.0);
+    scene.fog = fog;
+    ExpectTheRenderers(scene, "2026-06-21T06:30:00Z");
+  }
 }
 
 class BareSky : public tests::Headless {

@@ -30,7 +30,7 @@ layout(std140) uniform Lamps {
                         // those before the first that does not shine evenly
   vec4 lamp_planet;     // radius; altitude of the eye [km]
   vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, fog [1/m]
-  vec4 lamp_heights;    // and those heights, 0 where they are infinite [m]
+  vec4 lamp_bases;      // altitudes at which their densities are 1 [m]
   vec4 lamp_molecules;  // scattering where density is 1 [1/m]
   vec4 lamp_aerosol;    // scattering
   vec4 lamp_dimming;    // extinction of aerosol
@@ -73,27 +73,35 @@ float LampPhaseMie(float cosine, float angle) {
 #endif
 }
 
-// Between densities at two altitudes. @param span_over_rise  their distance over their rise.
-vec3 LampColumns(float span, vec3 from, vec3 to, float rise, float span_over_rise) {
-  vec3 over = span_over_rise * lamp_heights.xyz;
-  vec3 rises = rise * lamp_falls.xyz;
-  vec3 columns = vec3(LampColumnOver(span, from.x, to.x, rises.x, over.x),
-                      LampColumnOver(span, from.y, to.y, rises.y, over.y), 0.0);
+// Logarithms of the densities at an altitude over the plane of a lamp.
+vec3 LampLogDensities(float z) {
+  vec3 log_density = vec3(LayerLogDensity(z - lamp_bases.x, lamp_falls.x),
+                          LayerLogDensity(z - lamp_bases.y, lamp_falls.y), 0.0);
 #ifdef LAMP_FOG
-  columns.z = LampColumnOver(span, from.z, to.z, rises.z, over.z);
+  log_density.z = LayerLogDensity(z - lamp_bases.z, lamp_falls.z);
+#endif
+  return log_density;
+}
+
+// Between two places, by their densities and the logarithms of these.
+vec3 LampColumns(float span, vec3 log_from, vec3 from, vec3 log_to, vec3 to) {
+  vec3 rises = log_from - log_to;
+  vec3 columns = vec3(LampColumn(span, from.x, to.x, rises.x),
+                      LampColumn(span, from.y, to.y, rises.y), 0.0);
+#ifdef LAMP_FOG
+  columns.z = LampColumn(span, from.z, to.z, rises.z);
 #endif
   return columns;
 }
 
-// Away from 0, for a division.
-float LampNotNought(float value) { return abs(value) > 1e-9 ? value : 1e-9; }
-
+// At most a depth that leaves nothing: depths of a wall of fog overflow, and their differences
+// would be none.
 vec4 LampDepth(vec3 columns) {
   vec4 depth = lamp_molecules * columns.x + lamp_dimming * columns.y;
 #ifdef LAMP_FOG
   depth += lamp_fog.y * columns.z;
 #endif
-  return depth;
+  return min(depth, vec4(1e4));
 }
 
 // exp(-depth), where bands differ by little: that of the second, times a power series. Off by
@@ -103,15 +111,6 @@ vec4 LampLeft(vec4 depth) {
   vec4 rest = 1.0 - quarter * (1.0 - 0.5 * quarter);
   rest *= rest;
   return exp(-depth.y) * rest * rest;
-}
-
-// Densities at an altitude over the plane of a lamp.
-vec3 LampDensities(float z) {
-  vec3 density = vec3(exp(-z * lamp_falls.xy), 0.0);
-#ifdef LAMP_FOG
-  density.z = exp(-z * lamp_falls.z);
-#endif
-  return density;
 }
 
 // Of its intensity, towards a direction given by its cosines to axis, side and side x axis.
@@ -230,7 +229,8 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
   float low = log(angles.x);
   float span = log(max(angles.y, 1e-9)) - low;
   float slope = dot(lamp.up.xyz, direction);
-  float per_slope = 1.0 / LampNotNought(slope);
+  vec3 log_eye = LampLogDensities(lamp.up.w);
+  vec3 log_lamp = LampLogDensities(lamp.at_eye.w);
   vec4 sum = vec4(0.0);
 #ifdef LAMP_SHADE
   vec4 light_before = vec4(0.0);
@@ -249,10 +249,10 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
     float away = approach / sine;
     float t = clamp(nearest - away * cosine, 0.0, reach);
     float z = lamp.up.w + slope * t;
-    vec3 density = LampDensities(z);
-    float rise = z - lamp.at_eye.w;
-    vec3 columns = LampColumns(t, lamp.at_eye.xyz, density, slope * t, per_slope) +
-                   LampColumns(away, lamp.at_lamp.xyz, density, rise, away / LampNotNought(rise));
+    vec3 log_density = LampLogDensities(z);
+    vec3 density = exp(log_density);
+    vec3 columns = LampColumns(t, log_eye, lamp.at_eye.xyz, log_density, density) +
+                   LampColumns(away, log_lamp, lamp.at_lamp.xyz, log_density, density);
     vec4 source = lamp_molecules * (density.x * PhaseRayleigh(cosine)) +
                   lamp_aerosol * (density.y * LampPhaseMie(cosine, angle));
 #ifdef LAMP_FOG
@@ -354,9 +354,9 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool 
   float far = max(length(way), lamp.at_lamp.w);
   vec3 towards = way / far;
   float z = lamp.up.w + dot(lamp.up.xyz, point_m);
-  float rise = z - lamp.at_eye.w;
-  vec3 columns =
-      LampColumns(far, lamp.at_lamp.xyz, LampDensities(z), rise, far / LampNotNought(rise));
+  vec3 log_density = LampLogDensities(z);
+  vec3 columns = LampColumns(far, LampLogDensities(lamp.at_eye.w), lamp.at_lamp.xyz, log_density,
+                             exp(log_density));
   float facing = max(dot(normal, towards), 0.0) / (far * far);
   if (shaped) facing *= LampShare(lamp, LampCosines(lamp, -towards));
 #ifdef LAMP_SHADE
