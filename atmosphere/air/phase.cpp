@@ -16,7 +16,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, PhaseKind>, 8> kNames{{
+constexpr std::array<std::pair<std::string_view, PhaseKind>, 8> kPhaseNames{{
     {"rayleigh", PhaseKind::kRayleigh},
     {"henyey-greenstein", PhaseKind::kHenyeyGreenstein},
     {"double-henyey-greenstein", PhaseKind::kDoubleHenyeyGreenstein},
@@ -221,7 +221,7 @@ PhaseFunction FogPhase(double droplet_diameter_um, const std::string& key) {
 
 PhaseKind PhaseKindFromName(std::string_view name) {
   std::string known;
-  for (const auto& [known_name, kind] : kNames) {
+  for (const auto& [known_name, kind] : kPhaseNames) {
     if (known_name == name) return kind;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", known_name);
   }
@@ -229,7 +229,7 @@ PhaseKind PhaseKindFromName(std::string_view name) {
 }
 
 std::string NameOf(PhaseKind kind) {
-  for (const auto& [name, known_kind] : kNames) {
+  for (const auto& [name, known_kind] : kPhaseNames) {
     if (known_kind == kind) return std::string(name);
   }
   throw InternalError("unknown kind of phase function");

@@ -14,7 +14,7 @@ constexpr double kHorizontal = 0.5 * kPi;
 constexpr int kSkyNodes = 256, kGroundNodes = 128;
 constexpr double kLittleMoreDepth_rad = 15.0 * kRadiansPerDegree;
 /// Where what is tabulated changes slowly to the next node: sizes of the air near the horizon.
-constexpr double kLayer_m = 10e3, kWidest_rad = 0.3 * kRadiansPerDegree;
+constexpr double kRayLayer_m = 10e3, kWidest_rad = 0.3 * kRadiansPerDegree;
 
 /// Nodes at x = s (exp(u) - 1), u even from 0 to that of the last.
 double NodePlace(int node, int nodes, double scale, double last) {
@@ -76,7 +76,7 @@ BentView::BentView(const Medium& medium, double height_m)
   }
   horizon_rad_ = GrazingElevation(air_, height_m_);
   const double away_m = std::sqrt(height_m_ * (2.0 * air_.planet_radius_m + height_m_));
-  sky_scale_rad_ = std::min(kWidest_rad, kLayer_m / std::max(away_m, 1.0));
+  sky_scale_rad_ = std::min(kWidest_rad, kRayLayer_m / std::max(away_m, 1.0));
   ground_scale_rad_ = std::clamp(-horizon_rad_, 1e-5, kWidest_rad);
   for (int i = 0; i < kSkyNodes; ++i) {
     const double over = NodePlace(i, kSkyNodes, sky_scale_rad_, kHorizontal - horizon_rad_);

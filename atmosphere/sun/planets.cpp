@@ -19,7 +19,7 @@ struct Planet {
   double colour_index;
 };
 
-constexpr std::array<Planet, 5> kPlanets{{
+constexpr std::array<Planet, 5> kVisiblePlanets{{
     {1, -0.42, {0.0380, -0.000273, 0.000002}, 0.93},
     {2, -4.40, {0.0009, 0.000239, -0.00000065}, 0.82},
     {4, -1.52, {0.016, 0.0, 0.0}, 1.36},
@@ -66,9 +66,9 @@ std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place, const UtcInst
   const TerrestrialTime time = TerrestrialTimeAt(instant, delta_t_s);
   std::array<PointLight, 5> lights{};
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const BodyState body = StateOf(kPlanets[i].number, bodies, time);
+    const BodyState body = StateOf(kVisiblePlanets[i].number, bodies, time);
     lights[i] = {SeenFrom(place, ecef_from_gcrs, bodies, body).direction,
-                 MagnitudeOf(kPlanets[i], body, bodies), kPlanets[i].colour_index};
+                 MagnitudeOf(kVisiblePlanets[i], body, bodies), kVisiblePlanets[i].colour_index};
   }
   return lights;
 }

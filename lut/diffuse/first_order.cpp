@@ -13,9 +13,9 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::size_t kLanes = 16;
+constexpr std::size_t kOrderLanes = 16;
 
-std::size_t RoundUp(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+std::size_t RoundUp(std::size_t count) { return (count + kOrderLanes - 1) / kOrderLanes * kOrderLanes; }
 
 /// Sunlit pieces of the rays of one march.
 struct Pieces {
@@ -70,13 +70,13 @@ struct ColumnStore {
 // Upward columns at the node along |mu|, and at the perigee of the march.
 std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float altitude_km,
                                       const March& march) {
-  AlignedFloats altitude(kLanes), mu(kLanes);
+  AlignedFloats altitude(kOrderLanes), mu(kOrderLanes);
   const float r = air.radius + altitude_km;
   altitude.data()[0] = altitude_km;
   mu.data()[0] = std::abs(march.mu);
   altitude.data()[1] = std::max(altitude_km - r * march.mu * march.mu / (1.0F + march.sine), -1.0F);
-  ColumnStore columns(kLanes);
-  Kernel<RayKernel<float>>().columns_up(air, kLanes, altitude.data(), mu.data(), columns.Write());
+  ColumnStore columns(kOrderLanes);
+  Kernel<RayKernel<float>>().columns_up(air, kOrderLanes, altitude.data(), mu.data(), columns.Write());
   const ColumnPointers c = columns.Read();
   return {c.rayleigh[0], c.mie[0], c.ozone[0], c.rayleigh[1], c.mie[1], c.ozone[1]};
 }

@@ -10,12 +10,12 @@
 namespace alpenglow {
 namespace {
 
-double Sine(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
+double SineOf(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
 
 }  // namespace
 
 double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
-  const double sines = Sine(mu) * Sine(mu_s);
+  const double sines = SineOf(mu) * SineOf(mu_s);
   return sines < 1e-6 ? 1.0 : std::clamp((nu - mu * mu_s) / sines, -1.0, 1.0);
 }
 
@@ -23,8 +23,8 @@ PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& o
                              const ViewRay& ray) {
   const double cosine = AzimuthCosineOrAhead(ray.mu, ray.mu_s, ray.nu);
   // The sun's direction on l and h of tensor_moments.h.
-  const double in_l = ray.mu * cosine * Sine(ray.mu_s) - Sine(ray.mu) * ray.mu_s;
-  const double in_h = -Sine(cosine) * Sine(ray.mu_s);
+  const double in_l = ray.mu * cosine * SineOf(ray.mu_s) - SineOf(ray.mu) * ray.mu_s;
+  const double in_h = -SineOf(cosine) * SineOf(ray.mu_s);
   PolarisedLight light{Bands<float>(once.rayleigh.count), Bands<float>(once.rayleigh.count)};
   for (std::size_t band = 0; band < once.rayleigh.count; ++band) {
     const double share = 3.0 / (16.0 * kPi) * 10.0 *

@@ -18,13 +18,13 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::array<std::string_view, 16> kColumnNames{
+constexpr std::array<std::string_view, 16> kLampColumnNames{
     "id",        "quantity",      "scattering_per_m", "extinction_per_m", "phase",  "g",
     "segment_m", "light_along_m", "light_across_m",   "profile",          "axis_x", "axis_y",
     "axis_z",    "exponent",      "inner_deg",        "outer_deg"};
-enum Column : std::size_t {
-  kId,
-  kQuantity,
+enum LampColumn : std::size_t {
+  kLampId,
+  kLampQuantity,
   kScattering,
   kExtinction,
   kPhase,
@@ -51,20 +51,20 @@ constexpr double kSmallestByNodes = 1e-3;
 }  // namespace
 
 bool HoldsLampCases(const std::filesystem::path& file) {
-  return HeaderNames(file, kColumnNames[kAlong]);
+  return HeaderNames(file, kLampColumnNames[kAlong]);
 }
 
-LampCaseReader::LampCaseReader(const std::filesystem::path& file) : lines_(file, kColumnNames) {}
+LampCaseReader::LampCaseReader(const std::filesystem::path& file) : lines_(file, kLampColumnNames) {}
 
 std::optional<LampCase> LampCaseReader::Next() {
   if (!lines_.Next()) return std::nullopt;
   const auto fail = [&](const std::string& fault) { lines_.Fail(lines_.line(), fault); };
   LampCase made;
-  made.id = lines_.Field(kId);
+  made.id = lines_.Field(kLampId);
   if (made.id.empty()) fail("id is empty");
-  if (lines_.Field(kQuantity) != "airlight") {
+  if (lines_.Field(kLampQuantity) != "airlight") {
     fail(fmt::format("quantity is \"{}\"; in a file of lamps it must be airlight",
-                     lines_.Field(kQuantity)));
+                     lines_.Field(kLampQuantity)));
   }
   made.air = Air();
   made.lamp = ReadLamp();

@@ -51,14 +51,14 @@ void Around(const Image& image, const Pixel& at, int reach, const Visit& visit) 
   }
 }
 
-struct Light {
+struct EdgeLight {
   Pixel at;
   float luminance;
 };
 
 /// Within the root of `reach2`.
-Light BrightestAround(const Image& image, const Pixel& at, int reach2) {
-  Light light{at, LuminanceAt(image, at.x, at.y)};
+EdgeLight BrightestAround(const Image& image, const Pixel& at, int reach2) {
+  EdgeLight light{at, LuminanceAt(image, at.x, at.y)};
   Around(image, at, kToLight, [&](const Pixel& pixel) {
     const int dx = pixel.x - at.x, dy = pixel.y - at.y;
     const float luminance = LuminanceAt(image, pixel.x, pixel.y);
@@ -67,27 +67,27 @@ Light BrightestAround(const Image& image, const Pixel& at, int reach2) {
   return light;
 }
 
-struct Direction {
+struct EdgeDirection {
   float x, y;
 };
 
 /// Away from the light around a pixel, unit; zero where it lies on all sides alike.
-Direction AwayFromLight(const Image& image, const Pixel& at) {
-  Direction away{0.0F, 0.0F};
+EdgeDirection AwayFromLight(const Image& image, const Pixel& at) {
+  EdgeDirection away{0.0F, 0.0F};
   Around(image, at, kToBeside, [&](const Pixel& pixel) {
     const float luminance = LuminanceAt(image, pixel.x, pixel.y);
     away.x -= luminance * static_cast<float>(pixel.x - at.x);
     away.y -= luminance * static_cast<float>(pixel.y - at.y);
   });
   const float length = std::hypot(away.x, away.y);
-  return length > 0.0F ? Direction{away.x / length, away.y / length} : Direction{0.0F, 0.0F};
+  return length > 0.0F ? EdgeDirection{away.x / length, away.y / length} : EdgeDirection{0.0F, 0.0F};
 }
 
 /// The mean colour of what is not clipped, by nearness and, to the fourth power, by the cosine with
 /// the way from the light; by nearness alone where nothing lies that way; nothing where all is
 /// clipped.
 std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, float white) {
-  const Direction away = AwayFromLight(image, at);
+  const EdgeDirection away = AwayFromLight(image, at);
   struct Mean {
     std::array<float, 3> sum{};
     float weights = 0.0F;
@@ -122,7 +122,7 @@ std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float
   if (!clips(0, 0) && !clips(-2, 0) && !clips(2, 0) && !clips(0, -2) && !clips(0, 2)) {
     return std::nullopt;
   }
-  const Light light = BrightestAround(image, {x, y}, kToLight2);
+  const EdgeLight light = BrightestAround(image, {x, y}, kToLight2);
   if (light.luminance <= kLeastLight * white ||
       !IsEven(image, light.at.x, light.at.y, light.luminance)) {
     return std::nullopt;

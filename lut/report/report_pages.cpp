@@ -49,7 +49,7 @@ std::string TopicKey(const ReportTopic& topic) {
 }
 
 /// Of the atmosphere, where there is one.
-std::string HashText(const ReportTopic& topic) {
+std::string HashDigits(const ReportTopic& topic) {
   return topic.medium.name.empty() ? "" : fmt::format("{:016x}", MediumHash(topic.medium));
 }
 
@@ -129,7 +129,7 @@ std::string AerosolText(const Medium& medium) {
                      medium.wavelengths_nm[nearest]);
 }
 
-std::string MediumText(const Medium& medium) {
+std::string MediumParagraph(const Medium& medium) {
   std::string wavelengths;
   for (const double nm : medium.wavelengths_nm)
     wavelengths += fmt::format("{}{:.0f}", wavelengths.empty() ? "" : ", ", nm);
@@ -319,7 +319,7 @@ std::string MakerText(const Report& report) {
   add("compiler", maker.compiler);
   add("date", maker.date);
   for (const ReportTopic& topic : report.topics) {
-    if (topic.key == report.topics.front().key) add("atmosphere", MediumText(topic.medium));
+    if (topic.key == report.topics.front().key) add("atmosphere", MediumParagraph(topic.medium));
   }
   add("this report",
       fmt::format("took {:.0f} s, {:.0f} s of processor time{}", report.wall_s, report.cpu_s,
@@ -401,7 +401,7 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
       const ReportRegime& regime = topic.regimes[r];
       text += fmt::format(
           "{},{},{},{},{},{},{},{},{},", topic.key, topic.scene.empty() ? "" : CsvText(topic.scene),
-          CsvText(topic.medium.name), HashText(topic), CsvText(row.series), CsvText(row.parameter),
+          CsvText(topic.medium.name), HashDigits(topic), CsvText(row.series), CsvText(row.parameter),
           row.origin == MethodOrigin::kOurs ? "this library" : "literature", row.memory_bytes,
           CsvNumber(row.build_s));
       text += fmt::format(

@@ -29,7 +29,7 @@ constexpr std::array<std::pair<PanoramaOrientation, const char*>, 6> kNames{{
 }};
 
 /// Where the pixels of a latitude-longitude picture look.
-struct Grid {
+struct PanoramaGrid {
   int width, height;
   double centre_azimuth_rad;
 
@@ -75,7 +75,7 @@ struct LayerPlace {
   std::size_t first_channel;
 };
 
-std::vector<LayerPlace> AddLayers(const std::vector<StokesLayer>& layers, Image& image) {
+std::vector<LayerPlace> AddPanoramaLayers(const std::vector<StokesLayer>& layers, Image& image) {
   std::vector<LayerPlace> places;
   for (const StokesLayer layer : layers) {
     places.push_back({layer, image.layers.size()});
@@ -116,7 +116,7 @@ double HalfSine2(double zenith_a, double zenith_b, double azimuth) {
 }
 
 /// Pieces of all pixels near the sun, small against its disk.
-std::vector<DiskPiece> PiecesOfDisk(const Grid& grid, const PanoramaSun& sun) {
+std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun& sun) {
   constexpr int kPiecesPerRadius = 12;
   const double zenith = 0.5 * kPi - sun.elevation_rad;
   const double radius = sun.angular_radius_rad;
@@ -168,7 +168,7 @@ std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
 }
 
 void DrawSunDisk(const AirIntegrator<float>& air, const PanoramaSettings& settings,
-                 const Grid& grid, const std::vector<float>& srgb, Image& image) {
+                 const PanoramaGrid& grid, const std::vector<float>& srgb, Image& image) {
   const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, settings.sun);
   const std::vector<Bands<float>> shares = SharesOf(pieces, air.medium().wavelengths_nm);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -192,7 +192,7 @@ constexpr std::array<Letter, 4> kCompassLetters{{
 }};
 
 // Twice as bright as the brightest pixel of the middle row, in letters 10 degrees high.
-void PaintCompass(const Grid& grid, Image& image) {
+void PaintCompass(const PanoramaGrid& grid, Image& image) {
   float ink = 1e-3F;
   for (int x = 0; x < grid.width; ++x) ink = std::max(ink, 2.0F * image.at(x, grid.height / 2)[1]);
   constexpr double kCell_rad = 2.0 * kRadiansPerDegree;
@@ -256,13 +256,13 @@ Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffus
   const SkyView view(air, diffuse, settings.altitude_m, mu_s,
                      settings.view_size.value_or(
                          FineSize(SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))));
-  const Grid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
+  const PanoramaGrid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
   std::vector<double> from_sun;
   for (int x = 0; x < grid.width; ++x)
     from_sun.push_back(grid.Azimuth(x + 0.5) - settings.sun.azimuth_rad);
   const SkyAzimuths azimuths(view, from_sun);
   const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance);
-  const std::vector<LayerPlace> layers = AddLayers(settings.layers, image);
+  const std::vector<LayerPlace> layers = AddPanoramaLayers(settings.layers, image);
   const auto add_polarisation = [&](int y) {
     const PolarisedRow row(air, diffuse, settings.altitude_m, mu_s, grid.ZenithAngle(y + 0.5));
     for (int x = 0; x < grid.width; ++x) {

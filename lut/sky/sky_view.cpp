@@ -16,7 +16,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::size_t kLanes = 4;
+constexpr std::size_t kViewLanes = 4;
 
 /// Weights of the four uniform cubic B-splines that reach a fraction t of a cell.
 std::array<float, 4> SplineWeights(double t) {
@@ -125,13 +125,13 @@ void SplineMirroredLine(const Line& line) {
 }
 
 std::vector<float> PhaseSamples(const Medium& medium, std::size_t first_band) {
-  std::vector<float> table(kLanes * (kSkyPhaseNodes + 1));
+  std::vector<float> table(kViewLanes * (kSkyPhaseNodes + 1));
   for (int k = 0; k <= kSkyPhaseNodes; ++k) {
     const double x = static_cast<double>(k) / kSkyPhaseNodes;
     const std::vector<double> values = MiePhaseValues(medium, std::cos(kPi * x * x));
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < kViewLanes; ++lane) {
       const std::size_t band = std::min(first_band + lane, values.size() - 1);
-      table[kLanes * static_cast<std::size_t>(k) + lane] = static_cast<float>(values[band]);
+      table[kViewLanes * static_cast<std::size_t>(k) + lane] = static_cast<float>(values[band]);
     }
   }
   return table;
@@ -311,12 +311,12 @@ class SkyView::Builder {
       const ScatteredOnce<float> once = air_.Scatter(air_.Sample(
           {altitude_m_, mu, mu_s_, nu}, {.nodes = view_.size_.ray_nodes, .dark_samples = false}));
       for (std::size_t band = 0; band < view_.bands_; ++band) {
-        float* node = Node(view_.blocks_[band / kLanes], row, static_cast<int>(k) + 1);
+        float* node = Node(view_.blocks_[band / kViewLanes], row, static_cast<int>(k) + 1);
         const float round = 10.0F * RayleighChi2(air_.medium(), band);
-        node[band % kLanes] = round * once.rayleigh[band];
-        node[2 * kLanes + band % kLanes] =
+        node[band % kViewLanes] = round * once.rayleigh[band];
+        node[2 * kViewLanes + band % kViewLanes] =
             (1.0F - round) * static_cast<float>(0.25 / kPi) * once.rayleigh[band];
-        node[kLanes + band % kLanes] = once.mie[band];
+        node[kViewLanes + band % kViewLanes] = once.mie[band];
       }
     }
   }
@@ -340,8 +340,8 @@ class SkyView::Builder {
             -1.0, 1.0));
       }
       for (std::size_t band = 0; band < view_.bands_; ++band) {
-        float* node = Node(view_.blocks_[band / kLanes], row, static_cast<int>(k) + 1);
-        node[2 * kLanes + band % kLanes] +=
+        float* node = Node(view_.blocks_[band / kViewLanes], row, static_cast<int>(k) + 1);
+        node[2 * kViewLanes + band % kViewLanes] +=
             rest[k * view_.bands_ + band] + through[band] * reflected[band];
       }
     }
@@ -370,13 +370,13 @@ SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, d
       size_(size),
       bands_(air.bands()),
       sun_zenith_angle_rad_(std::acos(std::clamp(mu_s, -1.0, 1.0))),
-      blocks_((air.bands() + kLanes - 1) / kLanes) {
+      blocks_((air.bands() + kViewLanes - 1) / kViewLanes) {
   RequireInRange(size.sky_rows, 5, 4096, "sky_rows");
   RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
   RequireInRange(size.azimuths, 3, 4096, "azimuths");
   ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    blocks_[i].phase = PhaseSamples(air.medium(), kLanes * i);
+    blocks_[i].phase = PhaseSamples(air.medium(), kViewLanes * i);
   Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
 }
 
@@ -424,7 +424,7 @@ void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
                   row.data()});
     kernel.fill({row.data(), blocks_[i].phase.data(), azimuths.cell_.data(),
                  azimuths.weights_.data(), azimuths.half_sine2_.data(), at->offset, at->scale,
-                 azimuths.count(), radiance.data() + kLanes * i, stride()});
+                 azimuths.count(), radiance.data() + kViewLanes * i, stride()});
   }
 }
 
@@ -437,16 +437,16 @@ Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) cons
   const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
   const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
   std::array<float, 4 * kSkyNodeFloats> nodes;
-  std::array<float, kLanes> light;
+  std::array<float, kViewLanes> light;
   constexpr std::int32_t kFirst = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     kernel.blend({&blocks_[i].coefficients[at->first_row * width +
                                            static_cast<std::size_t>(tap.cell) * kSkyNodeFloats],
                   width, nodes.size(), at->weights.data(), nodes.data()});
     kernel.fill({nodes.data(), blocks_[i].phase.data(), &kFirst, tap.weights.data(),
-                 &tap.half_sine2, at->offset, at->scale, 1, light.data(), kLanes});
-    for (std::size_t lane = 0; lane < kLanes && kLanes * i + lane < bands_; ++lane)
-      radiance[kLanes * i + lane] = light[lane];
+                 &tap.half_sine2, at->offset, at->scale, 1, light.data(), kViewLanes});
+    for (std::size_t lane = 0; lane < kViewLanes && kViewLanes * i + lane < bands_; ++lane)
+      radiance[kViewLanes * i + lane] = light[lane];
   }
   return radiance;
 }

@@ -29,7 +29,7 @@ using Rgba = std::array<double, 4>;
 constexpr double kLargestMedian = 0.05;      // of the distance from our texels
 constexpr std::size_t kCheckedTexels = 600;  // of a texture of scattering
 
-std::optional<TexelFormat> FormatOf(const fs::path& folder) {
+std::optional<TexelFormat> FormatOfFolder(const fs::path& folder) {
   for (const TexelFormat format : {TexelFormat::kExr, TexelFormat::kBin, TexelFormat::kDat}) {
     std::error_code error;
     if (fs::exists(folder / (std::string("scattering") + SuffixOf(format)), error)) return format;
@@ -39,7 +39,7 @@ std::optional<TexelFormat> FormatOf(const fs::path& folder) {
 
 /// Layout and format. Only our own .exr of Bruneton's layout say so: the demo reads none.
 ExchangeOptions OptionsOf(const fs::path& folder) {
-  const std::optional<TexelFormat> format = FormatOf(folder);
+  const std::optional<TexelFormat> format = FormatOfFolder(folder);
   if (!format) RefuseFile(folder, "has no scattering.exr, .bin or .dat");
   ExchangeOptions options{.format = format};
   if (*format == TexelFormat::kDat) {
@@ -139,7 +139,7 @@ double HighestOf(const TextureShape& shape, const Medium& medium) {
   return std::string_view(shape.name) == kIrradianceShape.name ? sun : 4.0 * kPi * sun;
 }
 
-std::array<ExchangeDescription::Channel, 4> RangesOf(const fs::path& file,
+std::array<ExchangeDescription::Channel, 4> ChannelRangesOf(const fs::path& file,
                                                      const std::vector<float>& texels,
                                                      double highest) {
   std::array<ExchangeDescription::Channel, 4> ranges{};
@@ -343,7 +343,7 @@ LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
   loaded.texels = TexelsOf(file, shape, options);
   loaded.description.file = file;
   loaded.description.shape = shape;
-  loaded.description.rgba = RangesOf(file, loaded.texels, HighestOf(shape, medium));
+  loaded.description.rgba = ChannelRangesOf(file, loaded.texels, HighestOf(shape, medium));
   return loaded;
 }
 
@@ -374,8 +374,8 @@ std::string LineOf(const ExchangeDescription::Texture& texture) {
 }  // namespace
 
 std::optional<fs::path> ExchangeFolderOf(const fs::path& file_or_folder) {
-  if (FormatOf(file_or_folder)) return file_or_folder;
-  const std::optional<TexelFormat> format = FormatOf(file_or_folder.parent_path());
+  if (FormatOfFolder(file_or_folder)) return file_or_folder;
+  const std::optional<TexelFormat> format = FormatOfFolder(file_or_folder.parent_path());
   if (!format || !HasExtension(file_or_folder, SuffixOf(*format))) return std::nullopt;
   for (const TextureShape& shape : ShapesOf(ExchangeLayout::kTakram)) {
     if (file_or_folder.stem() == shape.name) return file_or_folder.parent_path();

@@ -70,7 +70,7 @@ auto NamingDamage(const fs::path& file, const Read& read) {
 
 /// The channels of interleaved values of the file's type.
 template <typename Value>
-Imf::FrameBuffer FrameBufferOf(const Value* values, const std::vector<std::string>& channels,
+Imf::FrameBuffer TableBufferOf(const Value* values, const std::vector<std::string>& channels,
                                std::size_t width) {
   constexpr Imf::PixelType kType = std::is_same_v<Value, half> ? Imf::HALF : Imf::FLOAT;
   const std::size_t stride = sizeof(Value) * channels.size();
@@ -87,7 +87,7 @@ template <typename Value>
 void WriteRows(const fs::path& name, const Imf::Header& header, const TableImage& image,
                const Value* values) {
   Imf::OutputFile output(name.c_str(), header);
-  output.setFrameBuffer(FrameBufferOf(values, image.channels, image.width));
+  output.setFrameBuffer(TableBufferOf(values, image.channels, image.width));
   output.writePixels(static_cast<int>(image.height));
 }
 
@@ -227,7 +227,7 @@ std::vector<float> TableImageReader::Values(const std::vector<std::string>& chan
   return NamingDamage(file_, [&] {
     std::vector<float> result(values);
     Imf::InputPart part(state_->parts, 0);
-    part.setFrameBuffer(FrameBufferOf(result.data(), channels, width()));
+    part.setFrameBuffer(TableBufferOf(result.data(), channels, width()));
     part.readPixels(0, static_cast<int>(height()) - 1);
     return result;
   });

@@ -14,10 +14,10 @@
 namespace alpenglow {
 namespace {
 
-using Triple = std::array<double, 3>;
+using TrainedTriple = std::array<double, 3>;
 using Rows = std::array<std::vector<double>, 3>;
 
-constexpr Triple kWhite{1.0, 1.0, 1.0};
+constexpr TrainedTriple kWhite{1.0, 1.0, 1.0};
 constexpr double kLuminance = 0.4;  // of a colour, relative to white
 
 double Dot(std::span<const double> a, std::span<const double> b) {
@@ -31,11 +31,11 @@ Rows DeriveExactRows() {
   const std::vector<double> fine = FineWavelengths();
   const BandColour colour(fine);
   Rows rows;
-  Triple sun{};
+  TrainedTriple sun{};
   for (std::size_t i = 0; i < fine.size(); ++i) {
     std::vector<double> one(fine.size(), 0.0);
     one[i] = SolarIrradiance(fine[i]);
-    const Triple xyz = colour.Xyz(one);
+    const TrainedTriple xyz = colour.Xyz(one);
     for (std::size_t c = 0; c < 3; ++c) {
       rows[c].push_back(xyz[c]);
       sun[c] += xyz[c];
@@ -74,14 +74,14 @@ Rows BrokenLineShares(const std::vector<std::size_t>& set) {
   return rows;
 }
 
-Triple Exposed(Triple xyz, double exposure) {
+TrainedTriple Exposed(TrainedTriple xyz, double exposure) {
   for (double& value : xyz) value *= exposure;
   return xyz;
 }
 
-double SquaredDifference(const Triple& xyz, double step_a, std::size_t a, double step_b,
+double SquaredDifference(const TrainedTriple& xyz, double step_a, std::size_t a, double step_b,
                          std::size_t b) {
-  Triple moved = xyz;
+  TrainedTriple moved = xyz;
   moved[a] += step_a;
   moved[b] += step_b;
   const double difference = Ciede2000(xyz, moved, kWhite);
@@ -89,10 +89,10 @@ double SquaredDifference(const Triple& xyz, double step_a, std::size_t a, double
 }
 
 // CIEDE2000 squared as a quadratic form around a colour.
-std::array<Triple, 3> MetricAt(const Triple& xyz) {
+std::array<TrainedTriple, 3> MetricAt(const TrainedTriple& xyz) {
   constexpr double kStep = 1e-4;
   constexpr double kScale = 1.0 / (8.0 * kStep * kStep);
-  std::array<Triple, 3> metric{};
+  std::array<TrainedTriple, 3> metric{};
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < 3; ++b) {
       metric[a][b] = kScale * (SquaredDifference(xyz, kStep, a, kStep, b) +
@@ -129,8 +129,8 @@ std::vector<std::size_t> DrawSet(std::size_t count, std::size_t steps, std::size
 
 }  // namespace
 
-Triple RelativeXyz(const BandShares& shares, std::span<const double> relative_to_sun) {
-  Triple xyz{};
+TrainedTriple RelativeXyz(const BandShares& shares, std::span<const double> relative_to_sun) {
+  TrainedTriple xyz{};
   for (std::size_t i = 0; i < shares.wavelengths_nm.size(); ++i) {
     const double light = relative_to_sun[FineIndex(shares.wavelengths_nm[i])];
     for (std::size_t c = 0; c < 3; ++c) xyz[c] += shares.share[c][i] * light;
@@ -138,19 +138,19 @@ Triple RelativeXyz(const BandShares& shares, std::span<const double> relative_to
   return xyz;
 }
 
-Triple RelativeXyz(std::span<const double> relative_to_sun) {
+TrainedTriple RelativeXyz(std::span<const double> relative_to_sun) {
   const Rows& rows = ExactRows();
   return {Dot(rows[0], relative_to_sun), Dot(rows[1], relative_to_sun),
           Dot(rows[2], relative_to_sun)};
 }
 
-ColourErrors ErrorsOf(std::span<const Triple> relative_xyz, std::span<const SkySpectrum> spectra) {
+ColourErrors ErrorsOf(std::span<const TrainedTriple> relative_xyz, std::span<const SkySpectrum> spectra) {
   ALPENGLOW_ENSURE(relative_xyz.size(), ==, spectra.size());
   ALPENGLOW_ENSURE(spectra.size(), >, std::size_t{0});
   std::vector<double> errors;
   ColourErrors result;
   for (std::size_t i = 0; i < spectra.size(); ++i) {
-    const Triple exact = RelativeXyz(spectra[i].relative_to_sun);
+    const TrainedTriple exact = RelativeXyz(spectra[i].relative_to_sun);
     const double exposure = kLuminance / exact[1];
     errors.push_back(
         Ciede2000(Exposed(exact, exposure), Exposed(relative_xyz[i], exposure), kWhite));
@@ -164,7 +164,7 @@ ColourErrors ErrorsOf(std::span<const Triple> relative_xyz, std::span<const SkyS
 }
 
 ColourErrors ErrorsOf(const BandShares& shares, std::span<const SkySpectrum> spectra) {
-  std::vector<Triple> colours;
+  std::vector<TrainedTriple> colours;
   for (const SkySpectrum& spectrum : spectra) {
     colours.push_back(RelativeXyz(shares, spectrum.relative_to_sun));
   }
@@ -197,9 +197,9 @@ BandTrainer::BandTrainer(std::span<const SkySpectrum> spectra)
 }
 
 void BandTrainer::Accumulate(const SkySpectrum& spectrum, double weight) {
-  const Triple exact = RelativeXyz(spectrum.relative_to_sun);
+  const TrainedTriple exact = RelativeXyz(spectrum.relative_to_sun);
   const double exposure = kLuminance / exact[1];
-  const std::array<Triple, 3> metric = MetricAt(Exposed(exact, exposure));
+  const std::array<TrainedTriple, 3> metric = MetricAt(Exposed(exact, exposure));
   const std::vector<double>& light = spectrum.relative_to_sun;
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t d = 0; d < 3; ++d) {

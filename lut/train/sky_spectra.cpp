@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kFineCount = 80;
 constexpr double kNightSky_per_sr = 1e-9;
 
-Medium MediumOf(const SkyConditions& conditions, const std::vector<double>& wavelengths_nm) {
+Medium MediumOfSky(const SkyConditions& conditions, const std::vector<double>& wavelengths_nm) {
   Medium medium = MediumPreset(conditions.preset, wavelengths_nm);
   for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
     const double albedo = medium.mie_scattering_per_m[i] / medium.mie_extinction_per_m[i];
@@ -67,7 +67,7 @@ struct ElevationRange {
   double low_deg, high_deg;
 };
 
-ElevationRange RangeOf(SkyRegime regime) {
+ElevationRange SpectrumRangeOf(SkyRegime regime) {
   switch (regime) {
     case SkyRegime::kDay:
       return {6.0, 60.0};
@@ -170,7 +170,7 @@ SkySimulator::SkySimulator(const SkyConditions& conditions, const DiffuseLightOp
   static_assert(kFineCount % kMaxBands == 0);
   for (auto first = all.begin(); first != all.end(); first += kMaxBands) {
     parts_.push_back(std::make_unique<const Part>(
-        MediumOf(conditions, std::vector<double>(first, first + kMaxBands)), options));
+        MediumOfSky(conditions, std::vector<double>(first, first + kMaxBands)), options));
   }
 }
 
@@ -222,7 +222,7 @@ std::vector<SkySpectrum> DrawSkySpectra(const SkyDrawing& drawing) {
   for (int number = 0; number < drawing.atmospheres; ++number) {
     const SkySimulator simulator(DrawConditions(drawing.family, number, draw), drawing.diffuse);
     for (const SkyRegime regime : kSkyRegimes) {
-      const ElevationRange range = RangeOf(regime);
+      const ElevationRange range = SpectrumRangeOf(regime);
       // Direct light has one spectrum a sun: three times as many suns.
       const int suns = regime == SkyRegime::kDirectSun ? 3 * drawing.suns : drawing.suns;
       for (int sun = 0; sun < suns; ++sun) {

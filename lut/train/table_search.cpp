@@ -92,7 +92,7 @@ TableFolder Folder(const Medium& medium, DiffuseLight light, int ray_nodes) {
           .ray_nodes = ray_nodes};
 }
 
-[[noreturn]] void Refuse(double max_error, const std::string& best) {
+[[noreturn]] void RefuseBound(double max_error, const std::string& best) {
   throw InputError(
       fmt::format("max-error {:g} %: no tables reach it: {}", 100.0 * max_error, best));
 }
@@ -104,7 +104,7 @@ Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& meas
     const double missing = measured[k].paths.Unexplained();
     const double rest = max_error * max_error - missing * missing;
     if (rest <= 0.0) {
-      Refuse(max_error, fmt::format("the finest light of all orders is {:.2g} % from path tracing "
+      RefuseBound(max_error, fmt::format("the finest light of all orders is {:.2g} % from path tracing "
                                     "({})",
                                     100.0 * missing, NameOf(measured[k].kind)));
     }
@@ -124,7 +124,7 @@ int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Boun
       if (best.excess <= share) return nodes;
     }
   }
-  Refuse(max_error, fmt::format("{} nodes along a ray leave {:.2g} % ({})", kRayNodes.back(),
+  RefuseBound(max_error, fmt::format("{} nodes along a ray leave {:.2g} % ({})", kRayNodes.back(),
                                 100.0 * best.error, NameOf(best.worst)));
 }
 
@@ -142,7 +142,7 @@ TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const 
     best = Judge(views, lookup, bounds, kShareOfTables);
     if (best.excess <= kShareOfTables) return lookup.tables();
   }
-  Refuse(max_error, fmt::format("the largest table of {} leaves {:.2g} % ({})", name,
+  RefuseBound(max_error, fmt::format("the largest table of {} leaves {:.2g} % ({})", name,
                                 100.0 * best.error, NameOf(best.worst)));
 }
 
@@ -175,7 +175,7 @@ TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, do
     best = Judge(views, lookup, bounds, 1.0);
     if (best.excess <= 1.0) return lookup.tables();
   }
-  Refuse(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
+  RefuseBound(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
                                 NameOf(best.worst)));
 }
 

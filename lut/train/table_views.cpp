@@ -81,7 +81,7 @@ double RmsOf(const std::vector<double>& values) {
   return values.empty() ? 0.0 : Length(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-JudgedView Judge(const Medium& medium, const AirIntegrator<float>& air, const DiffuseLight& finest,
+JudgedView ViewJudge(const Medium& medium, const AirIntegrator<float>& air, const DiffuseLight& finest,
                  ViewKind kind, std::size_t i) {
   JudgedView view{kind, RayOf(kind, i, medium), {}, {}};
   if (kind == ViewKind::kIrradiance) {
@@ -148,7 +148,7 @@ JudgedViews::JudgedViews(const Medium& medium, const DiffuseLight& finest,
   tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t k) {
     if (Interrupted()) return;
     views_[k] =
-        Judge(medium, air, finest, kViewKinds[k / views_of_a_kind], first + k % views_of_a_kind);
+        ViewJudge(medium, air, finest, kViewKinds[k / views_of_a_kind], first + k % views_of_a_kind);
   });
   ThrowIfInterrupted();
 }

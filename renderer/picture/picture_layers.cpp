@@ -51,7 +51,7 @@ LayerValues Scotopic(const BandColour& colour, const PixelSum& rays) {
   return {static_cast<float>(colour.ScotopicLuminance(InDouble(rays.Mean(&Shaded::radiance))))};
 }
 
-LayerValues RayCount(const BandColour&, const PixelSum& rays) {
+LayerValues RayCountLayer(const BandColour&, const PixelSum& rays) {
   return {static_cast<float>(rays.rays)};
 }
 
@@ -99,7 +99,7 @@ const std::vector<LayerKind>& LayerKinds() {
       InColour(kLamps, "lamps", LightOf<&Shaded::lamps>),
       InColour(kVolumes, "volumes", LightOf<&Shaded::volumes>),
       {kScotopic, "scotopic", {kScotopicChannel}, nullptr, Scotopic},
-      {kRays, "rays", {"rays.Y"}, nullptr, RayCount},
+      {kRays, "rays", {"rays.Y"}, nullptr, RayCountLayer},
       InStokes(kStokesQ, StokesLayer::kQ, StokesOf<&PolarisedLight::q>),
       InStokes(kStokesU, StokesLayer::kU, StokesOf<&PolarisedLight::u>),
       InStokes(kPolarisation, StokesLayer::kPolarisation, Polarisation)};
