@@ -266,6 +266,44 @@ TEST(Scene, VolumesThatMakeNoSenseAreRefusedByKey) {
   }
 }
 
+// Sizes and temperatures that are over 0 and next to nothing; @ is the value.
+TEST(Scene, SizesNextToNothingAreRefusedByKeyAndRange) {
+  const std::string lens = "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\n";
+  const std::string lamp = "[[light]]\nlatitude = 35\nlongitude = 138\nintensity_cd = 9\n";
+  const std::string volume = "[[volume]]\nlatitude = 35\nlongitude = 138\n";
+  const std::string smoke = volume + "size_m = [9, 9, 9]\n";
+  const std::vector<std::pair<std::string, std::string>> keys{
+      {"[camera]\nfov = @\n", "camera.fov"},
+      {"[camera]\nf_number = @\nfocal_length_mm = 50\nfocus_m = 10\n", "camera.f_number"},
+      {"[camera]\nf_number = 2\nfocal_length_mm = @\nfocus_m = 10\n", "camera.focal_length_mm"},
+      {"[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = @\n", "camera.focus_m"},
+      {lens + "blades = @\n", "camera.blades"},
+      {"[camera]\nfocal_length_mm = 50\nsensor_width_mm = @\n", "camera.sensor_width_mm"},
+      {"[fog]\nvisibility_m = @\n", "fog.visibility_m"},
+      {"[fog]\nvisibility_m = 99\nscale_height_m = @\n", "fog.scale_height_m"},
+      {"[fog]\nvisibility_m = 99\ndroplet_diameter_um = @\n", "fog.droplet_diameter_um"},
+      {lamp + "radius_m = @\n", "light[0].radius_m"},
+      {lamp + "temperature_k = @\n", "light[0].temperature_k"},
+      {volume + "size_m = [9, @, 9]\nvisibility_m = 50\n", "volume[0].size_m[1]"},
+      {smoke + "visibility_m = @\n", "volume[0].visibility_m"},
+      {smoke + "visibility_m = 50\nscale_height_m = @\n", "volume[0].scale_height_m"},
+      {smoke + "visibility_m = 50\ntemperature_k = @\n", "volume[0].temperature_k"},
+      {smoke + "visibility_m = 50\ndroplet_diameter_um = @\n", "volume[0].droplet_diameter_um"},
+      {"[ground]\ncover = \"blinn-phong\"\nroughness = @\n", "ground.roughness"},
+      {"[ground]\ncover = \"snow\"\ngrain_diameter_mm = @\n", "ground.grain_diameter_mm"},
+      {"[night]\nbortle = @\n", "night.bortle"},
+      {"[night]\nzenith_mag_per_arcsec2 = @\n", "night.zenith_mag_per_arcsec2"}};
+  for (const auto& [with_key, key] : keys) {
+    for (const std::string value : {"5e-324", "1e-300", "1e-30", "1e300"}) {
+      std::string text = kPlace + with_key;
+      text.replace(text.find('@'), 1, value);
+      const std::string fault = FaultOf(text);
+      EXPECT_THAT(fault, HasSubstr(key + " is ")) << text;
+      EXPECT_THAT(fault, HasSubstr("; it must ")) << text;
+    }
+  }
+}
+
 TEST(Scene, GroundIsWhatTheFileSays) {
   const Scene water = Read(kPlace + "[ground]\ncover = \"water\"\nwind_m_per_s = 8\n");
   EXPECT_EQ(water.ground.kind, GroundCover::Kind::kWater);
