@@ -32,7 +32,7 @@ double RadiusOf(PixelFilter::Kind kind) {
 }
 
 constexpr int kKnots = 513;  // of the inverse of the distribution, straight in between
-constexpr int kSteps = 16;   // of the trapezoidal rule between two points of the distribution
+constexpr int kFilterSteps = 16;   // of the trapezoidal rule between two points of the distribution
 
 }  // namespace
 
@@ -62,8 +62,8 @@ PixelFilter::PixelFilter(Kind kind) : kind_(kind), radius_(RadiusOf(kind)), inte
   const double step = radius_ / (kKnots - 1);
   for (int i = 1; i < kKnots; ++i) {
     double area = 0.0;
-    for (int k = 0; k < kSteps; ++k) area += Shape(step * (i - 1 + (k + 0.5) / kSteps));
-    below.push_back(below.back() + area * step / kSteps);
+    for (int k = 0; k < kFilterSteps; ++k) area += Shape(step * (i - 1 + (k + 0.5) / kFilterSteps));
+    below.push_back(below.back() + area * step / kFilterSteps);
   }
   const double half = below.back();
   integral_ = 2.0 * half;

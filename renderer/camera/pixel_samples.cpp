@@ -51,7 +51,7 @@ std::uint32_t MirroredSobolSecond(std::uint32_t index) {
 }
 
 /// Bits of x on even places: half of Morton's code.
-std::uint32_t Spread(std::uint32_t x) {
+std::uint32_t SpreadBits(std::uint32_t x) {
   x = (x | (x << 4U)) & 0x0F0FU;
   x = (x | (x << 2U)) & 0x3333U;
   return (x | (x << 1U)) & 0x5555U;
@@ -66,7 +66,7 @@ PixelSamples::PixelSamples(int x, int y, int samples_per_pixel) {
   const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
   constexpr auto kSide = static_cast<std::uint32_t>(kTile);
   tile_ = Mixed(Mixed(column / kSide) + 0x9E3779B9U * (row / kSide) + 1U);
-  const std::uint32_t place = Spread(column % kSide) | (Spread(row % kSide) << 1U);
+  const std::uint32_t place = SpreadBits(column % kSide) | (SpreadBits(row % kSide) << 1U);
   first_ = place * std::bit_ceil(static_cast<std::uint32_t>(samples_per_pixel));
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kTrackBlanks = " \t\r\n";
 
 class TrackReader {
  public:
@@ -81,8 +81,8 @@ class TrackReader {
   [[nodiscard]] static std::string_view TextOf(const XMLElement* element) {
     if (element == nullptr || element->GetText() == nullptr) return {};
     std::string_view text = element->GetText();
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-    const std::size_t last = text.find_last_not_of(kBlanks);
+    text.remove_prefix(std::min(text.find_first_not_of(kTrackBlanks), text.size()));
+    const std::size_t last = text.find_last_not_of(kTrackBlanks);
     return last == std::string_view::npos ? text : text.substr(0, last + 1);
   }
 
@@ -120,7 +120,7 @@ class TrackReader {
   /// Nothing where it is empty or nan: what receivers write that have no fix.
   [[nodiscard]] std::optional<double> NumberIfAny(std::string_view text, const XMLElement& at,
                                                   std::string_view what) const {
-    if (text.find_first_not_of(kBlanks) == std::string_view::npos) return std::nullopt;
+    if (text.find_first_not_of(kTrackBlanks) == std::string_view::npos) return std::nullopt;
     const double value = Number(text, at, what);
     return std::isnan(value) ? std::nullopt : std::optional<double>(value);
   }
@@ -281,7 +281,7 @@ class TrackReader {
     const XMLElement* coordinates = ChildOf(line, "coordinates");
     std::string_view text = TextOf(coordinates);
     RecordedSegment segment;
-    while (!text.empty()) segment.push_back(Coordinate(TakePart(text, kBlanks), ",", *coordinates));
+    while (!text.empty()) segment.push_back(Coordinate(TakePart(text, kTrackBlanks), ",", *coordinates));
     return segment;
   }
 
@@ -296,7 +296,7 @@ class TrackReader {
     for (std::size_t i = 0; i < places.size(); ++i) {
       const std::string_view text = TextOf(places[i]);
       RecordedPoint point;
-      if (!text.empty()) point = Coordinate(text, kBlanks, *places[i]);
+      if (!text.empty()) point = Coordinate(text, kTrackBlanks, *places[i]);
       if (!TextOf(times[i]).empty()) point.utc = Instant(*times[i]);
       segment.push_back(point);
     }

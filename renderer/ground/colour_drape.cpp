@@ -22,36 +22,32 @@ namespace {
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
 constexpr int kGridNodes = 33;  // of places, a side
 
-[[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& fault) {
-  throw InputError(fmt::format("{}: {}", file.string(), fault));
-}
-
-struct CloseDataset {
+struct CloseImage {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+using ImageDataset = std::unique_ptr<GDALDataset, CloseImage>;
 
-Dataset Open(const std::filesystem::path& file, bool is_land_cover) {
+ImageDataset OpenImage(const std::filesystem::path& file, bool is_land_cover) {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALRegister_GTiff();
     GDALRegister_PNG();
   });
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) Refuse(file, "there is no such file");
+  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
   static const char* const kDrivers[] = {"GTiff", "PNG", nullptr};
-  Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
+  ImageDataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
       file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kDrivers, nullptr, nullptr)));
   if (!dataset)
-    Refuse(file, fmt::format("not a readable GeoTIFF or PNG ({})", CPLGetLastErrorMsg()));
+    RefuseFile(file, fmt::format("not a readable GeoTIFF or PNG ({})", CPLGetLastErrorMsg()));
   const int bands = dataset->GetRasterCount();
   if (is_land_cover) {
     if (bands != 1 || dataset->GetRasterBand(1)->GetRasterDataType() != GDT_Byte)
-      Refuse(file, "is no map of land cover, which has one band of 8 bits");
+      RefuseFile(file, "is no map of land cover, which has one band of 8 bits");
   } else if (bands < 1 || (bands < 3 && dataset->GetRasterBand(1)->GetColorTable() != nullptr))
-    Refuse(file, "has a palette; colours are read from red, green and blue bands");
+    RefuseFile(file, "has a palette; colours are read from red, green and blue bands");
   if (std::int64_t{dataset->GetRasterXSize()} * dataset->GetRasterYSize() > kMostPixels) {
-    Refuse(file, fmt::format("has {} x {} pixels; at most {} can be held",
+    RefuseFile(file, fmt::format("has {} x {} pixels; at most {} can be held",
                              dataset->GetRasterXSize(), dataset->GetRasterYSize(), kMostPixels));
   }
   return dataset;
@@ -63,9 +59,9 @@ double Linear(double encoded) {
 }
 
 /// 16-bit linear values of what a band stores.
-class Decoder {
+class ImageDecoder {
  public:
-  explicit Decoder(GDALDataType type) : type_(type) {
+  explicit ImageDecoder(GDALDataType type) : type_(type) {
     if (type != GDT_Byte && type != GDT_UInt16) return;
     const std::size_t codes = type == GDT_Byte ? 256 : 65536;
     for (std::size_t code = 0; code < codes; ++code) {
@@ -97,7 +93,7 @@ void ReadRow(const std::filesystem::path& file, GDALRasterBand& band, GDALDataTy
              std::vector<Value>& row) {
   const int columns = band.GetXSize();
   if (band.RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1, type, 0, 0) != CE_None)
-    Refuse(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
+    RefuseFile(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
 }
 
 // How much of each pixel is there, 255 for all of it, by the alpha band, the mask or the nodata
@@ -131,8 +127,8 @@ std::vector<Pixel> ReadPixels(const std::filesystem::path& file, GDALDataset& da
   std::vector<float> row(static_cast<std::size_t>(dataset.GetRasterXSize()));
   for (int channel = 0; channel < 3; ++channel) {
     GDALRasterBand* band = dataset.GetRasterBand(dataset.GetRasterCount() < 3 ? 1 : channel + 1);
-    const Decoder decoder(band->GetRasterDataType());
-    if (!decoder.IsKnown()) Refuse(file, "has values that are neither 8 nor 16 bits nor floats");
+    const ImageDecoder decoder(band->GetRasterDataType());
+    if (!decoder.IsKnown()) RefuseFile(file, "has values that are neither 8 nor 16 bits nor floats");
     for (int y = 0; y < rows; ++y) {
       ReadRow(file, *band, GDT_Float32, y, row);
       for (std::size_t x = 0; x < row.size(); ++x) {
@@ -148,7 +144,7 @@ std::vector<Pixel> ReadPixels(const std::filesystem::path& file, GDALDataset& da
 
 Pixel SharesOfClass(const std::filesystem::path& file, std::uint8_t number) {
   const auto cover = CoverOfClass(number);
-  if (!cover) Refuse(file, fmt::format("has {}, which is no class of land cover", number));
+  if (!cover) RefuseFile(file, fmt::format("has {}, which is no class of land cover", number));
   Pixel stored{0, 0, 0, 65535};
   for (std::size_t k = 0; k < 3; ++k)
     stored[k] = static_cast<std::uint16_t>(std::lround(65535.0 * (*cover)[k]));
@@ -181,14 +177,14 @@ class Georeference {
     if (crs == nullptr || crs->IsEmpty() || dataset.GetGeoTransform(forward.data()) != CE_None)
       return std::nullopt;
     if (GDALInvGeoTransform(forward.data(), reference.pixel_from_crs_.data()) == 0)
-      Refuse(file, "has a geotransform that cannot be inverted");
+      RefuseFile(file, "has a geotransform that cannot be inverted");
     OGRSpatialReference wgs84, own = *crs;
     wgs84.SetWellKnownGeogCS("WGS84");
     wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     reference.crs_from_geographic_.reset(OGRCreateCoordinateTransformation(&wgs84, &own));
     if (!reference.crs_from_geographic_)
-      Refuse(file, "has a coordinate system that cannot be reached from longitude and latitude");
+      RefuseFile(file, "has a coordinate system that cannot be reached from longitude and latitude");
     return reference;
   }
 
@@ -252,7 +248,7 @@ BandLight BandsOfColour::Albedo(const std::array<double, 3>& rgb) const {
 std::shared_ptr<const ColourDrape> ColourDrape::Of(const Scene& scene, const SceneGround& ground) {
   const std::filesystem::path& file = scene.terrain.Drape();
   if (file.empty()) return nullptr;
-  if (!ground.terrain) Refuse(file, "there is no terrain under it");
+  if (!ground.terrain) RefuseFile(file, "there is no terrain under it");
   const QuietGdal quiet;
   return std::shared_ptr<const ColourDrape>(
       new ColourDrape(file, scene.terrain.colour.empty(), ground));
@@ -273,7 +269,7 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
     : frame_(ground.frame),
       radius_m_(ground.frame.ellipsoid().equatorial_radius_m),
       is_land_cover_(is_land_cover) {
-  const Dataset dataset = Open(file, is_land_cover);
+  const ImageDataset dataset = OpenImage(file, is_land_cover);
   std::vector<Level> levels;
   levels.push_back({dataset->GetRasterXSize(), dataset->GetRasterYSize(),
                     is_land_cover ? ReadClasses(file, *dataset) : ReadPixels(file, *dataset)});

@@ -69,13 +69,13 @@ LampTable TypeC(const MeasuredAngles& measured) {
 }
 
 /// A place among ascending angles, or none outside of them.
-struct Place {
+struct AnglePlace {
   std::size_t low = 0;
   double share = 0.0;  // of the next one
   bool is_inside = false;
 };
 
-Place PlaceAmong(const std::vector<double>& angles, double at) {
+AnglePlace PlaceAmong(const std::vector<double>& angles, double at) {
   constexpr double kRounding_deg = 1e-9;
   if (at < angles.front() - kRounding_deg || at > angles.back() + kRounding_deg) return {};
   const auto above = std::upper_bound(angles.begin() + 1, angles.end() - 1, at);
@@ -86,8 +86,8 @@ Place PlaceAmong(const std::vector<double>& angles, double at) {
 
 double IntensityAt(const MeasuredAngles& measured, double vertical_deg, double horizontal_deg) {
   const bool is_mirrored = measured.horizontal_deg.front() == 0.0;
-  const Place v = PlaceAmong(measured.vertical_deg, vertical_deg);
-  const Place h =
+  const AnglePlace v = PlaceAmong(measured.vertical_deg, vertical_deg);
+  const AnglePlace h =
       PlaceAmong(measured.horizontal_deg, is_mirrored ? std::abs(horizontal_deg) : horizontal_deg);
   if (!v.is_inside || !h.is_inside) return 0.0;
   const auto plane = [&](std::size_t horizontal) {

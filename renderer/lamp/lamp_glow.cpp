@@ -17,14 +17,14 @@ namespace {
 
 constexpr int kDistances = 16;
 constexpr double kNearest_m = 0.2;
-constexpr double kFarthest_m = 2e4;
+constexpr double kFarthestGlow_m = 2e4;
 constexpr double kDarkest = 1e-250;  // logarithms are taken of no less
 /// Sines of the lamp's elevation, dense where a lamp stands on the ground far away.
 constexpr std::array<double, 9> kSines{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
 constexpr int kElevations = static_cast<int>(kSines.size());
 
 double DistanceNumber(int i) {
-  return kNearest_m * std::pow(kFarthest_m / kNearest_m, i / (kDistances - 1.0));
+  return kNearest_m * std::pow(kFarthestGlow_m / kNearest_m, i / (kDistances - 1.0));
 }
 
 /// Moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
@@ -72,11 +72,11 @@ const std::vector<Around>& Directions() {
 }
 
 /// Where a value lies between the ascending points of an axis.
-struct Place {
+struct GlowPlace {
   int low;
   double share;  // of the next point
 };
-Place PlaceOf(double sine) {
+GlowPlace GlowPlaceOf(double sine) {
   int low = 0;
   while (low + 2 < kElevations && sine >= kSines[static_cast<std::size_t>(low + 1)]) ++low;
   const double from = kSines[static_cast<std::size_t>(low)];
@@ -169,14 +169,14 @@ std::vector<LampGlow::Light> LampGlow::LightAt(double distance_m, double sine) c
 Bands<double> LampGlow::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
                            const glm::dvec3& up) const {
   const double length = std::max(glm::length(to_lamp), 1e-6);
-  const double distance = std::clamp(length, kNearest_m, kFarthest_m);
+  const double distance = std::clamp(length, kNearest_m, kFarthestGlow_m);
   const glm::dvec3 towards = to_lamp / length;
   const double sine = std::clamp(glm::dot(towards, up), -1.0, 1.0);
   const Moments harmonics = HarmonicsOf(normal, towards, up - sine * towards);
   const double u =
-      std::log(distance / kNearest_m) / std::log(kFarthest_m / kNearest_m) * (kDistances - 1.0);
+      std::log(distance / kNearest_m) / std::log(kFarthestGlow_m / kNearest_m) * (kDistances - 1.0);
   const int low = std::min(static_cast<int>(u), kDistances - 2);
-  const Place elevation = PlaceOf(sine);
+  const GlowPlace elevation = GlowPlaceOf(sine);
   const double upwards = std::max(glm::dot(normal, up), 0.0);
   const double levelness = upwards * upwards;
   const double near = DistanceNumber(low);

@@ -225,15 +225,15 @@ Share WeighInAir(const LampTree& tree, const LampStage& stage, std::uint32_t num
 }
 
 /// A place of a surface that lamps may light.
-struct Place {
+struct TilePlace {
   glm::dvec3 point, normal;  // of the shading
   glm::dvec3 smooth_point, geometric_normal;
 };
 
 /// The places where a tile's rays end.
-std::vector<Place> PlacesOf(const TileRays& tile, const LampStage& stage) {
+std::vector<TilePlace> PlacesOf(const TileRays& tile, const LampStage& stage) {
   constexpr double kBack_m = 0.5;  // to meet the surface again, which an end has no normal of
-  std::vector<Place> places;
+  std::vector<TilePlace> places;
   for (const TileRays::End& end : tile.ends) {
     const auto& terrain = stage.ground().terrain;
     const auto hit = terrain
@@ -260,7 +260,7 @@ class SurfaceWeights {
   [[nodiscard]] Share Of(std::uint32_t number);
 
  private:
-  /// Place i is bit i.
+  /// TilePlace i is bit i.
   using LitPlaces = std::uint32_t;
   [[nodiscard]] LitPlaces AllPlaces() const { return (LitPlaces{1} << places_.size()) - 1; }
 
@@ -282,7 +282,7 @@ class SurfaceWeights {
   const LampTree* tree_;
   const LampStage* stage_;
   const TileRays* tile_;
-  std::vector<Place> places_;
+  std::vector<TilePlace> places_;
   std::unordered_map<std::uint32_t, LitPlaces> lit_;
 };
 
@@ -290,7 +290,7 @@ SurfaceWeights::LitPlaces SurfaceWeights::LitBy(std::uint32_t number) {
   const auto [found, is_new] = lit_.try_emplace(number, 0);
   if (!is_new) return found->second;
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Place& place = places_[i];
+    const TilePlace& place = places_[i];
     const bool is_shaded =
         stage_->Shades(tree_->Light(number).lamp, place.smooth_point, place.geometric_normal);
     if (!is_shaded) found->second |= LitPlaces{1} << i;
@@ -319,7 +319,7 @@ double SurfaceWeights::FacingOf(std::uint32_t number) const {
   constexpr double kMostRelied = 0.1, kBetween = 0.5;
   const Lamp& lamp = tree_->Light(number).lamp;
   double least = kMostRelied / kBetween;
-  for (const Place& place : places_) {
+  for (const TilePlace& place : places_) {
     const glm::dvec3 way = lamp.position_m - place.point;
     const glm::dvec3 towards = way / std::max(glm::length(way), 1e-9);
     const double cosine = std::max(glm::dot(place.normal, towards), 0.0);

@@ -81,11 +81,11 @@ struct Panel {
   }
 };
 
-using Moments = std::array<double, kMostNodes>;
+using NodeMoments = std::array<double, kMostNodes>;
 
 // Adds the moments of a piece of sunlight, which lies within the panel. Eight nodes are exact for
 // full light, and half shade is smooth.
-void AddMoments(const Panel& panel, const SunlitPiece& piece, Moments& moments) {
+void AddMoments(const Panel& panel, const SunlitPiece& piece, NodeMoments& moments) {
   static const GaussRule& rule = GaussLegendre(8);
   const double from = panel.CoordinateAt(piece.begin_m);
   const double to = panel.CoordinateAt(piece.end_m);
@@ -113,7 +113,7 @@ SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m) {
 
 // Sunlight at the nodes of a panel, as factors of their weights.
 std::array<double, kMostNodes> SunlightAtNodes(const Panel& panel, const SunlitPath& sunlit) {
-  Moments moments{};
+  NodeMoments moments{};
   for (const SunlitPiece& piece : sunlit) {
     const SunlitPiece within = Clipped(piece, panel.begin_m, panel.end_m);
     if (within.length_m() > 0.0) AddMoments(panel, within, moments);

@@ -15,7 +15,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kAbove_m = 20000.0;
+constexpr double kAboveMedia_m = 20000.0;
 
 // Of a list with one value, or one a band.
 double ValueAt(const std::vector<double>& values, std::size_t band) {
@@ -59,9 +59,9 @@ VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
   placement.up = (ground.frame.EnuFromGeodetic(place).xyz - placement.bottom) / 1000.0;
   if (volume.height.above_ground) {
     if (ground.terrain) {
-      const auto hit = ground.terrain->Intersect({placement.bottom.x, placement.bottom.y, kAbove_m},
+      const auto hit = ground.terrain->Intersect({placement.bottom.x, placement.bottom.y, kAboveMedia_m},
                                                  {0.0, 0.0, -1.0});
-      if (hit) placement.bottom.z = kAbove_m - hit->distance_m;
+      if (hit) placement.bottom.z = kAboveMedia_m - hit->distance_m;
     }
     placement.bottom += volume.height.value_m * placement.up;
   }
@@ -83,8 +83,8 @@ std::shared_ptr<const VolumeGrid> GridOf(const Volume& volume) {
 double FogBase(const Fog& fog, const SceneGround& ground) {
   if (fog.base_height_m) return *fog.base_height_m;
   if (!ground.terrain) return 0.0;
-  const auto hit = ground.terrain->Intersect({0.0, 0.0, kAbove_m}, {0.0, 0.0, -1.0});
-  return hit ? kAbove_m - hit->distance_m : 0.0;
+  const auto hit = ground.terrain->Intersect({0.0, 0.0, kAboveMedia_m}, {0.0, 0.0, -1.0});
+  return hit ? kAboveMedia_m - hit->distance_m : 0.0;
 }
 
 double FogBottom(const FogLayer& fog, const SceneGround& ground) {

@@ -58,7 +58,7 @@ const KronrodRule& Rule() {
 }
 
 /// What a panel adds, as if it began at the eye.
-struct Panel {
+struct MarchPanel {
   double begin_m = 0.0, end_m = 0.0;
   Bands<double> light, depth, volume_depth, mean, mean_past_volumes;
   double light_error = 0.0;  // of the band that is worst, absolute
@@ -140,7 +140,7 @@ class March {
     const bool may_halve =
         halvings < kMostHalvings && nodes_ < kMostNodes && begin_m < middle && middle < end_m;
     if (!may_halve || MostPerMetre(begin_m, end_m) * (end_m - begin_m) <= kMostDepth) {
-      const Panel panel = Evaluate(begin_m, end_m);
+      const MarchPanel panel = Evaluate(begin_m, end_m);
       if (!may_halve || IsGood(panel)) {
         Add(panel);
         return;
@@ -169,14 +169,14 @@ class March {
 
   // Each panel may be wrong by the tolerance's part of what it adds, or by its share in length of
   // what all have added so far.
-  [[nodiscard]] bool IsGood(const Panel& panel) const {
+  [[nodiscard]] bool IsGood(const MarchPanel& panel) const {
     const double share = (panel.end_m - panel.begin_m) / whole_m_;
     const double most = std::max(panel.most_light, share * most_light_);
     return panel.light_error <= tolerance_ * most &&
            panel.depth_error <= tolerance_ * std::max(panel.most_depth, share);
   }
 
-  [[nodiscard]] Panel Evaluate(double begin_m, double end_m) {
+  [[nodiscard]] MarchPanel Evaluate(double begin_m, double end_m) {
     const KronrodRule& rule = Rule();
     const std::size_t count = media_.all().size();
     const double length = end_m - begin_m;
@@ -188,7 +188,7 @@ class March {
         if (largest_[m] > 0.0) densities_[i * count + m] = media_.all()[m].DensityAt(point[i]);
       }
     }
-    Panel panel;
+    MarchPanel panel;
     panel.begin_m = begin_m;
     panel.end_m = end_m;
     panel.depth = panel.volume_depth = panel.light = Bands<double>(bands_);
@@ -240,7 +240,7 @@ class March {
     return depth;
   }
 
-  void Add(const Panel& panel) {
+  void Add(const MarchPanel& panel) {
     MarchedPiece piece{panel.begin_m,     panel.end_m,       BandLight(bands_),
                        BandLight(bands_), BandLight(bands_), BandLight(bands_)};
     for (std::size_t band = 0; band < bands_; ++band) {

@@ -9,7 +9,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kSteps = 512;  // of the filter's half: off by 2e-5 of its peak between them
+constexpr int kRaySteps = 512;  // of the filter's half: off by 2e-5 of its peak between them
 
 // 0 at crests and in hollows; the mean of both differences, at most twice the lesser.
 float LimitedSlope(float before, float here, float behind) {
@@ -28,8 +28,8 @@ SharedRays::SharedRays(const PixelFilter& filter, int columns, int rows, std::si
       stride_(kLight + (bands + 3) / 4 * 4),
       radius_(filter.radius()) {
   ALPENGLOW_ENSURE(radius_, <=, 0.5 * kReach);
-  for (int i = 0; i < kSteps; ++i)
-    filter_.push_back(static_cast<float>(filter.Weight(radius_ * i / kSteps)));
+  for (int i = 0; i < kRaySteps; ++i)
+    filter_.push_back(static_cast<float>(filter.Weight(radius_ * i / kRaySteps)));
   filter_.push_back(filter_.back());  // a box ends at its full height
   expected_.assign(Index(0, rows), 0.0F);
   sums_.assign(expected_.size() * stride_, 0.0F);
@@ -44,8 +44,8 @@ SharedRays::Weights SharedRays::Around(double at, int end) const {
   Weights weights{static_cast<int>(std::lround(at)) - kReach / 2, {}};
   for (int i = 0; i < kReach; ++i) {
     const int pixel = weights.first + i;
-    const double step = std::abs(at - pixel) / radius_ * kSteps;
-    if (pixel < 0 || pixel >= end || step > kSteps) continue;
+    const double step = std::abs(at - pixel) / radius_ * kRaySteps;
+    if (pixel < 0 || pixel >= end || step > kRaySteps) continue;
     const auto low = std::min(static_cast<std::size_t>(step), filter_.size() - 2);
     const auto share = static_cast<float>(step - static_cast<double>(low));
     weights.of[static_cast<std::size_t>(i)] =

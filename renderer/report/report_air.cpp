@@ -21,7 +21,7 @@ namespace {
 
 // Lines of the plots.
 enum AirStyle {
-  kPanels = 0,
+  kAirPanels = 0,
   kUniform = 1,
   kFroxels = 2,
   kTable = 3,
@@ -113,7 +113,7 @@ class Topic : public TopicWork {
     AddRow(
         {.series = "Gauss panels",
          .parameter = parameter,
-         .style = kPanels,
+         .style = kAirPanels,
          .in_summary = in_summary},
         [&](const ViewRay& ray) {
           return air_.Inscatter(air_.Scatter(aerial_.Sample(ray, nullptr, nodes)), ray.nu);
@@ -183,7 +183,7 @@ class Topic : public TopicWork {
   }
 
   void AddClosedForms() {
-    AddLookUp({.series = "closed form", .parameter = "float", .style = kPanels, .in_summary = true},
+    AddLookUp({.series = "closed form", .parameter = "float", .style = kAirPanels, .in_summary = true},
               [&](const ViewRay& ray) { return air_.TransmittanceAlong(ray); });
     AddLookUp({.series = "closed form, one grey value",
                .parameter = "",

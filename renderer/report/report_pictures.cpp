@@ -22,7 +22,7 @@ namespace alpenglow {
 namespace {
 
 // Lines of the plot.
-enum PictureStyle { kSamples = 0, kNoise = 1, kNodes = 2, kWithout = 5 };
+enum PictureStyle { kSamples = 0, kNoise = 1, kPictureNodes = 2, kWithout = 5 };
 
 constexpr std::size_t kScenes = 4;
 struct SceneText {
@@ -30,7 +30,7 @@ struct SceneText {
   const char* name;
   const char* time;  // of the day of the range; of the night, of the runway
 };
-constexpr std::array<SceneText, kScenes> kTexts{{{"noon", "Noon", "noon"},
+constexpr std::array<SceneText, kScenes> kSceneTexts{{{"noon", "Noon", "noon"},
                                                  {"sunset", "Sunset", "sunset-15m"},
                                                  {"twilight", "Twilight", "civil-dusk-10m"},
                                                  {"night", "Night with lamps", "noon+12h"}}};
@@ -85,7 +85,7 @@ class PicturesTopic {
     settings.air_nodes = nodes;
     Add({.series = "fewer air nodes",
          .parameter = fmt::format("{} nodes", nodes),
-         .style = kNodes,
+         .style = kPictureNodes,
          .in_summary = nodes == 4},
         settings);
   }
@@ -128,7 +128,7 @@ class PicturesTopic {
     topic_.scene = fmt::format("{} x {}", width_, height_);
     topic_.regimes.clear();
     for (std::size_t r = 0; r < kScenes; ++r)
-      topic_.regimes.push_back({kTexts[r].key, kTexts[r].name, SunOf(r)});
+      topic_.regimes.push_back({kSceneTexts[r].key, kSceneTexts[r].name, SunOf(r)});
     topic_.medium = scenes_.front().renderer->medium();
     topic_.rays = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     topic_.judge.text = fmt::format(
@@ -169,7 +169,7 @@ class PicturesTopic {
 
   [[nodiscard]] static UtcInstant InstantOf(std::size_t r) {
     const Scene range = SceneFromOptions({});
-    return InstantFromText(kTexts[r].time, {range.place, range.zone, range.time});
+    return InstantFromText(kSceneTexts[r].time, {range.place, range.zone, range.time});
   }
 
   [[nodiscard]] SunRange SunOf(std::size_t r) const {

@@ -41,13 +41,13 @@ struct JudgedView {
 };
 
 /// Terrain, and an eye 300 m over it.
-struct Place {
+struct ShaftPlace {
   Terrain terrain;
   double eye_height_m;
 };
 
 /// Ridges and saddles of 10 km, 40 km across: made at once, for tests.
-Place Waves() {
+ShaftPlace Waves() {
   constexpr std::uint32_t kSide = 81;
   constexpr float kExtent_m = 40e3F, kWave_m = 10e3F, kHeight_m = 900.0F;
   TriangleMesh mesh;
@@ -70,7 +70,7 @@ Place Waves() {
   return {Terrain(std::move(mesh)), static_cast<double>(kHeight_m) + 300.0};
 }
 
-Place OverTheRange() {
+ShaftPlace OverTheRange() {
   Scene scene;
   scene.place = PlaceFromDegrees(47.0, 11.0, 0.0);
   scene.medium = MediumPreset("earth");
@@ -259,7 +259,7 @@ class ShaftTopic {
   }
 
   const ReportEffort& effort_;
-  Place ground_;
+  ShaftPlace ground_;
   AirIntegrator<float> air_;
   DiffuseLight diffuse_;  // not looked at
   AerialPerspective aerial_;

@@ -32,7 +32,7 @@ std::string BytesAfter(const fs::path& file, std::size_t begin) {
   return std::move(text).str();
 }
 
-std::size_t CountOf(const std::array<int, 3>& size) {
+std::size_t StoredCountOf(const std::array<int, 3>& size) {
   std::size_t count = 1;
   for (const int side : size) count *= static_cast<std::size_t>(side);
   return count;
@@ -49,12 +49,12 @@ float FloatAt(const char* bytes, bool is_big_endian) {
 VolumeGrid FromBytes(const NrrdHeader& header, std::string_view data) {
   const std::array<int, 3>& size = header.size;
   const bool is_float = header.type == NrrdHeader::Type::kFloat;
-  const std::size_t bytes = CountOf(size) * (is_float ? 4 : 1);
+  const std::size_t bytes = StoredCountOf(size) * (is_float ? 4 : 1);
   if (data.size() != bytes) {
     throw InputError(fmt::format("{} bytes of data; {} x {} x {} {} are {}", data.size(), size[0],
                                  size[1], size[2], is_float ? "floats" : "bytes", bytes));
   }
-  std::vector<float> values(CountOf(size));
+  std::vector<float> values(StoredCountOf(size));
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = is_float ? FloatAt(data.data() + 4 * i, header.is_big_endian)
                          : static_cast<float>(static_cast<unsigned char>(data[i])) / 255.0F;
@@ -118,7 +118,7 @@ std::string DataOf(const NrrdHeader& header) {
   std::string bytes =
       WithoutLines(BytesAfter(header.data_file, header.data_begin), header.line_skip);
   const std::size_t wanted =
-      CountOf(header.size) * (header.type == NrrdHeader::Type::kFloat ? 4 : 1);
+      StoredCountOf(header.size) * (header.type == NrrdHeader::Type::kFloat ? 4 : 1);
   if (header.byte_skip < 0) {
     return bytes.substr(bytes.size() - std::min(bytes.size(), wanted));
   }

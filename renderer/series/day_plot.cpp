@@ -18,7 +18,7 @@ namespace {
 constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kPlotGap = 34.0,
                  kPanelHeight = 170.0, kBottom = 44.0;
 constexpr int kPanels = 3;
-constexpr double kHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kPlotGap + kBottom;
+constexpr double kPlotHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kPlotGap + kBottom;
 
 // Attributes instead of a style sheet, which not all readers of SVG know; colours of Okabe and Ito
 // as in svg_plot.h.
@@ -32,7 +32,7 @@ struct Curve {
   Value value;  // on the panel's axis
 };
 
-struct Panel {
+struct DayPanel {
   std::string title;
   std::vector<Curve> curves;
   double step;       // smallest one between lines of the grid
@@ -124,7 +124,7 @@ std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const Tim
 struct PlotRange {
   double low, high, step;
 
-  PlotRange(const Panel& panel, const std::vector<PlottedMoment>& moments)
+  PlotRange(const DayPanel& panel, const std::vector<PlottedMoment>& moments)
       : low(panel.low), high(panel.high), step(panel.step) {
     bool empty = true;
     for (const Curve& curve : panel.curves) {
@@ -170,7 +170,7 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
   return text;
 }
 
-std::string GridText(const Panel& panel, const PlotRange& range, const TimeAxis& time, double top,
+std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAxis& time, double top,
                      const std::function<double(double)>& y) {
   std::string text;
   for (double value = range.low; value <= range.high + 1e-9; value += range.step) {
@@ -197,7 +197,7 @@ std::string LevelText(const LightLevel& level, const std::function<double(double
                     level.high_lx > level.low_lx ? fmt::format(" to {:g}", level.high_lx) : ""));
 }
 
-std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& moments,
+std::string PanelText(const DayPanel& panel, const std::vector<PlottedMoment>& moments,
                       const TimeAxis& time, double top) {
   const PlotRange range(panel, moments);
   const auto y = [&](double value) {
@@ -221,7 +221,7 @@ std::string PanelText(const Panel& panel, const std::vector<PlottedMoment>& mome
   return text + TextAt(kLeft, top - 6.0, "", panel.title);
 }
 
-std::vector<Panel> Panels(const std::vector<LightLevel>& levels) {
+std::vector<DayPanel> Panels(const std::vector<LightLevel>& levels) {
   const Value lux = [](const PlottedMoment& moment) -> std::optional<double> {
     constexpr double kLeast_lx = 1e-5;
     if (!moment.illuminance_lx || *moment.illuminance_lx < kLeast_lx) return std::nullopt;
@@ -269,19 +269,19 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
       "height=\"{1}\" font-size=\"12\" font-family=\"Helvetica,Arial,'Liberation "
       "Sans',sans-serif\" "
       "fill=\"#222\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      kWidth, kHeight);
+      kWidth, kPlotHeight);
   text += TextAt(kLeft, 22.0, "font-size=\"15\" font-weight=\"bold\"",
                  fmt::format("{} to {}", time.Local(moments.front().instant),
                              time.Local(moments.back().instant)));
   double top = kTop;
-  for (const Panel& panel : Panels(levels)) {
+  for (const DayPanel& panel : Panels(levels)) {
     text += PanelText(panel, moments, time, top);
     top += kPanelHeight + kPlotGap;
   }
   for (const auto& [instant, name] : time.Ticks())
-    text += TextAt(time.X(instant), kHeight - kBottom + 16.0, "text-anchor=\"middle\"", name);
+    text += TextAt(time.X(instant), kPlotHeight - kBottom + 16.0, "text-anchor=\"middle\"", name);
   return text +
-         TextAt(kWidth - kRight, kHeight - 8.0, "text-anchor=\"end\"", zone.value_or("UTC")) +
+         TextAt(kWidth - kRight, kPlotHeight - 8.0, "text-anchor=\"end\"", zone.value_or("UTC")) +
          "</svg>\n";
 }
 

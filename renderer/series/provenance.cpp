@@ -39,7 +39,7 @@ std::string HashOfFile(const std::filesystem::path& file) {
   return hash.Text();
 }
 
-std::string Degrees(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
+std::string DegreesText(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
 
 std::string HeightText(const Height& height) {
   return fmt::format("{} m above the {}", height.value_m,
@@ -51,8 +51,8 @@ std::string TerrainText(const TerrainSource& terrain) {
     case TerrainSource::Kind::kBuiltInRange:
       return !terrain.centre ? "built-in range"
                              : fmt::format("built-in range around {}, {}",
-                                           Degrees(terrain.centre->latitude_rad),
-                                           Degrees(terrain.centre->longitude_rad));
+                                           DegreesText(terrain.centre->latitude_rad),
+                                           DegreesText(terrain.centre->longitude_rad));
     case TerrainSource::Kind::kElevationModel:
       return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
                          HashOfFile(terrain.file),
@@ -68,8 +68,8 @@ std::string TerrainText(const TerrainSource& terrain) {
 std::string LightText(const Light& light) {
   std::string text =
       fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m",
-                  light.type == Light::Type::kSpot ? "spot" : "point", Degrees(light.latitude_rad),
-                  Degrees(light.longitude_rad), HeightText(light.height),
+                  light.type == Light::Type::kSpot ? "spot" : "point", DegreesText(light.latitude_rad),
+                  DegreesText(light.longitude_rad), HeightText(light.height),
                   light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
                   light.temperature_k, light.radius_m);
   if (light.ies) {
@@ -78,9 +78,9 @@ std::string LightText(const Light& light) {
     return text;
   }
   text +=
-      fmt::format(", heading {}, pitch {}", Degrees(light.heading_rad), Degrees(light.pitch_rad));
+      fmt::format(", heading {}, pitch {}", DegreesText(light.heading_rad), DegreesText(light.pitch_rad));
   if (light.ies) return text;
-  return text + fmt::format(", cone {} to {}", Degrees(light.inner_rad), Degrees(light.outer_rad));
+  return text + fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
 }
 
 std::string FogText(const Fog& fog) {
@@ -99,21 +99,21 @@ Metadata SceneMetadata(const Scene& scene) {
       {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
       {"alpenglow.atmosphere", scene.medium.name},
       {"alpenglow.atmosphere_hash", fmt::format("{:016x}", MediumHash(scene.medium))},
-      {"alpenglow.latitude_deg", Degrees(scene.place.latitude_rad)},
-      {"alpenglow.longitude_deg", Degrees(scene.place.longitude_rad)},
+      {"alpenglow.latitude_deg", DegreesText(scene.place.latitude_rad)},
+      {"alpenglow.longitude_deg", DegreesText(scene.place.longitude_rad)},
       {"alpenglow.camera_height", HeightText(camera.height)},
-      {"alpenglow.heading_deg", Degrees(camera.heading_rad)},
-      {"alpenglow.pitch_deg", Degrees(camera.pitch_rad)},
-      {"alpenglow.roll_deg", Degrees(camera.roll_rad)},
-      {"alpenglow.fov_deg", Degrees(camera.fov_rad)},
+      {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
+      {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
+      {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
+      {"alpenglow.fov_deg", DegreesText(camera.fov_rad)},
       {"alpenglow.terrain", TerrainText(scene.terrain)}};
   if (camera.lens) {
     const ThinLens& lens = *camera.lens;
     metadata["alpenglow.lens"] =
         fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
-                    lens.focus_m, lens.blades, Degrees(lens.blade_rotation_rad));
+                    lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
   }
-  if (camera.polariser_rad) metadata["alpenglow.polariser_deg"] = Degrees(*camera.polariser_rad);
+  if (camera.polariser_rad) metadata["alpenglow.polariser_deg"] = DegreesText(*camera.polariser_rad);
   if (camera.shutter_s > 0.0) metadata["alpenglow.shutter_s"] = fmt::format("{}", camera.shutter_s);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
@@ -125,13 +125,13 @@ Metadata SceneMetadata(const Scene& scene) {
 }
 
 Metadata PoseMetadata(const CameraPose& pose) {
-  return {{"alpenglow.latitude_deg", Degrees(pose.place.latitude_rad)},
-          {"alpenglow.longitude_deg", Degrees(pose.place.longitude_rad)},
+  return {{"alpenglow.latitude_deg", DegreesText(pose.place.latitude_rad)},
+          {"alpenglow.longitude_deg", DegreesText(pose.place.longitude_rad)},
           {"alpenglow.camera_height", HeightText({pose.place.height_m, false})},
-          {"alpenglow.heading_deg", Degrees(pose.heading_rad)},
-          {"alpenglow.pitch_deg", Degrees(pose.pitch_rad)},
-          {"alpenglow.roll_deg", Degrees(pose.roll_rad)},
-          {"alpenglow.fov_deg", Degrees(pose.fov_rad)}};
+          {"alpenglow.heading_deg", DegreesText(pose.heading_rad)},
+          {"alpenglow.pitch_deg", DegreesText(pose.pitch_rad)},
+          {"alpenglow.roll_deg", DegreesText(pose.roll_rad)},
+          {"alpenglow.fov_deg", DegreesText(pose.fov_rad)}};
 }
 
 Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {

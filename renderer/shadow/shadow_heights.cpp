@@ -50,7 +50,7 @@ double SpacingOf(const TriangleMesh& mesh) {
 }
 
 // The largest value wins in whatever order threads come.
-void Raise(float& cell, float value) {
+void RaiseHeight(float& cell, float value) {
   std::atomic_ref<float> shared(cell);
   float known = shared.load(std::memory_order_relaxed);
   while (known < value && !shared.compare_exchange_weak(known, value, std::memory_order_relaxed)) {
@@ -58,11 +58,11 @@ void Raise(float& cell, float value) {
 }
 
 /// A corner of a triangle: in cells along u and v, and metres up.
-struct Corner {
+struct ShadowCorner {
   double u, v, z;
 };
 
-Corner OnLine(const Corner& a, const Corner& b, double v) {
+ShadowCorner OnLine(const ShadowCorner& a, const ShadowCorner& b, double v) {
   const double share = (v - a.v) / (b.v - a.v);
   return {a.u + share * (b.u - a.u), v, a.z + share * (b.z - a.z)};
 }
@@ -115,28 +115,28 @@ std::size_t ShadowHeights::bytes() const {
 // Of the chord that a triangle cuts out of a line only the end of the higher beam can shade what
 // the triangle does not hide itself.
 void ShadowHeights::Deposit(const TriangleMesh& mesh) {
-  const auto raise = [&](const Corner& a, const Corner& b) {
+  const auto raise = [&](const ShadowCorner& a, const ShadowCorner& b) {
     for (std::size_t beam = 0; beam < kBeams; ++beam) {
-      const auto c = [&](const Corner& p) {
+      const auto c = [&](const ShadowCorner& p) {
         return p.z * cosine_[beam] - (first_u_m_ + cell_m_ * p.u) * sine_[beam];
       };
       const double c_a = c(a);
       const double c_b = c(b);
-      const Corner& higher = c_a > c_b ? a : b;
+      const ShadowCorner& higher = c_a > c_b ? a : b;
       const std::size_t at = static_cast<std::size_t>(higher.v) * columns_ +
                              static_cast<std::size_t>(std::max(higher.u, 0.0));
-      Raise(highest_[at][beam], static_cast<float>(std::max(c_a, c_b)));
+      RaiseHeight(highest_[at][beam], static_cast<float>(std::max(c_a, c_b)));
     }
   };
-  std::vector<Corner> corners(mesh.positions.size());
+  std::vector<ShadowCorner> corners(mesh.positions.size());
   tbb::parallel_for(std::size_t{0}, corners.size(), [&](std::size_t i) {
     const glm::dvec3 p = ToDouble(mesh.positions[i]);
     corners[i] = {(glm::dot(p, sunwards_) - first_u_m_) / cell_m_,
                   (glm::dot(p, across_) - first_v_m_) / cell_m_, p.z};
   });
   const auto cut = [&](const std::array<std::uint32_t, 3>& triangle) {
-    std::array<Corner, 3> corner{corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
-    const auto put_in_order = [](Corner& a, Corner& b) {
+    std::array<ShadowCorner, 3> corner{corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
+    const auto put_in_order = [](ShadowCorner& a, ShadowCorner& b) {
       if (b.v < a.v) std::swap(a, b);
     };
     put_in_order(corner[0], corner[1]);
@@ -144,7 +144,7 @@ void ShadowHeights::Deposit(const TriangleMesh& mesh) {
     put_in_order(corner[0], corner[1]);
     for (double v = std::ceil(corner[0].v); v <= corner[2].v; v += 1.0) {
       if (corner[0].v == corner[2].v) break;
-      const Corner other = v < corner[1].v || corner[1].v == corner[2].v
+      const ShadowCorner other = v < corner[1].v || corner[1].v == corner[2].v
                                ? OnLine(corner[0], corner[1], v)
                                : OnLine(corner[1], corner[2], v);
       raise(OnLine(corner[0], corner[2], v), other);

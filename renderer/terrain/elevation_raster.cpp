@@ -33,10 +33,6 @@ std::string LastGdalError() {
   return text.empty() ? "no reason given" : text;
 }
 
-[[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& fault) {
-  throw InputError(fmt::format("{}: {}", file.string(), fault));
-}
-
 void RegisterDrivers() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -48,13 +44,13 @@ void RegisterDrivers() {
 
 Dataset Open(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) Refuse(file, "there is no such file");
+  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
   RegisterDrivers();
   static const char* const kDrivers[] = {"GTiff", "SRTMHGT", "USGSDEM", nullptr};
   Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
       file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kDrivers, nullptr, nullptr)));
   if (!dataset) {
-    Refuse(file, "not a readable GeoTIFF, SRTM .hgt or USGS DEM (" + LastGdalError() + ")");
+    RefuseFile(file, "not a readable GeoTIFF, SRTM .hgt or USGS DEM (" + LastGdalError() + ")");
   }
   return dataset;
 }
@@ -68,44 +64,44 @@ bool HasOneBandOfHeights(GDALDataset& dataset) {
 
 void CheckLayout(const std::filesystem::path& file, GDALDataset& dataset) {
   if (!HasOneBandOfHeights(dataset)) {
-    Refuse(file, fmt::format("has {} bands; an elevation model has 1", dataset.GetRasterCount()));
+    RefuseFile(file, fmt::format("has {} bands; an elevation model has 1", dataset.GetRasterCount()));
   }
   const int columns = dataset.GetRasterXSize();
   const int rows = dataset.GetRasterYSize();
   if (columns < 2 || rows < 2) {
-    Refuse(file, fmt::format("has {} x {} samples; at least 2 x 2 are needed", columns, rows));
+    RefuseFile(file, fmt::format("has {} x {} samples; at least 2 x 2 are needed", columns, rows));
   }
   if (GDALDataTypeIsComplex(dataset.GetRasterBand(1)->GetRasterDataType()) != 0) {
-    Refuse(file, "has complex samples; heights are real");
+    RefuseFile(file, "has complex samples; heights are real");
   }
 }
 
 std::array<double, 6> ReadGeotransform(const std::filesystem::path& file, GDALDataset& dataset) {
   std::array<double, 6> transform{};
   if (dataset.GetGeoTransform(transform.data()) != CE_None) {
-    Refuse(file, "has no geotransform; where it lies is unknown");
+    RefuseFile(file, "has no geotransform; where it lies is unknown");
   }
   if (transform[2] != 0.0 || transform[4] != 0.0) {
-    Refuse(file, "has a rotated geotransform; only north-up and south-up are read");
+    RefuseFile(file, "has a rotated geotransform; only north-up and south-up are read");
   }
   for (const double term : transform) {
-    if (!std::isfinite(term)) Refuse(file, "has a geotransform that is not finite");
+    if (!std::isfinite(term)) RefuseFile(file, "has a geotransform that is not finite");
   }
-  if (transform[1] == 0.0 || transform[5] == 0.0) Refuse(file, "has pixels of no size");
+  if (transform[1] == 0.0 || transform[5] == 0.0) RefuseFile(file, "has pixels of no size");
   return transform;
 }
 
 OGRSpatialReference ReadCrs(const std::filesystem::path& file, GDALDataset& dataset) {
   const OGRSpatialReference* stored = dataset.GetSpatialRef();
-  if (stored == nullptr || stored->IsEmpty()) Refuse(file, "has no coordinate system");
+  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
   if (!stored->IsGeographic() && !stored->IsProjected()) {
-    Refuse(file, "has a coordinate system that is neither geographic nor projected");
+    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
   }
   const double equatorial = stored->GetSemiMajor();
   const double polar = stored->GetSemiMinor();
   const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
   if (!of_the_earth(equatorial) || !of_the_earth(polar)) {
-    Refuse(file, fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
+    RefuseFile(file, fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
                              "be of the earth",
                              equatorial, polar));
   }
@@ -143,7 +139,7 @@ double MetresPerUnit(const std::filesystem::path& file, const std::string& unit)
   for (const auto& [known, metres] : kUnits) {
     if (name == known) return metres;
   }
-  Refuse(file, "has heights in '" + unit + "'; metres and feet are read");
+  RefuseFile(file, "has heights in '" + unit + "'; metres and feet are read");
 }
 
 // Heights without a unit are in feet on a map in feet, as surveys in feet write them, else in
@@ -185,12 +181,12 @@ std::optional<std::vector<Value>> ValuesIn(GDALRasterBand& band, const PixelWind
 std::vector<float> ReadSamples(const std::filesystem::path& file, GDALRasterBand& band,
                                const PixelWindow& window) {
   if (std::int64_t{window.columns} * window.rows > kMostElevationSamples) {
-    Refuse(file,
+    RefuseFile(file,
            fmt::format("has {} x {} samples{}; at most {} can be held", window.columns, window.rows,
                        window.columns < band.GetXSize() ? " in sight" : "", kMostElevationSamples));
   }
   std::optional<std::vector<float>> samples = ValuesIn<float>(band, window, GDT_Float32);
-  if (!samples) Refuse(file, "is damaged or cut short (" + LastGdalError() + ")");
+  if (!samples) RefuseFile(file, "is damaged or cut short (" + LastGdalError() + ")");
   return std::move(*samples);
 }
 
@@ -198,7 +194,7 @@ std::vector<float> ReadSamples(const std::filesystem::path& file, GDALRasterBand
 std::vector<std::uint8_t> ReadAlpha(const std::filesystem::path& file, GDALRasterBand& alpha,
                                     const PixelWindow& window) {
   const std::optional<std::vector<float>> values = ValuesIn<float>(alpha, window, GDT_Float32);
-  if (!values) Refuse(file, "has a damaged alpha band (" + LastGdalError() + ")");
+  if (!values) RefuseFile(file, "has a damaged alpha band (" + LastGdalError() + ")");
   std::vector<std::uint8_t> mask;
   mask.reserve(values->size());
   for (const float value : *values) mask.push_back(value > 0.0F ? 255 : 0);
@@ -213,7 +209,7 @@ std::vector<std::uint8_t> ReadMask(const std::filesystem::path& file, GDALRaster
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return {};
   std::optional<std::vector<std::uint8_t>> mask =
       ValuesIn<std::uint8_t>(*band.GetMaskBand(), window, GDT_Byte);
-  if (!mask) Refuse(file, "has a damaged mask (" + LastGdalError() + ")");
+  if (!mask) RefuseFile(file, "has a damaged mask (" + LastGdalError() + ")");
   return std::move(*mask);
 }
 
@@ -253,7 +249,7 @@ std::size_t ConvertToMetres(const std::filesystem::path& file, GDALRasterBand& b
     const double height_m = decoder.Height(samples[i]);
     if (!(height_m >= kDeepestGround_m && height_m <= kHighestGround_m)) {
       const auto columns = static_cast<std::size_t>(window.columns);
-      Refuse(file, fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
+      RefuseFile(file, fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
                                "lies in [{}, {}] m",
                                height_m, i / columns + static_cast<std::size_t>(window.row),
                                i % columns + static_cast<std::size_t>(window.column),
@@ -298,7 +294,7 @@ ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
   raster.height_m = ReadSamples(file, band, wanted);
   raster.voids = ConvertToMetres(file, band, wanted, unit.metres, raster.height_m);
   if (!window && raster.voids == raster.height_m.size())
-    Refuse(file, "has no valid sample, only voids");
+    RefuseFile(file, "has no valid sample, only voids");
   return raster;
 }
 

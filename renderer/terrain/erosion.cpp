@@ -28,7 +28,7 @@ std::uint32_t HeightKey(float height_m) {
 std::uint64_t FloodKey(float height_m, std::size_t sample) {
   return (static_cast<std::uint64_t>(HeightKey(height_m)) << 32) | sample;
 }
-std::uint32_t SampleOf(std::uint64_t key) { return static_cast<std::uint32_t>(key & 0xffffffffU); }
+std::uint32_t QueuedSample(std::uint64_t key) { return static_cast<std::uint32_t>(key & 0xffffffffU); }
 
 struct Offset {
   int row;
@@ -76,7 +76,7 @@ class Flood {
     ReachRim();
     for (const std::uint64_t key : SortedKeys(land_.height_m)) {
       while (!basins_.empty() && basins_.top() < key) VisitBasin();
-      const std::uint32_t sample = SampleOf(key);
+      const std::uint32_t sample = QueuedSample(key);
       if (state_[sample] == kReached) VisitInside(sample);
       if (state_[sample] == kOnRim) VisitRim(sample);
       if (state_[sample] == kUnreached) state_[sample] = kPassed;
@@ -104,7 +104,7 @@ class Flood {
   }
 
   void VisitBasin() {
-    const std::uint32_t sample = SampleOf(basins_.top());
+    const std::uint32_t sample = QueuedSample(basins_.top());
     basins_.pop();
     VisitInside(sample);
   }

@@ -8,7 +8,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr std::pair<HudKey, int> kKeys[] = {{HudKey::kTab, ImGuiKey_Tab},
+constexpr std::pair<HudKey, int> kInputKeys[] = {{HudKey::kTab, ImGuiKey_Tab},
                                             {HudKey::kLeft, ImGuiKey_LeftArrow},
                                             {HudKey::kRight, ImGuiKey_RightArrow},
                                             {HudKey::kUp, ImGuiKey_UpArrow},
@@ -72,7 +72,7 @@ void TellInput(ImGuiIO& io, const HudInput& input) {
   io.DeltaTime = std::max(static_cast<float>(input.seconds), kShortest_s);
   TellMouse(io, input);
   TellModifiers(io, input);
-  for (const auto& [key, name] : kKeys) {
+  for (const auto& [key, name] : kInputKeys) {
     TellKey(io, name, std::find(input.keys.begin(), input.keys.end(), key) != input.keys.end());
   }
   io.AddInputCharactersUTF8(input.text.c_str());

@@ -24,7 +24,7 @@ constexpr std::string_view kCameraKeys = "Free camera", kAircraftKeys = "Aircraf
                            kModeKeys = "Modes and speed", kAutopilotKeys = "Autopilot",
                            kTimeKeys = "Time", kPictureKeys = "Picture", kProgramKeys = "Program";
 
-constexpr ActionRow kTable[] = {
+constexpr ActionRow kActionRows[] = {
     {Action::kForward, kHeld, kFree, kCameraKeys, "fly forward", "W", ""},
     {Action::kBack, kHeld, kFree, kCameraKeys, "fly back", "S", ""},
     {Action::kLeft, kHeld, kFree, kCameraKeys, "fly to the left", "A", ""},
@@ -193,7 +193,7 @@ struct Binding {
 
 std::vector<Binding> AllBindings() {
   std::vector<Binding> bindings;
-  for (const ActionRow& row : kTable) {
+  for (const ActionRow& row : kActionRows) {
     for (const std::string_view key : SplitAtCommas(row.keys))
       bindings.push_back({KeyChordFromText(key), &row, row.modes});
     for (const std::string_view key : SplitAtCommas(row.keys_in_cockpit))
@@ -215,10 +215,10 @@ bool Modes::Has(FlightMode mode) const {
   return mode == FlightMode::kFree ? free : mode == FlightMode::kAircraft ? aircraft : track;
 }
 
-std::span<const ActionRow> ActionTable() { return kTable; }
+std::span<const ActionRow> ActionTable() { return kActionRows; }
 
 const ActionRow& RowOf(Action action) {
-  const ActionRow& row = kTable[static_cast<std::size_t>(action)];
+  const ActionRow& row = kActionRows[static_cast<std::size_t>(action)];
   ALPENGLOW_ENSURE(static_cast<int>(row.action), ==, static_cast<int>(action));
   return row;
 }
@@ -266,7 +266,7 @@ std::string KeysText(const ActionRow& row) {
 std::string ControlsMarkdown() {
   std::string text = "| | keys | what they do |\n|---|---|---|\n";
   std::string_view section;
-  for (const ActionRow& row : kTable) {
+  for (const ActionRow& row : kActionRows) {
     text += fmt::format("| {} | {} | {} |\n", row.section == section ? "" : row.section,
                         KeysText(row), row.does);
     section = row.section;

@@ -14,7 +14,7 @@ constexpr double kTrackSkip_s = 10.0;
 constexpr double kZoomStep = 1.1;
 constexpr double kMinute_s = 60.0, kHour_s = 3600.0, kDay_s = 86400.0;
 
-std::string NameOf(FlightMode mode) {
+std::string ModeNameOf(FlightMode mode) {
   constexpr std::array<const char*, 3> kNames{"free camera", "aircraft", "track"};
   return kNames[static_cast<std::size_t>(mode)];
 }
@@ -135,7 +135,7 @@ std::string Cockpit::Enter(FlightMode mode, const GroundHeight& ground) {
   if (const auto why_not = pilot_.Enter(mode, ground)) return *why_not;
   // A track that knows the time sets the clock; from then on the clock runs along.
   if (const auto utc = pilot_.TrackUtc()) clock_.Set(*utc);
-  return NameOf(pilot_.mode());
+  return ModeNameOf(pilot_.mode());
 }
 
 void Cockpit::SkipTrack(double seconds) {
@@ -207,8 +207,8 @@ std::optional<std::string> Cockpit::DoAutopilot(Action action) {
 
 std::string Cockpit::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
   const bool jumped = clock_.JumpToNext(event, pilot_.eye().place, moon);
-  return jumped ? alpenglow::NameOf(event)
-                : fmt::format("no {} here within a year", alpenglow::NameOf(event));
+  return jumped ? alpenglow::ModeNameOf(event)
+                : fmt::format("no {} here within a year", alpenglow::ModeNameOf(event));
 }
 
 std::optional<std::string> Cockpit::DoTime(Action action, const MoonEventAfter& moon) {

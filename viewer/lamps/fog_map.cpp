@@ -15,7 +15,7 @@
 namespace alpenglow {
 namespace {
 
-enum Quantity { kDirect, kBroad, kGlow, kSky, kQuantities };
+enum Quantity { kDirect, kBroad, kGlow, kSkyLight, kQuantities };
 
 glm::vec4 InFloats(const BandLight& light) {
   glm::vec4 values(0.0F);

@@ -17,7 +17,7 @@
 namespace alpenglow {
 namespace {
 
-enum Unit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit, kPlanUnit };
+enum LampUnit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit, kPlanUnit };
 
 /// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
 /// 1 / angle is straight enough between its points.
@@ -218,7 +218,7 @@ void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmes
 
 void LampPainter::Bind() const {
   glBindBufferBase(GL_UNIFORM_BUFFER, units_.lamps_block, block_.id());
-  const auto bind = [&](Unit unit, GLenum target, const GlTexture& texture) {
+  const auto bind = [&](LampUnit unit, GLenum target, const GlTexture& texture) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + unit));
     glBindTexture(target, texture.id());
   };

@@ -110,9 +110,9 @@ std::vector<ChunkKey> ChunkTree::Children(const ChunkKey& key) const {
 
 namespace {
 
-class Demand {
+class RangeDemand {
  public:
-  Demand(const ChunkTree& tree, const LandEye& eye, double detail,
+  RangeDemand(const ChunkTree& tree, const LandEye& eye, double detail,
          const std::function<bool(const ChunkKey&)>& is_there)
       : tree_(tree), eye_(eye), detail_(detail), is_there_(is_there) {
     for (int level = 0; level <= tree.top(); ++level)
@@ -205,7 +205,7 @@ class Drawing {
 
 LandDemand DemandOf(const ChunkTree& tree, const LandEye& eye, double detail,
                     const std::function<bool(const ChunkKey&)>& is_there) {
-  return Demand(tree, eye, detail, is_there).Find();
+  return RangeDemand(tree, eye, detail, is_there).Find();
 }
 
 std::vector<LevelRange> RangesOf(const std::vector<double>& reach_m, const LandEye& eye) {

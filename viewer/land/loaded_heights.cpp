@@ -10,7 +10,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
 // Height on the triangle over a place in a cell, x east and y south of its north-west corner.
 std::optional<double> OnTriangles(const CellHeights& around, double x, double y) {
@@ -58,7 +58,7 @@ HeightBlock LoadedHeights::Block(int level, int first_i, int first_j, int column
     const int row = lattice.RowOf(j, level);
     for (int i = first_i; i < first_i + columns; ++i) {
       const int column = lattice.ColumnOf(i, level);
-      float height = kNone;
+      float height = kNoHeight;
       for (const HeightPyramid* pyramid : near) {
         if (!std::isnan(height)) break;
         if (pyramid->box().Holds(column, row)) height = pyramid->At(level, column, row);

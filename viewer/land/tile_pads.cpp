@@ -12,7 +12,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr double kOnLattice = 1e-2;  // samples
 
 /// A range of one axis, in samples of the lattice.
@@ -21,7 +21,7 @@ struct Range {
 };
 
 Range ColumnsOf(const LandLattice& lattice, const ElevationGrid& grid, double near_rad) {
-  const double west = std::remainder(grid.west_rad - near_rad, kTurn) + near_rad;
+  const double west = std::remainder(grid.west_rad - near_rad, kWholeTurn) + near_rad;
   const double first = (west - lattice.west_rad) / lattice.step_lon_rad;
   const double step = grid.step_lon_rad / lattice.step_lon_rad;
   return {first, first + (grid.columns - 1) * step, step};
@@ -88,7 +88,7 @@ GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitu
   const double middle = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
   return {
       (grid.north_rad - latitude_rad) / grid.step_lat_rad,
-      0.5 * (grid.columns - 1) + std::remainder(longitude_rad - middle, kTurn) / grid.step_lon_rad};
+      0.5 * (grid.columns - 1) + std::remainder(longitude_rad - middle, kWholeTurn) / grid.step_lon_rad};
 }
 
 // A tile has what lies up to half a step beyond its rim: its samples stand for as much.

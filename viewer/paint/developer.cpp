@@ -15,7 +15,7 @@
 namespace alpenglow {
 namespace {
 
-enum Unit { kPicture, kDither, kTable };
+enum DeveloperUnit { kPicture, kDither, kTable };
 
 ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   ShaderProgram program = FullScreenProgram(

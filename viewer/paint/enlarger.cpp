@@ -12,7 +12,7 @@
 namespace alpenglow {
 namespace {
 
-enum Unit { kSmall, kDither, kOutline };
+enum EnlargerUnit { kSmall, kDither, kOutline };
 
 ShaderProgram ProgramOf(Enlarger::Shows shows) {
   ShaderProgram program = FullScreenProgram(WithViewerPieces(

@@ -11,11 +11,11 @@
 namespace alpenglow {
 namespace {
 
-struct Stage {
+struct ReferenceStage {
   int reduction;  // of width and height
   int samples;
 };
-constexpr std::array<Stage, 5> kStages{{{4, 1}, {1, 1}, {1, 4}, {1, 16}, {1, 64}}};
+constexpr std::array<ReferenceStage, 5> kStages{{{4, 1}, {1, 1}, {1, 4}, {1, 16}, {1, 64}}};
 
 bool IsSame(const ReferencePicture::View& a, const ReferencePicture::View& b) {
   return a.of == b.of && a.eye == b.eye && a.width == b.width && a.height == b.height &&

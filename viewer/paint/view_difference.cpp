@@ -23,11 +23,11 @@ const std::vector<float>& LayerOf(const Image& image, const std::string& name) {
 }
 
 /// Extremes of a layer around a pixel.
-struct Range {
+struct LuminanceRange {
   float least, most;
 };
-Range RangeAround(const Image& image, const std::vector<float>& layer, int x, int y) {
-  Range range{INFINITY, -INFINITY};
+LuminanceRange RangeAround(const Image& image, const std::vector<float>& layer, int x, int y) {
+  LuminanceRange range{INFINITY, -INFINITY};
   for (int row = std::max(y - 1, 0); row <= std::min(y + 1, image.height - 1); ++row) {
     for (int column = std::max(x - 1, 0); column <= std::min(x + 1, image.width - 1); ++column) {
       const float value = layer[static_cast<std::size_t>(row * image.width + column)];
@@ -41,7 +41,7 @@ Range RangeAround(const Image& image, const std::vector<float>& layer, int x, in
 bool IsEdgeOfLamps(const Image& image, const std::vector<float>& lamps, int x, int y,
                    float floor_cd_per_m2) {
   constexpr float kStep = 0.2F;
-  const Range light = RangeAround(image, lamps, x, y);
+  const LuminanceRange light = RangeAround(image, lamps, x, y);
   return light.most - light.least > kStep * std::max(light.most, floor_cd_per_m2);
 }
 
@@ -62,8 +62,8 @@ std::vector<bool> EdgesOf(const Image& judge) {
   edges.reserve(judge.rgb.size());
   for (int y = 0; y < judge.height; ++y) {
     for (int x = 0; x < judge.width; ++x) {
-      const Range distance = RangeAround(judge, depth, x, y);
-      const Range light = RangeAround(judge, sun, x, y);
+      const LuminanceRange distance = RangeAround(judge, depth, x, y);
+      const LuminanceRange light = RangeAround(judge, sun, x, y);
       const bool is_sky = std::isinf(distance.least);
       const bool is_even = is_sky || distance.most <= kNearer * distance.least;
       const bool is_lamp = lamps != nullptr && IsEdgeOfLamps(judge, *lamps, x, y, floor);
