@@ -10,6 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/shadow/sun_probes.h"
 #include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/obj_file.h"
 
 namespace alpenglow {
 namespace {
@@ -120,8 +121,10 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
       Prepare(progress, "mesh");
       return {MeshFromElevation(model.grid, frame), MessageOn(model, scene.terrain.file.string())};
     }
-    case TerrainSource::Kind::kMesh:
-      return {ReadObj(scene.terrain.file), ""};
+    case TerrainSource::Kind::kMesh: {
+      ObjMesh read = ReadObj(scene.terrain.file, scene.terrain.up);
+      return {std::move(read.mesh), std::move(read.message)};
+    }
     case TerrainSource::Kind::kNone:
       break;
   }
@@ -161,7 +164,8 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
   const bool from_file = scene.terrain.kind == TerrainSource::Kind::kMesh;
   const bool is_one_surface = !from_file || !terrain || IsOneSurface(*terrain);
   if (!is_one_surface) {
-    loaded.message = fmt::format(
+    if (!loaded.message.empty()) loaded.message += "; ";
+    loaded.message += fmt::format(
         "{}: the mesh has overhangs; sunlight in the air under them is found by occlusion rays",
         scene.terrain.file.string());
   }

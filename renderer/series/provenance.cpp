@@ -58,7 +58,8 @@ std::string TerrainText(const TerrainSource& terrain) {
                          HashOfFile(terrain.file),
                          terrain.voids == VoidPolicy::kFill ? "filled" : "open");
     case TerrainSource::Kind::kMesh:
-      return fmt::format("{}, hash {}", terrain.file.filename().string(), HashOfFile(terrain.file));
+      return fmt::format("{}, hash {}{}", terrain.file.filename().string(),
+                         HashOfFile(terrain.file), terrain.up == UpAxis::kY ? ", y up" : "");
     case TerrainSource::Kind::kNone:
       return "none";
   }

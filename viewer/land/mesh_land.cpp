@@ -5,6 +5,7 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
+#include "renderer/terrain/obj_file.h"
 #include "viewer/land/loaded_heights.h"
 
 namespace alpenglow {
@@ -53,7 +54,7 @@ MeshLand::MeshLand(std::filesystem::path file, const LocalFrame& frame)
     : file_(std::move(file)),
       frame_(frame),
       reader_([](const std::filesystem::path& path) {
-        return std::make_shared<const Terrain>(ReadObj(path));
+        return std::make_shared<const Terrain>(ReadObj(path).mesh);
       }),
       lighter_([frame](const Order& order) {
         return LightOfMesh(order.terrain->mesh(), frame, order.light);
