@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "viewer/land/land_chunk.h"
@@ -17,7 +18,7 @@ struct ChunkOrder {
   std::vector<ChunkKey> make;
   std::vector<std::shared_ptr<const LandChunk>> relight;
   int top = 0;  // the coarsest level
-  LightOfVertices light;
+  std::optional<LightOfVertices> light;  // nothing before the first
   int light_number = 0;
   bool for_next_anchor = false;
 };
