@@ -44,6 +44,15 @@ vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
   return seen * TransmittanceToSun(at.altitude, disk.y);
 }
 
+// The normal that light falls on: with the relief that the mesh does not have, where there is any.
+vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
+#if HAS_FINE_RELIEF
+  return DetailedNormal(offset, mesh_normal, footprint);
+#else
+  return mesh_normal;
+#endif
+}
+
 // The light of the sky on a surface that is tilted against that of the mesh: in an open place's
 // ratio.
 vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
@@ -66,7 +75,7 @@ vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradi
 #else
   float altitude = 1e3 * at.altitude;
   float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
+  vec3 normal = NormalInLight(at.offset, mesh_normal, footprint);
   vec4 draped = DrapeAt(at.offset, altitude, at.footprint);
   vec4 albedo = LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped);
   vec4 radiance = CoverRadiance(albedo, normal, SunAcross(at, mesh_normal, sun_x),

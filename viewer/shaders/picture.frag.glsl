@@ -55,7 +55,7 @@ vec4 LampsReflected(vec3 direction, vec4 surface) {
   vec3 normal = UnitFromOctahedral(surface.xy);
   GroundPlace at = GroundPlaceAt(point);
   float footprint = SeenFootprint(at.footprint, -dot(normal, direction));
-  vec3 tilted = DetailedNormal(at.offset, normal, footprint);
+  vec3 tilted = NormalInLight(at.offset, normal, footprint);
   vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
   vec4 albedo = LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(normal, at.up), footprint, draped);
   return albedo / 3.14159265359 * LampsOnGround(point, tilted, RAY_ANGLE * surface.w);
@@ -174,7 +174,7 @@ vec4 NightReflected(vec3 direction, vec4 surface) {
   vec3 mesh_normal = UnitFromOctahedral(surface.xy);
   GroundPlace at = GroundPlaceAt(point);
   float footprint = SeenFootprint(at.footprint, -dot(mesh_normal, direction));
-  vec3 normal = DetailedNormal(at.offset, mesh_normal, footprint);
+  vec3 normal = NormalInLight(at.offset, mesh_normal, footprint);
   vec4 draped = DrapeAt(at.offset, 1e3 * at.altitude, at.footprint);
   vec4 albedo =
       LandAlbedo(at.offset, 1e3 * at.altitude, TiltOf(mesh_normal, at.up), footprint, draped);

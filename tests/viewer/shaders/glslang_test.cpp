@@ -147,7 +147,7 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
     texts.push_back(tests::SunInClosedForm());
     const std::vector<double> bands{450.0, 550.0, 650.0};
     for (ShaderPiece& piece :
-         GroundTexts(GroundMaterial(cover, nullptr, bands), !cover.sea_level_m))
+         GroundTexts(GroundMaterial(cover, nullptr, bands), {!cover.sea_level_m, true}))
       texts.push_back(std::move(piece));
     texts.push_back({"main",
                      "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
