@@ -121,7 +121,7 @@ void Flythrough::StandOnGround() {
   const std::optional<double> above_m = std::exchange(waits_above_ground_m_, std::nullopt);
   if (!above_m) return cockpit_.pilot().KeepAbove(Ground());
   Eye stands = eye();
-  stands.place.height_m = Ground()(stands.place) + *above_m;
+  stands.place.height_m = painter_.land().HighestGround(stands.place).value_or(0.0) + *above_m;
   cockpit_.pilot().PutAt(stands, Ground());
 }
 

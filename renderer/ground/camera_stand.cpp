@@ -8,6 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/ground_heights.h"
 
 namespace alpenglow {
 namespace {
@@ -17,9 +18,7 @@ std::string TextOf(const GeodeticPosition& place) {
                      place.longitude_rad / kRadiansPerDegree);
 }
 
-void RequireOverGround(const SceneGround& ground, const GeodeticPosition& place,
-                       const CameraStand& stand) {
-  constexpr double kHighest_m = 20000.0;  // over any mountain
+void RequireOverGround(const SceneGround& ground, const GeodeticPosition& place) {
   if (!ground.terrain) {
     if (place.height_m < 0.0) {
       throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at 0 m", TextOf(place),
@@ -27,23 +26,15 @@ void RequireOverGround(const SceneGround& ground, const GeodeticPosition& place,
     }
     return;
   }
-  const glm::dvec3 up = stand.frame_from_enu[2];
-  const glm::dvec3 high = stand.eye + (kHighest_m - place.height_m) * up;
-  const auto hit = ground.terrain->Intersect(high, -up);
-  const double floor_m = hit ? kHighest_m - hit->distance_m : place.height_m;
-  if (place.height_m < floor_m) {
+  const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
+  if (there && place.height_m < there->lowest_m) {
     throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at {:.1f} m",
-                                 TextOf(place), place.height_m, floor_m));
+                                 TextOf(place), place.height_m, there->lowest_m));
   }
 }
 
-}  // namespace
-
-CameraStand StandOfScene(const SceneGround& ground) {
-  return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};
-}
-
-CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
+/// Throws InputError where the place is too far from the scene's.
+CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
   const LocalFrame there(ground.frame.ellipsoid(), place);
   const auto in_frame = [&](const glm::dvec3& axis) {
     return ground.frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{axis})).xyz;
@@ -60,18 +51,26 @@ CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
                     "shown from one frame",
                     TextOf(place), 1e-3 * along_m, 1e-3 * kFarthest_m));
   }
-  RequireOverGround(ground, place, stand);
+  return stand;
+}
+
+}  // namespace
+
+CameraStand StandOfScene(const SceneGround& ground) {
+  return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};
+}
+
+CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
+  const CameraStand stand = StandOver(ground, place);
+  RequireOverGround(ground, place);
   return stand;
 }
 
 double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
   if (!ground.terrain) return 0.0;
-  constexpr double kHighest_m = 20000.0;  // over any mountain
-  GeodeticPosition high = place;
-  high.height_m = kHighest_m;
-  const CameraStand stand = StandAt(ground, high);
-  const auto hit = ground.terrain->Intersect(stand.eye, -stand.frame_from_enu[2]);
-  return hit ? kHighest_m - hit->distance_m : 0.0;
+  StandOver(ground, place);  // throws where the place is too far away
+  const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
+  return there ? there->highest_m : 0.0;
 }
 
 MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,

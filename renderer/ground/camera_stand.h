@@ -14,11 +14,11 @@ namespace alpenglow {
 [[nodiscard]] CameraStand StandOfScene(const SceneGround& ground);
 
 /// An eye at another place: the frame stays that of the scene. Throws InputError where it is below
-/// the ground, or more than 500 km from the scene's place.
+/// the ground (of several surfaces: below the lowest), or more than 500 km from the scene's place.
 [[nodiscard]] CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place);
 
 /// Height over the ellipsoid [m] of a scene's ground under a place: the highest of it, and 0 where
-/// there is none. Throws InputError as StandAt.
+/// there is none. Throws InputError more than 500 km from the scene's place.
 [[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place);
 
 /// The scene's camera, or one with its lens that takes these poses one after the other.

@@ -8,9 +8,11 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/ground_heights.h"
 #include "renderer/ground/model_in_sight.h"
 #include "renderer/shadow/sun_probes.h"
 #include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/obj_file.h"
 
 namespace alpenglow {
 namespace {
@@ -109,20 +111,22 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
       return {MeshFromElevation(model.grid, frame),
               Joined(message, NoteOn(model, scene.terrain.file.string()))};
     }
-    case TerrainSource::Kind::kMesh:
-      return {ReadObj(scene.terrain.file), ""};
+    case TerrainSource::Kind::kMesh: {
+      ObjMesh read = ReadObj(scene.terrain.file, scene.terrain.up);
+      return {std::move(read.mesh), std::move(read.message)};
+    }
     case TerrainSource::Kind::kNone:
       break;
   }
   return {};
 }
 
-// Height of the ground under the eye, seen from high above; 0 on the bare ellipsoid.
-double GroundUnderEye(const std::optional<Terrain>& terrain) {
-  constexpr double kAbove_m = 20000.0;
-  if (!terrain) return 0.0;
-  const auto hit = terrain->Intersect({0.0, 0.0, kAbove_m}, {0.0, 0.0, -1.0});
-  return hit ? kAbove_m - hit->distance_m : 0.0;
+// At the foot of the eye; 0 on the bare ellipsoid.
+GroundHeights GroundAtFoot(const std::optional<Terrain>& terrain) {
+  const auto ground = terrain
+                          ? GroundHeightsAlong(*terrain, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0))
+                          : std::nullopt;
+  return ground.value_or(GroundHeights{0.0, 0.0});
 }
 
 }  // namespace
@@ -139,18 +143,19 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
   std::optional<Terrain> terrain;
   if (loaded.mesh) Prepare(progress, "tree of triangles");
   if (loaded.mesh) terrain.emplace(std::move(*loaded.mesh));
-  const double ground = GroundUnderEye(terrain);
+  const GroundHeights ground = GroundAtFoot(terrain);
   const Height& height = scene.camera.height;
-  const double eye = height.above_ground ? ground + height.value_m : height.value_m;
-  if (eye < ground) {
-    throw InputError(
-        fmt::format("camera.height_m is {:.1f}; the ground there is at {:.1f} m", eye, ground));
+  const double eye = height.above_ground ? ground.highest_m + height.value_m : height.value_m;
+  if (eye < ground.lowest_m) {
+    throw InputError(fmt::format("camera.height_m is {:.1f}; the ground there is at {:.1f} m", eye,
+                                 ground.lowest_m));
   }
   Prepare(progress, "air");  // what follows
   const bool from_file = scene.terrain.kind == TerrainSource::Kind::kMesh;
   const bool is_one_surface = !from_file || !terrain || IsOneSurface(*terrain);
   if (!is_one_surface) {
-    loaded.message = fmt::format(
+    if (!loaded.message.empty()) loaded.message += "; ";
+    loaded.message += fmt::format(
         "{}: the mesh has overhangs; sunlight in the air under them is found by occlusion rays",
         scene.terrain.file.string());
   }

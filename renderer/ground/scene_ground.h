@@ -23,7 +23,7 @@ struct SceneGround {
 [[nodiscard]] Ellipsoid EllipsoidOf(const Medium& medium);
 
 /// Loads or generates the terrain and stands the eye on it. Throws InputError for files that cannot
-/// be read, for an eye below the ground, and for one outside an elevation model that stands on the
+/// be read, for an eye below the ground (of several surfaces: below the lowest), and for one outside an elevation model that stands on the
 /// ground or is too low to see anything of it.
 /// @param progress  told what is prepared, if not null.
 [[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);

@@ -10,8 +10,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kAbove_m = 20000.0;  // all terrain
-
 Bands<double> InDoubles(const std::vector<double>& values, double scale) {
   Bands<double> bands(values.size());
   for (std::size_t band = 0; band < values.size(); ++band) bands[band] = scale * values[band];
@@ -75,14 +73,14 @@ glm::dvec3 LampStage::UpAt(const glm::dvec3& point) const {
   return glm::normalize(point + glm::dvec3(0.0, 0.0, planet_radius_m_));
 }
 
-std::optional<TerrainHit> LampStage::TerrainAt(const glm::dvec3& point) const {
+std::optional<SurfaceUnder> LampStage::TerrainAt(const glm::dvec3& point) const {
   if (!ground_->terrain) return std::nullopt;
-  return ground_->terrain->Intersect({point.x, point.y, kAbove_m}, {0.0, 0.0, -1.0});
+  return SurfaceUnderPoint(*ground_->terrain, point, {0.0, 0.0, 1.0});
 }
 
 double LampStage::TerrainUnder(const glm::dvec3& point, double otherwise) const {
-  const std::optional<TerrainHit> hit = TerrainAt(point);
-  return hit ? kAbove_m - hit->distance_m : otherwise;
+  const std::optional<SurfaceUnder> surface = TerrainAt(point);
+  return surface ? point.z + surface->height_m : otherwise;
 }
 
 double LampStage::HeightOverGround(const glm::dvec3& point) const {

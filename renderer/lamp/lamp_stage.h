@@ -9,6 +9,7 @@
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/lamp/lamp.h"
+#include "renderer/ground/ground_heights.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene.h"
 
@@ -26,8 +27,8 @@ class LampStage {
 
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
-  /// The terrain below or above a point along z, seen from above.
-  [[nodiscard]] std::optional<TerrainHit> TerrainAt(const glm::dvec3& point) const;
+  /// The terrain that a point is over, along z (SurfaceUnderPoint).
+  [[nodiscard]] std::optional<SurfaceUnder> TerrainAt(const glm::dvec3& point) const;
   /// Its height there [m along z], or `otherwise`.
   [[nodiscard]] double TerrainUnder(const glm::dvec3& point, double otherwise) const;
   /// Over the terrain [m]; a point below it has none.

@@ -47,12 +47,14 @@ glm::dvec3 PositionOf(const LampStage& stage, const Light& light, std::size_t nu
   GeodeticPosition place{light.latitude_rad, light.longitude_rad, 0.0};
   if (!light.height.above_ground) place.height_m = light.height.value_m;
   glm::dvec3 position = stage.ground().frame.EnuFromGeodetic(place).xyz;
-  const double floor = stage.TerrainUnder(position, position.z);
+  const std::optional<Terrain>& terrain = stage.ground().terrain;
+  const auto over =
+      terrain ? GroundHeightsAlong(*terrain, position, {0.0, 0.0, 1.0}) : std::nullopt;
   if (light.height.above_ground) {
-    position.z = floor + light.height.value_m;
-  } else if (position.z < floor && stage.ground().terrain) {
+    position.z += (over ? over->highest_m : 0.0) + light.height.value_m;
+  } else if (over && over->lowest_m > 0.0) {
     throw InputError(fmt::format("light {}: height_m is {}; the ground there is at {:.1f} m",
-                                 number + 1, light.height.value_m, floor));
+                                 number + 1, light.height.value_m, position.z + over->lowest_m));
   }
   return position;
 }

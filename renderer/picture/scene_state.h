@@ -41,8 +41,7 @@ struct SceneState {
         colour(medium.wavelengths_nm),
         lamps(scene, ground, medium, colour),
         media(scene, ground, medium),
-        // A mesh of a file is as its maker wants it; samples of elevation are not all there is.
-        geometry(ground, medium, scene.terrain.kind != TerrainSource::Kind::kMesh),
+        geometry(ground, medium, scene.terrain.HasFineRelief()),
         smooth_geometry(ground, medium, false),
         horizons(other ? other->horizons : std::make_shared<HorizonsOnDemand>(ground, medium)),
         recent_sunlight(other ? other->recent_sunlight : std::make_shared<RecentSunlight>(ground)),

@@ -182,10 +182,19 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder) {
   return MediumFromChoice(*file, folder);
 }
 
+UpAxis UpAxisOf(const TomlTable& terrain) {
+  const std::string up = terrain.Text("up").value_or("z");
+  if (up != "y" && up != "z")
+    terrain.Fail("up", fmt::format("terrain.up is \"{}\"; it must be \"y\" or \"z\"", up));
+  if (terrain.Has("up") && !terrain.Has("mesh"))
+    terrain.Fail("up", "terrain.up needs terrain.mesh");
+  return up == "y" ? UpAxis::kY : UpAxis::kZ;
+}
+
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   const std::optional<TomlTable> table = document.Table("terrain");
   if (!table) return {};
-  table->AllowOnly({"dem", "mesh", "none", "range", "voids", "colour", "land_cover"});
+  table->AllowOnly({"dem", "mesh", "up", "none", "range", "voids", "colour", "land_cover"});
   const std::optional<std::string> dem = table->Text("dem");
   const std::optional<std::string> mesh = table->Text("mesh");
   const bool none = table->Truth("none").value_or(false);
@@ -214,6 +223,7 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   source.is_default = !dem && !mesh && !none && !range;
   if (colour) source.colour = folder / *colour;
   if (land_cover) source.land_cover = folder / *land_cover;
+  source.up = UpAxisOf(*table);
   source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
   if (none) source.kind = TerrainSource::Kind::kNone;
   if (dem) {

@@ -14,6 +14,7 @@
 #include "atmosphere/sun/time.h"
 #include "renderer/scene/local_volume.h"
 #include "renderer/terrain/elevation.h"
+#include "renderer/terrain/up_axis.h"
 
 namespace alpenglow {
 
@@ -64,10 +65,15 @@ struct TerrainSource {
   Kind kind = Kind::kBuiltInRange;
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
+  UpAxis up = UpAxis::kZ;                                 // of the mesh
   std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
   bool is_default = true;  // nothing was said about the terrain: the range stands in for it
   std::filesystem::path colour = {};      // over it, see ColourDrape; empty: none
   std::filesystem::path land_cover = {};  // as colour, and not both
+
+  /// Whether the ground has relief finer than its triangles: samples of elevation are not all there
+  /// is, but a mesh of a file is as its maker wants it.
+  [[nodiscard]] bool HasFineRelief() const { return kind != Kind::kMesh; }
 
   /// What of both is given.
   [[nodiscard]] const std::filesystem::path& Drape() const {

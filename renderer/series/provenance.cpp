@@ -58,7 +58,8 @@ std::string TerrainText(const TerrainSource& terrain) {
                          HashOfFile(terrain.file),
                          terrain.voids == VoidPolicy::kFill ? "filled" : "open");
     case TerrainSource::Kind::kMesh:
-      return fmt::format("{}, hash {}", terrain.file.filename().string(), HashOfFile(terrain.file));
+      return fmt::format("{}, hash {}{}", terrain.file.filename().string(),
+                         HashOfFile(terrain.file), terrain.up == UpAxis::kY ? ", y up" : "");
     case TerrainSource::Kind::kNone:
       return "none";
   }
@@ -66,21 +67,22 @@ std::string TerrainText(const TerrainSource& terrain) {
 }
 
 std::string LightText(const Light& light) {
-  std::string text =
-      fmt::format("{} at {}, {}, {}: {} cd, {} K, radius {} m",
-                  light.type == Light::Type::kSpot ? "spot" : "point", DegreesText(light.latitude_rad),
-                  DegreesText(light.longitude_rad), HeightText(light.height),
-                  light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
-                  light.temperature_k, light.radius_m);
+  std::string text = fmt::format(
+      "{} at {}, {}, {}: {} cd, {} K, radius {} m",
+      light.type == Light::Type::kSpot ? "spot" : "point", DegreesText(light.latitude_rad),
+      DegreesText(light.longitude_rad), HeightText(light.height),
+      light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+      light.temperature_k, light.radius_m);
   if (light.ies) {
     text += fmt::format(", {}, hash {}", light.ies->filename().string(), HashOfFile(*light.ies));
   } else if (light.type == Light::Type::kPoint) {
     return text;
   }
-  text +=
-      fmt::format(", heading {}, pitch {}", DegreesText(light.heading_rad), DegreesText(light.pitch_rad));
+  text += fmt::format(", heading {}, pitch {}", DegreesText(light.heading_rad),
+                      DegreesText(light.pitch_rad));
   if (light.ies) return text;
-  return text + fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
+  return text +
+         fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
 }
 
 std::string FogText(const Fog& fog) {
@@ -113,7 +115,8 @@ Metadata SceneMetadata(const Scene& scene) {
         fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
                     lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
   }
-  if (camera.polariser_rad) metadata["alpenglow.polariser_deg"] = DegreesText(*camera.polariser_rad);
+  if (camera.polariser_rad)
+    metadata["alpenglow.polariser_deg"] = DegreesText(*camera.polariser_rad);
   if (camera.shutter_s > 0.0) metadata["alpenglow.shutter_s"] = fmt::format("{}", camera.shutter_s);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);

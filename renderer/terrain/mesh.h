@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -30,11 +29,5 @@ struct TriangleMesh {
 /// ellipsoid are right. Beside a void triangles are left out. A grid
 /// that goes once around the earth is closed, and over a pole too.
 [[nodiscard]] TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame);
-
-/// Reads a Wavefront OBJ whose coordinates are ENU metres around the place of the scene. Polygons
-/// are cut into triangles; normals are averaged from them. Throws InputError, naming file and line
-/// or triangle, for no triangles, degenerate or non-finite ones, coordinates beyond 10,000 km,
-/// indices out of range.
-[[nodiscard]] TriangleMesh ReadObj(const std::filesystem::path& file);
 
 }  // namespace alpenglow

@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Wavefront OBJ. tinyobjloader cuts the polygons; it takes wrong numbers and indices as they come,
-// so every v and f line is judged here first.
+#include "renderer/terrain/obj_file.h"
+
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
 #include <sstream>
-#include <string>
-#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "atmosphere/text/error.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/terrain/obj_text.h"
+#include "renderer/terrain/polygon_triangles.h"
 #include "renderer/terrain/smooth_normals.h"
 
 namespace alpenglow {
 namespace {
-
-constexpr double kFarthest_m = 1e7;
-constexpr std::string_view kBlanks = " \t\r";
 
 std::string ReadText(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -35,164 +33,262 @@ std::string ReadText(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-std::vector<std::string_view> Words(std::string_view line) {
-  std::vector<std::string_view> words;
-  std::size_t begin = line.find_first_not_of(kBlanks);
-  while (begin != std::string_view::npos) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(kBlanks, end);
-  }
-  return words;
+/// From y up to z up, by a quarter turn about x.
+template <typename Number>
+std::array<Number, 3> TurnedUp(const std::array<Number, 3>& v) {
+  return {v[0], -v[2], v[1]};
 }
 
-// Judges the lines of a file one by one.
-class ObjJudge {
- public:
-  explicit ObjJudge(const std::filesystem::path& file) : file_(file) {}
+void TurnUp(ObjText& text) {
+  for (auto& position : text.positions) position = TurnedUp(position);
+  for (auto& normal : text.normals) normal = TurnedUp(normal);
+}
 
-  void Judge(std::string_view text) {
-    std::size_t begin = 0;
-    while (begin < text.size()) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      ++line_;
-      JudgeLine(Words(text.substr(begin, end - begin)));
-      begin = end + 1;
-    }
-    // A face may come before its vertices.
-    if (highest_index_ > vertices_) {
-      line_ = highest_index_line_;
-      Refuse(fmt::format("vertex {}; there are {}", highest_index_, vertices_));
-    }
+/// Of length 1, or 0 where a vector has no direction.
+glm::dvec3 UnitOrZero(const std::array<double, 3>& v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  const bool is_finite = std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+  if (!is_finite || !(largest > 0.0)) return glm::dvec3(0.0);
+  return glm::normalize(glm::dvec3(v[0], v[1], v[2]) / largest);
+}
+
+/// Faces of one kind.
+struct FaceCount {
+  std::size_t count = 0;
+  std::size_t first_line = 0;
+
+  void Add(std::size_t line) {
+    if (count++ == 0) first_line = line;
+  }
+};
+
+/// Vertices of the mesh: corners of faces at one position are one vertex if they also have one
+/// normal. The first vertex of a position has the position's index.
+class VertexSplitter {
+ public:
+  /// Where the normal of a corner comes from.
+  struct Source {
+    enum class Kind : std::uint32_t { kFile, kGroup } kind;
+    std::uint32_t number;  // of the normal in the file, or of the smoothing group
+  };
+
+  explicit VertexSplitter(std::size_t positions) : first_(positions, kUnused) {
+    for (std::uint32_t i = 0; i < positions; ++i) position_of_.push_back(i);
+  }
+
+  [[nodiscard]] const std::vector<std::uint32_t>& position_of() const { return position_of_; }
+
+  [[nodiscard]] std::uint32_t VertexAt(std::uint32_t position, const Source& source) {
+    const std::uint64_t key = KeyOf(source);
+    if (first_[position] == kUnused) first_[position] = key;
+    if (first_[position] == key) return position;
+    const auto [found, is_new] = others_.try_emplace({position, key}, 0);
+    if (is_new) found->second = Append(position);
+    return found->second;
+  }
+  /// A vertex that no other face has.
+  [[nodiscard]] std::uint32_t OwnVertexAt(std::uint32_t position) {
+    if (first_[position] != kUnused) return Append(position);
+    first_[position] = kOwn;
+    return position;
   }
 
  private:
-  void JudgeLine(const std::vector<std::string_view>& words) {
-    if (words.empty()) return;
-    if (words[0] == "v") JudgeVertex(words);
-    if (words[0] == "f") JudgeFace(words);
-  }
-
-  void JudgeVertex(const std::vector<std::string_view>& words) {
-    if (words.size() < 4) Refuse("a vertex of fewer than 3 coordinates");
-    for (std::size_t i = 1; i <= 3; ++i) {
-      double value = 0.0;
-      const char* end = words[i].data() + words[i].size();
-      const auto [stop, fault] = std::from_chars(words[i].data(), end, value);
-      if (fault != std::errc() || stop != end || !(std::abs(value) <= kFarthest_m)) {
-        Refuse(fmt::format("coordinate '{}'; it must be a number in [{}, {}]", words[i],
-                           -kFarthest_m, kFarthest_m));
-      }
+  struct Corner {
+    std::uint32_t position;
+    std::uint64_t key;
+    bool operator==(const Corner&) const = default;
+  };
+  struct HashOfCorner {
+    std::size_t operator()(const Corner& corner) const {
+      constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15U;  // spreads neighbouring numbers
+      return static_cast<std::size_t>((corner.key * kOdd + corner.position) * kOdd >> 16U);
     }
-    ++vertices_;
+  };
+  static constexpr std::uint64_t kUnused = std::numeric_limits<std::uint64_t>::max();
+  static constexpr std::uint64_t kOwn = kUnused - 1;
+
+  static std::uint64_t KeyOf(const Source& source) {
+    return (std::uint64_t{source.kind == Source::Kind::kGroup} << 32U) | source.number;
+  }
+  std::uint32_t Append(std::uint32_t position) {
+    if (position_of_.size() >= std::numeric_limits<std::uint32_t>::max())
+      throw InputError("a mesh has more vertices than 32 bits count");
+    position_of_.push_back(position);
+    return static_cast<std::uint32_t>(position_of_.size() - 1);
   }
 
-  void JudgeFace(const std::vector<std::string_view>& words) {
-    if (words.size() < 4) Refuse("a face of fewer than 3 corners");
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      const std::string_view number = words[i].substr(0, words[i].find('/'));
-      long long index = 0;
-      const char* end = number.data() + number.size();
-      const auto [stop, fault] = std::from_chars(number.data(), end, index);
-      if (fault != std::errc() || stop != end) {
-        Refuse(fmt::format("corner '{}'; it must be an index", words[i]));
-      }
-      if (index == 0 || index < -vertices_) {
-        Refuse(fmt::format("vertex {}; indices count from 1, or from -1 back to {}", index,
-                           -vertices_));
-      }
-      if (index > highest_index_) {
-        highest_index_ = index;
-        highest_index_line_ = line_;
-      }
-    }
-  }
-
-  [[noreturn]] void Refuse(const std::string& fault) const {
-    throw InputError(fmt::format("{}:{}: {}", file_.string(), line_, fault));
-  }
-
-  const std::filesystem::path& file_;
-  long long line_ = 0;
-  long long vertices_ = 0;
-  long long highest_index_ = 0;
-  long long highest_index_line_ = 0;
+  std::vector<std::uint64_t> first_;  // key of a position's first vertex
+  std::unordered_map<Corner, std::uint32_t, HashOfCorner> others_;
+  std::vector<std::uint32_t> position_of_;  // one a vertex
 };
 
-struct ParsedObj {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
+/// A mesh on the map, and how near it comes to the place of the scene [m].
+struct MapExtent {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()};
+  glm::dvec2 high{-std::numeric_limits<double>::infinity()};
+  double nearest_m = std::numeric_limits<double>::infinity();
+
+  explicit MapExtent(const TriangleMesh& mesh) {
+    for (const auto& triangle : mesh.triangles) {
+      glm::dvec2 least(ToDouble(mesh.positions[triangle[0]])), most = least;
+      for (const std::uint32_t corner : triangle) {
+        least = glm::min(least, glm::dvec2(ToDouble(mesh.positions[corner])));
+        most = glm::max(most, glm::dvec2(ToDouble(mesh.positions[corner])));
+      }
+      low = glm::min(low, least);
+      high = glm::max(high, most);
+      nearest_m = std::min(nearest_m, glm::length(glm::clamp(glm::dvec2(0.0), least, most)));
+    }
+  }
+
+  /// Nobody sees it: it is farther than mountains are seen, or under half a degree wide.
+  [[nodiscard]] bool IsFar() const {
+    constexpr double kFarthestSeen_m = 200e3, kNear_m = 10e3, kWidths = 100.0;
+    return nearest_m > kFarthestSeen_m ||
+           (nearest_m > kNear_m && nearest_m > kWidths * glm::length(high - low));
+  }
 };
 
-ParsedObj Parse(const std::filesystem::path& file, const std::string& text) {
-  ParsedObj parsed;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning;
-  std::string error;
-  std::istringstream stream(text);
-  if (!tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &materials, &warning, &error,
-                        &stream)) {
-    std::replace(error.begin(), error.end(), '\n', ' ');
-    throw InputError(file.string() + ": " + error);
-  }
-  return parsed;
+/// Empty where the mesh is not far.
+std::string TextOnFar(const TriangleMesh& mesh) {
+  const MapExtent extent(mesh);
+  if (!extent.IsFar()) return "";
+  return fmt::format(
+      "the mesh lies {:.0f} to {:.0f} m east and {:.0f} to {:.0f} m north, {:.0f} km from the "
+      "place "
+      "at least; its coordinates must be metres from the place of the scene, not those of a map",
+      extent.low.x, extent.high.x, extent.low.y, extent.high.y, 1e-3 * extent.nearest_m);
 }
 
-std::vector<std::array<std::uint32_t, 3>> TrianglesOf(const std::filesystem::path& file,
-                                                      const ParsedObj& parsed,
-                                                      std::size_t vertices) {
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const tinyobj::shape_t& shape : parsed.shapes) {
-    const std::vector<tinyobj::index_t>& indices = shape.mesh.indices;
-    for (std::size_t corner = 0; corner + 2 < indices.size(); corner += 3) {
-      std::array<std::uint32_t, 3> triangle{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int index = indices[corner + k].vertex_index;
-        if (index < 0 || static_cast<std::size_t>(index) >= vertices) {
-          throw InputError(fmt::format("{}: triangle {} has vertex {}; there are {}", file.string(),
-                                       triangles.size() + 1, index + 1, vertices));
-        }
-        triangle[k] = static_cast<std::uint32_t>(index);
-      }
-      triangles.push_back(triangle);
-    }
+class ObjMesher {
+ public:
+  ObjMesher(const ObjText& text, std::string name)
+      : text_(text), name_(std::move(name)), vertices_(text.positions.size()) {
+    for (const auto& normal : text.normals) normals_.push_back(UnitOrZero(normal));
+    from_file_.assign(text.positions.size(), ObjText::kNone);
   }
-  return triangles;
-}
 
-void RefuseDegenerate(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& [a, b, c] = mesh.triangles[i];
-    const glm::dvec3 u = ToDouble(mesh.positions[b]) - ToDouble(mesh.positions[a]);
-    const glm::dvec3 v = ToDouble(mesh.positions[c]) - ToDouble(mesh.positions[a]);
-    // Relative to its edges, so that small models are as good as large ones.
-    const double area = glm::length(glm::cross(u, v));
-    if (!(area > 1e-9 * (glm::dot(u, u) + glm::dot(v, v)))) {
-      throw InputError(fmt::format("{}: triangle {} of {} (vertices {}, {}, {}) is degenerate",
-                                   file.string(), i + 1, mesh.triangles.size(), a + 1, b + 1,
-                                   c + 1));
+  ObjMesh Mesh() {
+    for (const ObjText::Face& face : text_.faces) AddFace(face);
+    if (mesh_.triangles.empty()) {
+      throw InputError(fmt::format("{}: has no triangles{}", name_,
+                                   without_area_.count > 0 ? "; no face has an area" : ""));
+    }
+    AddVertices();
+    std::string message = Message();
+    return {std::move(mesh_), std::move(message)};
+  }
+
+ private:
+  void AddFace(const ObjText::Face& face) {
+    std::vector<glm::dvec3> corners_m;
+    for (std::size_t i = 0; i < face.corners; ++i)
+      corners_m.push_back(ToDouble(text_.positions[CornerOf(face, i).position]));
+    const PolygonTriangles cut = TrianglesOfPolygon(corners_m);
+    if (cut.crosses_itself) crossing_.Add(face.line);
+    if (cut.triangles.empty()) return without_area_.Add(face.line);
+    const std::vector<std::uint32_t> vertices = VerticesOf(face);
+    for (const auto& [a, b, c] : cut.triangles) {
+      std::array<std::uint32_t, 3> triangle{vertices[a], vertices[b], vertices[c]};
+      const glm::dvec3 front = glm::cross(corners_m[b] - corners_m[a], corners_m[c] - corners_m[a]);
+      if (glm::dot(front, NormalGiven(face, a) + NormalGiven(face, b) + NormalGiven(face, c)) < 0.0)
+        std::swap(triangle[1], triangle[2]);
+      mesh_.triangles.push_back(triangle);
     }
   }
-}
+
+  [[nodiscard]] const ObjText::Corner& CornerOf(const ObjText::Face& face, std::size_t i) const {
+    return text_.corners[face.first + i];
+  }
+
+  /// 0 where the file gives none.
+  [[nodiscard]] glm::dvec3 NormalGiven(const ObjText::Face& face, std::size_t i) const {
+    const std::uint32_t normal = CornerOf(face, i).normal;
+    return normal == ObjText::kNone ? glm::dvec3(0.0) : normals_[normal];
+  }
+
+  std::vector<std::uint32_t> VerticesOf(const ObjText::Face& face) {
+    std::vector<std::uint32_t> vertices;
+    for (std::size_t i = 0; i < face.corners; ++i) vertices.push_back(VertexOf(face, i));
+    return vertices;
+  }
+
+  std::uint32_t VertexOf(const ObjText::Face& face, std::size_t i) {
+    using Kind = VertexSplitter::Source::Kind;
+    const auto [position, normal] = CornerOf(face, i);
+    if (NormalGiven(face, i) != glm::dvec3(0.0)) {
+      const std::uint32_t vertex = vertices_.VertexAt(position, {Kind::kFile, normal});
+      from_file_.resize(vertices_.position_of().size(), ObjText::kNone);
+      from_file_[vertex] = normal;
+      return vertex;
+    }
+    const bool is_flat = face.smoothing == 0;
+    return is_flat ? vertices_.OwnVertexAt(position)
+                   : vertices_.VertexAt(position, {Kind::kGroup, face.smoothing});
+  }
+
+  void AddVertices() {
+    std::vector<glm::dvec3> positions_m;
+    for (const std::uint32_t position : vertices_.position_of()) {
+      mesh_.positions.push_back(text_.positions[position]);
+      positions_m.push_back(ToDouble(mesh_.positions.back()));
+    }
+    mesh_.normals = SmoothNormals(positions_m, mesh_.triangles);
+    for (std::size_t vertex = 0; vertex < from_file_.size(); ++vertex) {
+      if (from_file_[vertex] == ObjText::kNone) continue;
+      const glm::dvec3& normal = normals_[from_file_[vertex]];
+      mesh_.normals[vertex] = {static_cast<float>(normal.x), static_cast<float>(normal.y),
+                               static_cast<float>(normal.z)};
+    }
+  }
+
+  [[nodiscard]] std::string Message() const {
+    std::vector<std::string> parts;
+    if (without_area_.count > 0) {
+      parts.push_back(fmt::format("{} without area left out (the first in line {})",
+                                  Faces(without_area_.count), without_area_.first_line));
+    }
+    if (crossing_.count > 0) {
+      parts.push_back(
+          fmt::format("{} whose edges cross, so that the area is ambiguous (the first "
+                      "in line {})",
+                      Faces(crossing_.count), crossing_.first_line));
+    }
+    const auto pointless = std::count(normals_.begin(), normals_.end(), glm::dvec3(0.0));
+    if (pointless > 0) {
+      parts.push_back(
+          fmt::format("{} normal{} without direction, for which those of the triangles stand",
+                      pointless, pointless == 1 ? "" : "s"));
+    }
+    if (text_.other_statements > 0) {
+      parts.push_back(fmt::format("{} statement{} not read (the first, \"{}\", in line {})",
+                                  text_.other_statements, text_.other_statements == 1 ? "" : "s",
+                                  text_.first_other, text_.first_other_line));
+    }
+    if (const std::string far = TextOnFar(mesh_); !far.empty()) parts.push_back(far);
+    return parts.empty() ? "" : fmt::format("{}: {}", name_, fmt::join(parts, "; "));
+  }
+
+  static std::string Faces(std::size_t count) {
+    return fmt::format("{} face{}", count, count == 1 ? "" : "s");
+  }
+
+  const ObjText& text_;
+  std::string name_;
+  std::vector<glm::dvec3> normals_;  // of the file, unit or 0
+  VertexSplitter vertices_;
+  std::vector<std::uint32_t> from_file_;  // the normal of a vertex, or kNone
+  TriangleMesh mesh_;
+  FaceCount without_area_, crossing_;
+};
 
 }  // namespace
 
-TriangleMesh ReadObj(const std::filesystem::path& file) {
-  const std::string text = ReadText(file);
-  ObjJudge(file).Judge(text);
-  const ParsedObj parsed = Parse(file, text);
-  TriangleMesh mesh;
-  std::vector<glm::dvec3> positions;
-  const std::vector<tinyobj::real_t>& numbers = parsed.attributes.vertices;
-  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
-    mesh.positions.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-    positions.push_back(ToDouble(mesh.positions.back()));
-  }
-  mesh.triangles = TrianglesOf(file, parsed, mesh.positions.size());
-  if (mesh.triangles.empty()) throw InputError(file.string() + ": has no triangles");
-  RefuseDegenerate(file, mesh);
-  mesh.normals = SmoothNormals(positions, mesh.triangles);
-  return mesh;
+ObjMesh ReadObj(const std::filesystem::path& file, UpAxis up) {
+  ObjText text = ParseObj(ReadText(file), file.string());
+  if (up == UpAxis::kY) TurnUp(text);
+  return ObjMesher(text, file.string()).Mesh();
 }
 
 }  // namespace alpenglow

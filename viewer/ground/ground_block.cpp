@@ -76,7 +76,7 @@ GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture
   return block;
 }
 
-std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, bool has_land) {
+std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandKind& land) {
   const auto water_line_m = material.WaterLine_m();
   const bool planet_is_water =
       (water_line_m && *water_line_m >= 0.0) || material.cover().kind == GroundCover::Kind::kWater;
@@ -84,14 +84,16 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, bool has_la
            fmt::format("#define GROUND_COVER {}\n#define HAS_SEA {}\n#define HAS_DRAPE {}\n#define "
                        "HAS_LAND_COVER {}\n"
                        "#define PLANET_IS_WATER {}\n#define PLANET_IS_LAND {}\n"
+                       "#define HAS_FINE_RELIEF {}\n"
                        "#define LEVEL_SKY_LOWEST {:.9f}\n"
                        "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
                        "#define SEA_MIRROR_SIDE {}.0\n",
                        static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
                        material.drape() != nullptr ? 1 : 0,
                        material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
-                       planet_is_water ? 1 : 0, has_land ? 1 : 0, LevelSky::kLowest_rad,
-                       LevelSky::kRange_rad, LevelSky::kNodes, SeaMirror::kSide)},
+                       planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
+                       LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
+                       SeaMirror::kSide)},
           ViewerPiece("viewer/shaders/ground.glsl"),
           ViewerPiece("viewer/shaders/ground_surface.glsl"),
           ViewerPiece("viewer/shaders/ground_light.glsl")};

@@ -47,10 +47,16 @@ static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4)
 [[nodiscard]] GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
                                         double eye_x_m, double eye_y_m);
 
+/// The terrain of a scene.
+struct LandKind {
+  bool is_there;         // the planet goes on as its low land
+  bool has_fine_relief;  // TerrainSource::HasFineRelief
+};
+
 /// GroundRadiance and PlanetRadiance for this material; to be read after the shared texts,
 /// air_block, view_block, sun_light and TransmittanceToSun.
-/// @param has_land  whether the planet goes on as the terrain's low land.
-[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, bool has_land);
+[[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material,
+                                                   const LandKind& land);
 
 /// The samplers of these texts.
 class GroundTextures {

@@ -190,8 +190,8 @@ bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const V
   return is_new;
 }
 
-LightOfVertices GroundFollower::Light() const {
-  if (!lit_) return {};
+std::optional<LightOfVertices> GroundFollower::Light() const {
+  if (!lit_) return std::nullopt;
   return [lit = lit_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());

@@ -53,8 +53,8 @@ class PlanLevel {
   [[nodiscard]] bool IsLitAt(const glm::dvec2& at) const {
     const glm::dvec2 way = step_m_ * (at - 0.5 * kPlanSide);
     const glm::dvec3 place = lamp_.position_m + glm::dvec3(way, 0.0);
-    if (const std::optional<TerrainHit> hit = stage_.TerrainAt(place))
-      return !stage_.Shades(lamp_, hit->smooth_point, hit->geometric_normal);
+    if (const std::optional<SurfaceUnder> ground = stage_.TerrainAt(place))
+      return !stage_.Shades(lamp_, ground->hit.smooth_point, ground->hit.geometric_normal);
     const glm::dvec3 up = stage_.UpAt(place);
     return !stage_.Shades(lamp_, place - stage_.AltitudeOf(place) * up, up);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "viewer/land/land_chunk.h"
@@ -16,8 +17,8 @@ struct ChunkOrder {
   LandAnchor anchor;
   std::vector<ChunkKey> make;
   std::vector<std::shared_ptr<const LandChunk>> relight;
-  int top = 0;  // the coarsest level
-  LightOfVertices light;
+  int top = 0;                           // the coarsest level
+  std::optional<LightOfVertices> light;  // nothing before the first
   int light_number = 0;
   bool for_next_anchor = false;
 };

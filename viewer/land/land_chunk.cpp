@@ -326,9 +326,9 @@ VertexLight Mean(const VertexLight& a, const VertexLight& b) {
 }
 
 std::vector<VertexLight> LightOf(const std::vector<LandVertex>& vertices, const LocalFrame& frame,
-                                 const LightOfVertices& light) {
+                                 const std::optional<LightOfVertices>& light) {
   if (!light) return std::vector<VertexLight>(vertices.size());
-  std::vector<VertexLight> lit = light(frame, vertices);
+  std::vector<VertexLight> lit = (*light)(frame, vertices);
   ALPENGLOW_ENSURE(lit.size(), ==, vertices.size());
   return lit;
 }
@@ -348,7 +348,7 @@ std::size_t BytesOf(const LandChunk& chunk) {
 }
 
 std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& frame,
-                                     const LightOfVertices& light) {
+                                     const std::optional<LightOfVertices>& light) {
   std::vector<LandVertex> all = chunk.own;
   all.insert(all.end(), chunk.coarse.begin(), chunk.coarse.end());
   const std::vector<VertexLight> lit = LightOf(all, frame, light);

@@ -21,6 +21,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -122,9 +123,9 @@ struct LandChunk {
 /// What a chunk takes in memory.
 [[nodiscard]] std::size_t BytesOf(const LandChunk& chunk);
 
-/// One a vertex. Without a function: no light from the sky, the whole sun.
+/// One a vertex. Where no light is made yet: none from the sky, the whole sun.
 [[nodiscard]] std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& frame,
-                                                   const LightOfVertices& light);
+                                                   const std::optional<LightOfVertices>& light);
 
 /// Triangles of a whole chunk of a level other than 0.
 [[nodiscard]] const std::vector<std::uint16_t>& WholeTriangles();

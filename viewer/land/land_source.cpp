@@ -268,7 +268,7 @@ LandSource LandSourceOf(const Scene& scene) {
   if (scene.terrain.kind == TerrainSource::Kind::kElevationModel)
     source.files = {scene.terrain.file};
   if (scene.terrain.kind == TerrainSource::Kind::kMesh)
-    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place};
+    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
   if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange)
     source.range_centre = scene.terrain.centre.value_or(scene.place);
   return source;

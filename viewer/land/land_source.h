@@ -27,6 +27,7 @@ struct LandSource {
   struct Mesh {
     std::filesystem::path file;
     GeodeticPosition place;
+    UpAxis up = UpAxis::kZ;
   };
   std::optional<Mesh> mesh = std::nullopt;
 

@@ -39,7 +39,7 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
   RequireInRange(size.detail, LandSize::kLeastDetail, LandSize::kMostDetail,
                  "the detail of the land");
   if (source.mesh) {
-    mesh_.emplace(source.mesh->file, LocalFrame(ellipsoid, source.mesh->place));
+    mesh_.emplace(*source.mesh, ellipsoid);
   } else if (source.files.empty() && source.range_centre) {
     notes_.emplace_back("the terrain is made up: no elevation model of the place was named");
   }
@@ -139,7 +139,10 @@ void Landscape::Advance(const GeodeticPosition& eye, const LandView& view, doubl
   ++frame_;
   eye_place_ = eye;
   view_ = view;
-  if (mesh_) mesh_->Update(seconds);
+  if (mesh_) {
+    mesh_->Update(seconds);
+    for (std::string& note : mesh_->TakeNotes()) notes_.push_back(std::move(note));
+  }
   if (tiles_->tiles().empty()) return;
   eye_ = EyeAt(eye);
   FollowView(seconds);

@@ -6,7 +6,6 @@
 // in MeshFromElevation; the farther, the coarser (level_ranges.h). Without land it draws nothing.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +14,7 @@
 #include "viewer/job/latest_job.h"
 #include "viewer/land/chunk_maker.h"
 #include "viewer/land/chunk_set.h"
+#include "viewer/land/ground_sampler.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/light_fade.h"
@@ -81,14 +81,16 @@ class Landscape {
   /// Whether new light is on its way or fading in.
   [[nodiscard]] bool IsRelighting() const;
 
-  /// Height of the ground [m] under a place, the same as is drawn near the eye; nothing where there
-  /// is none or it is not loaded.
+  /// Height of the ground [m] that an eye at a place is over, the same as is drawn near the eye;
+  /// nothing where there is none or it is not loaded. Of a mesh with roofs it is the highest surface
+  /// that is not above the place.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
+  /// The highest there, whatever the height of the place.
+  [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
   /// Whether GroundUnder has said its last word: all land that a place has is loaded.
   [[nodiscard]] bool KnowsGround(const GeodeticPosition& place) const;
-  /// LoadedHeights::SampledGrid of what is loaded now, for any thread while this lives.
-  [[nodiscard]] std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
-  Sampler() const;
+  /// LoadedHeights::SampledGrid or GridOverMesh of what is loaded now, for any thread.
+  [[nodiscard]] GroundSampler Sampler() const;
   /// Another range of the finest level, see LandSize.
   void SetDetail(double detail) {
     size_.detail = detail;
@@ -100,8 +102,8 @@ class Landscape {
   }
 
   [[nodiscard]] LandProgress Progress() const;
-  /// What there is to say, each once: tiles left out, voids, vertical datums, that the range is
-  /// made up.
+  /// What there is to say, each once: tiles left out, voids, vertical datums, what a mesh's file has
+  /// that is not read, that the range is made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }

@@ -13,17 +13,16 @@ std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) cons
   return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
 }
 
+std::optional<double> Landscape::HighestGround(const GeodeticPosition& place) const {
+  return mesh_ ? mesh_->HighestGround(place) : GroundUnder(place);
+}
+
 bool Landscape::KnowsGround(const GeodeticPosition& place) const {
   return mesh_ ? mesh_->IsRead() : cache_.HasRead(place);
 }
 
-std::function<std::optional<ElevationGrid>(const GeodeticPosition&, double, int)>
-Landscape::Sampler() const {
-  if (mesh_) {
-    return [mesh = &*mesh_](const GeodeticPosition& place, double half_width_m, int most_samples) {
-      return mesh->SampledGrid(place, half_width_m, most_samples);
-    };
-  }
+GroundSampler Landscape::Sampler() const {
+  if (mesh_) return mesh_->Sampler();
   return [loaded = cache_.loaded()](const GeodeticPosition& place, double half_width_m,
                                     int most_samples) {
     return loaded->SampledGrid(place, half_width_m, most_samples);

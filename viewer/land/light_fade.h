@@ -17,8 +17,8 @@ class LightFade {
   void Ask(LightOfVertices light) { asked_ = std::move(light); }
   [[nodiscard]] bool IsChanging() const { return asked_ || is_filling_ || share_ < 1.0; }
 
-  /// Of vertices that are made now, and its number.
-  [[nodiscard]] const LightOfVertices& light() const { return light_; }
+  /// Of vertices that are made now, and its number; nothing before the first.
+  [[nodiscard]] const std::optional<LightOfVertices>& light() const { return light_; }
   [[nodiscard]] int number() const { return number_; }
   /// Whether the side that is not shown is being filled with it.
   [[nodiscard]] bool IsFilling() const { return is_filling_; }
@@ -42,14 +42,13 @@ class LightFade {
 
  private:
   void Begin() {
-    light_ = *std::exchange(asked_, std::nullopt);
+    light_ = std::exchange(asked_, std::nullopt);
     ++number_;
     is_filling_ = true;
     filled_in_s_ = 0.0;
   }
 
-  LightOfVertices light_;
-  std::optional<LightOfVertices> asked_;
+  std::optional<LightOfVertices> light_, asked_;
   int number_ = 0;
   bool is_filling_ = false;
   LightSide from_ = LightSide::kSecond;

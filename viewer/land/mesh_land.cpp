@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <glm/gtc/packing.hpp>
-#include <limits>
 
-#include "viewer/land/loaded_heights.h"
+#include "renderer/ground/ground_heights.h"
+#include "renderer/terrain/obj_file.h"
+#include "viewer/land/mesh_grid.h"
 
 namespace alpenglow {
 namespace {
@@ -49,16 +50,16 @@ std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& 
 
 }  // namespace
 
-MeshLand::MeshLand(std::filesystem::path file, const LocalFrame& frame)
-    : file_(std::move(file)),
-      frame_(frame),
-      reader_([](const std::filesystem::path& path) {
-        return std::make_shared<const Terrain>(ReadObj(path));
+MeshLand::MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid)
+    : frame_(ellipsoid, source.place),
+      reader_([](const LandSource::Mesh& mesh) {
+        ObjMesh read = ReadObj(mesh.file, mesh.up);
+        return Read{std::make_shared<const Terrain>(std::move(read.mesh)), std::move(read.message)};
       }),
-      lighter_([frame](const Order& order) {
+      lighter_([frame = frame_](const Order& order) {
         return LightOfMesh(order.terrain->mesh(), frame, order.light);
       }) {
-  reader_.Ask(file_);
+  reader_.Ask(source);
 }
 
 void MeshLand::Upload() {
@@ -90,7 +91,8 @@ void MeshLand::DescribeLight(const GlBuffer& buffer, GLuint first_location) cons
 
 void MeshLand::Update(double seconds) {
   if (auto read = reader_.Take()) {
-    terrain_ = std::move(*read);
+    terrain_ = std::move(read->terrain);
+    if (!read->message.empty()) notes_.push_back(std::move(read->message));
     Upload();
   }
   if (!terrain_) return;
@@ -98,7 +100,7 @@ void MeshLand::Update(double seconds) {
   if (light) alpenglow::Upload(GL_ARRAY_BUFFER, LightOn(fade_.from()), *light);
   const int before = fade_.number();
   fade_.Advance(seconds, light.has_value());
-  if (fade_.number() != before) lighter_.Ask({terrain_, fade_.light()});
+  if (fade_.number() != before) lighter_.Ask({terrain_, fade_.light().value()});
 }
 
 void MeshLand::Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
@@ -116,39 +118,22 @@ void MeshLand::Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition
 
 std::optional<double> MeshLand::GroundUnder(const GeodeticPosition& place) const {
   if (!terrain_) return std::nullopt;
-  constexpr double kFromHeight_m = 20000.0;  // over any mountain
-  GeodeticPosition high = place;
-  high.height_m = kFromHeight_m;
-  const glm::dvec3 down = -EyeInAnchor(frame_, place).up;
-  const auto hit = terrain_->Intersect(frame_.EnuFromGeodetic(high).xyz, down);
-  if (!hit) return std::nullopt;
-  return kFromHeight_m - hit->distance_m;
+  return GroundUnderEye(*terrain_, frame_, place);
 }
 
-std::optional<ElevationGrid> MeshLand::SampledGrid(const GeodeticPosition& place,
-                                                   double half_width_m, int most_samples) const {
-  if (!terrain_ || most_samples < 2) return std::nullopt;
-  LandLattice one_radian;
-  one_radian.step_lon_rad = 1.0;
-  one_radian.step_lat_rad = 1.0;
-  one_radian.north_rad = place.latitude_rad;
-  const SampleSize radian = SampleSizeAt(one_radian, place.latitude_rad);
-  ElevationGrid grid;
-  grid.columns = most_samples;
-  grid.rows = most_samples;
-  grid.step_lon_rad = 2.0 * half_width_m / radian.column_m / (most_samples - 1);
-  grid.step_lat_rad = 2.0 * half_width_m / radian.row_m / (most_samples - 1);
-  grid.west_rad = place.longitude_rad - half_width_m / radian.column_m;
-  grid.north_rad = place.latitude_rad + half_width_m / radian.row_m;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const auto ground =
-          GroundUnder({grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0});
-      grid.height_m.push_back(ground ? static_cast<float>(*ground)
-                                     : std::numeric_limits<float>::quiet_NaN());
-    }
-  }
-  return grid;
+std::optional<double> MeshLand::HighestGround(const GeodeticPosition& place) const {
+  if (!terrain_) return std::nullopt;
+  const std::optional<GroundHeights> ground = GroundHeightsAt(*terrain_, frame_, place);
+  if (!ground) return std::nullopt;
+  return ground->highest_m;
+}
+
+GroundSampler MeshLand::Sampler() const {
+  return [terrain = terrain_, frame = frame_](const GeodeticPosition& place, double half_width_m,
+                                              int most_samples) -> std::optional<ElevationGrid> {
+    if (!terrain) return std::nullopt;
+    return GridOverMesh(*terrain, frame, place, half_width_m, most_samples);
+  };
 }
 
 std::size_t MeshLand::bytes() const {

@@ -2,23 +2,26 @@
 // Land that is one mesh (OBJ): read, lit and drawn whole.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "renderer/terrain/terrain.h"
 #include "viewer/job/latest_job.h"
+#include "viewer/land/ground_sampler.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"
+#include "viewer/land/land_source.h"
 #include "viewer/land/light_fade.h"
 
 namespace alpenglow {
 
 class MeshLand {
  public:
-  /// Begins to read a Wavefront OBJ whose coordinates are metres in `frame`.
-  MeshLand(std::filesystem::path file, const LocalFrame& frame);
+  /// Begins to read a mesh.
+  MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid);
 
   /// Takes what has become ready. Throws InputError when the file cannot be read (ReadObj).
   /// @param seconds  since the last call.
@@ -33,11 +36,13 @@ class MeshLand {
   [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
 
+  /// alpenglow::GroundUnderEye, and the highest ground there.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
-  /// Heights under the vertical through each of the grid's places.
-  [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
-                                                         double half_width_m,
-                                                         int most_samples) const;
+  [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
+  /// GridOverMesh of what is read now; any thread may call it, as long as it likes.
+  [[nodiscard]] GroundSampler Sampler() const;
+  /// What there is to say of the file, once (ObjMesh).
+  [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
   /// Of the vertices and triangles, here and on the card.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -46,19 +51,23 @@ class MeshLand {
     std::shared_ptr<const Terrain> terrain;
     LightOfVertices light;
   };
+  struct Read {
+    std::shared_ptr<const Terrain> terrain;
+    std::string message;
+  };
   void Upload();
   [[nodiscard]] const GlBuffer& LightOn(LightSide side) const {
     return side == LightSide::kFirst ? first_light_ : second_light_;
   }
   void DescribeLight(const GlBuffer& buffer, GLuint first_location) const;
 
-  std::filesystem::path file_;
   LocalFrame frame_;
   std::shared_ptr<const Terrain> terrain_;
   GlVertexArray layout_;
   GlBuffer positions_, normals_, triangles_, first_light_, second_light_;
   LightFade fade_;
-  LatestJob<std::filesystem::path, std::shared_ptr<const Terrain>> reader_;
+  std::vector<std::string> notes_;
+  LatestJob<LandSource::Mesh, Read> reader_;
   LatestJob<Order, std::vector<ChunkLight>> lighter_;
 };
 

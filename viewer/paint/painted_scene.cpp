@@ -75,7 +75,7 @@ void PaintedScene::TakeHeights() {
 }
 
 void PaintedScene::TakeLight() {
-  land_.Relight(ground_.Light());
+  if (std::optional<LightOfVertices> light = ground_.Light()) land_.Relight(std::move(*light));
   if (ground_.sea_mirror().empty()) return;
   glActiveTexture(GL_TEXTURE0 + kUploadUnit);
   ground_textures_.SetSeaMirror(ground_.sea_mirror());

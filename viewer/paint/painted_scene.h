@@ -53,7 +53,7 @@ class PaintedScene {
   [[nodiscard]] const Landscape& land() const { return land_; }
   [[nodiscard]] Landscape& land() { return land_; }
   /// Whether there is any, somewhere.
-  [[nodiscard]] bool has_land() const { return has_land_; }
+  [[nodiscard]] LandKind land_kind() const { return {has_land_, scene_.terrain.HasFineRelief()}; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }

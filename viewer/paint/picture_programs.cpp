@@ -38,7 +38,7 @@ PicturePrograms::PicturePrograms(const PaintedScene& scene, const LampPainter& l
     : scene_(scene), lamps_(lamps), shafts_(shafts) {}
 
 ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
-  const PictureKind kind{scene_.material(), lamps_, scene_.has_land(), scene_.fog_phase()};
+  const PictureKind kind{scene_.material(), lamps_, scene_.land_kind(), scene_.fog_phase()};
   ShaderProgram made = FullScreenProgram(
       WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
   ConnectBlocks(made);

@@ -47,7 +47,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   }
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
                             "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));
-  add(GroundTexts(kind.material, kind.has_land));
+  add(GroundTexts(kind.material, kind.land));
   add(ShaftTexts());
   add(stage.has_lamps ? kind.lamps.texts() : NoLampTexts());
   return texts;

@@ -9,6 +9,7 @@
 #include "atmosphere/air/phase.h"
 #include "renderer/ground/ground_material.h"
 #include "viewer/gl/shader.h"
+#include "viewer/ground/ground_block.h"
 #include "viewer/lamps/lamp_painter.h"
 
 namespace alpenglow {
@@ -26,7 +27,7 @@ struct PictureStage {
 struct PictureKind {
   const GroundMaterial& material;
   const LampPainter& lamps;
-  bool has_land;
+  LandKind land;
   std::optional<PhaseKind> fog;  // its phase function
 };
 

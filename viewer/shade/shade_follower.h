@@ -9,24 +9,18 @@
 // steps of a fifth. At a thousand times it lags by five disks and goes in steps of three.
 #pragma once
 
-#include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <optional>
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/sun.h"
-#include "renderer/terrain/elevation.h"
 #include "viewer/job/latest_job.h"
+#include "viewer/land/ground_sampler.h"
 #include "viewer/shade/shade_map.h"
 #include "viewer/shade/shade_texture.h"
 
 namespace alpenglow {
-
-/// What lies within half_width_m of a place, at most so many samples a side; nothing where there is
-/// no land. Asked on the thread of the maps.
-using GroundSampler = std::function<std::optional<ElevationGrid>(
-    const GeodeticPosition& place, double half_width_m, int most_samples)>;
 
 struct ShadeSize {
   double half_width_m = 30e3;  // of the ground whose shade counts, around the eye

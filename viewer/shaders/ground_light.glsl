@@ -44,6 +44,15 @@ vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
   return seen * TransmittanceToSun(at.altitude, disk.y);
 }
 
+// The normal that light falls on: with the relief that the mesh does not have, where there is any.
+vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
+#if HAS_FINE_RELIEF
+  return DetailedNormal(offset, mesh_normal, footprint);
+#else
+  return mesh_normal;
+#endif
+}
+
 // The light of the sky on a surface that is tilted against that of the mesh: in an open place's
 // ratio.
 vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
@@ -82,7 +91,7 @@ SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
 #if HAS_SEA || HAS_LAND_COVER
   if (IsWater(altitude, draped)) return WaterSeen(at, mesh_normal);
 #endif
-  return SeenGround(at, mesh_normal, DetailedNormal(at.offset, mesh_normal, footprint),
+  return SeenGround(at, mesh_normal, NormalInLight(at.offset, mesh_normal, footprint),
                     LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped),
                     false);
 #endif

@@ -12,10 +12,17 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/ground/camera_stand.h"
 #include "renderer/ground/model_in_sight.h"
+#include "renderer/lamp/lamp_stage.h"
+#include "renderer/lamp/placed_lamp.h"
 #include "renderer/scene/scene_options.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/obj_texts.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -150,6 +157,79 @@ TEST_F(AModel, OfTheWholeEarthIsReadAroundTheCamera) {
               1e-3);
   EXPECT_THAT(seen.message, HasSubstr("of 21600 x 10800 samples"));
   EXPECT_THAT(seen.message, HasSubstr("km of the camera"));
+}
+
+class AMesh : public TemporaryFolder {
+ protected:
+  [[nodiscard]] Scene SceneOn(const std::string& obj, const Height& eye) const {
+    WriteText(folder_ / "m.obj", obj);
+    Scene scene = BareScene(0.0, 0.0, 0.0, 60.0);
+    scene.camera.height = eye;
+    scene.terrain.kind = TerrainSource::Kind::kMesh;
+    scene.terrain.file = folder_ / "m.obj";
+    return scene;
+  }
+};
+
+TEST_F(AMesh, HoldsAnEyeBetweenARoofAndTheGround) {
+  EXPECT_EQ(LoadGround(SceneOn(tests::RoofObj(), {25.0, false})).eye_height_m, 25.0);
+  EXPECT_EQ(LoadGround(SceneOn(tests::RoofObj(), {34.9, false})).eye_height_m, 34.9);
+  EXPECT_NEAR(LoadGround(SceneOn(tests::RoofObj(), {2.0, true})).eye_height_m, 37.0, 1e-6)
+      << "over the ground is over the roof";
+  EXPECT_THAT(tests::FaultOf([&] {
+                return LoadGround(SceneOn(tests::RoofObj(), {19.0, false}));
+              }),
+              HasSubstr("camera.height_m is 19.0; the ground there is at 20.0 m"));
+}
+
+TEST_F(AMesh, HoldsACameraOfAPathBetweenARoofAndTheGround) {
+  const SceneGround ground = LoadGround(SceneOn(tests::RoofObj(), {25.0, false}));
+  const auto eye_at = [&](double height_m) {
+    return StandAt(ground, PlaceFromDegrees(46.5001, 8.0001, height_m)).eye.z;
+  };
+  EXPECT_NEAR(eye_at(25.0), 25.0, 0.01);
+  EXPECT_THAT(tests::FaultOf([&] { return eye_at(19.0); }),
+              HasSubstr("the ground there is at 20.0 m"));
+  EXPECT_NEAR(GroundHeightUnder(ground, PlaceFromDegrees(46.5, 8.0, 25.0)), 35.0, 1e-6);
+}
+
+TEST_F(AMesh, HoldsALampBetweenARoofAndTheGround) {
+  Scene scene = SceneOn(tests::RoofObj(), {40.0, false});
+  const SceneGround ground = LoadGround(scene);
+  const LampStage stage(scene, ground, scene.medium);
+  const auto lamp_at = [&](const Height& height) {
+    Light light;
+    light.latitude_rad = scene.place.latitude_rad;
+    light.longitude_rad = scene.place.longitude_rad;
+    light.height = height;
+    light.intensity_cd = 5000.0;
+    scene.lights = {light};
+    return PlacedLampsOf(scene, stage, scene.medium, BandColour(scene.medium.wavelengths_nm)).at(0);
+  };
+  const PlacedLamp under = lamp_at({28.0, false});
+  EXPECT_NEAR(under.lamp.position_m.z, 28.0, 1e-6);
+  EXPECT_NEAR(under.above_ground_m, 8.0, 1e-4) << "it shines on the floor";
+  EXPECT_NEAR(lamp_at({36.0, false}).above_ground_m, 1.0, 1e-4) << "it shines on the roof";
+  EXPECT_NEAR(lamp_at({2.0, true}).lamp.position_m.z, 37.0, 1e-4);
+  EXPECT_THAT(tests::FaultOf([&] {
+                return lamp_at({19.0, false});
+              }),
+              HasSubstr("light 1: height_m is 19; the ground there is at 20.0 m"));
+}
+
+TEST_F(AMesh, TellsAllThatIsToBeSaidInOneLine) {
+  const std::string message =
+      LoadGround(SceneOn(tests::RoofObj() + "f 1 1 2\n", {25.0, false})).message;
+  EXPECT_THAT(message, HasSubstr("1 face without area left out (the first in line 11)"));
+  EXPECT_THAT(message, HasSubstr("the mesh has overhangs"));
+  EXPECT_THAT(message, Not(HasSubstr("\n")));
+}
+
+TEST_F(AMesh, IsTurnedUpWhereItsYAxisIsUp) {
+  // A wall in the file's own axes, 50 m over the place when its y axis is up.
+  Scene scene = SceneOn("v -9 50 9\nv 9 50 9\nv 9 50 -9\nv -9 50 -9\nf 1 2 3 4\n", {1.0, true});
+  scene.terrain.up = UpAxis::kY;
+  EXPECT_NEAR(LoadGround(scene).eye_height_m, 51.0, 1e-6);
 }
 
 TEST(SceneGround, TellsThatTerrainIsMadeUp) {

@@ -439,6 +439,9 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[terrain]\ndem = \"a\"\nmesh = \"b\"\n", "give one of"},
       {kPlace + "[terrain]\ndem = \"a\"\nvoids = \"sometimes\"\n", "\"fill\" or \"open\""},
       {kPlace + "[terrain]\nvoids = \"fill\"\n", "terrain.voids needs terrain.dem"},
+      {kPlace + "[terrain]\nmesh = \"a\"\nup = \"x\"\n",
+       "s.toml:6: terrain.up is \"x\"; it must be \"y\" or \"z\""},
+      {kPlace + "[terrain]\ndem = \"a\"\nup = \"y\"\n", "terrain.up needs terrain.mesh"},
       {kPlace + "[atmosphere]\npreset = \"venus\"\n", "s.toml:5: atmosphere.preset"},
       {kPlace + "[atmosphere]\nfile = \"none.toml\"\n", "folder/none.toml"},
       {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\n", "light[0].intensity_cd is missing"},
@@ -538,6 +541,15 @@ TEST(SceneOptions, SizesAndExposuresAreReadWhole) {
   for (const char* bad : {"", "bright", "nan", "inf", "1e3", "12,5", "5 "}) {
     EXPECT_THROW((void)Ev100FromText(bad), InputError) << bad;
   }
+}
+
+TEST(Scene, TheUpAxisOfAMeshIsZUnlessYIsAskedFor) {
+  const auto up_of = [](const std::string& terrain) {
+    return Read(kPlace + "[terrain]\nmesh = \"x.obj\"\n" + terrain).terrain.up;
+  };
+  EXPECT_EQ(up_of(""), UpAxis::kZ);
+  EXPECT_EQ(up_of("up = \"z\"\n"), UpAxis::kZ);
+  EXPECT_EQ(up_of("up = \"y\"\n"), UpAxis::kY);
 }
 
 using SceneFile = TemporaryFolder;

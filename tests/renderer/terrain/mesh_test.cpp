@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/mesh.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -16,13 +14,9 @@
 #include <vector>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
 
 namespace alpenglow {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 glm::dvec3 ToDouble(const std::array<float, 3>& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
@@ -214,74 +208,6 @@ TEST(MeshFromElevation, TheGroundIsOnePieceOverTheMeridianOfGreenwich) {
       EXPECT_EQ(BorderEdges(mesh), 4U * 20U);
     }
   }
-}
-
-// ---- OBJ ----
-
-class ObjFile : public ::testing::Test {
- protected:
-  ~ObjFile() override { fs::remove(file_); }
-
-  TriangleMesh Read(const std::string& text) const {
-    std::ofstream(file_, std::ios::binary) << text;
-    return ReadObj(file_);
-  }
-  void ExpectRefused(const std::string& text, const std::string& fault) const {
-    try {
-      static_cast<void>(Read(text));
-      ADD_FAILURE() << "was read: " << text;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(file_.string()));
-      EXPECT_THAT(error.what(), HasSubstr(fault));
-      EXPECT_THAT(error.what(), Not(HasSubstr("\n"))) << "a message is one line";
-    }
-  }
-
-  fs::path file_ =
-      fs::path(::testing::TempDir()) /
-      (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".obj");
-};
-
-const std::string kCorners = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 5\n";
-
-TEST_F(ObjFile, TrianglesAndPolygonsAreRead) {
-  const TriangleMesh mesh = Read(kCorners + "f 1 2 3\nf 2/1/1 4//2 3/3\n");
-  ASSERT_EQ(mesh.positions.size(), 4U);
-  ASSERT_EQ(mesh.triangles.size(), 2U);
-  EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
-  EXPECT_GT(mesh.normals[0][2], 0.99F) << "counter-clockwise seen from above faces the sky";
-  EXPECT_EQ(Read(kCorners + "f 1 2 4 3\n").triangles.size(), 2U);
-}
-
-TEST_F(ObjFile, LineEndsCommentsAndRelativeIndicesAreAsUsual) {
-  EXPECT_EQ(Read("# hill\r\nv 0 0 0\r\nv 10 0 0\r\nv 0 10 0\r\nf 1 2 3\r\n").triangles.size(), 1U);
-  EXPECT_EQ(Read(kCorners + "f 1 2 3").triangles.size(), 1U) << "no final newline";
-  EXPECT_EQ(Read(kCorners + "f -4 -3 -2\n").triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
-  EXPECT_EQ(Read("v 1e2 -1.5e+1 .5\n" + kCorners + "f 2 3 4\n").positions[0],
-            (std::array<float, 3>{100.0F, -15.0F, 0.5F}));
-}
-
-TEST_F(ObjFile, BadOnesAreRefusedByLine) {
-  ExpectRefused("", "no triangles");
-  ExpectRefused(kCorners, "no triangles");
-  ExpectRefused("v 0 0 nan\n" + kCorners + "f 1 2 3\n", ":1: coordinate 'nan'");
-  ExpectRefused(kCorners + "v inf 0 0\nf 1 2 3\n", ":5: coordinate 'inf'");
-  ExpectRefused("v 0 0 1e30\n" + kCorners + "f 1 2 3\n", ":1: coordinate '1e30'");
-  ExpectRefused("v 0 0 1e999\n" + kCorners + "f 1 2 3\n", ":1: coordinate '1e999'");
-  ExpectRefused("v 0 0 x\n" + kCorners + "f 1 2 3\n", ":1: coordinate 'x'");
-  ExpectRefused("v 0 0\n" + kCorners + "f 1 2 3\n", ":1: a vertex of fewer");
-  ExpectRefused(kCorners + "f 1 2 9\n", ":5: vertex 9; there are 4");
-  ExpectRefused(kCorners + "f 0 1 2\n", ":5: vertex 0");
-  ExpectRefused(kCorners + "f -9 1 2\n", ":5: vertex -9");
-  ExpectRefused(kCorners + "f 1 2 99999999999999999999\n", ":5: corner");
-  ExpectRefused(kCorners + "f 1 2\n", ":5: a face of fewer");
-  ExpectRefused(kCorners + "f a b c\n", ":5: corner 'a'");
-  ExpectRefused(kCorners + "f 1 2 2\n", "triangle 1 of 1 (vertices 1, 2, 2) is degenerate");
-  ExpectRefused("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "degenerate");
-}
-
-TEST_F(ObjFile, AMissingFileIsNamed) {
-  EXPECT_THROW(static_cast<void>(ReadObj(file_)), InputError);
 }
 
 }  // namespace

@@ -79,14 +79,14 @@ TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   ASSERT_NE(follower.lit(), nullptr);
   EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
   EXPECT_GT(follower.making_s(), 0.0);
-  const LightOfVertices light = follower.Light();
+  const std::optional<LightOfVertices> light = follower.Light();
   ASSERT_TRUE(light);
   GeodeticPosition foot = kFollowedPlace;
   LandVertex vertex{};
   vertex.normal = {0.0F, 0.0F, 1.0F};
   vertex.position_m = {0.0F, 0.0F,
                        static_cast<float>(RangeAround(kFollowedPlace, 100.0, 3)->height_m[4])};
-  const std::vector<VertexLight> lit = light(LocalFrame(kWgs84, foot), {&vertex, 1});
+  const std::vector<VertexLight> lit = (*light)(LocalFrame(kWgs84, foot), {&vertex, 1});
   ASSERT_EQ(lit.size(), 1U);
   EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
 }

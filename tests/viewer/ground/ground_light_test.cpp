@@ -34,7 +34,7 @@ std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
       SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
                       "viewer/shaders/sun_light.glsl"});
   pieces.push_back(tests::SunInClosedForm());
-  for (ShaderPiece& piece : GroundTexts(material, true)) pieces.push_back(std::move(piece));
+  for (ShaderPiece& piece : GroundTexts(material, {true, true})) pieces.push_back(std::move(piece));
   return pieces;
 }
 

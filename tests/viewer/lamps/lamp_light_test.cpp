@@ -349,7 +349,7 @@ TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto hit = stage.TerrainAt({points[i][0], points[i][1], 0.0});
       const bool is_lit =
-          !stage.Shades(both.light.At(0).lamp, hit->smooth_point, hit->geometric_normal);
+          !stage.Shades(both.light.At(0).lamp, hit->hit.smooth_point, hit->hit.geometric_normal);
       count += (lit[i] > 0.5F) != is_lit ? 1 : 0;
     }
     return static_cast<double>(count) / static_cast<double>(points.size());

@@ -27,7 +27,7 @@ struct Valley {
 
   [[nodiscard]] bool IsLit(const glm::dvec3& place) const {
     const auto hit = stage.TerrainAt(place);
-    return !stage.Shades(lamp, hit->smooth_point, hit->geometric_normal);
+    return !stage.Shades(lamp, hit->hit.smooth_point, hit->hit.geometric_normal);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "renderer/terrain/obj_file.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/land/surface_map.h"
@@ -461,7 +462,7 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   const auto picture = Settled(land, eye);
   EXPECT_NEAR(*land.GroundUnder(eye.place), 200.0, 0.01);
   const LocalFrame frame(kWgs84, {0.81, 0.14, 0.0});
-  const Misses misses = MissesOf(picture, eye, Terrain(ReadObj(folder_ / "hill.obj")), frame);
+  const Misses misses = MissesOf(picture, eye, Terrain(ReadObj(folder_ / "hill.obj").mesh), frame);
   EXPECT_GT(misses.both, 500);
   EXPECT_LT(Quantile(misses.distance, 1.0), 1e-5);
   EXPECT_LT(Quantile(misses.normal, 1.0), 1e-4);

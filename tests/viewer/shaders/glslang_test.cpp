@@ -128,7 +128,8 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
                             PictureStage::Pass::kOpenSky, PictureStage::Pass::kDisks}) {
       for (int choice = 0; choice < 4; ++choice) {
         const PictureStage stage{pass, choice % 2 == 1, choice / 2 == 1};
-        ExpectAccepted(PictureTexts({material, painter, true, fog}, stage), "picture.frag.glsl");
+        ExpectAccepted(PictureTexts({material, painter, {true, true}, fog}, stage),
+                       "picture.frag.glsl");
       }
     }
   }
@@ -147,7 +148,8 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
     texts.push_back(tests::SunInClosedForm());
     const std::vector<double> bands{450.0, 550.0, 650.0};
     for (ShaderPiece& piece :
-         GroundTexts(GroundMaterial(cover, nullptr, bands), !cover.sea_level_m))
+         GroundTexts(GroundMaterial(cover, nullptr, bands),
+                     {!cover.sea_level_m, kind != GroundCover::Kind::kOrenNayar}))
       texts.push_back(std::move(piece));
     texts.push_back({"main",
                      "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
