@@ -16,7 +16,7 @@ constexpr int kCells = kSize * kSize;
 
 /// Gaussian of the distance on the torus, sigma 1.9 pixels (Ulichney's 1.5 leaves more low
 /// frequencies in tiles this small), in integers so that sums are exact.
-std::vector<int> Kernel() {
+std::vector<int> DitherKernel() {
   std::vector<int> kernel(kCells);
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
@@ -32,7 +32,7 @@ std::vector<int> Kernel() {
 /// A pattern of points on the torus and how crowded every cell is.
 class Pattern {
  public:
-  Pattern() : kernel_(Kernel()), crowding_(kCells, 0), set_(kCells, false) {}
+  Pattern() : kernel_(DitherKernel()), crowding_(kCells, 0), set_(kCells, false) {}
 
   void Add(int cell) { Change(cell, true, 1); }
   void Remove(int cell) { Change(cell, false, -1); }

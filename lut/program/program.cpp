@@ -42,7 +42,7 @@ void InstallHandlers() {
   for (const int lost : {SIGXFSZ, SIGPIPE, SIGHUP}) std::signal(lost, SIG_IGN);
 }
 
-int Report(const std::string& name, std::string message, int status) {
+int ReportFailure(const std::string& name, std::string message, int status) {
   std::replace(message.begin(), message.end(), '\n', ' ');
   Say(fmt::format("{}: {}\n", name, message));
   return status;
@@ -68,22 +68,22 @@ int RunProgram(const std::string& name, const std::function<int()>& body) {
     FlushStandardOutput();
     return status;
   } catch (const OptionError& error) {
-    return Report(name, error.what(), 2);
+    return ReportFailure(name, error.what(), 2);
   } catch (const InputError& error) {
-    return Report(name, error.what(), 3);
+    return ReportFailure(name, error.what(), 3);
   } catch (const OutputError& error) {
-    return Report(name, error.what(), 4);
+    return ReportFailure(name, error.what(), 4);
   } catch (const DisplayError& error) {
-    return Report(name, error.what(), 5);
+    return ReportFailure(name, error.what(), 5);
   } catch (const Stopped& stopped) {
-    return Report(name, stopped.signal == SIGINT ? "interrupted" : "terminated",
-                  128 + stopped.signal);
+    return ReportFailure(name, stopped.signal == SIGINT ? "interrupted" : "terminated",
+                         128 + stopped.signal);
   } catch (const std::bad_alloc&) {
-    return Report(name, "internal error: there is no memory left", 70);
+    return ReportFailure(name, "internal error: there is no memory left", 70);
   } catch (const std::exception& error) {
-    return Report(name, fmt::format("internal error: {}", error.what()), 70);
+    return ReportFailure(name, fmt::format("internal error: {}", error.what()), 70);
   } catch (...) {
-    return Report(name, "internal error: unknown exception", 70);
+    return ReportFailure(name, "internal error: unknown exception", 70);
   }
 }
 

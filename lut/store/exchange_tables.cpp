@@ -102,9 +102,9 @@ ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& ligh
 
 /// Orders 2 to 4 over the molecules' phase function,
 /// one row (a view angle at an altitude) at a time.
-class HigherOrders {
+class HigherOrdersOfRays {
  public:
-  HigherOrders(const ScatteringTable& rays, const DiffuseLight& light)
+  HigherOrdersOfRays(const ScatteringTable& rays, const DiffuseLight& light)
       : rays_(rays), light_(light), air_(rays.medium()) {}
 
   /// [(nu * mu_s + mu_s) * 3 + band]
@@ -136,7 +136,7 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const Di
   Progress progress("scattering", 2 * rows, style);
   const ScatteringTable once(medium, {.size = kScatteringSize, .lowest_mu_s = lowest_mu_s},
                              &progress);
-  const HigherOrders higher(once, light);
+  const HigherOrdersOfRays higher(once, light);
   const std::vector<TextureShape> shapes = ShapesOf(ExchangeLayout::kTakram);
   std::array<ExchangeTexture, 3> textures{EmptyTexture(shapes[2]), EmptyTexture(shapes[3]),
                                           EmptyTexture(shapes[4])};

@@ -6,7 +6,7 @@
 namespace alpenglow {
 namespace {
 
-ReportWords Words() {
+ReportWords WordsOfReport() {
   return {
       .title = "Alpenglow: speed and accuracy of pictures",
       .lead =
@@ -37,7 +37,7 @@ Report MeasurePictureReport(const ReportOptions& options) {
   for (const auto measure : {MeasureShafts, MeasureAirlight, MeasureManyLamps, MeasurePictures}) {
     topics.emplace_back([measure, &effort] { return measure(effort); });
   }
-  return MeasureTopics(Words(), options.quick, options.progress, topics);
+  return MeasureTopics(WordsOfReport(), options.quick, options.progress, topics);
 }
 
 }  // namespace alpenglow

@@ -94,7 +94,7 @@ void CheckMesh(const TriangleMesh& mesh) {
 }
 
 /// How far triangles reach, and the square of their longest edge.
-struct Reach {
+struct BoxReach {
   Box box;
   double longest2_m2 = 0.0;
 
@@ -106,17 +106,17 @@ struct Reach {
       longest2_m2 = std::max(longest2_m2, glm::dot(edge, edge));
     }
   }
-  [[nodiscard]] Reach With(const Reach& other) const {
+  [[nodiscard]] BoxReach With(const BoxReach& other) const {
     return {{glm::min(box.low, other.box.low), glm::max(box.high, other.box.high)},
             std::max(longest2_m2, other.longest2_m2)};
   }
 };
 
-Reach ReachOf(const TriangleMesh& mesh) {
+BoxReach ReachOf(const TriangleMesh& mesh) {
   const tbb::blocked_range<std::size_t> all(0, mesh.triangles.size(), 1 << 14);
   return tbb::parallel_reduce(
-      all, Reach{},
-      [&](const tbb::blocked_range<std::size_t>& some, Reach reach) {
+      all, BoxReach{},
+      [&](const tbb::blocked_range<std::size_t>& some, BoxReach reach) {
         for (std::size_t i = some.begin(); i < some.end(); ++i) {
           const auto& [a, b, c] = mesh.triangles[i];
           reach.Add({ToDouble(mesh.positions[a]), ToDouble(mesh.positions[b]),
@@ -124,7 +124,7 @@ Reach ReachOf(const TriangleMesh& mesh) {
         }
         return reach;
       },
-      [](const Reach& a, const Reach& b) { return a.With(b); });
+      [](const BoxReach& a, const BoxReach& b) { return a.With(b); });
 }
 
 // Wide enough that a clipped ray starts off the triangles.
@@ -197,7 +197,7 @@ struct Terrain::Scene {
 
   explicit Scene(TriangleMesh triangles) : mesh(std::move(triangles)) {
     CheckMesh(mesh);
-    const Reach reach = ReachOf(mesh);
+    const BoxReach reach = ReachOf(mesh);
     bounds = Widened(reach.box);
     longest_edge_m = std::sqrt(reach.longest2_m2);
     device = rtcNewDevice("");

@@ -207,8 +207,7 @@ std::optional<std::string> Cockpit::DoAutopilot(Action action) {
 
 std::string Cockpit::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
   const bool jumped = clock_.JumpToNext(event, pilot_.eye().place, moon);
-  return jumped ? alpenglow::ModeNameOf(event)
-                : fmt::format("no {} here within a year", alpenglow::ModeNameOf(event));
+  return jumped ? NameOf(event) : fmt::format("no {} here within a year", NameOf(event));
 }
 
 std::optional<std::string> Cockpit::DoTime(Action action, const MoonEventAfter& moon) {

@@ -17,7 +17,14 @@
 namespace alpenglow {
 namespace {
 
-enum LampUnit { kTablesUnit, kGlowUnit, kMieUnit, kLatticeUnit, kShadeUnit, kPlanUnit };
+enum LampUnit {
+  kLampTablesUnit,
+  kLampGlowUnit,
+  kLampMieUnit,
+  kLampLatticeUnit,
+  kLampShadeUnit,
+  kLampPlanUnit
+};
 
 /// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
 /// 1 / angle is straight enough between its points.
@@ -112,12 +119,12 @@ void LampPainter::Connect(const ShaderProgram& program) const {
   program.BindBlock("Lamps", units_.lamps_block);
   program.BindBlock("View", units_.view_block);
   program.BindSampler("surface_map", units_.surface);
-  program.BindSampler("lamp_tables", units_.first + kTablesUnit);
-  program.BindSampler("lamp_glow_map", units_.first + kGlowUnit);
-  program.BindSampler("lamp_mie_table", units_.first + kMieUnit);
-  program.BindSampler("lamp_shades", units_.first + kShadeUnit);
-  program.BindSampler("lamp_plans", units_.first + kPlanUnit);
-  program.BindSampler("lamp_lattice", units_.first + kLatticeUnit);
+  program.BindSampler("lamp_tables", units_.first + kLampTablesUnit);
+  program.BindSampler("lamp_glow_map", units_.first + kLampGlowUnit);
+  program.BindSampler("lamp_mie_table", units_.first + kLampMieUnit);
+  program.BindSampler("lamp_shades", units_.first + kLampShadeUnit);
+  program.BindSampler("lamp_plans", units_.first + kLampPlanUnit);
+  program.BindSampler("lamp_lattice", units_.first + kLampLatticeUnit);
 }
 
 void LampPainter::UploadTables(const SceneLamps& shape) {
@@ -126,7 +133,7 @@ void LampPainter::UploadTables(const SceneLamps& shape) {
     const std::vector<float> sampled = SampledProfile(profile);
     samples.insert(samples.end(), sampled.begin(), sampled.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kTablesUnit));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampTablesUnit));
   glBindTexture(GL_TEXTURE_2D_ARRAY, tables_.id());
   if (!samples.empty()) {
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kLampGammas, kLampTurns,
@@ -137,7 +144,7 @@ void LampPainter::UploadTables(const SceneLamps& shape) {
   if (mie.kind != PhaseKind::kTable) return;
   std::vector<float> nodes;
   for (const double node : mie.table->nodes()) nodes.push_back(static_cast<float>(node));
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kMieUnit));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampMieUnit));
   glBindTexture(GL_TEXTURE_2D, mie_table_.id());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, static_cast<GLsizei>(nodes.size()), 1, 0, GL_RED,
                GL_FLOAT, nodes.data());
@@ -151,7 +158,7 @@ void LampPainter::UploadGlows(const SceneLamps& shape) {
     const std::vector<glm::vec4> terms = SampledGlow(*glow);
     texels.insert(texels.end(), terms.begin(), terms.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kGlowUnit));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampGlowUnit));
   glBindTexture(GL_TEXTURE_2D_ARRAY, glows_.id());
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowTerms * kGlowRises,
                static_cast<GLsizei>(shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
@@ -164,7 +171,7 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
   for (const std::vector<float>& shade : shape.shades()) {
     texels.insert(texels.end(), shade.begin(), shade.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kShadeUnit));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampShadeUnit));
   glBindTexture(GL_TEXTURE_2D_ARRAY, shades_.id());
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kShadeTurns, kShadeRings,
                static_cast<GLsizei>(shape.shades().size()), 0, GL_RED, GL_FLOAT, texels.data());
@@ -175,7 +182,7 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
 // Room for all of them, and those that are finished.
 void LampPainter::UploadPlans(const SceneLamps& shape) {
   if (shape.PlanLayerCount() == 0) return;
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kPlanUnit));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampPlanUnit));
   glBindTexture(GL_TEXTURE_2D_ARRAY, plans_.id());
   if (uploaded_plans_ == 0) {
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R8, kPlanSide, kPlanSide, shape.PlanLayerCount(), 0,
@@ -222,12 +229,12 @@ void LampPainter::Bind() const {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + unit));
     glBindTexture(target, texture.id());
   };
-  bind(kTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
-  bind(kGlowUnit, GL_TEXTURE_2D_ARRAY, glows_);
-  bind(kMieUnit, GL_TEXTURE_2D, mie_table_);
-  bind(kShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
-  bind(kPlanUnit, GL_TEXTURE_2D_ARRAY, plans_);
-  if (lattice_) lattice_->BindTexture(units_.first + kLatticeUnit);
+  bind(kLampTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
+  bind(kLampGlowUnit, GL_TEXTURE_2D_ARRAY, glows_);
+  bind(kLampMieUnit, GL_TEXTURE_2D, mie_table_);
+  bind(kLampShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
+  bind(kLampPlanUnit, GL_TEXTURE_2D_ARRAY, plans_);
+  if (lattice_) lattice_->BindTexture(units_.first + kLampLatticeUnit);
 }
 
 void LampPainter::PaintGlow(int width, int height) {

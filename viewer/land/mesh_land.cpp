@@ -24,7 +24,7 @@ void DescribeVectors(GLuint location, const GlBuffer& buffer) {
   glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, 3 * sizeof(float), nullptr);
 }
 
-ChunkLight Packed(const VertexLight& light) {
+ChunkLight PackedLight(const VertexLight& light) {
   ChunkLight packed{};
   for (std::size_t band = 0; band < light.sky.size(); ++band)
     packed.sky[band] = glm::packHalf1x16(light.sky[band]);
@@ -44,7 +44,7 @@ std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& 
   }
   std::vector<ChunkLight> packed;
   packed.reserve(vertices.size());
-  for (const VertexLight& lit : light(frame, vertices)) packed.push_back(Packed(lit));
+  for (const VertexLight& lit : light(frame, vertices)) packed.push_back(PackedLight(lit));
   return packed;
 }
 
@@ -72,7 +72,7 @@ void MeshLand::Upload() {
   DescribeVectors(1, positions_);
   DescribeVectors(3, normals_);
   DescribeVectors(4, normals_);
-  const std::vector<ChunkLight> light(mesh.positions.size(), Packed({}));
+  const std::vector<ChunkLight> light(mesh.positions.size(), PackedLight({}));
   alpenglow::Upload(GL_ARRAY_BUFFER, first_light_, light);
   alpenglow::Upload(GL_ARRAY_BUFFER, second_light_, light);
 }

@@ -12,7 +12,7 @@
 namespace alpenglow {
 namespace {
 
-enum EnlargerUnit { kSmall, kDither, kOutline };
+enum EnlargerUnit { kSmall, kPrintDither, kOutline };
 
 ShaderProgram ProgramOf(Enlarger::Shows shows) {
   ShaderProgram program = FullScreenProgram(WithViewerPieces(
@@ -42,7 +42,8 @@ void Enlarger::Enlarge(const RenderTarget& small, const LandOutline& outline,
   small.BindTexture(kSmall);
   outline.BindDepth(kOutline);
   program_.Use();
-  if (shows_ == Shows::kCodes) dither_.Bind(program_, kDither, outline.width(), outline.height());
+  if (shows_ == Shows::kCodes)
+    dither_.Bind(program_, kPrintDither, outline.width(), outline.height());
   glUniform2f(program_.Uniform("half_view"), static_cast<float>(half_view.x),
               static_cast<float>(half_view.y));
   DrawFullScreen(program_, no_vertices_);
