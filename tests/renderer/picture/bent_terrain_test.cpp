@@ -38,7 +38,7 @@ class BentTerrain : public TemporaryFolder {
     obj << "f 1 2 3\nf 2 4 3\n";
     obj.close();
     Scene scene = BareScene(peak.eye_m, 0.0, pitch_deg, fov_deg);
-    scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+    scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill};
     return scene;
   }
 };

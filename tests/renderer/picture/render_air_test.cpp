@@ -82,7 +82,7 @@ TEST_F(RenderAirFiles, AMountainBeforeTheSunHasNoGlowInItsShadedAir) {
             "v 9000 -60000 0\nv 9000 60000 0\nf 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\n");
   Scene scene = BareScene(0.0, 62.0, 4.0, 10.0);
   scene.camera = CameraFromDegrees({50.0, false}, 62.0, 4.0, 0.0, 10.0);
-  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill};
   const SceneRenderer renderer(scene);
   RenderSettings settings{
       .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 12, .layers = {}};
@@ -131,7 +131,7 @@ TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSideAndDarkAirBeforeIt) {
               "v 4000 -60000 -300\nv 4000 60000 -300\nv 4000 -60000 1500\nv 4000 60000 1500\n" +
                   std::string(faces));
     Scene scene = BareScene(50.0, 72.0, 4.0, 10.0);
-    scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+    scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill};
     const SceneRenderer renderer(scene);
     RenderSettings settings{
         .width = 16, .height = 9, .samples_per_pixel = 4, .air_nodes = 12, .layers = {}};

@@ -92,7 +92,7 @@ Scene AtTheBottomOf(const std::filesystem::path& file, double depth_m) {
   WriteText(file, text);
   Scene scene = BareScene(0.0, 40.0, 55.0, 30.0);
   scene.camera.height = {2.0, true};
-  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill, std::nullopt};
+  scene.terrain = {TerrainSource::Kind::kMesh, file, VoidPolicy::kFill};
   return scene;
 }
 

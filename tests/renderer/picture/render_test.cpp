@@ -305,7 +305,7 @@ TEST(Render, SummitOfFujiIsLitBeforeTheLakeBelow) {
   if (!std::filesystem::exists(dem)) GTEST_SKIP() << "no elevation model at " << dem;
   Scene scene = BareScene(0.0, 0.0, 0.0, 8.0);
   scene.place = PlaceFromDegrees(35.50, 138.76, 0.0);
-  scene.terrain = {TerrainSource::Kind::kElevationModel, dem, VoidPolicy::kFill, std::nullopt};
+  scene.terrain = {TerrainSource::Kind::kElevationModel, dem, VoidPolicy::kFill};
   // Mount Fuji (35.3606, 138.7274) stands 15.7 km off,
   // heading 191 degrees, its summit 10.5 degrees up.
   scene.camera = CameraFromDegrees({20.0, true}, 190.8, 7.0, 0.0, 12.0);

@@ -18,10 +18,6 @@
 namespace alpenglow {
 namespace {
 
-glm::dvec3 ToDouble(const std::array<float, 3>& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-
 GeodeticPosition PlaceOfDegrees(double latitude, double longitude, double height_m = 0.0) {
   return {latitude * kRadiansPerDegree, longitude * kRadiansPerDegree, height_m};
 }

@@ -60,16 +60,16 @@ struct Texel {
   }
 };
 
-struct GlowDeviation {
+struct SlopeDeviation {
   double rms = 0.0, most = 0.0;
 };
 
 /// Over slopes between two tilts, the lamp 20 m to 2 km away; relative to what the slope gets, but
 /// at least a tenth of what the slope of them does that gets most.
-GlowDeviation OverSlopes(const LampGlow& glow, const std::vector<glm::vec4>& map,
-                         std::array<double, 2> tilts_deg, std::array<int, 2> rises) {
+SlopeDeviation OverSlopes(const LampGlow& glow, const std::vector<glm::vec4>& map,
+                          std::array<double, 2> tilts_deg, std::array<int, 2> rises) {
   constexpr int kTilts = 4, kTurns = 12;
-  GlowDeviation deviation;
+  SlopeDeviation deviation;
   int count = 0;
   for (int distance = 24; distance <= 48; ++distance) {
     for (int rise = rises[0]; rise <= rises[1]; ++rise) {
@@ -115,8 +115,8 @@ TEST(GlowMap, LevelGroundGetsWhatItGets) {
 TEST(GlowMap, SlopesInClearAirGetWhatLampGlowSays) {
   const LampGlow glow(ClearAir(), 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
-  const GlowDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, kAllRises);
-  const GlowDeviation steep = OverSlopes(glow, map, {30.0, 60.0}, kAllRises);
+  const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, kAllRises);
+  const SlopeDeviation steep = OverSlopes(glow, map, {30.0, 60.0}, kAllRises);
   EXPECT_LT(gentle.rms, 0.02) << "six terms of a light that has more";
   EXPECT_LT(gentle.most, 0.12);
   EXPECT_LT(steep.rms, 0.07);
@@ -127,8 +127,8 @@ TEST(GlowMap, SlopesInLightFogGetWhatLampGlowSays) {
   const LampGlow glow(LightFog(), 6.0, 0.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const std::array<int, 2> level{15, 17};  // the lamp stands about as high as the slope
-  const GlowDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, level);
-  const GlowDeviation steep = OverSlopes(glow, map, {30.0, 60.0}, level);
+  const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, level);
+  const SlopeDeviation steep = OverSlopes(glow, map, {30.0, 60.0}, level);
   EXPECT_LT(gentle.rms, 0.12) << "light in fog comes from near the lamp, and has an edge";
   EXPECT_LT(steep.rms, 0.16);
 }

@@ -181,7 +181,7 @@ TEST_F(LampsOnTheCard, GlowInFogUnderTheEyeAsTheRenderer) {
 TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
   Scene scene = Night(6.0, 0.004, 7.0);
   scene.fog->base_height_m = 5000.0;
-  const Both both(scene);
+  const BothLamps both(scene);
   const auto rays = Rays(both, 100);
   for (const float glow : both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays)) {
     EXPECT_EQ(glow, 0.0F);
@@ -197,7 +197,7 @@ TEST_F(LampsOnTheCard, GlowInFogOverAHighBaseAsTheRenderer) {
   Scene scene = Night(kBase_m + 6.0, 0.004, 25.0);
   for (Light& light : scene.lights) light.height.value_m += kBase_m;
   scene.fog->base_height_m = kBase_m;
-  const Deviation deviation = GlowDeviation(Both(scene));
+  const Deviation deviation = GlowDeviation(BothLamps(scene));
   EXPECT_LT(deviation.mean, 4e-3);
   EXPECT_LT(deviation.p99, 0.06);
 }

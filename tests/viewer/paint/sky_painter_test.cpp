@@ -218,7 +218,7 @@ using BarePlanet = tests::Headless;
 void ExpectTheRenderers(const Scene& scene, const char* utc) {
   const UtcInstant now = ParseInstant(utc);
   const double eye_m = scene.camera.height.value_m;
-  const ViewDifference is = Both(scene, now).Difference(ViewOf(scene, eye_m, now));
+  const ViewDifference is = BothPrograms(scene, now).Difference(ViewOf(scene, eye_m, now));
   EXPECT_LT(is.mean, 0.005);
   EXPECT_LT(is.at_999_permille, 0.02);
   EXPECT_LT(is.edge_share, 0.6) << "there is enough left to compare";
