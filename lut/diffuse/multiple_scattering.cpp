@@ -48,7 +48,7 @@ const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) 
   if (options.forward_peak && options.exact_orders)
     throw InputError("forward_peak sums all orders; exact_orders wants some");
   RequireNodes(options);
-  RequireInRange(options.max_orders, 1, 1000, "max_orders");
+  RequireInRange(options.max_orders, 1, 10000, "max_orders");
   RequireInRange(options.tolerance, 0.0, 1.0, "tolerance");
   RequireInRange(options.exact_orders.value_or(1), 1, 1000, "exact_orders");
   Validate(medium);

@@ -200,7 +200,7 @@ TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
 
 TEST(DiffuseLight, TenNodesScatterSunlightOnceInHazeToATenthOfAPercent) {
   const Medium hazy = MediumPreset("hazy");
-  DiffuseLightOptions options{.ray_nodes = 64, .exact_orders = 1};
+  DiffuseLightOptions options{.ray_nodes = 32, .exact_orders = 1};
   const DiffuseLight truth(hazy, options);
   options.ray_nodes = 10;
   const DiffuseLight light(hazy, options);
