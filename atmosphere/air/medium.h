@@ -159,8 +159,8 @@ void Validate(const Medium& medium);
 inline constexpr double kFirstPresetWavelength_nm = 360.0;
 inline constexpr double kLastPresetWavelength_nm = 830.0;
 
-/// Reads atmosphere.toml: a preset, changed by what the file gives (keys, units and meaning in
-/// atmosphere_file.cpp). Wavelengths may ascend or descend; descending ones are stored reversed,
+/// Reads atmosphere.toml: a preset, changed by what the file gives (keys, units and meaning:
+/// ATMOSPHERE_FILE.md). Wavelengths may ascend or descend; descending ones are stored reversed,
 /// with every list of the file. Throws InputError "file:line: key ..." for unknown keys (with the
 /// nearest known one), wrong types, NaN, infinities, lists of unequal length, values out of range,
 /// keys that contradict each other or would have no effect, and malformed text. The name is the

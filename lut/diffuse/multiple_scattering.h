@@ -43,15 +43,15 @@ struct DiffuseLightOptions {
   int altitudes = 18;     // nodes, quadratic in altitude, >= 4
   int sun_angles = 32;    // nodes, dense around the terminator, >= 4
   int degree = 6;         // largest l: 2, 4, 6 or 12
-  int zenith_nodes = 14;  // directions above and below the horizon, each
+  int zenith_nodes = 14;  // directions above and below the horizon, each, in [1, 64]
   int azimuth_nodes = 8;  // over half a turn, in [1, 32]
-  int ray_nodes = 10;     // Gauss nodes along each direction
+  int ray_nodes = 10;     // Gauss nodes along each direction, in [1, 32]
   // The same for light scattered twice and more before it arrives, which is smooth: smaller numbers
   // than those above, or they have no effect.
   int later_zenith_nodes = 6;
   int later_azimuth_nodes = 5;
   int later_ray_nodes = 6;
-  int max_orders = 200;
+  int max_orders = 200;  // in [1, 10000]
   // Share of the light that is summed as a geometric series, not computed; or, in thick air, what is
   // not known of that, ten times over.
   double tolerance = 1e-2;
