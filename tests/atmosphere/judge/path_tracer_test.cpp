@@ -178,7 +178,6 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
   const Medium medium = WithoutAbsorption();
   const double top = medium.planet_radius_m + medium.atmosphere_height_m;
   const std::size_t bands = medium.wavelengths_nm.size();
-  constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(30000, 15000);
   // Shares of the light that meets the disk of the shell's radius, which is 1.
   std::vector<double> leaves(bands, 0.0), error(bands, 0.0);
   struct Panel {
@@ -192,7 +191,7 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
       const double width = panel.high - panel.low;
       const auto flux =
           TraceIrradiance(medium, medium.atmosphere_height_m, panel.low + width * rule.node[i],
-                          PlaneSide::kFromBelow, {.max_paths = kPaths, .relative_error = 0.003});
+                          PlaneSide::kFromBelow, {.max_paths = 30000, .relative_error = 0.003});
       for (std::size_t band = 0; band < bands; ++band) {
         leaves[band] += 2.0 * width * rule.weight[i] * flux.value[band];
         error[band] += std::pow(2.0 * width * rule.weight[i] * flux.standard_error[band], 2.0);

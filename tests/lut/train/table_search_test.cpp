@@ -79,6 +79,8 @@ class ChosenTables : public TemporaryFolder {
  protected:
   static constexpr std::size_t kUnseen = 100000;
   static constexpr std::size_t kUnseenViews = tests::ScaledDown<std::size_t>(200, 80);
+  /// So much larger than the bound may an rms be: 80 views know it to a twelfth.
+  static constexpr double kSampling = tests::ScaledDown(1.0, 1.0 + 1.0 / 12.0);
   static TableSearch Search(double max_error, TablesWanted wanted = TablesWanted::kSmallest) {
     return {.max_error = max_error,
             .views_of_a_kind = tests::ScaledDown<std::size_t>(160, 80),
@@ -101,7 +103,7 @@ TEST_P(SmallestTables, AreUnderTheBoundOnViewsThatTheSearchDidNotSee) {
     EXPECT_LT(measured.errors.rms, max_error);
     EXPECT_LT(measured.paths.Unexplained(), max_error);
     const ViewErrors errors = unseen.ErrorsOf(stored, measured.kind);
-    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), max_error)
+    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), kSampling * max_error)
         << NameOf(measured.kind) << ":\n"
         << ChoiceText(choice, max_error);
   }
@@ -120,8 +122,9 @@ TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViewsToo) {
   EXPECT_EQ(stored.tables().single_scattering->texels(), choice.tables.single_scattering->texels());
   const JudgedViews unseen(EarthFinest().medium(), EarthFinest(), kUnseenViews, kUnseen);
   for (const ViewKind kind : kViewKinds) {
-    EXPECT_LT(unseen.ErrorsOf(stored, kind).rms, kMaxError) << NameOf(kind) << ":\n"
-                                                            << ChoiceText(choice, kMaxError);
+    EXPECT_LT(unseen.ErrorsOf(stored, kind).rms, kSampling * kMaxError)
+        << NameOf(kind) << ":\n"
+        << ChoiceText(choice, kMaxError);
   }
 }
 

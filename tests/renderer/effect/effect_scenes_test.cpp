@@ -14,13 +14,15 @@
 namespace alpenglow {
 namespace {
 
-const RenderSettings kSmall = [] {
+RenderSettings SettingsOf(int width, int height) {
   RenderSettings settings;
-  settings.width = tests::ScaledDown(96, 48);
-  settings.height = tests::ScaledDown(54, 27);
+  settings.width = width;
+  settings.height = height;
   settings.samples_per_pixel = 2;
   return settings;
-}();
+}
+const RenderSettings kFull = SettingsOf(96, 54);
+const RenderSettings kSmall = tests::ScaledDown(kFull, SettingsOf(48, 27));
 
 class SceneEffects : public TemporaryFolder, public testing::WithParamInterface<const char*> {
  protected:
@@ -99,11 +101,12 @@ INSTANTIATE_TEST_SUITE_P(Of, SceneEffects,
 class SceneNeeds : public TemporaryFolder {
  protected:
   void SetUp() override { TemporaryFolder::SetUp(); }
-  [[nodiscard]] EffectChoice ChoiceFor(const std::string& name, bool explain = false) const {
+  [[nodiscard]] EffectChoice ChoiceFor(const std::string& name, bool explain = false,
+                                       const RenderSettings& settings = kSmall) const {
     for (const EffectScene& scene : EffectScenes(folder_.string())) {
       if (scene.name != name) continue;
       return SceneRenderer(scene.scene)
-          .RenderWithin(scene.instant, kSmall, {.max_error = 0.01, .explain = explain})
+          .RenderWithin(scene.instant, settings, {.max_error = 0.01, .explain = explain})
           .choice;
     }
     throw std::logic_error("no scene " + name);
@@ -130,7 +133,7 @@ TEST_F(SceneNeeds, TheSkyByDayAndNotAtNight) {
 }
 
 TEST_F(SceneNeeds, LampsThatAreSeenByDayAndNotTheirLightInClearAir) {
-  const EffectChoice day = ChoiceFor("lamps at noon");
+  const EffectChoice day = ChoiceFor("lamps at noon", false, kFull);  // lamps are few pixels
   EXPECT_FALSE(day.LeftOut().Has(Effect::kLights)) << "few pixels, but those that one looks at";
   EXPECT_TRUE(day.LeftOut().Has(Effect::kBeams));
 }

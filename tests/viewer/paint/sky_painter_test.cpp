@@ -22,14 +22,20 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kViewWidth = tests::ScaledDown(160, 64), kViewHeight = tests::ScaledDown(90, 36);
+struct PictureSize {
+  int width, height;
+};
+constexpr int kViewWidth = 160, kViewHeight = 90;
+constexpr PictureSize kFull{kViewWidth, kViewHeight}, kScaled = tests::ScaledDown(kFull, {64, 36});
+// What is at rims of the ground grows with the pixels.
+constexpr double kPixelWidth = static_cast<double>(kViewWidth) / kScaled.width;
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kSamples = 32;
 
-RenderSettings JudgeSettings() {
+RenderSettings JudgeSettings(const PictureSize& size) {
   RenderSettings settings;
-  settings.width = kViewWidth;
-  settings.height = kViewHeight;
+  settings.width = size.width;
+  settings.height = size.height;
   settings.samples_per_pixel = kSamples;
   settings.filter = PixelFilter::Kind::kBox;
   settings.layers = LayersOfEdges();
@@ -46,24 +52,28 @@ PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& no
 /// The renderer and the painter of a scene, for as many views as one likes.
 class BothPrograms {
  public:
-  explicit BothPrograms(const Scene& scene, const UtcInstant& first)
-      : ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
+  explicit BothPrograms(const Scene& scene, const UtcInstant& first, PictureSize size = kScaled)
+      : size_(size),
+        ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
         judge_(scene, ground_),
         painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first),
                  SizesOf(Quality::kHigh)) {}
 
-  ViewDifference Difference(const PaintedView& view) {
+  ViewDifference Difference(PaintedView view) {
+    view.width = size_.width;
+    view.height = size_.height;
     Shot shot(view.now);
     shot.poses = {PoseOf(view.eye)};
     painter_.Settle(view, kSamples);
     painter_.Paint(view, kSamples);
-    return DifferenceOf(judge_.Render(shot, JudgeSettings()), painter_.picture().Read());
+    return DifferenceOf(judge_.Render(shot, JudgeSettings(size_)), painter_.picture().Read());
   }
   ViewDifference Difference(const ParityView& view) {
     return Difference(ViewOf(view.scene, ground_->eye_height_m, view.instant));
   }
 
  private:
+  PictureSize size_;
   std::shared_ptr<const SceneGround> ground_;
   SceneRenderer judge_;
   SkyPainter painter_;
@@ -72,10 +82,11 @@ class BothPrograms {
 struct Bounds {
   double mean, at_99_percent;
 };
-/// @param bounds  half as much again as was measured.
-void ExpectWithin(const ViewDifference& is, const Bounds& bounds, const char* why) {
-  EXPECT_LT(is.mean, bounds.mean) << why;
-  EXPECT_LT(is.at_99_percent, bounds.at_99_percent) << why;
+/// @param bounds  half as much again as was measured, in pictures of kFull.
+void ExpectWithin(const ViewDifference& is, const Bounds& bounds, const char* why,
+                  double pixel_width = kPixelWidth) {
+  EXPECT_LT(is.mean, pixel_width * bounds.mean) << why;
+  EXPECT_LT(is.at_99_percent, pixel_width * bounds.at_99_percent) << why;
   EXPECT_LT(is.edge_share, 0.6) << "there is enough left to compare";
 }
 
@@ -194,16 +205,18 @@ class DrapedLand : public tests::HeadlessTile {
 TEST_F(DrapedLand, ColoursLieWhereTheRenderersDoFromWhereverTheyAreSeen) {
   const Scene scene = DrapedScene();
   const UtcInstant now = ParseInstant("2026-06-21T10:00:00Z");
-  BothPrograms both(scene, now);
+  BothPrograms both(scene, now, kFull);
   PaintedView view = ViewOf(scene, 4500.0, now);
   ExpectWithin(
       both.Difference(view), {0.010, 0.115},
       "half of it is of bare land; sixteen rays a pixel on rims of squares. A quarter of a "
-      "pixel of colours aside, it would be five times as much");
+      "pixel of colours aside, it would be five times as much",
+      1.0);
   const GeodeticPosition elsewhere = tests::PlaceOfSample(220.0, 30.0, 4500.0);
   view.eye.place = elsewhere;
   view.eye.heading_rad = 220.0 * kRadiansPerDegree;
-  ExpectWithin(both.Difference(view), {0.016, 0.15}, "in the frame of the scene's place still");
+  ExpectWithin(both.Difference(view), {0.016, 0.15}, "in the frame of the scene's place still",
+               1.0);
 }
 
 /// Three bands, quick to solve.
