@@ -239,7 +239,7 @@ endfunction()
 function(alpenglow_test_line line program filter)
   add_test(NAME ${line} COMMAND ${program} "--gtest_filter=${filter}"
     --gtest_output=xml:${CMAKE_CURRENT_BINARY_DIR}/results/${line}.xml)
-  set_tests_properties(${line} PROPERTIES TIMEOUT 900
+  set_tests_properties(${line} PROPERTIES TIMEOUT 1800
     ENVIRONMENT "ALPENGLOW_CACHE=${PROJECT_BINARY_DIR}/cache")  # not the one of who tests
 endfunction()
 
