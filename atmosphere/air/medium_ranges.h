@@ -32,8 +32,8 @@ inline constexpr Range kOzoneAltitude_m{0.0, 1e7};
 /// inverse (optical_depth.glsl) that leave 0.19 of its square: 3e-4
 /// of an optical depth here, at most 1e-3 of light scattered once.
 inline constexpr double kLeastRadiusInScaleHeights = 25.0;
-/// From the peak of ozone to either end of its layer: single precision tells them apart, and the
-/// density between them has a slope.
+/// The least distance from the peak of ozone to either end of its layer: single precision tells them
+/// apart, and the density between them has a slope.
 inline constexpr double kLeastOzoneSide_m = 1.0;
 /// Radius over the top of a smooth layer of ozone, whose rule of nodes goes wrong by 5e-4 of its
 /// column here, by 1e-2 at half of it and by any amount beyond.

@@ -45,7 +45,7 @@ class InternalError : public std::logic_error {
 /// Throws the InputError "FILE: fault".
 [[noreturn]] void RefuseFile(const std::filesystem::path& file, std::string_view fault);
 
-/// What the operating system says of the call that has just failed (errno).
+/// The operating system's message on the call that has just failed (errno).
 [[nodiscard]] std::string LastSystemError();
 
 /// Returns `value`, or throws InputError naming `name`

@@ -46,9 +46,9 @@ double MuSOfNode(const DiffuseGrid& grid, std::size_t sun) {
   return grid.polarised ? std::min(mu_s, kHighestPolarisedSun) : mu_s;
 }
 
-float SunSine(double mu_s) {
-  return static_cast<float>(std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0)));
-}
+double SineOf(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
+
+float SunSine(double mu_s) { return static_cast<float>(SineOf(mu_s)); }
 
 CubicTaps SunTaps(const DiffuseGrid& grid, double mu_s) {
   const int suns = static_cast<int>(grid.suns);

@@ -28,6 +28,8 @@ namespace alpenglow {
 /// zenith.
 [[nodiscard]] double MuSOfNode(const DiffuseGrid& grid, std::size_t sun);
 
+/// The sine of an angle in [0, pi] from its cosine.
+[[nodiscard]] double SineOf(double cosine);
 /// Sine of the sun's zenith angle.
 [[nodiscard]] float SunSine(double mu_s);
 

@@ -14,8 +14,6 @@
 namespace alpenglow {
 namespace {
 
-double Sine(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
-
 // Whether aerosol scatters less than 3e-4 of what molecules do, in every band: it then needs no
 // more moments than they.
 bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float mie_density) {
@@ -42,7 +40,7 @@ DiffuseMarches::DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLig
   for (int j = 0; j < options.sun_angles; ++j) {
     mu_s_.push_back(MuSOfNode(grid_, static_cast<std::size_t>(j)));
     mu_s_floats_.push_back(static_cast<float>(mu_s_.back()));
-    sine_s_.push_back(static_cast<float>(Sine(mu_s_.back())));
+    sine_s_.push_back(static_cast<float>(SineOf(mu_s_.back())));
   }
   for (std::size_t m = 0; m < azimuth_cosines_.size(); ++m) {
     azimuth_cosines_[m] = AlignedFloats(kMostAzimuths);
@@ -77,8 +75,8 @@ MarchDirection DiffuseMarches::Direction(std::size_t altitude, const March& marc
 
 double DiffuseMarches::Nu(const March& march, std::size_t sun, std::size_t azimuth) const {
   const double mu = static_cast<double>(march.mu);
-  const double nu = mu * mu_s_[sun] +
-                    Sine(mu) * Sine(mu_s_[sun]) * static_cast<double>(AzimuthCosine(1, azimuth));
+  const double nu = mu * mu_s_[sun] + SineOf(mu) * SineOf(mu_s_[sun]) *
+                                          static_cast<double>(AzimuthCosine(1, azimuth));
   return std::clamp(nu, -1.0, 1.0);
 }
 
@@ -93,7 +91,7 @@ std::vector<March> DiffuseMarches::MarchesAt(std::size_t altitude,
       const double v = rule.node[k];
       March march;
       march.mu = static_cast<float>(horizon + (end - horizon) * v * v);
-      march.sine = static_cast<float>(Sine(static_cast<double>(march.mu)));
+      march.sine = static_cast<float>(SineOf(static_cast<double>(march.mu)));
       march.solid_angle = static_cast<float>(std::abs(end - horizon) * 4.0 * v * rule.weight[k] *
                                              kPi / options.azimuth_nodes);
       const Moments legendre = LegendreTerms(options.degree, march.mu);
@@ -121,7 +119,7 @@ void DiffuseMarches::AddPoints(std::size_t altitude, const DiffuseLightOptions& 
       point.altitude_weight[tap] = taps.weight[tap];
     }
     point.mu = samples.mu[s];
-    point.sine = static_cast<float>(Sine(static_cast<double>(point.mu)));
+    point.sine = static_cast<float>(SineOf(static_cast<double>(point.mu)));
     point.distance_km = samples.distance[s];
     point.inverse_radius = static_cast<float>(1.0 / (radius_km_ + static_cast<double>(h)));
     point.only_molecules =

@@ -15,7 +15,9 @@ namespace {
 
 constexpr std::size_t kOrderLanes = 16;
 
-std::size_t RoundUp(std::size_t count) { return (count + kOrderLanes - 1) / kOrderLanes * kOrderLanes; }
+std::size_t RoundUp(std::size_t count) {
+  return (count + kOrderLanes - 1) / kOrderLanes * kOrderLanes;
+}
 
 /// Sunlit pieces of the rays of one march.
 struct Pieces {
@@ -76,7 +78,8 @@ std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float alti
   mu.data()[0] = std::abs(march.mu);
   altitude.data()[1] = std::max(altitude_km - r * march.mu * march.mu / (1.0F + march.sine), -1.0F);
   ColumnStore columns(kOrderLanes);
-  Kernel<RayKernel<float>>().columns_up(air, kOrderLanes, altitude.data(), mu.data(), columns.Write());
+  Kernel<RayKernel<float>>().columns_up(air, kOrderLanes, altitude.data(), mu.data(),
+                                        columns.Write());
   const ColumnPointers c = columns.Read();
   return {c.rayleigh[0], c.mie[0], c.ozone[0], c.rayleigh[1], c.mie[1], c.ozone[1]};
 }

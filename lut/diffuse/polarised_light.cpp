@@ -8,11 +8,6 @@
 #include "lut/diffuse/diffuse_grid.h"
 
 namespace alpenglow {
-namespace {
-
-double SineOf(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
-
-}  // namespace
 
 double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
   const double sines = SineOf(mu) * SineOf(mu_s);

@@ -54,7 +54,8 @@ bool HoldsLampCases(const std::filesystem::path& file) {
   return HeaderNames(file, kLampColumnNames[kAlong]);
 }
 
-LampCaseReader::LampCaseReader(const std::filesystem::path& file) : lines_(file, kLampColumnNames) {}
+LampCaseReader::LampCaseReader(const std::filesystem::path& file)
+    : lines_(file, kLampColumnNames) {}
 
 std::optional<LampCase> LampCaseReader::Next() {
   if (!lines_.Next()) return std::nullopt;

@@ -80,7 +80,8 @@ EdgeDirection AwayFromLight(const Image& image, const Pixel& at) {
     away.y -= luminance * static_cast<float>(pixel.y - at.y);
   });
   const float length = std::hypot(away.x, away.y);
-  return length > 0.0F ? EdgeDirection{away.x / length, away.y / length} : EdgeDirection{0.0F, 0.0F};
+  return length > 0.0F ? EdgeDirection{away.x / length, away.y / length}
+                       : EdgeDirection{0.0F, 0.0F};
 }
 
 /// The mean colour of what is not clipped, by nearness and, to the fourth power, by the cosine with

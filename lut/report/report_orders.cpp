@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OrdersTopic of the report: light of all orders along a view.
+// A topic of the report: the light of all orders along a view.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -401,9 +401,9 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
       const ReportRegime& regime = topic.regimes[r];
       text += fmt::format(
           "{},{},{},{},{},{},{},{},{},", topic.key, topic.scene.empty() ? "" : CsvText(topic.scene),
-          CsvText(topic.medium.name), HashDigits(topic), CsvText(row.series), CsvText(row.parameter),
-          row.origin == MethodOrigin::kOurs ? "this library" : "literature", row.memory_bytes,
-          CsvNumber(row.build_s));
+          CsvText(topic.medium.name), HashDigits(topic), CsvText(row.series),
+          CsvText(row.parameter), row.origin == MethodOrigin::kOurs ? "this library" : "literature",
+          row.memory_bytes, CsvNumber(row.build_s));
       text += fmt::format(
           "{},{},{},{},{},{},", regime.key,
           regime.sun ? fmt::format("{},{}", regime.sun->lowest_deg, regime.sun->highest_deg) : ",",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PanoramaTopic of the report: the whole sphere around an observer under one sun.
+// A topic of the report: the whole sphere around an observer under one sun.
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 

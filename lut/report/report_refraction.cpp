@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// RefractionTopic of the report: where a line of sight leads, bent by the air.
+// A topic of the report: where a line of sight leads, bent by the air.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SingleTopic of the report: light scattered once along a view.
+// A topic of the report: light scattered once along a view.
 #include <fmt/format.h>
 
 #include "lut/report/report_baselines.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// TransmittanceTopic of the report: transmittance from a point to the sun.
+// A topic of the report: transmittance from a point to the sun.
 #include <fmt/format.h>
 
 #include <array>

@@ -140,8 +140,8 @@ double HighestOf(const TextureShape& shape, const Medium& medium) {
 }
 
 std::array<ExchangeDescription::Channel, 4> ChannelRangesOf(const fs::path& file,
-                                                     const std::vector<float>& texels,
-                                                     double highest) {
+                                                            const std::vector<float>& texels,
+                                                            double highest) {
   std::array<ExchangeDescription::Channel, 4> ranges{};
   for (std::size_t c = 0; c < 4; ++c) ranges[c] = {texels[c], texels[c]};
   for (std::size_t i = 0; i < texels.size(); ++i) {

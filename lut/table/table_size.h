@@ -27,7 +27,7 @@ struct TableAxis {
 std::uint64_t RequireTableSize(std::string_view table, const std::vector<TableAxis>& axes,
                                std::size_t values_per_texel, const Medium& medium);
 
-/// Where the centre of a texel lies on its axis: 0 at the first, 1 at the last.
+/// The position of a texel's centre on its axis: 0 at the first texel, 1 at the last.
 [[nodiscard]] constexpr double UnitOf(std::size_t index, std::size_t texels) {
   return static_cast<double>(index) / static_cast<double>(texels - 1);
 }

@@ -144,7 +144,8 @@ TrainedTriple RelativeXyz(std::span<const double> relative_to_sun) {
           Dot(rows[2], relative_to_sun)};
 }
 
-ColourErrors ErrorsOf(std::span<const TrainedTriple> relative_xyz, std::span<const SkySpectrum> spectra) {
+ColourErrors ErrorsOf(std::span<const TrainedTriple> relative_xyz,
+                      std::span<const SkySpectrum> spectra) {
   ALPENGLOW_ENSURE(relative_xyz.size(), ==, spectra.size());
   ALPENGLOW_ENSURE(spectra.size(), >, std::size_t{0});
   std::vector<double> errors;

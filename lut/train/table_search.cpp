@@ -104,9 +104,10 @@ Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& meas
     const double missing = measured[k].paths.Unexplained();
     const double rest = max_error * max_error - missing * missing;
     if (rest <= 0.0) {
-      RefuseBound(max_error, fmt::format("the finest light of all orders is {:.2g} % from path tracing "
-                                    "({})",
-                                    100.0 * missing, NameOf(measured[k].kind)));
+      RefuseBound(max_error,
+                  fmt::format("the finest light of all orders is {:.2g} % from path tracing "
+                              "({})",
+                              100.0 * missing, NameOf(measured[k].kind)));
     }
     bounds[k] = kShareForUnseenViews * std::sqrt(rest);
   }
@@ -125,7 +126,7 @@ int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Boun
     }
   }
   RefuseBound(max_error, fmt::format("{} nodes along a ray leave {:.2g} % ({})", kRayNodes.back(),
-                                100.0 * best.error, NameOf(best.worst)));
+                                     100.0 * best.error, NameOf(best.worst)));
 }
 
 /// Gives `tables` the first of these tables under a share of the bounds.
@@ -143,7 +144,7 @@ TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const 
     if (best.excess <= kShareOfTables) return lookup.tables();
   }
   RefuseBound(max_error, fmt::format("the largest table of {} leaves {:.2g} % ({})", name,
-                                100.0 * best.error, NameOf(best.worst)));
+                                     100.0 * best.error, NameOf(best.worst)));
 }
 
 TableFolder WithAllTables(const JudgedViews& views, const Bounds& bounds, double max_error,
@@ -176,7 +177,7 @@ TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, do
     if (best.excess <= 1.0) return lookup.tables();
   }
   RefuseBound(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
-                                NameOf(best.worst)));
+                                     NameOf(best.worst)));
 }
 
 std::uint64_t BytesOf(const TableFolder& tables) {

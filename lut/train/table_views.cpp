@@ -81,8 +81,8 @@ double RmsOf(const std::vector<double>& values) {
   return values.empty() ? 0.0 : Length(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-JudgedView ViewJudge(const Medium& medium, const AirIntegrator<float>& air, const DiffuseLight& finest,
-                 ViewKind kind, std::size_t i) {
+JudgedView ViewJudge(const Medium& medium, const AirIntegrator<float>& air,
+                     const DiffuseLight& finest, ViewKind kind, std::size_t i) {
   JudgedView view{kind, RayOf(kind, i, medium), {}, {}};
   if (kind == ViewKind::kIrradiance) {
     view.light = Values(finest.SkyIrradiance(view.ray.altitude_m, view.ray.mu_s));
@@ -147,8 +147,8 @@ JudgedViews::JudgedViews(const Medium& medium, const DiffuseLight& finest,
   const AirIntegrator<float> air(medium);
   tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t k) {
     if (Interrupted()) return;
-    views_[k] =
-        ViewJudge(medium, air, finest, kViewKinds[k / views_of_a_kind], first + k % views_of_a_kind);
+    views_[k] = ViewJudge(medium, air, finest, kViewKinds[k / views_of_a_kind],
+                          first + k % views_of_a_kind);
   });
   ThrowIfInterrupted();
 }

@@ -31,8 +31,8 @@ double RadiusOf(PixelFilter::Kind kind) {
   throw InternalError("unknown kind of filter");
 }
 
-constexpr int kKnots = 513;  // of the inverse of the distribution, straight in between
-constexpr int kFilterSteps = 16;   // of the trapezoidal rule between two points of the distribution
+constexpr int kKnots = 513;       // of the inverse of the distribution, straight in between
+constexpr int kFilterSteps = 16;  // of the trapezoidal rule between two points of the distribution
 
 }  // namespace
 

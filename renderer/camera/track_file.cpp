@@ -281,7 +281,8 @@ class TrackReader {
     const XMLElement* coordinates = ChildOf(line, "coordinates");
     std::string_view text = TextOf(coordinates);
     RecordedSegment segment;
-    while (!text.empty()) segment.push_back(Coordinate(TakePart(text, kTrackBlanks), ",", *coordinates));
+    while (!text.empty())
+      segment.push_back(Coordinate(TakePart(text, kTrackBlanks), ",", *coordinates));
     return segment;
   }
 

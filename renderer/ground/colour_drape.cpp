@@ -47,8 +47,9 @@ ImageDataset OpenImage(const std::filesystem::path& file, bool is_land_cover) {
   } else if (bands < 1 || (bands < 3 && dataset->GetRasterBand(1)->GetColorTable() != nullptr))
     RefuseFile(file, "has a palette; colours are read from red, green and blue bands");
   if (std::int64_t{dataset->GetRasterXSize()} * dataset->GetRasterYSize() > kMostPixels) {
-    RefuseFile(file, fmt::format("has {} x {} pixels; at most {} can be held",
-                             dataset->GetRasterXSize(), dataset->GetRasterYSize(), kMostPixels));
+    RefuseFile(file,
+               fmt::format("has {} x {} pixels; at most {} can be held", dataset->GetRasterXSize(),
+                           dataset->GetRasterYSize(), kMostPixels));
   }
   return dataset;
 }
@@ -96,8 +97,8 @@ void ReadRow(const std::filesystem::path& file, GDALRasterBand& band, GDALDataTy
     RefuseFile(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
 }
 
-// How much of each pixel is there, 255 for all of it, by the alpha band, the mask or the nodata
-// values of the file: a pixel is left out that is so in every band.
+// The opacity of each pixel, 255 for an opaque one, by the alpha band, the mask or the nodata values of
+// the file. A pixel is transparent where every band has its nodata value.
 std::vector<std::uint8_t> ReadWeights(const std::filesystem::path& file, GDALDataset& dataset) {
   const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -128,7 +129,8 @@ std::vector<Pixel> ReadPixels(const std::filesystem::path& file, GDALDataset& da
   for (int channel = 0; channel < 3; ++channel) {
     GDALRasterBand* band = dataset.GetRasterBand(dataset.GetRasterCount() < 3 ? 1 : channel + 1);
     const ImageDecoder decoder(band->GetRasterDataType());
-    if (!decoder.IsKnown()) RefuseFile(file, "has values that are neither 8 nor 16 bits nor floats");
+    if (!decoder.IsKnown())
+      RefuseFile(file, "has values that are neither 8 nor 16 bits nor floats");
     for (int y = 0; y < rows; ++y) {
       ReadRow(file, *band, GDT_Float32, y, row);
       for (std::size_t x = 0; x < row.size(); ++x) {
@@ -184,7 +186,8 @@ class Georeference {
     own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     reference.crs_from_geographic_.reset(OGRCreateCoordinateTransformation(&wgs84, &own));
     if (!reference.crs_from_geographic_)
-      RefuseFile(file, "has a coordinate system that cannot be reached from longitude and latitude");
+      RefuseFile(file,
+                 "has a coordinate system that cannot be reached from longitude and latitude");
     return reference;
   }
 

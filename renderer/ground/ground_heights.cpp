@@ -30,7 +30,7 @@ std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain, const gl
   if (!from_above) return std::nullopt;
   const double highest_m = kReach_m - from_above->distance_m;
   const auto from_below = terrain.Intersect(point - kReach_m * up, up, 2.0 * kReach_m);
-  // Where one ray just meets an edge, the other may pass it: what one has met is there.
+  // One ray may meet an edge that the other just passes: the surface that one has met exists.
   const double lowest_m = from_below ? from_below->distance_m - kReach_m : highest_m;
   return GroundHeights{std::min(lowest_m, highest_m), highest_m};
 }

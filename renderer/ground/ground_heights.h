@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How high the ground is at a place. A mesh may have roofs, bridges and overhangs, so that the
+// The heights of the ground at a place. A mesh may have roofs, bridges and overhangs, so that the
 // ground has several heights at one place: what is put on the ground stands on the highest, and
 // only what is below the lowest is inside the ground.
 #pragma once

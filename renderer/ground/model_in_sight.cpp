@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kEarth_m = 6.371e6;
 
-// How far ground of any height may be seen from an eye [radians of the earth's curve]. Refraction
+// The distance from which ground of any height may be seen [radians of the earth's curve]. Refraction
 // carries light a tenth farther at most.
 double Sight(double eye_m) {
   constexpr double kHighestGround_m = 9000.0, kRefraction = 1.1;

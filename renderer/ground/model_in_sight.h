@@ -11,8 +11,8 @@
 
 namespace alpenglow {
 
-/// How far below the horizontal an eye sees the horizon, and how far away it is on the earth's
-/// curve [radians], on a sphere without air.
+/// The angle of the horizon below the horizontal, which is also its distance on the earth's curve
+/// [radians], on a sphere without air.
 [[nodiscard]] double HorizonDip(double height_m);
 
 /// The samples of a grid within a distance [radians of the earth's curve] of a place, at least

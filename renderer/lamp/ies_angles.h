@@ -30,9 +30,9 @@ struct MeasuredAngles {
   std::vector<double> intensity;       // [horizontal * vertical_deg.size() + vertical]
 };
 
-/// Whether the horizontal angles give all directions around the lamp: in type C from 0 to 0, 90,
-/// 180 or 360 or from 90 to 270 degrees, in types A and B from 0 or from -x to x <= 90. What is
-/// not measured then mirrors what is.
+/// Says whether the horizontal angles give all directions around the lamp. In type C they go from 0 to
+/// 0, 90, 180 or 360 or from 90 to 270 degrees, in types A and B from 0 or from -x to x <= 90. The
+/// directions that were not measured mirror those that were.
 [[nodiscard]] bool HasWholeTurn(PhotometricType type, const std::vector<double>& horizontal_deg);
 
 /// Type C is taken over as it is. Types A and B, linear between their angles and 0 beyond them,

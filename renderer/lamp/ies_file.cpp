@@ -35,7 +35,7 @@ std::string WithLineFeeds(std::string_view text) {
   return plain;
 }
 
-/// Upper case, and without white space.
+/// The line in upper case, without white space.
 std::string Compact(std::string_view line) {
   std::string compact;
   for (const char c : line) {
@@ -89,7 +89,7 @@ class Numbers {
     return angles;
   }
 
-  /// Nothing may follow the last value but white space and the mark that ends files of DOS.
+  /// Only white space and the mark that ends files of DOS may follow the last value.
   void End(std::size_t candela_values) {
     while (!rest_.empty() && (IsBlank(rest_.front()) || rest_.front() == kEndOfDosFile)) Skip();
     if (rest_.empty()) return;
@@ -124,7 +124,7 @@ class Numbers {
   const std::string& origin_;
 };
 
-/// What the lines before the numbers say.
+/// The content of the lines before the numbers.
 struct Head {
   bool has_photometric_factor = false;
   bool has_tilt = false;

@@ -18,7 +18,7 @@
 
 namespace alpenglow {
 
-/// How a lamp's intensity changes while the luminaire is tilted from the attitude in which it was
+/// The change of a lamp's intensity while the luminaire is tilted from the attitude in which it was
 /// measured.
 struct LampTilt {
   std::vector<double> angle_deg;  // ascending in [0, 180]; empty: it does not change

@@ -260,7 +260,7 @@ class SurfaceWeights {
   [[nodiscard]] Share Of(std::uint32_t number);
 
  private:
-  /// TilePlace i is bit i.
+  /// Place i is bit i.
   using LitPlaces = std::uint32_t;
   [[nodiscard]] LitPlaces AllPlaces() const { return (LitPlaces{1} << places_.size()) - 1; }
 

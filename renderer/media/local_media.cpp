@@ -59,8 +59,8 @@ VolumePlacement PlacementOf(const Volume& volume, const SceneGround& ground) {
   placement.up = (ground.frame.EnuFromGeodetic(place).xyz - placement.bottom) / 1000.0;
   if (volume.height.above_ground) {
     if (ground.terrain) {
-      const auto hit = ground.terrain->Intersect({placement.bottom.x, placement.bottom.y, kAboveMedia_m},
-                                                 {0.0, 0.0, -1.0});
+      const auto hit = ground.terrain->Intersect(
+          {placement.bottom.x, placement.bottom.y, kAboveMedia_m}, {0.0, 0.0, -1.0});
       if (hit) placement.bottom.z = kAboveMedia_m - hit->distance_m;
     }
     placement.bottom += volume.height.value_m * placement.up;

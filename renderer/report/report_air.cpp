@@ -183,8 +183,9 @@ class Topic : public TopicWork {
   }
 
   void AddClosedForms() {
-    AddLookUp({.series = "closed form", .parameter = "float", .style = kAirPanels, .in_summary = true},
-              [&](const ViewRay& ray) { return air_.TransmittanceAlong(ray); });
+    AddLookUp(
+        {.series = "closed form", .parameter = "float", .style = kAirPanels, .in_summary = true},
+        [&](const ViewRay& ray) { return air_.TransmittanceAlong(ray); });
     AddLookUp({.series = "closed form, one grey value",
                .parameter = "",
                .origin = MethodOrigin::kLiterature,

@@ -31,9 +31,9 @@ struct SceneText {
   const char* time;  // of the day of the range; of the night, of the runway
 };
 constexpr std::array<SceneText, kScenes> kSceneTexts{{{"noon", "Noon", "noon"},
-                                                 {"sunset", "Sunset", "sunset-15m"},
-                                                 {"twilight", "Twilight", "civil-dusk-10m"},
-                                                 {"night", "Night with lamps", "noon+12h"}}};
+                                                      {"sunset", "Sunset", "sunset-15m"},
+                                                      {"twilight", "Twilight", "civil-dusk-10m"},
+                                                      {"night", "Night with lamps", "noon+12h"}}};
 
 /// Memory of this program that is in the machine's, now [bytes]; 0 where no one tells.
 std::uint64_t ResidentBytes() {

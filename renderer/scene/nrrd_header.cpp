@@ -97,7 +97,7 @@ constexpr Word<NrrdHeader::Encoding> kEncodings[] = {{"raw", NrrdHeader::Encodin
                                                      {"gzip", NrrdHeader::Encoding::kGzip},
                                                      {"gz", NrrdHeader::Encoding::kGzip}};
 constexpr Word<bool> kEndians[] = {{"little", false}, {"big", true}};
-// Whether the axes of a space run against right, ahead (anterior) and up (superior).
+// The spaces. Each value says whether an axis runs against right, ahead (anterior) or up (superior).
 constexpr Word<std::array<bool, 3>> kSpaces[] = {
     {"3d-right-handed", {false, false, false}},         {"ras", {false, false, false}},
     {"right-anterior-superior", {false, false, false}}, {"las", {true, false, false}},
@@ -132,7 +132,7 @@ class HeaderReader {
   }
 
  private:
-  // Nothing at the end of the text.
+  // The next line; empty at the end of the text.
   std::optional<std::string_view> Line() {
     if (at_ >= text_.size()) return std::nullopt;
     const std::size_t end = text_.find('\n', at_);

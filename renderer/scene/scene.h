@@ -71,8 +71,8 @@ struct TerrainSource {
   std::filesystem::path colour = {};      // over it, see ColourDrape; empty: none
   std::filesystem::path land_cover = {};  // as colour, and not both
 
-  /// Whether the ground has relief finer than its triangles: samples of elevation are not all there
-  /// is, but a mesh of a file is as its maker wants it.
+  /// The ground has relief finer than its triangles where they join samples of elevation. A mesh of
+  /// a file has only its own triangles.
   [[nodiscard]] bool HasFineRelief() const { return kind != Kind::kMesh; }
 
   /// What of both is given.

@@ -170,8 +170,8 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
   return text;
 }
 
-std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAxis& time, double top,
-                     const std::function<double(double)>& y) {
+std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAxis& time,
+                     double top, const std::function<double(double)>& y) {
   std::string text;
   for (double value = range.low; value <= range.high + 1e-9; value += range.step) {
     text += LineOf(kLeft, y(value), kWidth - kRight, y(value));

@@ -135,7 +135,8 @@ void ShadowHeights::Deposit(const TriangleMesh& mesh) {
                   (glm::dot(p, across_) - first_v_m_) / cell_m_, p.z};
   });
   const auto cut = [&](const std::array<std::uint32_t, 3>& triangle) {
-    std::array<ShadowCorner, 3> corner{corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
+    std::array<ShadowCorner, 3> corner{corners[triangle[0]], corners[triangle[1]],
+                                       corners[triangle[2]]};
     const auto put_in_order = [](ShadowCorner& a, ShadowCorner& b) {
       if (b.v < a.v) std::swap(a, b);
     };
@@ -145,8 +146,8 @@ void ShadowHeights::Deposit(const TriangleMesh& mesh) {
     for (double v = std::ceil(corner[0].v); v <= corner[2].v; v += 1.0) {
       if (corner[0].v == corner[2].v) break;
       const ShadowCorner other = v < corner[1].v || corner[1].v == corner[2].v
-                               ? OnLine(corner[0], corner[1], v)
-                               : OnLine(corner[1], corner[2], v);
+                                     ? OnLine(corner[0], corner[1], v)
+                                     : OnLine(corner[1], corner[2], v);
       raise(OnLine(corner[0], corner[2], v), other);
     }
   };

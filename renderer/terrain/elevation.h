@@ -60,7 +60,7 @@ struct ElevationModel {
   std::string unit_note;  // what is told about the unit of the heights; empty: nothing
 };
 
-/// What there is to say about a model, in one line with the name of its file; empty: nothing.
+/// A line on voids, units and datum of a model, with the name of its file; empty without cause.
 [[nodiscard]] std::string NoteOn(const ElevationModel& model, const std::string& file);
 
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
@@ -81,8 +81,8 @@ struct ElevationModel {
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids,
                                            const GridWindow& window);
 
-/// Whether the samples of a file lie on a grid of latitudes and longitudes as they are, from west
-/// to east, so that some of them can be read.
+/// A part of a file can be read alone where its samples lie on a grid of latitudes and longitudes,
+/// from west to east.
 [[nodiscard]] bool CanBeCut(const std::filesystem::path& file);
 
 /// The grid that ReadElevation makes of a file, without its heights, which are not read. Throws

@@ -64,7 +64,8 @@ bool HasOneBandOfHeights(GDALDataset& dataset) {
 
 void CheckLayout(const std::filesystem::path& file, GDALDataset& dataset) {
   if (!HasOneBandOfHeights(dataset)) {
-    RefuseFile(file, fmt::format("has {} bands; an elevation model has 1", dataset.GetRasterCount()));
+    RefuseFile(file,
+               fmt::format("has {} bands; an elevation model has 1", dataset.GetRasterCount()));
   }
   const int columns = dataset.GetRasterXSize();
   const int rows = dataset.GetRasterYSize();
@@ -101,9 +102,10 @@ OGRSpatialReference ReadCrs(const std::filesystem::path& file, GDALDataset& data
   const double polar = stored->GetSemiMinor();
   const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
   if (!of_the_earth(equatorial) || !of_the_earth(polar)) {
-    RefuseFile(file, fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
-                             "be of the earth",
-                             equatorial, polar));
+    RefuseFile(file,
+               fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
+                           "be of the earth",
+                           equatorial, polar));
   }
   OGRSpatialReference crs = *stored;
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -181,9 +183,9 @@ std::optional<std::vector<Value>> ValuesIn(GDALRasterBand& band, const PixelWind
 std::vector<float> ReadSamples(const std::filesystem::path& file, GDALRasterBand& band,
                                const PixelWindow& window) {
   if (std::int64_t{window.columns} * window.rows > kMostElevationSamples) {
-    RefuseFile(file,
-           fmt::format("has {} x {} samples{}; at most {} can be held", window.columns, window.rows,
-                       window.columns < band.GetXSize() ? " in sight" : "", kMostElevationSamples));
+    RefuseFile(file, fmt::format("has {} x {} samples{}; at most {} can be held", window.columns,
+                                 window.rows, window.columns < band.GetXSize() ? " in sight" : "",
+                                 kMostElevationSamples));
   }
   std::optional<std::vector<float>> samples = ValuesIn<float>(band, window, GDT_Float32);
   if (!samples) RefuseFile(file, "is damaged or cut short (" + LastGdalError() + ")");
@@ -201,7 +203,7 @@ std::vector<std::uint8_t> ReadAlpha(const std::filesystem::path& file, GDALRaste
   return mask;
 }
 
-// Whether each sample is valid (not 0), as the file's mask or alpha band says; empty without one.
+// The file's mask or alpha band, 0 where a sample is invalid; empty without one.
 std::vector<std::uint8_t> ReadMask(const std::filesystem::path& file, GDALRasterBand& band,
                                    const PixelWindow& window) {
   GDALDataset& dataset = *band.GetDataset();
@@ -213,7 +215,7 @@ std::vector<std::uint8_t> ReadMask(const std::filesystem::path& file, GDALRaster
   return std::move(*mask);
 }
 
-// What a band's samples stand for.
+// Converts a band's samples to heights.
 class Decoder {
  public:
   Decoder(GDALRasterBand& band, double unit_m)
@@ -249,11 +251,12 @@ std::size_t ConvertToMetres(const std::filesystem::path& file, GDALRasterBand& b
     const double height_m = decoder.Height(samples[i]);
     if (!(height_m >= kDeepestGround_m && height_m <= kHighestGround_m)) {
       const auto columns = static_cast<std::size_t>(window.columns);
-      RefuseFile(file, fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
-                               "lies in [{}, {}] m",
-                               height_m, i / columns + static_cast<std::size_t>(window.row),
-                               i % columns + static_cast<std::size_t>(window.column),
-                               kDeepestGround_m, kHighestGround_m));
+      RefuseFile(
+          file, fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
+                            "lies in [{}, {}] m",
+                            height_m, i / columns + static_cast<std::size_t>(window.row),
+                            i % columns + static_cast<std::size_t>(window.column), kDeepestGround_m,
+                            kHighestGround_m));
     }
     samples[i] = static_cast<float>(height_m);
   }

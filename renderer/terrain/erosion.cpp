@@ -28,7 +28,9 @@ std::uint32_t HeightKey(float height_m) {
 std::uint64_t FloodKey(float height_m, std::size_t sample) {
   return (static_cast<std::uint64_t>(HeightKey(height_m)) << 32) | sample;
 }
-std::uint32_t QueuedSample(std::uint64_t key) { return static_cast<std::uint32_t>(key & 0xffffffffU); }
+std::uint32_t QueuedSample(std::uint64_t key) {
+  return static_cast<std::uint32_t>(key & 0xffffffffU);
+}
 
 struct Offset {
   int row;

@@ -347,10 +347,10 @@ std::optional<PixelWindow> PixelsOf(const ElevationRaster& raster, const GridWin
                                     const std::string& file) {
   const Footprint footprint(raster, file);
   const RegularGrid spanned = SpannedGrid(footprint, raster);
-  // Where columns go west, a window past the last one would have to be turned round.
+  // A window of columns that go west would have to be mirrored.
   if (!LiesOn(spanned, footprint, raster) || spanned.step_lon < 0.0) return std::nullopt;
-  const int row = spanned.step_lat > 0.0 ? raster.rows - window.first_row - window.rows
-                                         : window.first_row;
+  const int row =
+      spanned.step_lat > 0.0 ? raster.rows - window.first_row - window.rows : window.first_row;
   return PixelWindow{window.first_column, row, window.columns, window.rows};
 }
 

@@ -33,7 +33,7 @@ std::string ReadText(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-/// From y up to z up, by a quarter turn about x.
+/// Turns a vector by a quarter about x, from y up to z up.
 template <typename Number>
 std::array<Number, 3> TurnedUp(const std::array<Number, 3>& v) {
   return {v[0], -v[2], v[1]};
@@ -44,7 +44,7 @@ void TurnUp(ObjText& text) {
   for (auto& normal : text.normals) normal = TurnedUp(normal);
 }
 
-/// Of length 1, or 0 where a vector has no direction.
+/// The vector scaled to length 1, or 0 where it has no direction.
 glm::dvec3 UnitOrZero(const std::array<double, 3>& v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   const bool is_finite = std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -66,7 +66,7 @@ struct FaceCount {
 /// normal. The first vertex of a position has the position's index.
 class VertexSplitter {
  public:
-  /// Where the normal of a corner comes from.
+  /// The source of a corner's normal.
   struct Source {
     enum class Kind : std::uint32_t { kFile, kGroup } kind;
     std::uint32_t number;  // of the normal in the file, or of the smoothing group
@@ -150,7 +150,7 @@ struct MapExtent {
   }
 };
 
-/// Empty where the mesh is not far.
+/// A warning on a mesh that lies far from the place; empty on others.
 std::string TextOnFar(const TriangleMesh& mesh) {
   const MapExtent extent(mesh);
   if (!extent.IsFar()) return "";

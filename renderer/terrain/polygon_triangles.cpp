@@ -107,7 +107,7 @@ class EarCutter {
   }
 
  private:
-  /// How good a corner is to cut off, the best first.
+  /// The order in which corners are cut off, the best first.
   enum class Rank {
     kGood,      // nothing else is in its triangle
     kThin,      // as before, but its area may be due to rounding
@@ -170,7 +170,7 @@ class EarCutter {
     return u.x * v.y - u.y * v.x <= kThinnest * (glm::dot(u, u) + glm::dot(v, v));
   }
 
-  /// How another corner lowers the rank of a triangle: kGood where it is outside.
+  /// The rank that another corner leaves to a triangle: kGood where it is outside.
   [[nodiscard]] Rank RankBeside(const Places& triangle, std::size_t other) const {
     int least = 1;
     for (std::size_t k = 0; k < 3; ++k) {

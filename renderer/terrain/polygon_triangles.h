@@ -31,7 +31,7 @@ inline constexpr std::size_t kMostPolygonCorners = 10000;
 /// @param corners  in order [m]; their coordinates are single precision numbers.
 [[nodiscard]] PolygonTriangles TrianglesOfPolygon(const std::vector<glm::dvec3>& corners);
 
-/// Whether a triangle has no area, measured by its edges, so that size does not matter.
+/// A triangle has no area if it is thin for the length of its edges, whatever that length is.
 [[nodiscard]] bool IsWithoutArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 }  // namespace alpenglow

@@ -258,7 +258,7 @@ glm::dvec3 SlopeNormal(const Ellipsoid& ellipsoid, const Surroundings& here,
   constexpr double kStep_m = 5.0;
   const LocalFrame frame(ellipsoid, here.place);
   const auto at = [&](double east_m, double north_m) {
-    // From so high that ground of up to 45 degrees is under it.
+    // The point is so high that ground of up to 45 degrees lies under it.
     return ground(frame.GeodeticFromEnu(Point<Enu>{{east_m, north_m, kStep_m}}));
   };
   const double east = (at(kStep_m, 0.0) - at(-kStep_m, 0.0)) / (2.0 * kStep_m);

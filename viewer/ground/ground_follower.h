@@ -52,7 +52,7 @@ class GroundFollower {
 
   /// Light on the land around; null without land and before the first is there.
   [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return lit_; }
-  /// Of vertices in the frame of any anchor; nothing without lit().
+  /// The light of vertices in the frame of any anchor; empty without lit().
   [[nodiscard]] std::optional<LightOfVertices> Light() const;
   /// What waves show of the sky over it (SeaMirror); empty where nothing mirrors.
   [[nodiscard]] const std::vector<BandTexel>& sea_mirror() const { return sea_mirror_; }

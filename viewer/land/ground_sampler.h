@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How light and shade ask for the heights of the land around a place.
+// The function by which light and shade ask for the heights of the land around a place.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace alpenglow {
 
-/// What lies within half_width_m of a place, at most so many samples a side; nothing where there is
-/// no land. Of a mesh it is what comes nearest to the place (GridOverMesh). Asked on other threads.
+/// The heights within half_width_m of a place, at most so many samples a side; empty where there is no
+/// land. A mesh gives the part that comes nearest to the place (GridOverMesh). Other threads call it.
 using GroundSampler = std::function<std::optional<ElevationGrid>(
     const GeodeticPosition& place, double half_width_m, int most_samples)>;
 

@@ -102,8 +102,8 @@ class Landscape {
   }
 
   [[nodiscard]] LandProgress Progress() const;
-  /// What there is to say, each once: tiles left out, voids, vertical datums, what a mesh's file has
-  /// that is not read, that the range is made up.
+  /// The warnings, each once: tiles left out, voids, vertical datums, statements of a mesh's file that
+  /// are not read, and that the range is made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }

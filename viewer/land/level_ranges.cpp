@@ -113,7 +113,7 @@ namespace {
 class RangeDemand {
  public:
   RangeDemand(const ChunkTree& tree, const LandEye& eye, double detail,
-         const std::function<bool(const ChunkKey&)>& is_there)
+              const std::function<bool(const ChunkKey&)>& is_there)
       : tree_(tree), eye_(eye), detail_(detail), is_there_(is_there) {
     for (int level = 0; level <= tree.top(); ++level)
       found_.reach_m.push_back(RangeOf(level, eye, detail));

@@ -17,7 +17,7 @@ class LightFade {
   void Ask(LightOfVertices light) { asked_ = std::move(light); }
   [[nodiscard]] bool IsChanging() const { return asked_ || is_filling_ || share_ < 1.0; }
 
-  /// Of vertices that are made now, and its number; nothing before the first.
+  /// The light of vertices that are made now, and its number; empty before the first.
   [[nodiscard]] const std::optional<LightOfVertices>& light() const { return light_; }
   [[nodiscard]] int number() const { return number_; }
   /// Whether the side that is not shown is being filled with it.

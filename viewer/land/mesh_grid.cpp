@@ -12,7 +12,7 @@
 namespace alpenglow {
 namespace {
 
-/// From a place: to the east or to the north [m].
+/// A range to the east or to the north of a place [m].
 struct Span {
   double low_m = std::numeric_limits<double>::infinity();
   double high_m = -std::numeric_limits<double>::infinity();
@@ -23,7 +23,7 @@ struct Span {
   }
   [[nodiscard]] double width_m() const { return high_m - low_m; }
 
-  /// As much of it as is at most so wide, and nearest to the place.
+  /// The part of the range that is nearest to the place and at most so wide.
   [[nodiscard]] Span Nearest(double half_width_m) const {
     if (width_m() <= 2.0 * half_width_m) return *this;
     const double middle_m = std::clamp(0.0, low_m + half_width_m, high_m - half_width_m);

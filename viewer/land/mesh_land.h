@@ -41,7 +41,7 @@ class MeshLand {
   [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
   /// GridOverMesh of what is read now; any thread may call it, as long as it likes.
   [[nodiscard]] GroundSampler Sampler() const;
-  /// What there is to say of the file, once (ObjMesh).
+  /// The warnings on the file, once (ObjMesh).
   [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
   /// Of the vertices and triangles, here and on the card.
   [[nodiscard]] std::size_t bytes() const;

@@ -33,13 +33,13 @@ Range RowsOf(const LandLattice& lattice, const ElevationGrid& grid) {
   return {first, first + (grid.rows - 1) * step, step};
 }
 
-// Whether ranges come within a step of each other.
+// Two ranges are near if they come within a step of each other.
 bool AreNear(const Range& a, const Range& b) {
   const double step = std::max(a.step, b.step) + kOnLattice;
   return a.first <= b.last + step && b.first <= a.last + step;
 }
 
-// Whether the lattice has a sample between two ranges that a step of the first one bridges.
+// Two ranges have a gap if the lattice has a sample between them and one step bridges it.
 bool HasGap(const Range& before, const Range& after, double step) {
   const double gap = after.first - before.last;
   return gap <= step + kOnLattice &&
@@ -86,9 +86,9 @@ struct GridPlace {
 
 GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitude_rad) {
   const double middle = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
-  return {
-      (grid.north_rad - latitude_rad) / grid.step_lat_rad,
-      0.5 * (grid.columns - 1) + std::remainder(longitude_rad - middle, kWholeTurn) / grid.step_lon_rad};
+  return {(grid.north_rad - latitude_rad) / grid.step_lat_rad,
+          0.5 * (grid.columns - 1) +
+              std::remainder(longitude_rad - middle, kWholeTurn) / grid.step_lon_rad};
 }
 
 // A tile has what lies up to half a step beyond its rim: its samples stand for as much.
@@ -107,7 +107,7 @@ class Rims {
     }
   }
 
-  /// Nothing where no other tile has a height.
+  /// The height of another tile; empty where none has one.
   [[nodiscard]] std::optional<double> At(double latitude_rad, double longitude_rad) const {
     for (const Rim& rim : rims_) {
       const GridPlace at = PlaceIn(rim.extent, latitude_rad, longitude_rad);
@@ -128,7 +128,7 @@ class Rims {
     ElevationGrid heights;  // of the part of it that is needed
   };
 
-  // What two grids share, a sample or two more, in samples of the other one.
+  // Adds the part of the other grid that both share, and a sample or two more.
   void Add(const LandTiles& tiles, int other, const ElevationGrid& padded) {
     const ElevationGrid& extent = tiles.ExtentOf(other);
     const GridPlace first = PlaceIn(extent, padded.north_rad, padded.west_rad);

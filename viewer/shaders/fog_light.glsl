@@ -155,8 +155,8 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
   return FogStretches(at, mean - vec4(mean.yzw, 0.0), rest, fade);
 }
 
-// Of the last stretch, more than `left`. @param all, light, before  of the whole way, and to the ends
-// of the two stretches before the last.
+// The light of the last stretch beyond `left`. @param all, light, before  light of the whole way and of
+// the ways to the ends of the two stretches before the last.
 vec4 FogRest(FogStretches stretches, vec4 all, vec4 light, vec4 before) {
   return max(min(stretches.rest * (all - light), stretches.fade * (light - before)), vec4(0.0));
 }

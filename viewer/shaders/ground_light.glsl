@@ -113,7 +113,7 @@ SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
 #endif
 }
 
-// Of sun and sky. @param sun_x, sky_irradiance  of LitVertex (lit_ground.h).
+// The light of sun and sky that ground sends. @param sun_x, sky_irradiance  see LitVertex (lit_ground.h).
 vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
   GroundPlace at = seen.at;
 #if MAY_BE_WATER
@@ -126,7 +126,7 @@ vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
                        SkyOn(seen.normal, seen.mesh_normal, at.up, sky_irradiance), to_eye);
 }
 
-// What the ground's body sends of light whose directions do not count: of lamps, and at night.
+// The light that the ground's body sends of an irradiance without direction: of lamps, and at night.
 vec4 SentOfIrradiance(SeenGround seen, vec4 irradiance, vec3 to_eye) {
   float mu_eye = clamp(dot(seen.normal, to_eye), 1e-4, 1.0);
   vec4 albedo = CoverBodyAlbedo(seen.albedo, mu_eye);
@@ -149,7 +149,7 @@ vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
   return SentOn(seen, kNoEdge, SkyOnPlanet(seen), to_eye);
 }
 
-// What the planet sends more than an even one of the medium's albedo, which the sky's table has.
+// The light that the planet sends beyond an even one of the medium's albedo, which the sky's table has.
 vec4 PlanetBeyondEven(vec3 point_m, vec3 to_eye) {
   SeenGround seen = PlanetSeen(point_m, to_eye);
   vec4 sky = SkyOnPlanet(seen);

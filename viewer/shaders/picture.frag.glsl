@@ -46,7 +46,7 @@ SeenGround LandOf(vec4 surface, vec3 direction) {
   return LandSeen(surface.w * direction, UnitFromOctahedral(surface.xy), -direction);
 }
 
-// Of ground under sun and sky, through the fog over it.
+// The light of ground under sun and sky, through the fog over it.
 vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 #if HAS_FOG
   float altitude = seen.at.altitude;
@@ -56,7 +56,7 @@ vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 }
 
 #if HAS_LAMPS
-// Of lamps, on the ground at a distance [m].
+// The light of lamps that the ground at a distance [m] sends back.
 vec4 LampsReflected(SeenGround seen, vec3 direction, float distance_m) {
   vec4 irradiance = LampsOnGround(distance_m * direction, seen.normal, RAY_ANGLE * distance_m);
   return SentOfIrradiance(seen, irradiance, -direction);
@@ -194,7 +194,7 @@ vec4 NightReflected(SeenGround seen, vec3 to_eye) {
   return SentOfIrradiance(seen, level + direct, to_eye);
 }
 
-// What the even planet under the sky of the lesser light, SkyBeside, sends of it.
+// The light that the even planet sends under the sky of the lesser light (SkyBeside).
 vec4 EvenBeside(vec3 up) {
   vec4 irradiance = beside_level + max(dot(up, beside_towards), 0.0) * beside_direct;
   return ground_albedo / 3.14159265359 * irradiance;

@@ -90,7 +90,7 @@ TEST(DiffuseLight, ComesBackFromItsValues) {
   EXPECT_THROW(DiffuseLight(air, tests::kSmallLight, {broken, 1, true}), InputError);
 }
 
-/// What the constructor says about kSmallLight with one option changed.
+/// The constructor's message on kSmallLight with one option changed.
 template <typename Value>
 std::string RefusalOf(Value DiffuseLightOptions::*option, Value value) {
   DiffuseLightOptions options = tests::kSmallLight;

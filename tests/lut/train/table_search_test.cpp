@@ -31,7 +31,7 @@ const DiffuseLight& Quick() {
   return light;
 }
 
-/// Of one band under the sanitizers.
+/// The finest solution of the earth; it has one band under the sanitizers.
 const DiffuseLight& EarthFinest() {
   static const DiffuseLight light = FinestDiffuseLight(
       tests::kSanitized ? MediumPreset("earth", {550.0}) : MediumPreset("earth"));
@@ -79,7 +79,7 @@ class ChosenTables : public TemporaryFolder {
  protected:
   static constexpr std::size_t kUnseen = 100000;
   static constexpr std::size_t kUnseenViews = tests::ScaledDown<std::size_t>(200, 80);
-  /// So much larger than the bound may an rms be: 80 views know it to a twelfth.
+  /// The share of the bound that an rms may have: 80 views tell an rms to a twelfth.
   static constexpr double kSampling = tests::ScaledDown(1.0, 1.0 + 1.0 / 12.0);
   static TableSearch Search(double max_error, TablesWanted wanted = TablesWanted::kSmallest) {
     return {.max_error = max_error,

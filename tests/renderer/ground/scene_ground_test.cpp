@@ -130,7 +130,8 @@ TEST(WindowAround, StaysInTheGridOfAPlaceBesideIt) {
                {18, 87, 2, 5});
 }
 
-// As GEBCO's older grid, of a minute: its samples fit into memory, its triangles do not.
+// The model has the size of GEBCO's older grid, of a minute: its samples fit into memory, its triangles
+// do not.
 TEST_F(AModel, OfTheWholeEarthIsReadAroundTheCamera) {
   GDALRegister_GTiff();
   const std::filesystem::path file = folder_ / "earth.tif";

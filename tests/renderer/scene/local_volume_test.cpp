@@ -360,7 +360,7 @@ TEST_F(Nrrd, OutputsMayNotReplaceItsDataFile) {
   EXPECT_EQ(files[1].file, folder_ / "a.raw");
 }
 
-// As gzip packs it.
+// Compresses data as gzip does.
 std::string Packed(std::string data) {
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);

@@ -445,7 +445,8 @@ TEST_F(ElevationFile, AResampledModelCannotBeCut) {
   EXPECT_FALSE(CanBeCut(Write(recipe)));
 }
 
-// As GEBCO's grid of 15 seconds: 3.7e9 samples. What is not written takes no room in the file.
+// The model has the size of GEBCO's grid of 15 seconds, 3.7e9 samples. Blocks that are not written take
+// no room in the file.
 TEST_F(ElevationFile, OfAModelOfTheWholeEarthAWindowIsRead) {
   GDALRegister_GTiff();
   const fs::path file = folder_ / "earth.tif";

@@ -36,7 +36,7 @@ class ObjFile : public ::testing::Test {
     std::ofstream(file_, std::ios::binary) << text;
     return ReadObj(file_, up);
   }
-  /// What gives no cause for a message.
+  /// Reads a file that gives no cause for a message.
   TriangleMesh Read(const std::string& text) const {
     ObjMesh read = ReadAll(text);
     EXPECT_EQ(read.message, "") << text;

@@ -13,7 +13,7 @@
 #include "tests/viewer/land/land_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
-// Of the sanitizers' runtime; gcc does not install the header that declares it.
+// A function of the sanitizers' runtime; gcc does not install the header that declares it.
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 #endif
 

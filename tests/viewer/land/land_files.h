@@ -30,31 +30,51 @@ inline float HeightOfSample(int column, int row) {
   return static_cast<float>(std::round(RoughLand(32.0 * column, -46.0 * row)));
 }
 
-/// Writes a tile of every `stride`-th sample from sample (column, row) of the land on.
-/// @param height  [m] of a sample.
-inline void WriteTile(const std::filesystem::path& file, int first_column, int first_row,
-                      int samples = kTileSamples, int stride = 1,
-                      const std::function<float(int column, int row)>& height = HeightOfSample) {
+/// Samples of a file in degrees, from the north-western one on.
+struct DegreeGrid {
+  double west_deg, north_deg, step_lon_deg, step_lat_deg;
+  int columns, rows;
+};
+
+/// Writes an elevation model of floats.
+/// @param height  [m] of a sample of the file.
+inline void WriteModel(const std::filesystem::path& file, const DegreeGrid& grid,
+                       const std::function<float(int column, int row)>& height) {
   GDALRegister_GTiff();
-  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-  GDALDataset* const dataset =
-      driver->Create(file.c_str(), samples, samples, 1, GDT_Float32, nullptr);
-  const double step_deg = stride * kTileStep_deg;
-  std::array<double, 6> corner{
-      kWest_deg + first_column * kTileStep_deg - 0.5 * step_deg, step_deg, 0.0,
-      kNorth_deg - first_row * kTileStep_deg + 0.5 * step_deg,   0.0,      -step_deg};
+  GDALDataset* const dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      file.c_str(), grid.columns, grid.rows, 1, GDT_Float32, nullptr);
+  std::array<double, 6> corner{grid.west_deg - 0.5 * grid.step_lon_deg,
+                               grid.step_lon_deg,
+                               0.0,
+                               grid.north_deg + 0.5 * grid.step_lat_deg,
+                               0.0,
+                               -grid.step_lat_deg};
   dataset->SetGeoTransform(corner.data());
   OGRSpatialReference crs;
   crs.importFromEPSG(4326);
   dataset->SetSpatialRef(&crs);
   std::vector<float> heights;
-  for (int row = 0; row < samples; ++row)
-    for (int column = 0; column < samples; ++column)
-      heights.push_back(height(first_column + stride * column, first_row + stride * row));
-  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, samples, samples, heights.data(),
-                                                samples, samples, GDT_Float32, 0, 0, nullptr),
-            CE_None);
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) heights.push_back(height(column, row));
+  EXPECT_EQ(
+      dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, grid.columns, grid.rows, heights.data(),
+                                          grid.columns, grid.rows, GDT_Float32, 0, 0, nullptr),
+      CE_None);
   GDALClose(dataset);
+}
+
+/// Writes a tile of every `stride`-th sample from sample (column, row) of the land on.
+/// @param height  [m] of a sample.
+inline void WriteTile(const std::filesystem::path& file, int first_column, int first_row,
+                      int samples = kTileSamples, int stride = 1,
+                      const std::function<float(int column, int row)>& height = HeightOfSample) {
+  const double step_deg = stride * kTileStep_deg;
+  WriteModel(file,
+             {kWest_deg + first_column * kTileStep_deg, kNorth_deg - first_row * kTileStep_deg,
+              step_deg, step_deg, samples, samples},
+             [&](int column, int row) {
+               return height(first_column + stride * column, first_row + stride * row);
+             });
 }
 
 /// A folder of side x side tiles.

@@ -42,26 +42,10 @@ TEST(LandSourceRange, TheExtentOfTheRangeIsThatOfTheRange) {
 }
 
 /// A tile that rises eastwards from 100 m to 2100 m.
-void WriteRisingTile(const std::filesystem::path& file, double west_deg, double north_deg,
-                     double step_lon_deg, double step_lat_deg, int columns, int rows) {
-  GDALRegister_GTiff();
-  GDALDataset* const dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      file.c_str(), columns, rows, 1, GDT_Float32, nullptr);
-  std::array<double, 6> corner{west_deg - 0.5 * step_lon_deg,  step_lon_deg, 0.0,
-                               north_deg + 0.5 * step_lat_deg, 0.0,          -step_lat_deg};
-  dataset->SetGeoTransform(corner.data());
-  OGRSpatialReference crs;
-  crs.importFromEPSG(4326);
-  dataset->SetSpatialRef(&crs);
-  std::vector<float> heights;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column)
-      heights.push_back(100.0F +
-                        2000.0F * static_cast<float>(column) / static_cast<float>(columns - 1));
-  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, heights.data(),
-                                                columns, rows, GDT_Float32, 0, 0, nullptr),
-            CE_None);
-  GDALClose(dataset);
+void WriteRisingTile(const std::filesystem::path& file, const DegreeGrid& grid) {
+  WriteModel(file, grid, [&](int column, int) {
+    return 100.0F + 2000.0F * static_cast<float>(column) / static_cast<float>(grid.columns - 1);
+  });
 }
 
 /// A smooth land, of degrees.
@@ -73,25 +57,11 @@ double HillHeight(double longitude_deg, double latitude_deg) {
 /// Copernicus, whose columns thin out towards the poles.
 void WriteOpenTile(const std::filesystem::path& file, int west_deg, int north_deg, int columns,
                    int rows) {
-  GDALRegister_GTiff();
-  GDALDataset* const dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      file.c_str(), columns, rows, 1, GDT_Float32, nullptr);
   const double across = 1.0 / columns, down = 1.0 / rows;
-  std::array<double, 6> corner{west_deg - 0.5 * across, across, 0.0,
-                               north_deg + 0.5 * down,  0.0,    -down};
-  dataset->SetGeoTransform(corner.data());
-  OGRSpatialReference crs;
-  crs.importFromEPSG(4326);
-  dataset->SetSpatialRef(&crs);
-  std::vector<float> heights;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column)
-      heights.push_back(
-          static_cast<float>(HillHeight(west_deg + column * across, north_deg - row * down)));
-  EXPECT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, heights.data(),
-                                                columns, rows, GDT_Float32, 0, 0, nullptr),
-            CE_None);
-  GDALClose(dataset);
+  const double west = west_deg, north = north_deg;
+  WriteModel(file, {west, north, across, down, columns, rows}, [&](int column, int row) {
+    return static_cast<float>(HillHeight(west + column * across, north - row * down));
+  });
 }
 
 /// Every sample of the lattice in a range of degrees is land, about as high as the hills.
@@ -162,7 +132,7 @@ TEST_F(LandSourceFiles, ATileThatIsMissingIsStillAHole) {
   EXPECT_FALSE(heights.HeightUnder(49.5 * kRadiansPerDegree, 9.99 * kRadiansPerDegree));
 }
 
-// What a file does not write takes no room in it.
+// Blocks that are not written take no room in the file.
 TEST_F(LandSourceFiles, AModelOfTheWholeEarthIsReadInParts) {
   GDALRegister_GTiff();
   const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", nullptr};
@@ -200,8 +170,9 @@ TEST_F(LandSourceFiles, AModelOfTheWholeEarthIsReadInParts) {
 TEST_F(LandSourceFiles, ATileOfAnotherAspectKeepsTheHeightOfItsRim) {
   constexpr double kSecond_deg = 1.0 / 3600.0;
   const double west_deg = 8.0 + 0.992 * 10.0 * kSecond_deg;
-  WriteRisingTile(folder_ / "a.tif", 8.0, 47.0, 10.0 * kSecond_deg, kSecond_deg, 37, 361);
-  WriteRisingTile(folder_ / "b.tif", west_deg, 46.5, 3.0 * kSecond_deg, 3.0 * kSecond_deg, 21, 21);
+  WriteRisingTile(folder_ / "a.tif", {8.0, 47.0, 10.0 * kSecond_deg, kSecond_deg, 37, 361});
+  WriteRisingTile(folder_ / "b.tif",
+                  {west_deg, 46.5, 3.0 * kSecond_deg, 3.0 * kSecond_deg, 21, 21});
   LandSource source;
   source.files = {folder_ / "a.tif", folder_ / "b.tif"};
   const LandTiles tiles(source);

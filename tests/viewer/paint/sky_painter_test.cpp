@@ -27,7 +27,7 @@ struct PictureSize {
 };
 constexpr int kViewWidth = 160, kViewHeight = 90;
 constexpr PictureSize kFull{kViewWidth, kViewHeight}, kScaled = tests::ScaledDown(kFull, {64, 36});
-// What is at rims of the ground grows with the pixels.
+// Differences at rims of the ground grow with the pixels.
 constexpr double kPixelWidth = static_cast<double>(kViewWidth) / kScaled.width;
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kSamples = 32;
