@@ -14,6 +14,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
 
 namespace alpenglow {
@@ -177,7 +178,7 @@ TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
       double brightest = 0.0;
       for (const auto& pixel : image.rgb) brightest = std::max(brightest, Luminance(pixel));
       double squares = 0.0;
-      constexpr int kPixels = 200;
+      constexpr int kPixels = tests::ScaledDown(200, 50);
       for (int i = 1; i <= kPixels; ++i) {
         const int x = static_cast<int>(Halton(i, 2) * settings.width);
         const int y = static_cast<int>(Halton(i, 3) * settings.height);

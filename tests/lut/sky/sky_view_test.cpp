@@ -8,6 +8,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/fixtures/small_light.h"
 
@@ -66,12 +67,13 @@ TEST(SkyViewMap, TheHorizonIsWhereRaysBeginToMeetTheGround) {
 }
 
 TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
+  constexpr int kDirections = tests::ScaledDown(300, 60);
   const Air& earth = Air::Earth();
   for (const double altitude_m : kAltitudes_m) {
     for (const double elevation_deg : kElevations_deg) {
       const SkyView view = earth.View(altitude_m, elevation_deg);
       const SkyViewErrors errors =
-          ErrorsOf(view, earth.direct, altitude_m, Air::Sine(elevation_deg), 300);
+          ErrorsOf(view, earth.direct, altitude_m, Air::Sine(elevation_deg), kDirections);
       EXPECT_LT(errors.Rms(), 0.003) << altitude_m << " m, sun at " << elevation_deg;
       EXPECT_LT(errors.Percentile(95.0), 0.006) << altitude_m << " m, sun at " << elevation_deg;
     }

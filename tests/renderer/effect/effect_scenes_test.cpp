@@ -6,6 +6,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
 
 #include "atmosphere/colour/spectrum.h"
 #include "tests/fixtures/sanitized.h"
@@ -24,49 +27,76 @@ RenderSettings SettingsOf(int width, int height) {
 const RenderSettings kFull = SettingsOf(96, 54);
 const RenderSettings kSmall = tests::ScaledDown(kFull, SettingsOf(48, 27));
 
-class SceneEffects : public TemporaryFolder, public testing::WithParamInterface<const char*> {
- protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    for (const EffectScene& scene : EffectScenes(folder_.string())) {
-      if (scene.name == GetParam()) {
-        instant_ = scene.instant;
-        renderer_ = std::make_unique<SceneRenderer>(scene.scene);
-      }
-    }
-    ASSERT_TRUE(renderer_);
-  }
+/// A scene of EffectScenes(), loaded once for all tests, with what several of them ask for.
+class RenderedScene {
+ public:
+  explicit RenderedScene(const EffectScene& scene)
+      : instant_(scene.instant), renderer_(scene.scene) {}
 
   [[nodiscard]] Image With(EffectSet effects) const {
     RenderSettings settings = kSmall;
     settings.effects = effects;
-    return renderer_->Render(instant_, settings);
+    return renderer_.Render(instant_, settings);
   }
-  [[nodiscard]] ChosenPicture Within(double max_error, bool explain = false) const {
-    return renderer_->RenderWithin(instant_, kSmall, {.max_error = max_error, .explain = explain});
+  [[nodiscard]] ChosenPicture Within(double max_error, const RenderSettings& settings = kSmall,
+                                     bool explain = false) const {
+    return renderer_.RenderWithin(instant_, settings, {.max_error = max_error, .explain = explain});
+  }
+  [[nodiscard]] const Image& WithAll() {
+    if (!all_) all_ = With(EffectSet::All());
+    return *all_;
+  }
+  /// What is chosen for an error of 0.01, with the estimates of all effects.
+  [[nodiscard]] const EffectChoice& Explained() {
+    if (!explained_) explained_ = Within(0.01, kSmall, true).choice;
+    return *explained_;
   }
 
-  UtcInstant instant_{};
-  std::unique_ptr<SceneRenderer> renderer_;
+ private:
+  UtcInstant instant_;
+  SceneRenderer renderer_;
+  std::optional<Image> all_;
+  std::optional<EffectChoice> explained_;
+};
+
+class LoadedScenes : public TemporaryFolder {
+ protected:
+  [[nodiscard]] RenderedScene& SceneNamed(const std::string& name) const {
+    static std::map<std::string, RenderedScene> loaded;
+    const auto found = loaded.find(name);
+    if (found != loaded.end()) return found->second;
+    for (const EffectScene& scene : EffectScenes(folder_.string())) {
+      if (scene.name == name) return loaded.try_emplace(name, scene).first->second;
+    }
+    throw InternalError("no scene " + name);
+  }
+};
+
+class SceneEffects : public LoadedScenes, public testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    LoadedScenes::SetUp();
+    scene_ = &SceneNamed(GetParam());
+  }
+  RenderedScene* scene_ = nullptr;
 };
 
 TEST_P(SceneEffects, APictureOfWhatIsNeededStaysWithinTheBudget) {
-  const Image all = With(EffectSet::All());
   for (const double budget : {0.01, 0.002}) {
-    const ChosenPicture chosen = Within(budget);
-    const PictureChange change = ChangeOf(all, chosen.image);
+    const ChosenPicture chosen = scene_->Within(budget);
+    const PictureChange change = ChangeOf(scene_->WithAll(), chosen.image);
     EXPECT_LE(change.rms, budget) << NameOf(chosen.choice.effects);
     EXPECT_LE(change.at_99_percent, 4.0 * budget) << NameOf(chosen.choice.effects);
-    EXPECT_EQ(With(chosen.choice.effects).rgb, chosen.image.rgb)
+    EXPECT_EQ(scene_->With(chosen.choice.effects).rgb, chosen.image.rgb)
         << "the choice says what was rendered";
   }
 }
 
 TEST_P(SceneEffects, ThePilotSeesOfEachEffectWhatThePictureShows) {
-  const Image all = With(EffectSet::All());
-  for (const EffectEstimate& estimate : Within(0.01, true).choice.estimates) {
+  for (const EffectEstimate& estimate : scene_->Explained().estimates) {
     if (!estimate.present) continue;
-    const double is = ChangeOf(all, With(EffectSet::All().Without(estimate.effect))).rms;
+    const Image without = scene_->With(EffectSet::All().Without(estimate.effect));
+    const double is = ChangeOf(scene_->WithAll(), without).rms;
     const char* name = TextOf(estimate.effect).name;
     EXPECT_LE(is, estimate.change.at_most.rms + 1e-3)
         << name << ": three standard errors, and what falls between the pilot's pixels";
@@ -81,16 +111,19 @@ TEST_P(SceneEffects, TheChoiceIsTheSameForAnyNumberOfThreads) {
   std::vector<EffectSet> choices;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    choices.push_back(Within(0.005).choice.effects);
+    choices.push_back(scene_->Within(0.005).choice.effects);
   }
   EXPECT_EQ(choices[0], choices[1]);
   EXPECT_EQ(choices[0], choices[2]);
 }
 
+const std::vector<const char*> kAllScenes{"noon clear",   "noon haze",     "sunset",
+                                          "twilight",     "from 10 km",    "from space",
+                                          "lamps in fog", "lamps at noon", "valley"};
+const std::vector<const char*> kDifferentScenes{"noon clear", "twilight", "from space",
+                                                "lamps in fog"};
 INSTANTIATE_TEST_SUITE_P(Of, SceneEffects,
-                         testing::Values("noon clear", "noon haze", "sunset", "twilight",
-                                         "from 10 km", "from space", "lamps in fog",
-                                         "lamps at noon", "valley"),
+                         testing::ValuesIn(tests::ScaledDown(kAllScenes, kDifferentScenes)),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            std::replace(name.begin(), name.end(), ' ', '_');
@@ -98,24 +131,17 @@ INSTANTIATE_TEST_SUITE_P(Of, SceneEffects,
                          });
 
 /// What a scene does without.
-class SceneNeeds : public TemporaryFolder {
+class SceneNeeds : public LoadedScenes {
  protected:
-  void SetUp() override { TemporaryFolder::SetUp(); }
-  [[nodiscard]] EffectChoice ChoiceFor(const std::string& name, bool explain = false,
+  [[nodiscard]] EffectChoice ChoiceFor(const std::string& name,
                                        const RenderSettings& settings = kSmall) const {
-    for (const EffectScene& scene : EffectScenes(folder_.string())) {
-      if (scene.name != name) continue;
-      return SceneRenderer(scene.scene)
-          .RenderWithin(scene.instant, settings, {.max_error = 0.01, .explain = explain})
-          .choice;
-    }
-    throw std::logic_error("no scene " + name);
+    return SceneNamed(name).Within(0.01, settings).choice;
   }
-  static double ChangeBy(Effect effect, const EffectChoice& choice) {
-    for (const EffectEstimate& estimate : choice.estimates) {
+  [[nodiscard]] double ChangeBy(Effect effect, const std::string& scene) const {
+    for (const EffectEstimate& estimate : SceneNamed(scene).Explained().estimates) {
       if (estimate.effect == effect) return estimate.whole.seen.rms;
     }
-    throw std::logic_error("not estimated");
+    throw InternalError("not estimated");
   }
 };
 
@@ -133,14 +159,13 @@ TEST_F(SceneNeeds, TheSkyByDayAndNotAtNight) {
 }
 
 TEST_F(SceneNeeds, LampsThatAreSeenByDayAndNotTheirLightInClearAir) {
-  const EffectChoice day = ChoiceFor("lamps at noon", false, kFull);  // lamps are few pixels
+  const EffectChoice day = ChoiceFor("lamps at noon", kFull);  // lamps are few pixels
   EXPECT_FALSE(day.LeftOut().Has(Effect::kLights)) << "few pixels, but those that one looks at";
   EXPECT_TRUE(day.LeftOut().Has(Effect::kBeams));
 }
 
 TEST_F(SceneNeeds, OzoneInTwilightTenTimesAsMuchAsAtNoon) {
-  EXPECT_GT(ChangeBy(Effect::kOzone, ChoiceFor("twilight", true)),
-            10.0 * ChangeBy(Effect::kOzone, ChoiceFor("noon clear", true)))
+  EXPECT_GT(ChangeBy(Effect::kOzone, "twilight"), 10.0 * ChangeBy(Effect::kOzone, "noon clear"))
       << "a long way through the layer, and Chappuis' bands in a blue sky";
 }
 

@@ -42,11 +42,12 @@ RenderSettings JudgeSettings(const PictureSize& size) {
   return settings;
 }
 
-PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& now) {
+PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& now,
+                   const PictureSize& size = kFull) {
   Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
           scene.camera.fov_rad};
   eye.place.height_m = eye_height_m;
-  return {eye, now, kViewWidth, kViewHeight};
+  return {eye, now, size.width, size.height};
 }
 
 /// The renderer and the painter of a scene, for as many views as one likes.
@@ -56,7 +57,7 @@ class BothPrograms {
       : size_(size),
         ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
         judge_(scene, ground_),
-        painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first),
+        painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first, size),
                  SizesOf(Quality::kHigh)) {}
 
   ViewDifference Difference(PaintedView view) {
