@@ -12,16 +12,17 @@ target_compile_options(alpenglow_warnings INTERFACE
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 
 # Not cache variables: project() has put empty ones of these names into the cache, which would win. -O2
-# takes up to twice as long to compile. What is checked at every access to a member doubles the time to
-# compile and to run, and is found otherwise: null pointers by the processor, sizes of objects by the address
-# sanitizer, alignment by -Wcast-align=strict; no pointer to a class with virtual functions is cast down.
+# takes up to twice as long to compile. Four checks are off, because they are made at every access to a member
+# and double the time to compile and to run. Other means find the same faults: the processor finds null
+# pointers, the address sanitizer accesses beyond an object, and -Wcast-align=strict wrong alignment. No code
+# casts a pointer down to a class with virtual functions.
 set(CMAKE_CXX_FLAGS_SANITIZE "-O1 -g1 -fsanitize=address,undefined \
 -fno-sanitize=null,alignment,object-size,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer")
 set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}")
 set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined")
 
-# For what spends its time in the libraries: the templates of CLI11 and GoogleTest are long to optimise, with
-# sanitizers three times as long as all else.
+# Programs and tests spend their time in the libraries and are optimised little: the templates of CLI11 and
+# GoogleTest take long to optimise, with sanitizers three times as long as all other code.
 set(ALPENGLOW_LITTLE_OPTIMISATION $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0>)
 
 # alpenglow_library(<folder> SOURCES a.cpp ... HEADERS a.h ...)
@@ -138,7 +139,7 @@ std::string_view EmbeddedText(std::string_view name);
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
-# What all tests are compiled with: headers read once for all, and little optimisation.
+# What all tests are compiled with: headers that are read once for all, and little optimisation.
 function(alpenglow_test_headers)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
   add_library(alpenglow_test_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
