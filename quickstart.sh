@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 bash .ci/install-packages.sh
 build=build/quickstart
 mkdir -p out
-day=("$build/renderer/skyseries" --out 'out/day.%04d.exr' --png --size 960x540
+day=("$build/renderer/skyseries" --out 'out/day.%04d.exr' --png --size 640x360
   --date 2026-03-21 --from sunrise-1h --to sunset+1h --every 40m)
 
 echo "Building the renderer"
@@ -17,9 +17,10 @@ cmake --build "$build" --target skyseries
 "${day[@]}" --quiet --frames 10
 echo "The first picture: out/day.0010.png"
 
-echo "Rendering the day, and building the other programs meanwhile (log: $build/build.log)"
-cmake --build "$build" >"$build/build.log" 2>&1 &
-rest=$!
+echo "Rendering the day"
 "${day[@]}" --resume --contact-sheet out/day.png
-wait "$rest" || { cat "$build/build.log"; exit 1; }
-echo "Done: out/day.png shows the whole day, out/day.0000.png and on the single frames."
+echo "The whole day: out/day.png, out/day.0000.png and on the single frames"
+
+echo "Building the other programs"
+cmake --build "$build"
+echo "Done: the programs are $build/lut/skylut, $build/renderer/skyseries and $build/viewer/skyview."

@@ -32,7 +32,7 @@ README_ROWS = {
                          "isotropic table (Hillaire 2020), 32 x 32, 64 directions"),
     "sky around one camera, clear": ("panorama, earth", "sky view, in rows, size chosen", None, None),
     "air before a mountain, clear": ("air before a mountain, earth", "Gauss panels, automatic",
-                                     "two look-ups (Bruneton), 16 x 64 x 24 x 8",
+                                     "two look-ups (Bruneton), 32 x 128 x 32 x 8",
                                      "froxels (Hillaire 2020), 32 x 32 x 32")}
 PLOTS = (("report", "single_scattering.earth.svg", "lut/single_scattering.svg"),
          ("pictures", "shafts.*.svg", "renderer/shafts.svg"))
