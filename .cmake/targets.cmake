@@ -13,9 +13,9 @@ target_compile_options(alpenglow_warnings INTERFACE
 
 # Not cache variables: project() has put empty ones of these names into the cache, which would win. -O2
 # takes up to twice as long to compile. Four checks are off, because they are made at every access to a member
-# and double the time to compile and to run. Other means find the same faults: the processor finds null
-# pointers, the address sanitizer accesses beyond an object, and -Wcast-align=strict wrong alignment. No code
-# casts a pointer down to a class with virtual functions.
+# and add a half to the time to compile (a source of eight: 9.1 s instead of 6.2 s). Other means find the same
+# faults: the processor finds null pointers, the address sanitizer finds accesses beyond an object, and
+# -Wcast-align=strict finds wrong alignment. No code casts a pointer down to a class with virtual functions.
 set(CMAKE_CXX_FLAGS_SANITIZE "-O1 -g1 -fsanitize=address,undefined \
 -fno-sanitize=null,alignment,object-size,vptr -fno-sanitize-recover=all -fno-omit-frame-pointer")
 set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}")
@@ -89,7 +89,8 @@ function(alpenglow_kernels target)
       target_compile_options(${objects} PRIVATE
         $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
         $<$<CONFIG:Debug,Sanitize>:-O2> ${ALPENGLOW_OPTIONS_${set}}
-        # Batches are passed by reference: checking the scope of each makes kernels several times slower.
+        # Batches are passed by reference. Checks of their scope, on top of the four that are off, make
+        # kernels 14 times slower, and they take 5 times as long to compile.
         $<$<CONFIG:Sanitize>:-fno-sanitize-address-use-after-scope>)
       target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
       set_property(GLOBAL APPEND PROPERTY ALPENGLOW_KERNEL_OBJECTS ${objects})
@@ -139,7 +140,7 @@ std::string_view EmbeddedText(std::string_view name);
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
-# What all tests are compiled with: headers that are read once for all, and little optimisation.
+# alpenglow_test_headers: all tests share its precompiled headers and are optimised little.
 function(alpenglow_test_headers)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
   add_library(alpenglow_test_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)

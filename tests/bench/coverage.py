@@ -33,8 +33,8 @@ def build_and_run(preset, only):
     # Software OpenGL without threads of its own, as the preset's tests have it (CMakePresets.json).
     environment = {**os.environ, "LP_NUM_THREADS": "0"} if preset == "sanitize" else os.environ
     environment = {"ASAN_OPTIONS": "detect_leaks=0", **environment}
-    # Threads on two processors that count in the same place slow down each other tenfold: every processor
-    # runs lines of its own.
+    # Threads on two processors that count in the same place slow down each other, so every processor runs
+    # lines of its own.
     processors = sorted(os.sched_getaffinity(0))
     runs = [subprocess.Popen(["taskset", "--cpu-list", str(processor), "ctest", "--test-dir", build,
                               "-LE", "bench", "-I", f"{first + 1},,{len(processors)}",

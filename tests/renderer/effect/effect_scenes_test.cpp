@@ -46,7 +46,7 @@ class RenderedScene {
     if (!all_) all_ = With(EffectSet::All());
     return *all_;
   }
-  /// What is chosen for an error of 0.01, with the estimates of all effects.
+  /// Returns the choice for an error of 0.01, with the estimates of all effects.
   [[nodiscard]] const EffectChoice& Explained() {
     if (!explained_) explained_ = Within(0.01, kSmall, true).choice;
     return *explained_;
