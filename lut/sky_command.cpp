@@ -23,7 +23,7 @@ namespace {
 struct SkyOptions {
   std::optional<std::string> atmosphere, png, time, zone;
   std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx",
-                   look = "photo", white_balance = "daylight";
+                   look = "photo", white_balance = "camera";
   std::optional<double> sun_elevation, latitude, longitude;
   std::vector<std::string> layers;
   double sun_azimuth = 180.0, altitude = 2.0;
@@ -142,6 +142,7 @@ void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   look.agx = AgxLookFromName(options.look);
   look.night_vision = options.night_vision;
   look.white = WhiteBalanceFromText(options.white_balance);
+  look = LookUnder(rule, look);
   SkyJob job = JobFrom(options);
   const RenderedSky sky = Rendered(job, common.progress_style());
   const PictureView view{Projection::kLatitudeLongitude, 2.0 * kPi / sky.image.width};
@@ -229,8 +230,9 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
       ->needs(png)
       ->capture_default_str();
   sky.add_option("--white-balance", options.white_balance,
-                 "Light that the PNG shows as white: daylight, auto (the mean colour of what is "
-                 "metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+                 "Light that the PNG shows as white: camera (daylight, by night 4000 K), daylight, "
+                 "auto (the "
+                 "mean colour of what is metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->needs(png)
       ->capture_default_str();

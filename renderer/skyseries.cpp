@@ -176,6 +176,7 @@ int Run(const SkyseriesOptions& options) {
   output.look.agx = AgxLookFromName(options.look);
   output.look.night_vision = options.night_vision;
   output.look.white = WhiteBalanceFromText(options.white_balance);
+  output.look = LookUnder(output.exposure, output.look);
   output.glare = options.glare == "eye";
   output.resume = options.resume;
   output.inputs = InputsOf(options, scene);

@@ -50,7 +50,7 @@ struct SkyseriesOptions {
   TimesText times;
   std::optional<std::string> date, zone, frames, contact_sheet, keogram, plot, video;
   std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
-                   filter = "blackman-harris", glare = "none", white_balance = "daylight";
+                   filter = "blackman-harris", glare = "none", white_balance = "camera";
   std::optional<int> samples;
   std::optional<std::string> path;
   TrackStyle track;
@@ -215,8 +215,9 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
       ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
   app.add_option("--white-balance", options.white_balance,
-                 "Light that the PNG shows as white: daylight, auto (the mean colour of what is "
-                 "metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+                 "Light that the PNG shows as white: camera (daylight, by night 4000 K), daylight, "
+                 "auto (the "
+                 "mean colour of what is metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
   app.add_flag("--night-vision", options.night_vision,

@@ -408,9 +408,18 @@ void Flythrough::Use(ToneCurve curve) {
   darkroom_.developer().Use(shown);
 }
 
+double Flythrough::AdaptedTo(double metered_ev100, double seconds) {
+  if (rule_of_exposure_.kind != ExposureRule::Kind::kEye) return metered_ev100;
+  const UtcInstant before = adapted_at_.value_or(now());
+  adapted_at_ = now();
+  // Whoever jumps over an hour has adapted for an hour.
+  return adaptation_.Follow(metered_ev100,
+                            std::max(seconds, std::abs(SecondsBetween(before, now()))));
+}
+
 void Flythrough::Expose(const MeterReading& metered, double seconds) {
   if (!exposure_.locked) {
-    const double wanted = Ev100By(rule_of_exposure_, metered.ev100, look_);
+    const double wanted = Ev100By(rule_of_exposure_, AdaptedTo(metered.ev100, seconds), look_);
     exposure_.ev100 = AdaptedEv100(exposure_.ev100, wanted - exposure_.compensation_ev, seconds);
   }
   white_ = white_ ? AdaptedWhite(*white_, metered.white, seconds) : metered.white;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lut/picture/eye_adaptation.h"
 #include "lut/picture/picture_text.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/air_choice.h"
@@ -160,6 +161,8 @@ class Flythrough {
   /// Without land of several elevation models.
   [[nodiscard]] Scene SceneSeen() const;
   [[nodiscard]] PaintedQuality Painted() const;
+  /// The EV that the rule of exposure has it for, by the eye as it has adapted.
+  [[nodiscard]] double AdaptedTo(double metered_ev100, double seconds);
   void Expose(const MeterReading& metered, double seconds);
   /// Of a picture without a frame before it: as frames are, or as it is metered.
   [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
@@ -187,7 +190,9 @@ class Flythrough {
   SpotMeter spot_;
   FlightExposure exposure_;
   std::optional<MeterReading> metered_;
-  std::optional<WhiteBalance> white_;  // as shown; nothing before the first picture
+  EyeAdaptation adaptation_;              // of the rule eye
+  std::optional<UtcInstant> adapted_at_;  // the moment that it followed last
+  std::optional<WhiteBalance> white_;     // as shown; nothing before the first picture
   bool landing_light_ = false;
   bool knows_ground_ = false;                   // under the eye, since it was put there
   std::optional<double> waits_above_ground_m_;  // until then: how high it will stand over it

@@ -42,7 +42,7 @@ struct SkyviewOptions {
   double fps = 30.0;                // of the film
   int frames = 1;
   std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto", look = "photo",
-              white_balance = "daylight";
+              white_balance = "camera";
   double frame_rate = 20.0;  // that automatic quality keeps
   double hud_scale = 0.0;    // 0: as the desktop says
   bool invert_y = false, explain = false;
@@ -64,10 +64,10 @@ inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
                  "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
       ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
-  app.add_option(
-         "--white-balance", options.white_balance,
-         "Light that is shown as white: daylight, auto (the mean colour of what is metered, "
-         "3000 to 7000 K) or kelvins, 1500 to 25000")
+  app.add_option("--white-balance", options.white_balance,
+                 "Light that is shown as white: camera (daylight, by night 4000 K), daylight, auto "
+                 "(the mean "
+                 "colour of what is metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
 }

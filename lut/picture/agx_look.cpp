@@ -16,11 +16,11 @@ struct NamedLook {
 };
 
 constexpr std::array<NamedLook, 5> kLooks{{
-    {AgxLook::kPhoto, "photo", {0.9, 1.4, 1.0, 1.0, 0.65, true}},
+    {AgxLook::kPhoto, "photo", {0.6, 1.8, true, 0.38, 1.0, 1.0, 0.35, true}},
     {AgxLook::kNone, "none", {}},
-    {AgxLook::kPunchy, "punchy", {0.0, 1.0, 1.3, 1.2, 0.0, false}},
-    {AgxLook::kMedium, "medium", {0.0, 1.2, 1.0, 1.0, 0.0, false}},
-    {AgxLook::kHigh, "high", {0.0, 1.4, 1.0, 0.95, 0.0, false}},
+    {AgxLook::kPunchy, "punchy", {0.0, 1.0, false, 0.0, 1.3, 1.2, 0.0, false}},
+    {AgxLook::kMedium, "medium", {0.0, 1.2, false, 0.0, 1.0, 1.0, 0.0, false}},
+    {AgxLook::kHigh, "high", {0.0, 1.4, false, 0.0, 1.0, 0.95, 0.0, false}},
 }};
 
 const NamedLook& Entry(AgxLook look) {

@@ -8,6 +8,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/clipped_edge.h"
 #include "lut/picture/dither.h"
+#include "lut/picture/highlights.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/look.h"
 #include "lut/picture/tone_curve.h"
@@ -63,6 +64,11 @@ DisplayImage Develop(const Image& seen, double ev100, const Look& look) {
     Look rest = look;
     rest.local_exposure = false;
     return Develop(LocallyExposed(seen, ev100), ev100, rest);
+  }
+  if (look.rolls_off) {
+    Look rest = look;
+    rest.rolls_off = false;
+    return Develop(WithHighlightsRolledOff(seen, ev100), ev100, rest);
   }
   const auto scale = static_cast<float>(ExposureScale(ev100));
   DisplayImage display{seen.width, seen.height, std::vector<std::uint8_t>(3 * seen.rgb.size())};

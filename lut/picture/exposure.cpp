@@ -70,7 +70,7 @@ std::size_t BinAtShare(const Histogram& histogram, double share) {
   return bin;
 }
 
-/// Mean of log2 luminance between two shares of the pixels; bins that a share cuts count in part.
+/// log2 of the mean luminance between two shares of the pixels; bins that a share cuts count in part.
 double MeanStop(const Histogram& histogram, double pixels, double low_share, double high_share) {
   const double low = low_share * pixels;
   const double high = high_share * pixels;
@@ -80,11 +80,11 @@ double MeanStop(const Histogram& histogram, double pixels, double low_share, dou
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const double inside =
         std::max(0.0, std::min(seen + histogram[bin], high) - std::max(seen, low));
-    sum += inside * (kLowestStop + (static_cast<double>(bin) + 0.5) / kBinsPerStop);
+    sum += inside * std::exp2(kLowestStop + (static_cast<double>(bin) + 0.5) / kBinsPerStop);
     weight += inside;
     seen += histogram[bin];
   }
-  return sum / weight;
+  return std::log2(sum / weight);
 }
 
 /// log2 luminance that a share of all pixels lies below; between the ends of a bin it is even.
@@ -120,7 +120,7 @@ double ExposureScale(double ev100) { return 1.0 / (1.2 * std::exp2(ev100)); }
 
 std::string MeterRule() {
   return fmt::format(
-      "mean log luminance of shares {} to {} of the solid angle, K {}; the upper not over {} "
+      "mean luminance of shares {} to {} of the solid angle, K {}; the upper not over {} "
       "beside "
       "{}; left out: over {:g} cd/m^2, and what is {} to {} stops under the upper",
       kDarkShare, kBrightShare, kMeterConstant, kPaper, kGreyCard, kSunDiskLuminance_cd_per_m2,

@@ -9,8 +9,9 @@
 //   black space           what stays black beside the rest: 6 stops below the brightest twentieth
 //                         weights begin to fade, at 10 they are nothing.
 //
-// The mean of the logarithm of the others is printed as middle grey (K = 12.5, ISO 2720), but the
-// light below which all but the brightest twentieth lie never brighter than white paper beside a
+// The mean of the others is printed as middle grey (K = 12.5, ISO 2720): the mean of light and not of
+// its logarithm, which would fall faster than the sky where land grows dark, so that a dusk would get
+// brighter on the display. But the light below which all but the brightest twentieth lie never brighter than white paper beside a
 // grey card, 90 % beside 18 %: nobody lets a sunlit planet below a black sky, snow behind a dark
 // wood, or fog around lamps run white.
 #pragma once

@@ -24,7 +24,13 @@ Look LookFromName(const std::string& name) {
 std::string NameOf(const Look& look) {
   return (look.local_exposure ? "local " : "") + NameOf(look.curve) +
          (look.curve == ToneCurve::kAgx ? ", " + NameOf(look.agx) : "") +
+         (look.rolls_off ? ", highlights rolled off" : "") +
          (look.night_vision ? ", night vision" : "");
+}
+
+Look LookUnder(const ExposureRule& rule, Look look) {
+  look.rolls_off = rule.kind == ExposureRule::Kind::kIncident && look.curve != ToneCurve::kLinear;
+  return look;
 }
 
 Look Settled(Look look, const Image& image, const PictureView& view) {
@@ -61,17 +67,22 @@ std::string NameOf(ExposureRule::Kind kind) {
   throw InternalError("unknown rule of exposure");
 }
 
-double EyeEv100(double metered_ev100, const Look& look) {
-  constexpr double kDayEv100 = 15.0, kBrightnessPower = 1.0 / 3.0, kDarkest_stops = -6.0;
-  if (metered_ev100 >= kDayEv100) return metered_ev100;
-  const auto shown = [&](double stops_darker) {
-    const double grey = kMeterConstant / 100.0 * std::exp2(-stops_darker);
+namespace {
+
+constexpr double kDayEv100 = 15.0;
+
+double LuminanceAt(double ev100) { return kMeterConstant / 100.0 * std::exp2(ev100); }
+
+/// The exposure that shows what the meter took for middle grey so many stops darker on the display
+/// than it prints it.
+double ShownDarker(double metered_ev100, double stops, const Look& look) {
+  const auto shown = [&](double darker) {
+    const double grey = LuminanceAt(-darker);
     return DisplayLight<double>(look.curve, {grey, grey, grey}, ExposureScale(0.0), look.agx)[1];
   };
-  const double stops = std::max(kBrightnessPower * (metered_ev100 - kDayEv100), kDarkest_stops);
-  const double wanted = shown(0.0) * std::exp2(stops);
-  double low = 0.0;
-  double high = kDayEv100 - metered_ev100;  // as dark as it is: no adaptation
+  const double wanted = shown(0.0) * std::exp2(-stops);
+  double low = 0.0, high = stops;  // curves have a slope of 1 or more under grey
+  while (shown(high) > wanted) high *= 2.0;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
     (shown(middle) > wanted ? low : high) = middle;
@@ -79,18 +90,33 @@ double EyeEv100(double metered_ev100, const Look& look) {
   return metered_ev100 + low;
 }
 
-namespace {
-constexpr double kDusk_ev100 = 12.0, kDarkerPerEv_stops = 0.08;
+/// Look.h has the formula and its sources.
+double KeyOf(double luminance_cd_per_m2) {
+  constexpr double kRodsAlone_cd_per_m2 = 0.005;
+  const double key = 1.03 - 2.0 / (2.0 + std::log10(luminance_cd_per_m2 + 1.0));
+  return key / std::cbrt(1.0 + kRodsAlone_cd_per_m2 / luminance_cd_per_m2);
 }
 
-double CameraEv100(double metered_ev100) {
-  return metered_ev100 + kDarkerPerEv_stops * std::max(kDusk_ev100 - metered_ev100, 0.0);
+}  // namespace
+
+double EyeEv100(double metered_ev100, const Look& look) {
+  constexpr double kBrightnessPower = 1.0 / 3.0, kMost_stops = 6.0;
+  if (metered_ev100 >= kDayEv100) return metered_ev100;
+  const double stops = kBrightnessPower * (kDayEv100 - metered_ev100);
+  const double part = stops / kMost_stops;
+  return ShownDarker(metered_ev100, stops / std::pow(1.0 + std::pow(part, 4.0), 0.25), look);
+}
+
+double CameraEv100(double metered_ev100, const Look& look) {
+  if (metered_ev100 >= kDayEv100) return metered_ev100;
+  const double key = KeyOf(LuminanceAt(metered_ev100)) / KeyOf(LuminanceAt(kDayEv100));
+  return ShownDarker(metered_ev100, -std::log2(key), look);
 }
 
 double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look) {
   switch (rule.kind) {
     case ExposureRule::Kind::kMetered:
-      return CameraEv100(metered_ev100);
+      return CameraEv100(metered_ev100, look);
     case ExposureRule::Kind::kEye:
       return EyeEv100(metered_ev100, look);
     case ExposureRule::Kind::kFixed:
@@ -104,11 +130,10 @@ double Ev100By(const ExposureRule& rule, double metered_ev100, const Look& look)
 std::string RuleInWords(const ExposureRule& rule) {
   switch (rule.kind) {
     case ExposureRule::Kind::kMetered:
-      return MeterRule() + fmt::format("; grey shown {} stops darker for each EV under {}",
-                                       kDarkerPerEv_stops, kDusk_ev100);
+      return MeterRule() + "; grey shown by the key of Krawczyk et al. under EV 15";
     case ExposureRule::Kind::kEye:
       return MeterRule() +
-             "; grey shown by the cube root of luminance under EV 15, 6 stops at most";
+             "; grey shown by the cube root of luminance under EV 15, less than 6 stops";
     case ExposureRule::Kind::kFixed:
       return "as asked for";
     case ExposureRule::Kind::kIncident:

@@ -14,6 +14,7 @@ namespace alpenglow {
 struct Look {
   ToneCurve curve = ToneCurve::kAgx;
   bool local_exposure = false;  // lut/picture/local_exposure.h
+  bool rolls_off = false;       // lut/picture/highlights.h
   bool night_vision = false;    // lut/picture/night_vision.h
   AgxLook agx = AgxLook::kPhoto;
   WhiteBalance white = {};
@@ -56,6 +57,10 @@ struct ExposureRule {
   bool operator==(const ExposureRule&) const = default;
 };
 
+/// The look of pictures that are exposed by a rule: those of an incident meter, which heeds the light on
+/// a subject and not the sky behind it, roll off their highlights. "linear" shows them as they are.
+[[nodiscard]] Look LookUnder(const ExposureRule& rule, Look look);
+
 /// "auto", "eye", "incident", or a number in [-30, 30]; throws InputError for another text.
 [[nodiscard]] ExposureRule ExposureRuleFromText(const std::string& text);
 
@@ -64,18 +69,25 @@ struct ExposureRule {
 
 /// The exposure that lets a dusk be dark: the eye adapts in part. Brightness grows as the cube root of
 /// luminance (Stevens 1961, "To honor Fechner and repeal his law", Science 133, 80-86), so what the
-/// meter took for middle grey is shown with (L / 4096 cd/m^2)^(1/3) of the light that it has on the
-/// display by day, which is L = 4096, EV 15, and more; but with no less than 2^-6, where displays lose
-/// what there is (sun at -11 degrees): from there on the picture stays as dark.
+/// meter took for middle grey is shown x = (15 - EV) / 3 stops darker on the display than by day, which
+/// is EV 15 and more; but always less than 6, where displays lose what there is:
+/// x / (1 + (x / 6)^4)^(1/4) stops, within 0.2 of x down to EV 4. Light that falls by 20 % a minute
+/// is shown by 7 % a minute darker.
 /// @param metered_ev100  MeterEv100 of the picture.
 [[nodiscard]] double EyeEv100(double metered_ev100, const Look& look);
 
-/// The exposure of a camera that keeps night from looking like day: under EV 12, where the sun has
-/// set, what the meter took for middle grey is printed 0.08 stops darker for each EV, which is 1.1
-/// stops in the light of a full moon and 1.9 at the end of the meter's range. Photographs of nights are
-/// exposed one to three stops under their meter; the even slope is our choice.
+/// The exposure of a camera that lets a night be dark. What the meter took for middle grey is shown
+/// with k(L) / k(4096 cd/m^2) of the light that it has on the display by day, where the key is
+///
+///   k(L) = (1.03 - 2 / (2 + log10(L + 1))) (1 + 0.005 / L)^(-1/3),     L metered [cd/m^2].
+///
+/// The first factor is the key of Krawczyk, Myszkowski and Seidel (2005), "Perceptual effects in
+/// real-time tone mapping" (SCCG '05), equation 11. It ends at 4.5 stops under the day's, the light of
+/// a full moon. The second goes on below that by the cube root of luminance (Stevens, as above) where
+/// rods alone see (0.005 cd/m^2, CIE 191). A dusk with the sun at -10 degrees is 4 stops darker than
+/// noon, the light of a full moon 4.5, that of the stars 6, the meter's darkest less than 7.
 /// @param metered_ev100  MeterEv100 of the picture.
-[[nodiscard]] double CameraEv100(double metered_ev100);
+[[nodiscard]] double CameraEv100(double metered_ev100, const Look& look);
 
 /// The exposure by a rule from what MeterEv100 says of a picture.
 /// @param rule  metered, eye or fixed; InternalError for incident, which is not of a picture.

@@ -69,6 +69,17 @@ SHARED Number AgxContrast(Number code, Number contrast) {
   return min(max(grey + (code - grey) * contrast, Number(0.0)), Number(1.0));
 }
 
+// The same under middle grey. Over it the contrast fades, so that the encoding's white stays where it
+// is, 6.5 stops over grey, and bright skies keep their gradient: with x from 0 at grey to 1 at white,
+// c x / (1 + (c^3 - 1) x^3)^(1/3), which is within 1 % of c x up to 1.6 stops for c = 1.8.
+SHARED Number AgxContrastWithShoulder(Number code, Number contrast) {
+  Number grey = Number(0.6060606060606061);
+  Number x = max(code - grey, Number(0.0)) / (Number(1.0) - grey);
+  Number bend = (contrast * contrast * contrast - Number(1.0)) * x * x * x;
+  Number above = contrast * x * pow(Number(1.0) + bend, Number(-0.3333333333333333));
+  return select(code < grey, AgxContrast(code, contrast), grey + (Number(1.0) - grey) * above);
+}
+
 // The exact sigmoid of AgX: 0.5 + s x / (1 + a |x|^b)^(1/b), x = code - 20/33, slope s = 2 at
 // middle grey, b = 3 below and 13/4 above; a makes it end in (0, 0) and (1, 1):
 //   below: a = 4^3 - (33/20)^3 = 59.507875,  above: a = 4^(13/4) - (33/13)^(13/4) = 69.8628.
@@ -90,6 +101,13 @@ SHARED Number AgxLight(Number code, Number code_share) {
   Number value = min(max(AgxOutset(code, code_share), Number(0.0)), Number(1.0));
   return pow(max(value, Number(1.0e-6)), Number(2.2)) *
          select(value > Number(1.0e-6), Number(1.0), Number(0.0));
+}
+
+// The toe of a print: in deep shade, where the sigmoid goes to black as a power of the scene's light,
+// display light is in proportion to that, a share of it; over middle grey no more than half the share.
+SHARED Number AgxWithToe(Number light, Number printed, Number share) {
+  Number toe = share * printed / (Number(1.0) + printed / Number(0.18));
+  return min(sqrt(light * light + toe * toe), Number(1.0));
 }
 
 // ---- ACES: fit of RRT and sRGB ODT by Hill (2016), published in Pettineo's BakingLab ------------

@@ -78,6 +78,20 @@ template <typename Real>
       RgbOf(Oklab<double>{shown.lightness, chroma * a / length, chroma * b / length}));
 }
 
+/// Display light of no more than kMostChroma times the chroma that the printed colour has at the same
+/// lightness (agx_look.h).
+[[nodiscard]] inline Rgb<double> WithChromaNear(const Rgb<double>& printed,
+                                                const Rgb<double>& light) {
+  const Oklab<double> scene = OklabOf(printed), shown = OklabOf(light);
+  if (!(scene.lightness > 1e-6)) return light;
+  const double most =
+      kMostChroma * std::hypot(scene.a, scene.b) * shown.lightness / scene.lightness;
+  const double chroma = std::hypot(shown.a, shown.b);
+  if (!(chroma > most)) return light;
+  const double share = most / chroma;
+  return InsideDisplay(RgbOf(Oklab<double>{shown.lightness, share * shown.a, share * shown.b}));
+}
+
 /// Codes with the saturation of a color decision list (ASC CDL).
 template <typename Real>
 [[nodiscard]] Rgb<Real> Saturated(const Rgb<Real>& code, Real saturation) {
@@ -104,10 +118,13 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] Rgb<Real> AgxCodes(const Rgb<Real>& printed, const AgxGrade& grade) {
   const Real share = shared::AgxWhiteShare(printed[0], printed[1], printed[2]);
+  const auto contrast = static_cast<Real>(grade.contrast);
   Rgb<Real> code;
   for (std::size_t c = 0; c < 3; ++c) {
     const Real log_code = shared::AgxLogCode(shared::AgxInset(printed[c], share));
-    code[c] = shared::AgxSigmoid(shared::AgxContrast(log_code, static_cast<Real>(grade.contrast)));
+    code[c] =
+        shared::AgxSigmoid(grade.has_shoulder ? shared::AgxContrastWithShoulder(log_code, contrast)
+                                              : shared::AgxContrast(log_code, contrast));
     if (grade.power != 1.0) code[c] = std::pow(code[c], static_cast<Real>(grade.power));
   }
   if (grade.vibrance > 0.0) return Vibrant(code, static_cast<Real>(grade.vibrance));
@@ -121,14 +138,16 @@ template <typename Real>
   const Rgb<Real> code =
       AgxCodes<Real>({printed[0] * opening, printed[1] * opening, printed[2] * opening}, grade);
   const Real code_share = shared::AgxWhiteShare(code[0], code[1], code[2]);
-  const Rgb<Real> light = {shared::AgxLight(code[0], code_share),
-                           shared::AgxLight(code[1], code_share),
-                           shared::AgxLight(code[2], code_share)};
-  if (!grade.keeps_blue) return light;
+  const auto toe = static_cast<Real>(grade.toe);
+  Rgb<Real> light;
+  for (std::size_t c = 0; c < 3; ++c)
+    light[c] = shared::AgxWithToe(shared::AgxLight(code[c], code_share), printed[c], toe);
   // Cube roots and their way back lose four bits, which float does not have to spare.
-  const auto [red, green, blue] =
-      WithBlueHueOf({printed[0], printed[1], printed[2]}, {light[0], light[1], light[2]});
-  return {static_cast<Real>(red), static_cast<Real>(green), static_cast<Real>(blue)};
+  const Rgb<double> scene{printed[0], printed[1], printed[2]};
+  Rgb<double> shown{light[0], light[1], light[2]};
+  if (grade.keeps_blue) shown = WithBlueHueOf(scene, shown);
+  shown = WithChromaNear(scene, shown);
+  return {static_cast<Real>(shown[0]), static_cast<Real>(shown[1]), static_cast<Real>(shown[2])};
 }
 
 template <typename Real>

@@ -64,7 +64,12 @@ std::array<double, 2> Uv(const Triple& xyz) {
 
 }  // namespace
 
+bool WhiteBalance::IsDaylight() const {
+  return kind == Kind::kDaylight || (kelvin && *kelvin == kDaylight_k);
+}
+
 WhiteBalance WhiteBalanceFromText(const std::string& text) {
+  if (text == "camera") return {WhiteBalance::Kind::kCamera};
   if (text == "daylight") return {};
   if (text == "auto") return {WhiteBalance::Kind::kAuto};
   double kelvin = 0.0;
@@ -73,23 +78,26 @@ WhiteBalance WhiteBalanceFromText(const std::string& text) {
   const bool is_whole = end == end_of_text || (*end == 'K' && end + 1 == end_of_text);
   if (error != std::errc() || !is_whole)
     throw InputError(fmt::format(
-        "white balance is \"{}\"; it must be daylight, auto or kelvins, as 5600", text));
+        "white balance is \"{}\"; it must be camera, daylight, auto or kelvins, as 5600", text));
   RequireInRange(kelvin, kWarmestWhite_k, kCoolestWhite_k, "white balance");
   return {WhiteBalance::Kind::kKelvin, kelvin};
 }
 
 std::string NameOf(const WhiteBalance& white) {
   if (white.kind == WhiteBalance::Kind::kDaylight) return "daylight (D65)";
-  const bool is_auto = white.kind == WhiteBalance::Kind::kAuto;
-  if (!white.kelvin) return "auto";
-  return fmt::format("{}{:.0f} K, CAT16", is_auto ? "auto, " : "", *white.kelvin);
+  const std::string of_picture = white.kind == WhiteBalance::Kind::kAuto ? "auto"
+                                 : white.IsOfPicture()                   ? "camera"
+                                                                         : "";
+  if (!white.kelvin) return of_picture;
+  return fmt::format("{}{}{:.0f} K, CAT16", of_picture, of_picture.empty() ? "" : ", ",
+                     *white.kelvin);
 }
 
 std::array<double, 3> WhiteOfTemperature(double kelvin) {
-  constexpr double kPlanck_k = 4000.0, kDaylight_k = 5000.0;
-  if (kelvin <= kPlanck_k) return Planck(kelvin);
-  if (kelvin >= kDaylight_k) return Daylight(kelvin);
-  const double share = (kelvin - kPlanck_k) / (kDaylight_k - kPlanck_k);
+  constexpr double kPlanckTo_k = 4000.0, kDaylightFrom_k = 5000.0;
+  if (kelvin <= kPlanckTo_k) return Planck(kelvin);
+  if (kelvin >= kDaylightFrom_k) return Daylight(kelvin);
+  const double share = (kelvin - kPlanckTo_k) / (kDaylightFrom_k - kPlanckTo_k);
   const Triple planck = Planck(kelvin), daylight = Daylight(kelvin);
   return {planck[0] + share * (daylight[0] - planck[0]), 1.0,
           planck[2] + share * (daylight[2] - planck[2])};
@@ -120,18 +128,29 @@ double TemperatureOf(const std::array<double, 3>& xyz) {
   return kPerMired / (0.5 * (low + high));
 }
 
+double CameraWhite(double metered_ev100) {
+  constexpr double kNight_k = 4000.0, kDuskEv100 = 4.0, kNightEv100 = -2.0, kPerMired = 1e6;
+  const double share =
+      std::clamp((kDuskEv100 - metered_ev100) / (kDuskEv100 - kNightEv100), 0.0, 1.0);
+  if (share == 0.0) return kDaylight_k;
+  const double night = share * share * (3.0 - 2.0 * share);
+  return kPerMired /
+         (kPerMired / kDaylight_k + night * (kPerMired / kNight_k - kPerMired / kDaylight_k));
+}
+
 WhiteBalance Settled(const WhiteBalance& white, const Image& image, Projection projection) {
   constexpr double kWarmest_k = 3000.0, kCoolest_k = 7000.0;
-  if (white.kind != WhiteBalance::Kind::kAuto || white.kelvin) return white;
+  if (!white.IsOfPicture() || white.kelvin) return white;
+  if (white.kind == WhiteBalance::Kind::kCamera)
+    return {white.kind, CameraWhite(MeterEv100(image, kSunDiskLuminance_cd_per_m2, projection))};
   const Triple colour = MeteredColour(image, kSunDiskLuminance_cd_per_m2, projection);
   const double kelvin = TemperatureOf(XyzFromLinearSrgb() * colour);
   return {white.kind, std::clamp(kelvin, kWarmest_k, kCoolest_k)};
 }
 
 Matrix3 BalancingMatrix(const WhiteBalance& white) {
-  if (white.kind == WhiteBalance::Kind::kDaylight)
-    return {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-  if (!white.kelvin) throw InternalError("white balance auto has no picture");
+  if (white.IsDaylight()) return {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+  if (!white.kelvin) throw InternalError("the white balance has no picture");
   const Triple shown = kConesFromXyz * (XyzFromLinearSrgb() * Triple{1.0, 1.0, 1.0});
   const Triple light = kConesFromXyz * WhiteOfTemperature(*white.kelvin);
   Matrix3 adapted = Product(kConesFromXyz, XyzFromLinearSrgb());
@@ -142,7 +161,7 @@ Matrix3 BalancingMatrix(const WhiteBalance& white) {
 }
 
 Image Balanced(Image image, const WhiteBalance& white) {
-  if (white.kind == WhiteBalance::Kind::kDaylight) return image;
+  if (white.IsDaylight()) return image;
   const Matrix3 matrix = BalancingMatrix(white);
   tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
     std::array<float, 3>& rgb = image.rgb[i];

@@ -8,8 +8,13 @@
 //
 // The light of a temperature is that of CIE 224:2017 (TM-30): Planck's up to 4000 K, the daylight of
 // CIE 15 from 5000 K on, between them a mixture of both at equal luminance. Daylight is D65, 6504 K:
-// colours stay as they are. Auto is a camera's: it takes the mean colour of what the meter weighs
-// (light_meter.h) for the light, as far as that is a light between 3000 K and 7000 K.
+// colours stay as they are. Auto takes the mean colour of what the meter weighs (light_meter.h) for
+// the light, as far as that is a light between 3000 K and 7000 K.
+//
+// Camera, the default, is what a photographer sets: daylight by day, and 4000 K under moon and stars,
+// which keeps their pictures from looking brown: moonlight is warmer than sunlight, and so is airglow.
+// From EV 4 (the end of civil twilight) to EV -2 (a full moon) of the picture's meter the temperature
+// goes from one to the other, in mireds, without an edge.
 #pragma once
 
 #include <array>
@@ -22,20 +27,28 @@
 namespace alpenglow {
 
 struct WhiteBalance {
-  enum class Kind { kDaylight, kAuto, kKelvin };
+  enum class Kind { kDaylight, kAuto, kKelvin, kCamera };
   Kind kind = Kind::kDaylight;
-  std::optional<double> kelvin = {};  // of kKelvin, and of kAuto once it is settled
+  std::optional<double> kelvin = {};  // of kKelvin, and of kAuto and kCamera once they are settled
+
+  /// Whether colours stay as they are.
+  [[nodiscard]] bool IsDaylight() const;
+  /// Whether it is another one for each picture.
+  [[nodiscard]] bool IsOfPicture() const { return kind == Kind::kAuto || kind == Kind::kCamera; }
 
   bool operator==(const WhiteBalance&) const = default;
 };
+
+/// D65, the white of the display.
+inline constexpr double kDaylight_k = 6504.0;
 
 /// Temperatures that can be asked for [K].
 inline constexpr double kWarmestWhite_k = 1500.0;
 inline constexpr double kCoolestWhite_k = 25000.0;
 
-/// "daylight", "auto" or kelvins, as 5600 or 5600K; throws InputError for another text.
+/// "camera", "daylight", "auto" or kelvins, as 5600 or 5600K; throws InputError for another text.
 [[nodiscard]] WhiteBalance WhiteBalanceFromText(const std::string& text);
-/// "daylight (D65)", "auto", "auto, 4310 K, CAT16", "5600 K, CAT16".
+/// "daylight (D65)", "auto", "auto, 4310 K, CAT16", "camera, 6504 K, CAT16", "5600 K, CAT16".
 [[nodiscard]] std::string NameOf(const WhiteBalance& white);
 
 /// XYZ of the light of a temperature, Y = 1. @param kelvin in [kWarmestWhite_k, kCoolestWhite_k].
@@ -44,14 +57,17 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 /// the range above. @param xyz  Y > 0.
 [[nodiscard]] double TemperatureOf(const std::array<double, 3>& xyz);
 
-/// What auto is for a picture; others as they are.
+/// The temperature of camera [K] for a picture that is metered at an EV.
+[[nodiscard]] double CameraWhite(double metered_ev100);
+
+/// What auto or camera is for a picture; others as they are.
 [[nodiscard]] WhiteBalance Settled(const WhiteBalance& white, const Image& image,
                                    Projection projection);
 
-/// Linear sRGB as it is shown from linear sRGB. Of auto settled; InternalError before.
+/// Linear sRGB as it is shown from linear sRGB. Of auto and camera settled; InternalError before.
 [[nodiscard]] Matrix3 BalancingMatrix(const WhiteBalance& white);
 
-/// The picture, balanced; its layers are as they were. Daylight: the same picture.
+/// The picture, balanced; its layers are as they were. Of daylight the same picture.
 [[nodiscard]] Image Balanced(Image image, const WhiteBalance& white);
 
 }  // namespace alpenglow

@@ -14,6 +14,7 @@
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
+#include "lut/picture/eye_adaptation.h"
 #include "lut/picture/glare.h"
 #include "lut/picture/picture_text.h"
 #include "lut/program/program.h"
@@ -53,7 +54,7 @@ struct Development {
 /// What a meter says of a small picture of a frame.
 struct Reading {
   double ev100;
-  std::optional<double> white_mired;  // of auto
+  std::optional<double> white_mired;  // of auto and camera
 };
 
 std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
@@ -169,11 +170,15 @@ class Series {
     const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
     if (!source.pilot || !per_node) return;
     const ExposureRule::Kind kind = output.exposure.kind;
-    if (kind == ExposureRule::Kind::kMetered || kind == ExposureRule::Kind::kEye) {
+    if (kind == ExposureRule::Kind::kMetered) {
       smooth_ev100_.emplace(frames, *per_node,
                             [this](const Frame& frame) { return ReadingOf(frame).ev100; });
+    } else if (kind == ExposureRule::Kind::kEye) {
+      smooth_ev100_.emplace(frames, *per_node, [this, step = *per_node](const Frame& frame) {
+        return AdaptedEv100(frame, step);
+      });
     }
-    if (output.look.white.kind == WhiteBalance::Kind::kAuto) {
+    if (output.look.white.IsOfPicture()) {
       smooth_mired_.emplace(frames, *per_node, [this](const Frame& frame) {
         return ReadingOf(frame).white_mired.value();
       });
@@ -272,6 +277,28 @@ class Series {
     Reading reading{Metered(frame, pilot, look), std::nullopt};
     if (look.white.kelvin) reading.white_mired = kPerMired / *look.white.kelvin;
     return readings_[frame.number] = reading;
+  }
+
+  /// What the eye is adapted to, from the nodes of the time before in which the light of a whole day
+  /// would be forgotten: the same whichever frames are rendered.
+  [[nodiscard]] double AdaptedEv100(const Frame& frame, int frames_per_node) {
+    constexpr double kForgotten_s =
+        60.0 * (kBrightestEv100 - kDarkestEv100) / EyeAdaptation::kRegenerated_ev_per_min;
+    int first = frame.number - frames_.front().number;
+    const auto at = [&](int index) -> const Frame& {
+      return frames_[static_cast<std::size_t>(index)];
+    };
+    while (first >= frames_per_node &&
+           SecondsBetween(at(first).instant, frame.instant) < kForgotten_s)
+      first -= frames_per_node;
+    EyeAdaptation eye;
+    double adapted = ReadingOf(at(first)).ev100;
+    for (int i = first; i <= frame.number - frames_.front().number; i += frames_per_node) {
+      const double passed =
+          SecondsBetween(at(std::max(i - frames_per_node, first)).instant, at(i).instant);
+      adapted = eye.Follow(ReadingOf(at(i)).ev100, passed);
+    }
+    return adapted;
   }
 
   /// Settled: white by the picture itself or, in a film, by the spline over mireds, in which steps

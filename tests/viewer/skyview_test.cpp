@@ -206,7 +206,7 @@ TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   double metered = -12.0, too_much = 20.0;
   while (too_much - metered > 1e-6) {
     const double middle = 0.5 * (metered + too_much);
-    const bool below = CameraEv100(middle) < std::stod(camera.at("alpenglow.ev100"));
+    const bool below = CameraEv100(middle, {}) < std::stod(camera.at("alpenglow.ev100"));
     (below ? metered : too_much) = middle;
   }
   EXPECT_NEAR(std::stod(eye.at("alpenglow.ev100")), EyeEv100(metered, {}), 2e-4)

@@ -11,8 +11,7 @@ MeterReading ReadingOf(const Image& picture, const Look& look) {
   const auto ev100 = [](const Image& seen) {
     return MeterEv100(seen, kSunDiskLuminance_cd_per_m2);
   };
-  const bool stays = white.kind == WhiteBalance::Kind::kDaylight;
-  return {stays ? ev100(picture) : ev100(Balanced(picture, white)), white};
+  return {white.IsDaylight() ? ev100(picture) : ev100(Balanced(picture, white)), white};
 }
 
 void ExposureMeter::Copy(const RenderTarget& picture) {

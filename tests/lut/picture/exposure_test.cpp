@@ -96,7 +96,20 @@ TEST(Exposure, ShadeOnTheGroundCounts) {
   const double even = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
   // 70 % of the picture 3 stops darker: between shares of 40 and 95 % that is 30 of 55.
   const double shaded = MeterEv100(GroundUnder(6000.0F / 8.0F, 12), kNotTheDisk_cd_per_m2);
-  EXPECT_NEAR(shaded, even - 3.0 * 30.0 / 55.0, 1.0 / 16.0) << "bins of a 16th of a stop";
+  EXPECT_NEAR(shaded, even + std::log2((25.0 + 30.0 / 8.0) / 55.0), 1.0 / 16.0)
+      << "bins of a 16th of a stop";
+}
+
+TEST(Exposure, LandThatGrowsDarkFasterThanTheSkyDoesNotOpenThePicture) {
+  // As from sun at -14.5 degrees to -18: half of the picture loses 2 stops, the sky a third of one.
+  const auto sky_shown = [](float sky, float land) {
+    Image image = Uniform(sky);
+    for (int x = 0; x < 40; ++x)
+      for (int y = 0; y < 20; ++y) image.at(x, y).fill(land);
+    return std::log2(double{sky}) - MeterEv100(image, kNotTheDisk_cd_per_m2);
+  };
+  const double before = sky_shown(9e-4F, 9e-5F), after = sky_shown(7e-4F, 2.2e-5F);
+  EXPECT_LT(after - before, 0.12) << "land is a tenth of what is weighed, and a tenth as bright";
 }
 
 TEST(Exposure, WhatTheSunLightsIsNoBrighterThanPaperBesideAGreyCard) {

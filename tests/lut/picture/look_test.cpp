@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "atmosphere/text/error.h"
+#include "lut/picture/highlights.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/night_vision.h"
 #include "lut/picture/tone_curve.h"
@@ -28,49 +30,85 @@ TEST(Look, IncidentMeterReadsTheSunnySixteenRule) {
   EXPECT_EQ(IncidentEv100(1e12), kBrightestEv100);
 }
 
-double GreyOnTheDisplay(double metered_ev100, const Look& look) {
+// Linear display light of what the meter took for middle grey.
+double GreyOnTheDisplay(double metered_ev100, double ev100, const Look& look) {
   const double grey = kMeterConstant / 100.0 * std::exp2(metered_ev100);
-  return DisplayLight(look.curve, {grey, grey, grey}, ExposureScale(EyeEv100(metered_ev100, look)),
-                      look.agx)[1];
+  return DisplayLight(look.curve, {grey, grey, grey}, ExposureScale(ev100), look.agx)[1];
 }
 
-TEST(Look, ToTheEyeDuskLooksLikeDuskAndNightLikeNight) {
-  for (const Look& look :
-       {Look{}, Look{.agx = AgxLook::kNone}, Look{.curve = ToneCurve::kLinear}}) {
+double StopsUnderDay(double metered_ev100, double ev100, const Look& look) {
+  return std::log2(GreyOnTheDisplay(15.0, 15.0, look) /
+                   GreyOnTheDisplay(metered_ev100, ev100, look));
+}
+
+const std::vector<Look> kSomeLooks{{}, {.agx = AgxLook::kNone}, {.curve = ToneCurve::kLinear}};
+
+TEST(Look, ToTheEyeBrightnessIsTheCubeRootOfLuminance) {
+  for (const Look& look : kSomeLooks) {
     EXPECT_EQ(EyeEv100(15.0, look), 15.0);
     EXPECT_EQ(EyeEv100(17.0, look), 17.0) << "by day the eye adapts as a camera does";
-    const double day = GreyOnTheDisplay(15.0, look);
-    for (const double ev100 : {12.0, 8.0, 2.0, -1.0}) {
-      EXPECT_NEAR(std::log2(GreyOnTheDisplay(ev100, look) / day), (ev100 - 15.0) / 3.0, 1e-6)
-          << "the cube root of luminance";
-    }
-    // Sun at -4, -10 and -18 degrees.
-    EXPECT_LT(std::log2(GreyOnTheDisplay(7.9, look) / day), -2.0);
-    EXPECT_LT(std::log2(GreyOnTheDisplay(-1.0, look) / day), -5.0);
-    EXPECT_GT(255.0 * shared::SrgbCode(GreyOnTheDisplay(-8.0, look)), 4.0) << "not black";
+    for (const double ev100 : {12.0, 8.0, 4.0})
+      EXPECT_NEAR(StopsUnderDay(ev100, EyeEv100(ev100, look), look), (15.0 - ev100) / 3.0, 0.2);
+    const double night = StopsUnderDay(-8.0, EyeEv100(-8.0, look), look);
+    EXPECT_GT(night, 5.0);
+    EXPECT_LT(night, 6.0) << "displays lose what is darker";
   }
 }
 
-TEST(Look, ACameraPrintsNightsDarkerThanDaysAndLetsNoLessLightBeBrighter) {
-  const auto shown_stops = [](double ev100) { return ev100 - CameraEv100(ev100); };
-  EXPECT_EQ(shown_stops(15.0), 0.0);
-  EXPECT_EQ(shown_stops(12.0), 0.0);
-  EXPECT_NEAR(shown_stops(-2.0), -1.12, 1e-12) << "0.08 (12 + 2): a full moon";
-  double before = 16.0 - CameraEv100(16.0);
-  for (double ev100 = 15.9; ev100 > kDarkestEv100; ev100 -= 0.1) {
-    EXPECT_LE(shown_stops(ev100), before);
-    EXPECT_NEAR(shown_stops(ev100), before, 0.0081) << "and makes no step";
-    before = shown_stops(ev100);
+TEST(Look, ToTheEyeLightThatFalls20PercentIsShown7PercentDarker) {
+  for (double ev100 = 15.0; ev100 > kDarkestEv100 + 1.0; ev100 -= 0.25) {
+    const double after = ev100 + std::log2(0.8);
+    const double shown = GreyOnTheDisplay(after, EyeEv100(after, {}), {}) /
+                         GreyOnTheDisplay(ev100, EyeEv100(ev100, {}), {});
+    EXPECT_GT(shown, 0.928) << "0.8^(1/3) at " << ev100;
+    EXPECT_LT(shown, 1.0);
   }
 }
 
-TEST(Look, ToTheEyeLessLightIsNeverBrighter) {
-  double before = 1.0;
-  for (double ev100 = 16.0; ev100 > -10.0; ev100 -= 0.05) {
-    const double now = GreyOnTheDisplay(ev100, {});
-    EXPECT_LE(now, before * (1.0 + 1e-9)) << ev100;
-    before = now;
+// Metered at noon, under a full moon, and under stars alone [EV].
+constexpr double kNoonEv100 = 15.0, kFullMoonEv100 = -3.0, kStarlightEv100 = -9.0;
+
+TEST(Look, ACameraPrintsAFullMoonFourStopsDarkerAndStarsSix) {
+  for (const Look& look : kSomeLooks) {
+    EXPECT_EQ(CameraEv100(kNoonEv100, look), kNoonEv100);
+    EXPECT_EQ(CameraEv100(17.0, look), 17.0);
+    EXPECT_NEAR(StopsUnderDay(kFullMoonEv100, CameraEv100(kFullMoonEv100, look), look), 4.3, 0.3);
+    EXPECT_NEAR(StopsUnderDay(kStarlightEv100, CameraEv100(kStarlightEv100, look), look), 6.0, 0.1);
+    EXPECT_LT(StopsUnderDay(kDarkestEv100, CameraEv100(kDarkestEv100, look), look), 7.0)
+        << "never black";
   }
+}
+
+// Krawczyk et al. (2005), equation 11, at 1 cd/m^2 and at 4096: 1.03 - 2 / 2.3010, 1.03 - 2 / 5.6125.
+TEST(Look, ACameraPrintsDuskByThePublishedKey) {
+  const double key = 1.03 - 2.0 / (2.0 + std::log10(2.0));
+  const double day = 1.03 - 2.0 / (2.0 + std::log10(4097.0));
+  EXPECT_NEAR(StopsUnderDay(3.0, CameraEv100(3.0, {}), {}), std::log2(day / key), 0.01)
+      << "rods have a 400th of a stop left to say at 200 times their luminance";
+}
+
+TEST(Look, LessLightIsNeverShownBrighterByEyeOrCamera) {
+  double eye = 1.0, camera = GreyOnTheDisplay(16.0, CameraEv100(16.0, {}), {});
+  for (double ev100 = 16.0; ev100 > kDarkestEv100; ev100 -= 0.05) {
+    const double by_eye = GreyOnTheDisplay(ev100, EyeEv100(ev100, {}), {});
+    const double by_camera = GreyOnTheDisplay(ev100, CameraEv100(ev100, {}), {});
+    EXPECT_LE(by_eye, eye * (1.0 + 1e-9)) << ev100;
+    EXPECT_LE(by_camera, camera * (1.0 + 1e-9)) << ev100;
+    EXPECT_GT(by_camera, 0.97 * camera) << "and makes no step, at " << ev100;
+    eye = by_eye;
+    camera = by_camera;
+  }
+}
+
+TEST(Look, IncidentPicturesRollOffTheirHighlightsButNotLinearOnes) {
+  const ExposureRule incident{ExposureRule::Kind::kIncident};
+  EXPECT_TRUE(LookUnder(incident, {}).rolls_off);
+  EXPECT_FALSE(LookUnder(incident, {.curve = ToneCurve::kLinear}).rolls_off);
+  EXPECT_FALSE(LookUnder({}, {}).rolls_off);
+  Image sky(2, 1);
+  sky.rgb = {{1e4F, 1e4F, 1e4F}, {2e4F, 2e4F, 2e4F}};
+  const DisplayImage shown = Develop(sky, 12.0, LookUnder(incident, {}));
+  EXPECT_EQ(shown.rgb, Develop(WithHighlightsRolledOff(sky, 12.0), 12.0, Look{}).rgb);
 }
 
 TEST(Look, ExposureIsMeteredIncidentOrANumber) {

@@ -134,6 +134,22 @@ TEST(AgxLooks, WarmLightTurnsToYellowAsTheCurveHasIt) {
   EXPECT_GT(turned, Hue(lamp)) << "90 degrees is OKLab's yellow";
 }
 
+// Of what is brighter than black by a code, at least, and is not at the border of what is shown.
+TEST(AgxLooks, NoneShowsATonesChromaOver1p3TimesTheScenes) {
+  for (const std::string& name : AgxLookNames()) {
+    for (const Color& hue : {Color{1.0, 0.7, 0.45}, Color{0.3, 0.5, 1.0}, Color{0.3, 0.45, 0.2},
+                             Color{1.0, 0.93, 0.85}, Color{1.0, 0.1, 0.1}}) {
+      for (double stop = -10.0; stop <= 6.0; stop += 0.25) {
+        const double y = std::exp2(stop);
+        const Color light = DisplayLight<double>(
+            ToneCurve::kAgx, {y * hue[0], y * hue[1], y * hue[2]}, 1.0, AgxLookFromName(name));
+        const double per_scene = OklabOf(light).lightness / OklabOf(hue).lightness;
+        EXPECT_LE(Chroma(light), 1.3 * Chroma(hue) * per_scene + 1e-6) << name << ", 2^" << stop;
+      }
+    }
+  }
+}
+
 TEST(AgxLooks, RunFromFlatToContrasty) {
   const auto range = [](AgxLook look) {
     const auto code = [&](double stop) {
@@ -152,8 +168,21 @@ TEST(AgxLooks, APhotoHasDeepShadeAndWhiteSnow) {
     const double y = 0.125 / 1.2 * std::exp2(stop);
     return 255.0 * shared::SrgbCode(DisplayLight<double>(ToneCurve::kAgx, {y, y, y}, 1.0)[1]);
   };
-  EXPECT_LT(code(-3.5), 40.0) << "under what the meter took for grey";
-  EXPECT_GT(code(2.0), 215.0) << "snow has 0.9, a grey card 0.18";
+  EXPECT_LT(code(-2.5), 37.0) << "shade by day, under what the meter took for grey";
+  EXPECT_GT(code(-6.0), 2.0) << "and no land is black under a sky of dusk";
+  EXPECT_GT(code(1.3), 215.0) << "snow, over it";
+  EXPECT_LT(code(4.0), 254.0) << "a bright sky keeps its gradient";
+  EXPECT_GT(code(6.5), 254.0);
+}
+
+TEST(AgxLooks, DeepShadeOfAPhotoIsInProportionToTheScene) {
+  const auto light = [](double stop) {
+    const double y = 0.125 / 1.2 * std::exp2(stop);
+    return DisplayLight<double>(ToneCurve::kAgx, {y, y, y}, 1.0)[1];
+  };
+  for (double stop = -9.0; stop < -6.0; stop += 0.5)
+    EXPECT_NEAR(std::log2(light(stop + 1.0) / light(stop)), 1.0, 0.06)
+        << "what the sigmoid adds to the toe at 2^" << stop;
 }
 
 TEST(AgxLooks, NamesAreKnownAndOthersRefused) {
@@ -278,11 +307,11 @@ TEST(ToneCurves, WhatTheMeterTakesForGreyIsPrintedGrey) {
   EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale, AgxLook::kNone)[1], std::pow(0.5, 2.2),
               1e-5)
       << "half the code range of AgX, shown at exponent 2.2";
-  const double opened = metered * std::exp2(0.9);
-  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale, AgxLook::kPhoto)[1],
-              DisplayLight(ToneCurve::kAgx, {opened, opened, opened}, scale, AgxLook::kHigh)[1],
-              1e-6)
-      << "a photo is opened by 0.9 stops";
+  // 0.6 of 16.5 stops and a contrast of 1.8, of which the shoulder takes 1.4e-3, in the sigmoid.
+  const double opened = shared::AgxSigmoid(20.0 / 33.0 + 1.8 * 0.6 / 16.5);
+  EXPECT_NEAR(DisplayLight(ToneCurve::kAgx, grey, scale, AgxLook::kPhoto)[1], std::pow(opened, 2.2),
+              5e-3)
+      << "a photo is opened by 0.6 stops; its toe adds 0.001";
   EXPECT_NEAR(DisplayLight(ToneCurve::kPbrNeutral, grey, scale)[1], 0.18 - 0.04, 1e-9)
       << "0.18 but for the reflection";
   EXPECT_NEAR(DisplayLight(ToneCurve::kLinear, grey, scale)[1], 0.125 / 1.2, 1e-9)

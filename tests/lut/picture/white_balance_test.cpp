@@ -67,7 +67,8 @@ TEST(WhiteBalance, PaperUnderTheLightThatIsAskedForIsWhiteAndAsBright) {
 TEST(WhiteBalance, DaylightLeavesPicturesAloneAndAWarmerLightMakesThemBluer) {
   const Image grey = Uniform({1.0, 1.0, 1.0}, 100.0);
   EXPECT_EQ(Balanced(grey, {}).rgb, grey.rgb);
-  const auto near = Balanced(grey, OfKelvin(6504.0)).at(0, 0);
+  EXPECT_EQ(Balanced(grey, OfKelvin(kDaylight_k)).rgb, grey.rgb);
+  const auto near = Balanced(grey, OfKelvin(6503.9)).at(0, 0);
   for (const float channel : near)
     EXPECT_NEAR(channel, 100.0F, 0.1F) << "D65 of sRGB is given to four digits";
   const auto flash = Balanced(grey, OfKelvin(5600.0)).at(0, 0);
@@ -99,7 +100,29 @@ TEST(WhiteBalance, AutoDoesNotLookAtTheSunNorAtLamps) {
   EXPECT_NEAR(*Settled(ask, image, Projection::kCamera).kelvin, without, 1.0);
 }
 
-TEST(WhiteBalance, IsDaylightAutoOrKelvin) {
+TEST(WhiteBalance, ACameraIsSetToDaylightByDayAnd4000KelvinByNight) {
+  EXPECT_EQ(CameraWhite(15.0), kDaylight_k);
+  EXPECT_EQ(CameraWhite(4.0), kDaylight_k) << "the end of civil twilight";
+  EXPECT_DOUBLE_EQ(CameraWhite(-2.0), 4000.0) << "a full moon";
+  EXPECT_DOUBLE_EQ(CameraWhite(-9.0), 4000.0);
+  double before = CameraWhite(6.0);
+  for (double ev100 = 6.0; ev100 > -4.0; ev100 -= 0.3) {
+    const double now = CameraWhite(ev100);
+    EXPECT_LE(now, before);
+    EXPECT_LT(1e6 / now - 1e6 / before, 10.0)
+        << "mireds in a minute of dusk, at " << ev100 << ": the least that filters are sold for";
+    before = now;
+  }
+  const WhiteBalance ask{WhiteBalance::Kind::kCamera};
+  const auto settled = [&](double luminance) {
+    return Settled(ask, Uniform({1.0, 1.0, 1.0}, luminance), Projection::kCamera);
+  };
+  EXPECT_TRUE(settled(500.0).IsDaylight());
+  EXPECT_NEAR(*settled(1e-3).kelvin, 4000.0, 1e-9);
+}
+
+TEST(WhiteBalance, IsCameraDaylightAutoOrKelvin) {
+  EXPECT_EQ(WhiteBalanceFromText("camera").kind, WhiteBalance::Kind::kCamera);
   EXPECT_EQ(WhiteBalanceFromText("daylight"), WhiteBalance{});
   EXPECT_EQ(WhiteBalanceFromText("auto").kind, WhiteBalance::Kind::kAuto);
   EXPECT_EQ(WhiteBalanceFromText("5600"), OfKelvin(5600.0));
@@ -108,6 +131,7 @@ TEST(WhiteBalance, IsDaylightAutoOrKelvin) {
     EXPECT_THROW((void)WhiteBalanceFromText(bad), InputError) << bad;
   EXPECT_EQ(NameOf(OfKelvin(5600.0)), "5600 K, CAT16");
   EXPECT_EQ(NameOf(WhiteBalance{WhiteBalance::Kind::kAuto, 4312.4}), "auto, 4312 K, CAT16");
+  EXPECT_EQ(NameOf(WhiteBalance{WhiteBalance::Kind::kCamera, 4000.0}), "camera, 4000 K, CAT16");
 }
 
 TEST(WhiteBalance, IsPartOfWhatIsSeen) {
