@@ -78,8 +78,8 @@ template <typename Real>
       RgbOf(Oklab<double>{shown.lightness, chroma * a / length, chroma * b / length}));
 }
 
-/// Display light of no more than kMostChroma times the chroma that the printed colour has at the same
-/// lightness (agx_look.h).
+/// Display light of less than kMostChroma times the chroma that the printed colour has at the same
+/// lightness (agx_look.h): without an edge, an eighth-power norm of both.
 [[nodiscard]] inline Rgb<double> WithChromaNear(const Rgb<double>& printed,
                                                 const Rgb<double>& light) {
   const Oklab<double> scene = OklabOf(printed), shown = OklabOf(light);
@@ -87,8 +87,9 @@ template <typename Real>
   const double most =
       kMostChroma * std::hypot(scene.a, scene.b) * shown.lightness / scene.lightness;
   const double chroma = std::hypot(shown.a, shown.b);
-  if (!(chroma > most)) return light;
-  const double share = most / chroma;
+  if (!(chroma > 1e-5)) return light;
+  const double over = chroma / std::max(most, 1e-12);
+  const double share = std::pow(1.0 + std::pow(std::min(over, 1e12), 8.0), -0.125);
   return InsideDisplay(RgbOf(Oklab<double>{shown.lightness, share * shown.a, share * shown.b}));
 }
 

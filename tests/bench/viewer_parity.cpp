@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Pictures of the graphics card against the renderer's in eight views, edges aside. Run by hand;
+// Pictures of the graphics card against the renderer's in fifteen views, edges aside. Run by hand;
 // results are in README.md.
 //   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]
-// VIEWS are digits, of the views to be drawn: 12345678. Pictures of both go into the folder, those of
+// VIEWS are the numbers of views to be drawn, between commas: 1,2,15. Pictures of both go into the folder, those of
 // the renderer that are there already are read; and of the difference, white for a tenth.
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -70,7 +70,9 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
   int number = 0;
   for (const ParityView& view : ParityViews()) {
     ++number;
-    if (views.find(std::to_string(number)) == std::string::npos) continue;
+    if (!views.empty() &&
+        fmt::format(",{},", views).find(fmt::format(",{},", number)) == std::string::npos)
+      continue;
     const std::filesystem::path file = folder / fmt::format("judge-{}.exr", number);
     const Image judge = JudgeOf(view, settings, file);
     WritePng(folder / fmt::format("judge-{}.png", number),
@@ -104,6 +106,6 @@ int main(int count, char** arguments) {
   settings.filter = alpenglow::PixelFilter::Kind::kBox;
   settings.layers = alpenglow::LayersOfEdges();
   const alpenglow::HeadlessContext context;
-  alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "12345678");
+  alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "");
   return 0;
 }

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMostChange = 1e-3;   // that is left alone while eye or sun move
 constexpr double kGreatChange = 5e-3;  // that does not wait
+constexpr double kJump = 0.1;          // that is not shown: small tables are made at once
 constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
 
 AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z, view.ceiling_m}; }
@@ -51,7 +52,7 @@ AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality qualit
       maker_(Make) {
   textures_.Upload(air_->tables);
   shown_ = air_;
-  textures_.Upload(TablesOf(*air_, first, AirQuality::kFirst));
+  ShowSmall(first);
   textures_.SetView(first.altitude_m, first.sun);
 }
 
@@ -113,7 +114,14 @@ void AirFollower::Follow(const AirView& view) {
     maker_.Ask(wanted);
   }
   last_view_ = view;
+  if (AirChange(eye_, EyeOf(view)) > kJump) ShowSmall(view);
   textures_.SetView(view.altitude_m, view.sun);
+}
+
+void AirFollower::ShowSmall(const AirView& view) {
+  const AirTables tables = TablesOf(*shown_, view, AirQuality::kFirst);
+  textures_.Upload(tables);
+  eye_ = tables.eye;
 }
 
 void AirFollower::Settle(const AirView& view) {

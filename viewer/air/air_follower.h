@@ -39,7 +39,9 @@ class AirFollower {
   void Replace(const Medium& medium);
   void SetQuality(AirQuality quality);
 
-  /// Once a frame, before drawing: shows what is ready and asks for what is missing. Never waits.
+  /// Once a frame, before drawing: shows what is ready and asks for what is missing. Does not wait for
+  /// that; after a jump in time or place, of which AirChange says over a tenth, it makes small tables in
+  /// some milliseconds.
   void Follow(const AirView& view);
   /// The same, but what Follow would show in the end is there when it returns: for pictures that
   /// are kept.
@@ -73,6 +75,7 @@ class AirFollower {
 
   [[nodiscard]] static Made Make(const Request& request);
   void Show(const Made& made);
+  void ShowSmall(const AirView& view);
   void TakeFinished();
   void RefineDraft();
   [[nodiscard]] Request Wanted(const AirView& view) const;

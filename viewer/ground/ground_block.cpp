@@ -43,7 +43,15 @@ GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_su
           GpuBandsOf(tilt.up),
           GpuBandsOf(tilt.sunward),
           {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0},
-          {pixel_angle_rad, 0.0, 0.0, 0.0}};
+          {},
+          {pixel_angle_rad, 1.0, 0.0, 0.0}};
+}
+
+GroundLightBlock EvenGroundLight(double pixel_angle_rad) {
+  GroundLightBlock even{};
+  even.sky_level = glm::vec4(1.0F);
+  even.ground_view = {pixel_angle_rad, 0.0, 0.0, 0.0};
+  return even;
 }
 
 GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
@@ -100,12 +108,18 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
 }
 
 GroundTextures::GroundTextures(const DiffuseLight& diffuse) {
-  Upload(level_sky_, LevelSky::kNodes, 1, LevelSky::Of(diffuse));
-  SetSeaMirror(std::vector<BandTexel>(SeaMirror::kSide * SeaMirror::kSide));
+  SetAir(diffuse);
+  const std::vector<BandTexel> black(SeaMirror::kSide * SeaMirror::kSide);
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon})
+    SetSeaMirror(source, black);
 }
 
-void GroundTextures::SetSeaMirror(const std::vector<BandTexel>& texels) const {
-  Upload(sea_mirror_, SeaMirror::kSide, SeaMirror::kSide, texels);
+void GroundTextures::SetAir(const DiffuseLight& diffuse) const {
+  Upload(level_sky_, LevelSky::kNodes, 1, LevelSky::Of(diffuse));
+}
+
+void GroundTextures::SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const {
+  Upload(sea_mirrors_[IndexOf(source)], SeaMirror::kSide, SeaMirror::kSide, texels);
 }
 
 void GroundTextures::SetDrape(const DrapeTexels& texels) const {
@@ -118,10 +132,11 @@ void GroundTextures::SetDrape(const DrapeTexels& texels) const {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
 }
 
-void GroundTextures::Bind(const ShaderProgram& program, int first_unit) const {
+void GroundTextures::Bind(const ShaderProgram& program, int first_unit, LightSource source) const {
   int unit = first_unit;
-  for (const auto& [sampler, texture] :
-       {std::pair{"level_sky", &level_sky_}, {"sea_mirror", &sea_mirror_}, {"drape", &drape_}}) {
+  for (const auto& [sampler, texture] : {std::pair{"level_sky", &level_sky_},
+                                         {"sea_mirror", &sea_mirrors_[IndexOf(source)]},
+                                         {"drape", &drape_}}) {
     program.BindSampler(sampler, unit);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit++));
     glBindTexture(GL_TEXTURE_2D, texture->id());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/ground/ground_material.h"
+#include "viewer/air/light_source.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/drape_texels.h"
@@ -19,16 +20,18 @@ namespace alpenglow {
 
 /// `block GroundLight` of ground_light.glsl.
 struct GroundLightBlock {
-  glm::vec4 sky_level, sky_up, sky_sunward, sky_towards;
+  glm::vec4 sky_level, sky_up, sky_sunward, sky_towards, sky_at_zero;
   glm::vec4 ground_view;
 };
-static_assert(sizeof(GroundLightBlock) == 5 * sizeof(glm::vec4));
-static_assert(offsetof(GroundLightBlock, ground_view) == 4 * sizeof(glm::vec4));
+static_assert(sizeof(GroundLightBlock) == 6 * sizeof(glm::vec4));
+static_assert(offsetof(GroundLightBlock, ground_view) == 5 * sizeof(glm::vec4));
 
 /// @param to_sun  unit, in the frame of the eye.
 /// @param pixel_angle_rad  between neighbouring pixels; larger: coarser detail.
 [[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
                                                   double pixel_angle_rad);
+/// Where no light of land is made: relief changes nothing.
+[[nodiscard]] GroundLightBlock EvenGroundLight(double pixel_angle_rad);
 
 /// `block GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {
@@ -64,14 +67,18 @@ class GroundTextures {
   /// @param diffuse  of the air over the ground.
   explicit GroundTextures(const DiffuseLight& diffuse);
 
-  void SetSeaMirror(const std::vector<BandTexel>& texels) const;
+  /// The air over the ground has changed.
+  void SetAir(const DiffuseLight& diffuse) const;
+  void SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const;
   void SetDrape(const DrapeTexels& texels) const;
 
   /// Binds to three texture units from the first on, and the samplers of a program to them.
-  void Bind(const ShaderProgram& program, int first_unit) const;
+  /// @param source  whose sky waves mirror.
+  void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
 
  private:
-  GlTexture level_sky_, sea_mirror_, drape_;
+  GlTexture level_sky_, drape_;
+  std::array<GlTexture, kLightSources> sea_mirrors_;
 };
 
 }  // namespace alpenglow

@@ -38,6 +38,28 @@ glm::dvec3 Direction(const SunPosition& sun) {
   return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
 }
 
+bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
+  const double turned =
+      std::acos(std::clamp(glm::dot(Direction(asked), Direction(wanted)), -1.0, 1.0));
+  return turned < kSunMoves * wanted.angular_radius_rad;
+}
+
+// Of the sky that a source makes, on a level place at altitude 0: what the shaders multiply the light of
+// vertices by (GroundLightBlock::sky_at_zero), whatever the source does meanwhile.
+std::array<float, 4> SkyAtZero(const DiffuseLight& diffuse, const SunPosition& disk) {
+  const BandLight level = LevelSky::Under(diffuse, disk.elevation_rad);
+  std::array<float, 4> sky{};
+  std::copy_n(level.value.begin(), level.count, sky.begin());
+  return sky;
+}
+
+std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<float, 4>& level) {
+  std::array<float, 4> over{};
+  for (std::size_t band = 0; band < over.size(); ++band)
+    over[band] = level[band] > 0.0F ? sky[band] / level[band] : 1.0F;
+  return over;
+}
+
 }  // namespace
 
 double GroundExtent::HalfWidthUnder(double height_m) const {
@@ -55,41 +77,53 @@ class GroundFollower::Maker {
 
   Made Make(const Request& request) {
     const auto begin = std::chrono::steady_clock::now();
-    Made made{LitFor(request), MirrorFor(request), 0.0};
+    const View& view = request.view;
+    Made made;
+    made.casts = view.casts;
+    made.sea_mirrors[IndexOf(view.casts)] = MirrorFor(request, view.by);
+    if (view.other)
+      made.sea_mirrors[IndexOf(OtherThan(view.casts))] = MirrorFor(request, *view.other);
+    if (const std::shared_ptr<const GroundSite> site = SiteFor(request)) {
+      made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
+      made.level = SkyAtZero(request.air->diffuse, view.by);
+      if (view.other) {
+        made.other = std::make_shared<const GroundSky>(site, LightingBy(*view.other, view, *site));
+        made.other_level = SkyAtZero(request.air->diffuse, *view.other);
+      }
+    }
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return made;
   }
 
  private:
-  std::shared_ptr<const LitGround> LitFor(const Request& request) {
-    if (!request.ground || !*request.ground) return nullptr;
-    const std::shared_ptr<const GroundSite> site = SiteFor(request);
-    if (!site) return nullptr;
-    const View& view = request.view;
-    const LocalFrame here(site->ground().frame.ellipsoid(), view.eye);
+  [[nodiscard]] static Lighting LightingBy(const SunPosition& disk, const View& view,
+                                           const GroundSite& site) {
+    const LocalFrame here(site.ground().frame.ellipsoid(), view.eye);
     Lighting light =
-        LightingOf(view.sun, view.now, view.eye, site->medium(), site->material().cover().wetness);
-    light.to_sun = site->ground()
+        LightingOf(disk, view.now, view.eye, site.medium(), site.material().cover().wetness);
+    light.to_sun = site.ground()
                        .frame
                        .EnuFromEcef(here.EcefFromEnu(
-                           DirectionFromAngles(view.sun.elevation_rad, view.sun.azimuth_rad)))
+                           DirectionFromAngles(disk.elevation_rad, disk.azimuth_rad)))
                        .xyz;
-    return std::make_shared<const LitGround>(site, std::move(light));
+    return light;
   }
 
   // The sea mirrors the sky where there is no land, too.
-  [[nodiscard]] std::vector<BandTexel> MirrorFor(const Request& request) const {
+  [[nodiscard]] std::vector<BandTexel> MirrorFor(const Request& request,
+                                                 const SunPosition& disk) const {
     const Medium medium = OnOsculatingSphere(request.air->medium, request.view.eye.latitude_rad);
     const GroundMaterial material(cover_, drape_, medium.wavelengths_nm);
     if (!material.HasGloss()) return {};
     const AirIntegrator<float> integrator(medium);
     const DiffuseLight& diffuse = request.air->diffuse;
-    const glm::dvec3 to_sun = Direction(request.view.sun);
+    const glm::dvec3 to_sun = Direction(disk);
     const OpenSky sky(integrator, diffuse, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
     return SeaMirror::Of(sky, diffuse, material.water(), to_sun);
   }
 
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {
+    if (!request.ground || !*request.ground) return nullptr;
     if (site_ && air_ == request.air && ground_ == request.ground &&
         DistanceBetween(site_->ground().frame.ellipsoid(), site_->ground().frame.origin(),
                         request.view.eye) < 2.0 * kNearMiddle * half_width_m_ &&
@@ -147,10 +181,12 @@ void GroundFollower::SetGround(GroundSampler sampler) {
 
 bool GroundFollower::Suits(const Request& asked, const Request& wanted) const {
   if (asked.air != wanted.air || asked.ground != wanted.ground) return false;
-  const double turned = std::acos(
-      std::clamp(glm::dot(Direction(asked.view.sun), Direction(wanted.view.sun)), -1.0, 1.0));
+  if (asked.view.casts != wanted.view.casts ||
+      asked.view.other.has_value() != wanted.view.other.has_value())
+    return false;
   const double width_m = extent_.HalfWidthUnder(wanted.view.eye.height_m);
-  return turned < kSunMoves * wanted.view.sun.angular_radius_rad &&
+  return IsNear(asked.view.by, wanted.view.by) &&
+         (!wanted.view.other || IsNear(*asked.view.other, *wanted.view.other)) &&
          AreAlikeWide(extent_, asked.view.eye.height_m, wanted.view.eye.height_m) &&
          DistanceBetween(kWgs84, asked.view.eye, wanted.view.eye) < kNearMiddle * width_m;
 }
@@ -158,13 +194,11 @@ bool GroundFollower::Suits(const Request& asked, const Request& wanted) const {
 bool GroundFollower::Take() {
   std::optional<Made> made = maker_.Take();
   if (!made) return false;
-  lit_ = std::move(made->lit);
-  sea_mirror_ = std::move(made->sea_mirror);
-  making_s_ = made->making_s;
+  made_ = std::move(*made);
   constexpr double kRest = 4.0;
   rests_until_ = std::chrono::steady_clock::now() +
                  std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                     std::chrono::duration<double>(kRest * making_s_));
+                     std::chrono::duration<double>(kRest * made_.making_s));
   return true;
 }
 
@@ -177,7 +211,7 @@ bool GroundFollower::Ask(const Request& wanted) {
 
 bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view) {
   const bool is_new = Take();
-  const bool rests = lit_ && std::chrono::steady_clock::now() < rests_until_;
+  const bool rests = made_.lit && std::chrono::steady_clock::now() < rests_until_;
   if (!maker_.Busy() && !rests) Ask({air, ground_, view});
   return is_new;
 }
@@ -190,13 +224,24 @@ bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const V
   return is_new;
 }
 
+const SkyTilt* GroundFollower::TiltUnder(LightSource source) const {
+  if (!made_.lit) return nullptr;
+  return source == made_.casts || !made_.other ? &made_.lit->tilt() : &made_.other->tilt();
+}
+
 std::optional<LightOfVertices> GroundFollower::Light() const {
-  if (!lit_) return std::nullopt;
-  return [lit = lit_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
+  if (!made_.lit) return std::nullopt;
+  return [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());
-    for (const LitVertex& vertex : lit->LightIn(anchor, vertices))
-      light.push_back({vertex.sky, vertex.sun_x});
+    for (const GroundVertex& vertex : VerticesIn(made.lit->site(), anchor, vertices)) {
+      const LitVertex lit = made.lit->At(vertex);
+      const std::array<float, 4> by = Over(lit.sky, made.level);
+      const std::array<float, 4> other =
+          made.other ? Over(made.other->On(vertex), made.other_level) : by;
+      const bool sun_casts = made.casts == LightSource::kSun;
+      light.push_back({sun_casts ? by : other, sun_casts ? other : by, lit.sun_x});
+    }
     return light;
   };
 }

@@ -3,11 +3,13 @@
 // is made on a thread beside drawing.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "viewer/air/light_source.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sea_mirror.h"
@@ -40,8 +42,10 @@ class GroundFollower {
 
   struct View {
     GeodeticPosition eye;
-    SunPosition sun;  // apparent, seen from the eye
     UtcInstant now;
+    LightSource casts;                                // what throws shadows
+    SunPosition by;                                   // that, apparent, seen from the eye
+    std::optional<SunPosition> other = std::nullopt;  // the other source, where it counts
   };
   /// Once a frame: asks for what is missing, but leaves the processor to the drawing four times as
   /// long as light takes to make: under a sun that runs, light is behind by that and fades from one
@@ -50,14 +54,22 @@ class GroundFollower {
   /// The same, but what Follow would have in the end is there when it returns.
   bool Settle(const std::shared_ptr<const SolvedAir>& air, const View& view);
 
-  /// Light on the land around; null without land and before the first is there.
-  [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return lit_; }
+  /// Light on the land around, of what throws shadows; null without land and before the first is there.
+  [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return made_.lit; }
+  /// What throws the shadows of that.
+  [[nodiscard]] LightSource casts() const { return made_.casts; }
+  /// How the sky of a source lights relief: of one that did not count, as that of the other; null
+  /// without lit().
+  [[nodiscard]] const SkyTilt* TiltUnder(LightSource source) const;
   /// The light of vertices in the frame of any anchor; empty without lit().
   [[nodiscard]] std::optional<LightOfVertices> Light() const;
-  /// What waves show of the sky over it (SeaMirror); empty where nothing mirrors.
-  [[nodiscard]] const std::vector<BandTexel>& sea_mirror() const { return sea_mirror_; }
+  /// What waves show of the sky of a source over it (SeaMirror); empty where nothing mirrors and for one
+  /// that did not count.
+  [[nodiscard]] const std::vector<BandTexel>& sea_mirror(LightSource source) const {
+    return made_.sea_mirrors[IndexOf(source)];
+  }
   /// Time that the light took to make; 0 before the first.
-  [[nodiscard]] double making_s() const { return making_s_; }
+  [[nodiscard]] double making_s() const { return made_.making_s; }
 
  private:
   struct Request {
@@ -66,9 +78,12 @@ class GroundFollower {
     View view;
   };
   struct Made {
+    LightSource casts = LightSource::kSun;
     std::shared_ptr<const LitGround> lit;
-    std::vector<BandTexel> sea_mirror;
-    double making_s;
+    std::shared_ptr<const GroundSky> other;       // null: it does not count
+    std::array<float, 4> level{}, other_level{};  // LevelSky::Under of either
+    std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
+    double making_s = 0.0;
   };
   class Maker;
   [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
@@ -78,9 +93,7 @@ class GroundFollower {
   GroundExtent extent_;
   std::shared_ptr<const GroundSampler> ground_;
   std::optional<Request> asked_;
-  std::shared_ptr<const LitGround> lit_;
-  std::vector<BandTexel> sea_mirror_;
-  double making_s_ = 0.0;
+  Made made_;
   std::chrono::steady_clock::time_point rests_until_{};
   LatestJob<Request, Made> maker_;
 };

@@ -42,34 +42,41 @@ std::array<float, 3> SiteFromFrame::Along(const glm::vec3& direction) const {
   return InFloats(turn_ * glm::dvec3(direction));
 }
 
-LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
-                     const ShadowHeights::Options& shadow)
+GroundSky::GroundSky(std::shared_ptr<const GroundSite> site, Lighting light)
     : site_(std::move(site)),
       light_(OnThisThread([&] {
         light.on_terrain = site_->Under(light);
         return std::move(light);
       })),
-      shadow_(OnThisThread([&] {
-        return ShadowHeights(site_->ground().terrain->mesh(), light_.to_sun, light_.sun_radius_rad,
-                             shadow);
-      })),
       tilt_(TiltUnder(*light_.on_terrain, light_.to_sun)) {
   ALPENGLOW_ENSURE(site_->medium().wavelengths_nm.size(), <=, LitVertex{}.sky.size());
 }
 
-LitVertex LitGround::At(const GroundVertex& vertex) const {
+std::array<float, 4> GroundSky::On(const GroundVertex& vertex) const {
   const SceneGeometry& geometry = site_->geometry();
   const glm::dvec3 point = InDoubles(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);
   const SlopePoint at{point, InDoubles(vertex.normal), up,
                       std::max(geometry.AltitudeOf(point), 0.0),
                       std::clamp(glm::dot(up, light_.to_sun), -1.0, 1.0)};
-  const BandLight sky = light_.on_terrain->Irradiance(at);
-  LitVertex lit{};
-  std::copy_n(sky.value.begin(), sky.count, lit.sky.begin());
-  lit.sun_x = static_cast<float>(
-      shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii));
-  return lit;
+  const BandLight light = light_.on_terrain->Irradiance(at);
+  std::array<float, 4> sky{};
+  std::copy_n(light.value.begin(), light.count, sky.begin());
+  return sky;
+}
+
+LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
+                     const ShadowHeights::Options& shadow)
+    : sky_(std::move(site), std::move(light)), shadow_(OnThisThread([&] {
+        return ShadowHeights(sky_.site().ground().terrain->mesh(), lighting().to_sun,
+                             lighting().sun_radius_rad, shadow);
+      })) {}
+
+LitVertex LitGround::At(const GroundVertex& vertex) const {
+  const glm::dvec3 point = InDoubles(vertex.position_m);
+  return {sky_.On(vertex),
+          static_cast<float>(
+              shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii))};
 }
 
 }  // namespace alpenglow

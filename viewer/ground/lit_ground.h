@@ -43,6 +43,39 @@ class SiteFromFrame {
   glm::dvec3 origin_;
 };
 
+/// Vertices in another frame of the same ellipsoid, which have position_m and normal, made ready.
+template <typename Vertex>
+[[nodiscard]] std::vector<GroundVertex> VerticesIn(const GroundSite& site, const LocalFrame& frame,
+                                                   std::span<const Vertex> vertices) {
+  const SiteFromFrame turned(site.ground().frame, frame);
+  std::vector<GroundVertex> ready;
+  ready.reserve(vertices.size());
+  for (const Vertex& vertex : vertices)
+    ready.push_back(site.Vertex(turned.Point(vertex.position_m), turned.Along(vertex.normal)));
+  return ready;
+}
+
+/// The light of the sky that a sun or moon makes over a site, and of its slopes. Immutable; safe to ask
+/// from many threads.
+class GroundSky {
+ public:
+  /// Works on the calling thread alone.
+  /// @param light  the sun or moon in the frame of the site.
+  GroundSky(std::shared_ptr<const GroundSite> site, Lighting light);
+
+  [[nodiscard]] const Lighting& lighting() const { return light_; }
+  [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
+  [[nodiscard]] const GroundSite& site() const { return *site_; }
+
+  /// Irradiance per unit solar irradiance, by band.
+  [[nodiscard]] std::array<float, 4> On(const GroundVertex& vertex) const;
+
+ private:
+  std::shared_ptr<const GroundSite> site_;
+  Lighting light_;
+  SkyTilt tilt_;
+};
+
 /// Immutable; safe to ask from many threads.
 class LitGround {
  public:
@@ -56,9 +89,10 @@ class LitGround {
   LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
             const ShadowHeights::Options& shadow = kShadowOfVertices);
 
-  [[nodiscard]] const Lighting& lighting() const { return light_; }
-  [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
-  [[nodiscard]] const GroundSite& site() const { return *site_; }
+  [[nodiscard]] const GroundSky& sky() const { return sky_; }
+  [[nodiscard]] const Lighting& lighting() const { return sky_.lighting(); }
+  [[nodiscard]] const SkyTilt& tilt() const { return sky_.tilt(); }
+  [[nodiscard]] const GroundSite& site() const { return sky_.site(); }
 
   [[nodiscard]] LitVertex At(const GroundVertex& vertex) const;
 
@@ -66,21 +100,16 @@ class LitGround {
   template <typename Vertex>
   [[nodiscard]] std::vector<LitVertex> LightIn(const LocalFrame& frame,
                                                std::span<const Vertex> vertices) const {
-    const SiteFromFrame turned(site_->ground().frame, frame);
+    const std::vector<GroundVertex> ready = VerticesIn(site(), frame, vertices);
     std::vector<LitVertex> lit;
-    lit.reserve(vertices.size());
-    for (const Vertex& vertex : vertices) {
-      lit.push_back(
-          At(site_->Vertex(turned.Point(vertex.position_m), turned.Along(vertex.normal))));
-    }
+    lit.reserve(ready.size());
+    for (const GroundVertex& vertex : ready) lit.push_back(At(vertex));
     return lit;
   }
 
  private:
-  std::shared_ptr<const GroundSite> site_;
-  Lighting light_;
+  GroundSky sky_;
   ShadowHeights shadow_;
-  SkyTilt tilt_;
 };
 
 }  // namespace alpenglow

@@ -27,13 +27,17 @@ BandLight Shown(const OpenSky& sky, const Water& water, double mu_s, const glm::
 
 }  // namespace
 
+BandLight LevelSky::Under(const DiffuseLight& diffuse, double sun_elevation_rad) {
+  return diffuse.SkyIrradiance(0.0, std::sin(std::max(sun_elevation_rad, kLowest_rad)));
+}
+
 std::vector<BandTexel> LevelSky::Of(const DiffuseLight& diffuse) {
   std::vector<BandTexel> texels;
   texels.reserve(kNodes);
   for (std::size_t i = 0; i < kNodes; ++i) {
     const double elevation_rad =
         kLowest_rad + kRange_rad * static_cast<double>(i) / static_cast<double>(kNodes - 1);
-    texels.push_back(TexelOf(diffuse.SkyIrradiance(0.0, std::sin(elevation_rad))));
+    texels.push_back(TexelOf(Under(diffuse, elevation_rad)));
   }
   return texels;
 }

@@ -27,6 +27,8 @@ struct LevelSky {
 
   /// Error of the value between nodes: below 2e-3 of it.
   [[nodiscard]] static std::vector<BandTexel> Of(const DiffuseLight& diffuse);
+  /// The value itself.
+  [[nodiscard]] static BandLight Under(const DiffuseLight& diffuse, double sun_elevation_rad);
 };
 
 /// Radiance [1/sr] over LevelSky, rows of equal mu_eye.

@@ -28,12 +28,12 @@ namespace alpenglow {
 struct FogMapSize {
   int elevations = 128;  // even: half of them over the horizon
   int azimuths = 16;     // from 0 to pi
-  int depths = 6;
+  int depths = 12;
 
   bool operator==(const FogMapSize&) const = default;
 };
-inline constexpr FogMapSize kCoarseFog{48, 12, 5};
-inline constexpr FogMapSize kFineFog{192, 24, 5};
+inline constexpr FogMapSize kCoarseFog{48, 12, 8};
+inline constexpr FogMapSize kFineFog{192, 24, 16};
 
 /// Sun and eye, east, north and up at the eye, on the sphere of the air's medium.
 struct FogView {

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "viewer/land/land_pass.h"
+
 namespace alpenglow {
 namespace {
 
@@ -41,7 +43,9 @@ void DescribeLight(const GlBuffer& buffer, GLuint first_location) {
   constexpr GLsizei kStride = sizeof(ChunkLight);
   Attribute(first_location, 4, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, sky));
   Attribute(first_location + 1, 4, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, coarse_sky));
-  Attribute(first_location + 2, 2, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, sun_x));
+  Attribute(first_location + 2, 4, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, moon_sky));
+  Attribute(first_location + 3, 4, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, coarse_moon_sky));
+  Attribute(first_location + 4, 2, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, disk_x));
 }
 
 }  // namespace
@@ -99,8 +103,8 @@ void ChunkBuffers::DescribeVertices(LightSide from) {
   Attribute(3, 4, GL_SHORT, kStride, offsetof(ChunkVertex, normal));
   Attribute(4, 4, GL_SHORT, kStride, offsetof(ChunkVertex, coarse_normal));
   const bool from_first = from == LightSide::kFirst;
-  DescribeLight(from_first ? first_light_ : second_light_, 5);
-  DescribeLight(from_first ? second_light_ : first_light_, 8);
+  DescribeLight(from_first ? first_light_ : second_light_, LandPass::kOldLight);
+  DescribeLight(from_first ? second_light_ : first_light_, LandPass::kNewLight);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.id());
 }
 

@@ -319,9 +319,11 @@ std::array<std::uint16_t, 4> Halves(const std::array<float, 4>& values) {
 
 VertexLight Mean(const VertexLight& a, const VertexLight& b) {
   VertexLight mean;
-  for (std::size_t band = 0; band < mean.sky.size(); ++band)
+  for (std::size_t band = 0; band < mean.sky.size(); ++band) {
     mean.sky[band] = 0.5F * (a.sky[band] + b.sky[band]);
-  mean.sun_x = 0.5F * (a.sun_x + b.sun_x);
+    mean.moon_sky[band] = 0.5F * (a.moon_sky[band] + b.moon_sky[band]);
+  }
+  mean.disk_x = 0.5F * (a.disk_x + b.disk_x);
   return mean;
 }
 
@@ -361,7 +363,9 @@ std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& f
                                           lit[chunk.own.size() + chunk.ends[i].second]);
     packed.push_back({Halves(lit[i].sky),
                       Halves(coarse.sky),
-                      {glm::packHalf1x16(lit[i].sun_x), glm::packHalf1x16(coarse.sun_x)}});
+                      Halves(lit[i].moon_sky),
+                      Halves(coarse.moon_sky),
+                      {glm::packHalf1x16(lit[i].disk_x), glm::packHalf1x16(coarse.disk_x)}});
   }
   return packed;
 }

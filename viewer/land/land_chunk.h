@@ -57,10 +57,12 @@ struct LandVertex {
 
 /// Light at a vertex.
 struct VertexLight {
-  std::array<float, 4> sky{};  // sky's irradiance on it in four bands, per unit solar irradiance
-  /// Height of the sun's centre over the edge of terrain that hides it, in radii of the disk,
-  /// a share of the disk between -1 and 1.
-  float sun_x = 4.0F;
+  /// Irradiance of the sky that the sun makes, and of the one that the moon makes, in four bands, over
+  /// that of a level place at altitude 0 under the same sun or moon.
+  std::array<float, 4> sky{1.0F, 1.0F, 1.0F, 1.0F}, moon_sky{1.0F, 1.0F, 1.0F, 1.0F};
+  /// Height of the centre of the disk that throws shadows over the edge of terrain that hides it, in
+  /// radii of the disk, a share of the disk between -1 and 1.
+  float disk_x = 4.0F;
 };
 
 /// The light of vertices in the frame of an anchor; called on another thread.
@@ -78,10 +80,10 @@ static_assert(sizeof(ChunkVertex) == 48);
 
 /// Light of a vertex as land.vert.glsl reads it: half floats.
 struct ChunkLight {
-  std::array<std::uint16_t, 4> sky, coarse_sky;
-  std::array<std::uint16_t, 2> sun_x;  // own, coarser
+  std::array<std::uint16_t, 4> sky, coarse_sky, moon_sky, coarse_moon_sky;
+  std::array<std::uint16_t, 2> disk_x;  // own, coarser
 };
-static_assert(sizeof(ChunkLight) == 20);
+static_assert(sizeof(ChunkLight) == 36);
 
 /// What a vertex becomes: two vertices of the next coarser level (the same twice where it is one of
 /// them), as indices into LandChunk::coarse.
@@ -123,7 +125,7 @@ struct LandChunk {
 /// What a chunk takes in memory.
 [[nodiscard]] std::size_t BytesOf(const LandChunk& chunk);
 
-/// One a vertex. Where no light is made yet: none from the sky, the whole sun.
+/// One a vertex. Where no light is made yet: as on a level place.
 [[nodiscard]] std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& frame,
                                                    const std::optional<LightOfVertices>& light);
 

@@ -60,10 +60,18 @@ class LandPass {
  public:
   LandPass();
 
+  /// Locations of the first attribute of the light that fades, and of the one that comes.
+  static constexpr unsigned kOldLight = 5, kNewLight = 10;
   /// Attributes of land.vert.glsl, in the order of their locations.
-  static constexpr std::array<const char*, 11> kAttributes{
-      "position",   "coarse_position", "sample_place", "normal",         "coarse_normal",    "sky",
-      "coarse_sky", "sun_over_edge",   "new_sky",      "new_coarse_sky", "new_sun_over_edge"};
+  static constexpr std::array<const char*, 15> kAttributes{
+      "position",          "coarse_position",
+      "sample_place",      "normal",
+      "coarse_normal",     "sky",
+      "coarse_sky",        "moon_sky",
+      "coarse_moon_sky",   "disk_over_edge",
+      "new_sky",           "new_coarse_sky",
+      "new_moon_sky",      "new_coarse_moon_sky",
+      "new_disk_over_edge"};
 
   /// Empties the bound SurfaceMap or LandOutline.
   static void Clear(LandDrawn drawn);

@@ -33,8 +33,8 @@ struct LandSize {
   /// as much. All this as far as `most_chunks` go.
   double detail = 96.0;
   /// Of chunks that are kept, unless kLeastDetail takes more (2,500 at most). Beside heights they
-  /// take 42 kB each, 13 in memory and 29 on the card, whose buffers have room for up to a quarter
-  /// more: 2.0 GB. There are two sets of them for as long as it takes to make another about an eye
+  /// take 51 kB each, 13 in memory and 38 on the card, whose buffers have room for up to a quarter
+  /// more: 2.4 GB. There are two sets of them for as long as it takes to make another about an eye
   /// that has flown 100 km.
   int most_chunks = 48000;
   /// Of heights that are kept [bytes], see TileCache.

@@ -26,10 +26,13 @@ void DescribeVectors(GLuint location, const GlBuffer& buffer) {
 
 ChunkLight PackedLight(const VertexLight& light) {
   ChunkLight packed{};
-  for (std::size_t band = 0; band < light.sky.size(); ++band)
+  for (std::size_t band = 0; band < light.sky.size(); ++band) {
     packed.sky[band] = glm::packHalf1x16(light.sky[band]);
+    packed.moon_sky[band] = glm::packHalf1x16(light.moon_sky[band]);
+  }
   packed.coarse_sky = packed.sky;
-  packed.sun_x.fill(glm::packHalf1x16(light.sun_x));
+  packed.coarse_moon_sky = packed.moon_sky;
+  packed.disk_x.fill(glm::packHalf1x16(light.disk_x));
   return packed;
 }
 
@@ -86,7 +89,9 @@ void MeshLand::DescribeLight(const GlBuffer& buffer, GLuint first_location) cons
   };
   describe(first_location, 4, offsetof(ChunkLight, sky));
   describe(first_location + 1, 4, offsetof(ChunkLight, coarse_sky));
-  describe(first_location + 2, 2, offsetof(ChunkLight, sun_x));
+  describe(first_location + 2, 4, offsetof(ChunkLight, moon_sky));
+  describe(first_location + 3, 4, offsetof(ChunkLight, coarse_moon_sky));
+  describe(first_location + 4, 2, offsetof(ChunkLight, disk_x));
 }
 
 void MeshLand::Update(double seconds) {
@@ -107,8 +112,8 @@ void MeshLand::Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition
                     GLuint view_binding) {
   if (!terrain_) return;
   glBindVertexArray(layout_.id());
-  DescribeLight(LightOn(fade_.from()), 5);
-  DescribeLight(LightOn(Other(fade_.from())), 8);
+  DescribeLight(LightOn(fade_.from()), LandPass::kOldLight);
+  DescribeLight(LightOn(Other(fade_.from())), LandPass::kNewLight);
   const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), fade_.share());
   pass.Run(what, block, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),

@@ -11,17 +11,19 @@ namespace alpenglow {
 class SurfaceMap : public RenderTarget {
  public:
   enum Output : std::size_t {
-    /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); height of the sun over
-    /// the terrain's edge, in radii of its disk; distance [m], 0: no terrain.
+    /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); height of the disk that
+    /// throws shadows over the terrain's edge, in its radii; distance [m], 0: no terrain.
     kSurface,
-    /// Four half floats: the sky's irradiance in bands, per unit solar irradiance.
+    /// Four half floats each: irradiance of the sun's sky and of the moon's in bands, as in VertexLight.
     kSky,
+    kMoonSky,
   };
 
   /// @param width, height >= 1.
   SurfaceMap(int width, int height)
-      : RenderTarget(width, height, {PixelFormat::kRgba32F, PixelFormat::kRgba16F}, Depth::k32Bit) {
-  }
+      : RenderTarget(width, height,
+                     {PixelFormat::kRgba32F, PixelFormat::kRgba16F, PixelFormat::kRgba16F},
+                     Depth::k32Bit) {}
 };
 
 }  // namespace alpenglow

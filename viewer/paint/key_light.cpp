@@ -14,8 +14,10 @@
 namespace alpenglow {
 namespace {
 
-// The brightest moon brings less than the sun over this elevation, whatever the air.
-constexpr double kBrighterThanMoon_rad = -4.0 * kRadiansPerDegree;
+// The brightest moon brings less than a thousandth of what the sun does over this elevation.
+constexpr double kMoonDoesNotCount_rad = 1.0 * kRadiansPerDegree;
+// A sun that is lower lights no land: from 4 km the horizon is 2 degrees down.
+constexpr double kSetOnLand_rad = -2.5 * kRadiansPerDegree;
 
 std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
   const auto off = [](double nm) { return std::abs(nm - 555.0); };
@@ -62,11 +64,12 @@ KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
 
 LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
                           const SunPosition& sun, const SolvedAir& air) {
-  constexpr double kUnseenShare = 1e-3;
+  // A sky that is a ten-thousandth on a level place is a five-hundredth over the horizon under its light.
+  constexpr double kUnseenShare = 1e-4;
   const KeyLight whole_sun = SunAsKey(sun, air.medium);
   if (!air.medium.follows_wgs84) return {whole_sun, std::nullopt};
   const KeyLight by_sun = BesideMoon(whole_sun, eye, now, air.medium);
-  if (sun.elevation_rad > kBrighterThanMoon_rad) return {by_sun, std::nullopt};
+  if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun, std::nullopt};
   const MoonDisk disk = ApparentMoonDisk(eye, now, sun.distance_au, GentleAirOf(air.medium));
   BandLight solar(air.medium.wavelengths_nm.size());
   for (std::size_t band = 0; band < solar.count; ++band)
@@ -82,11 +85,10 @@ LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
                                           key.disk.elevation_rad)[static_cast<std::size_t>(green)]);
   };
   const double of_sun = brings(by_sun), of_moon = brings(by_moon);
-  const bool is_by_moon = of_moon > of_sun;
-  LightsOfSky lights{is_by_moon ? by_moon : by_sun, std::nullopt};
-  if (std::min(of_sun, of_moon) > kUnseenShare * std::max(of_sun, of_moon))
-    lights.beside = is_by_moon ? by_sun : by_moon;
-  return lights;
+  if (of_moon <= kUnseenShare * of_sun) return {by_sun, std::nullopt};
+  if (of_sun <= kUnseenShare * of_moon) return {by_moon, std::nullopt};
+  if (sun.elevation_rad < kSetOnLand_rad) return {by_moon, by_sun};
+  return {by_sun, by_moon};
 }
 
 double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,

@@ -46,23 +46,15 @@ NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, co
 NightFloorFollower::NightFloorFollower(const TownsOfScene& towns)
     : maker_([towns](const Request& request) {
         const Medium& medium = request.air->medium;
-        NightFloor floor = NightFloorOver(request.place, request.now, medium,
-                                          BandColour(medium.wavelengths_nm), towns);
-        if (request.beside)
-          floor.beside = LightBesideOf(*request.beside, request.place, *request.air);
-        return floor;
+        return NightFloorOver(request.place, request.now, medium, BandColour(medium.wavelengths_nm),
+                              towns);
       }) {}
 
-// The sky may turn by an eighth of a degree, a tenth of a texel; a sun beside the moon may lose a
-// fortieth of its light.
+// The sky may turn by an eighth of a degree, a tenth of a texel.
 bool NightFloorFollower::Suits(const Request& wanted) const {
-  constexpr double kMostTurn_s = 30.0, kMostTurnBeside_s = 10.0, kMostWay_rad = 2e-3,
-                   kMostRise_m = 1000.0;
+  constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
   return asked_ && asked_->air == wanted.air &&
-         asked_->beside.has_value() == wanted.beside.has_value() &&
-         (!wanted.beside || asked_->beside->is_moon == wanted.beside->is_moon) &&
-         std::abs(SecondsBetween(asked_->now, wanted.now)) <
-             (wanted.beside ? kMostTurnBeside_s : kMostTurn_s) &&
+         std::abs(SecondsBetween(asked_->now, wanted.now)) < kMostTurn_s &&
          std::abs(asked_->place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
          std::abs(asked_->place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
          std::abs(asked_->place.height_m - wanted.place.height_m) < kMostRise_m;
@@ -75,23 +67,11 @@ void NightFloorFollower::Take(int unit) {
   level_ = floor->level;
   has_map_ = true;
   Upload(map_, unit, NightFloor::kColumns, NightFloor::kRows, floor->above);
-  TakeBeside(floor->beside, unit + 1);
-}
-
-void NightFloorFollower::TakeBeside(const std::optional<LightBeside>& beside, int unit) {
-  if (!beside) {
-    beside_ = {};
-    Upload(beside_map_, unit, 1, 1, {glm::vec4(0.0F)});
-    return;
-  }
-  beside_ = {{}, beside->level, beside->direct, beside->to_light};
-  Upload(beside_map_, unit, LightBeside::kColumns, LightBeside::kRows, beside->sky);
 }
 
 void NightFloorFollower::Follow(const PaintedView& view,
-                                const std::shared_ptr<const SolvedAir>& air,
-                                const std::optional<KeyLight>& beside, bool waits) {
-  const Request wanted{view.eye.place, view.now, air, beside};
+                                const std::shared_ptr<const SolvedAir>& air, bool waits) {
+  const Request wanted{view.eye.place, view.now, air};
   if (waits) maker_.Wait();
   Take(kNightUnit);
   if (waits || (!maker_.Busy() && !Suits(wanted))) {
@@ -107,13 +87,7 @@ void NightFloorFollower::Bind(const ShaderProgram& program, int unit) const {
   program.BindSampler("night_sky", unit);
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, map_.id());
-  program.BindSampler("beside_sky", unit + 1);
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit + 1));
-  glBindTexture(GL_TEXTURE_2D, beside_map_.id());
   program.Use();
-  glUniform4fv(program.Uniform("beside_level"), 1, &beside_.level.x);
-  glUniform4fv(program.Uniform("beside_direct"), 1, &beside_.direct.x);
-  glUniform3fv(program.Uniform("beside_towards"), 1, &beside_.to_light.x);
   glUniform4fv(program.Uniform("night_scattered"), 1, &scattered_.x);
   glUniform4fv(program.Uniform("night_level"), 1, &level_.x);
 }

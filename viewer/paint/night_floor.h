@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Airglow, zodiacal light and faint stars behind the air, what the air scatters of them, and their
-// light on the ground: the renderer's NightLight as a map of the sky, and the lesser of sun and moon
-// where both count (light_beside.h), made on a thread beside drawing. Where the sun, or the moon, brings less than 10 lux.
+// light on the ground: the renderer's NightLight as a map of the sky, made on a thread beside drawing.
+// Where sun and moon bring less than 10 lux.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -14,7 +14,6 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/job/latest_job.h"
-#include "viewer/paint/light_beside.h"
 #include "viewer/paint/painted_view.h"
 
 namespace alpenglow {
@@ -28,7 +27,6 @@ struct NightFloor {
   std::vector<glm::vec4> above;  // from above the air, row by row [W m^-2 sr^-1 nm^-1]
   glm::vec4 scattered;           // NightLight::scattered
   glm::vec4 level;               // on level ground [W m^-2 nm^-1]
-  std::optional<LightBeside> beside = std::nullopt;
 };
 
 /// Lamps of towns, as the scene has them.
@@ -47,12 +45,10 @@ class NightFloorFollower {
   explicit NightFloorFollower(const TownsOfScene& towns);
 
   /// Once a frame: takes over what is ready and asks for what is missing.
-  /// @param beside  the lesser light, where it counts.
   /// @param waits   until the map of the very instant is there.
-  void Follow(const PaintedView& view, const std::shared_ptr<const SolvedAir>& air,
-              const std::optional<KeyLight>& beside, bool waits);
+  void Follow(const PaintedView& view, const std::shared_ptr<const SolvedAir>& air, bool waits);
   [[nodiscard]] bool HasAny() const { return has_map_; }
-  /// For the next draw of a program of the night pass of picture.frag.glsl. Takes two units.
+  /// For the next draw of a program of the night pass of picture.frag.glsl.
   void Bind(const ShaderProgram& program, int unit) const;
 
  private:
@@ -60,16 +56,13 @@ class NightFloorFollower {
     GeodeticPosition place;
     UtcInstant now;
     std::shared_ptr<const SolvedAir> air;
-    std::optional<KeyLight> beside;
   };
 
   [[nodiscard]] bool Suits(const Request& wanted) const;
   void Take(int unit);
-  void TakeBeside(const std::optional<LightBeside>& beside, int unit);
 
-  GlTexture map_, beside_map_;
+  GlTexture map_;
   glm::vec4 scattered_{0.0F}, level_{0.0F};
-  LightBeside beside_{};  // without its map
   bool has_map_ = false;
   std::optional<Request> asked_;
   LatestJob<Request, NightFloor> maker_;

@@ -28,6 +28,17 @@ LandSize LandSizeOf(const PaintSizes& sizes) {
   return size;
 }
 
+const KeyLight* OfSource(const LightsOfSky& lights, LightSource source) {
+  if (lights.key.source() == source) return &lights.key;
+  return lights.other && lights.other->source() == source ? &*lights.other : nullptr;
+}
+
+GroundFollower::View GroundViewOf(const PaintedView& view, const LightsOfSky& lights) {
+  GroundFollower::View seen{view.eye.place, view.now, lights.key.source(), lights.key.disk};
+  if (lights.other) seen.other = lights.other->disk;
+  return seen;
+}
+
 AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
   return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, DirectionToSun(sun)};
 }
@@ -43,16 +54,17 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       lamp_ground_(LampGroundOf(scene)),
       drape_(DrapeOf(scene, lamp_ground_)),
       material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
-      air_(SolveAir(MediumAt(scene)), sizes.air,
-           AirViewOf(first.eye,
-                     ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
+      sun_view_(AirViewOf(first.eye,
+                          ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
+      air_(SolveAir(MediumAt(scene)), sizes.air, sun_view_),
       land_(land, LandSizeOf(sizes), ellipsoid_),
       ground_(scene.ground, drape_.colours, {}),
       ground_textures_(air_.air()->diffuse),
       shade_(ellipsoid_) {
   if (scene.fog) {
-    fog_.emplace(LocalMedia(scene, lamp_ground_, MediumAt(scene)).Only(false, true), sizes.fog,
-                 kFogUnits);
+    for (std::optional<SceneFog>* fog : {&fog_, &moon_fog_})
+      fog->emplace(LocalMedia(scene, lamp_ground_, MediumAt(scene)).Only(false, true), sizes.fog,
+                   kFogUnits);
   }
   shade_.SetSize(sizes.shade.size);
   if (drape_.colours) ground_textures_.SetDrape(TexelsOf(drape_));
@@ -61,6 +73,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
 void PaintedScene::Use(const PaintSizes& sizes) {
   sizes_ = sizes;
   if (fog_) fog_->SetSize(sizes.fog);
+  if (moon_fog_) moon_fog_->SetSize(sizes.fog);
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
   land_.SetDetail(sizes.land_detail);
@@ -75,31 +88,70 @@ void PaintedScene::TakeHeights() {
 }
 
 void PaintedScene::TakeLight() {
+  if (edges_of_ != ground_.casts()) edges_of_ = std::nullopt;
   if (std::optional<LightOfVertices> light = ground_.Light()) land_.Relight(std::move(*light));
-  if (ground_.sea_mirror().empty()) return;
-  glActiveTexture(GL_TEXTURE0 + kUploadUnit);
-  ground_textures_.SetSeaMirror(ground_.sea_mirror());
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
+    if (ground_.sea_mirror(source).empty()) continue;
+    glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+    ground_textures_.SetSeaMirror(source, ground_.sea_mirror(source));
+  }
 }
 
-void PaintedScene::Update(const PaintedView& view, const SunPosition& sun, double seconds) {
-  air_.Follow(AirViewOf(view.eye, sun));
+void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
+  const auto keep_up = [&](AirFollower& air, const AirView& seen) {
+    pace == Pace::kFollow ? air.Follow(seen) : air.Settle(seen);
+  };
+  const KeyLight* moon = OfSource(lights, LightSource::kMoon);
+  if (const KeyLight* sun = OfSource(lights, LightSource::kSun))
+    sun_view_ = AirViewOf(view.eye, sun->disk);
+  keep_up(air_, sun_view_);
+  if (known_air_ != air_.air()) {
+    known_air_ = air_.air();
+    glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+    ground_textures_.SetAir(known_air_->diffuse);
+  }
+  if (moon == nullptr) return;
+  const AirView seen = AirViewOf(view.eye, moon->disk);
+  if (!moon_air_ || moon_air_of_ != air_.air()) {
+    moon_air_.emplace(air_.air(), sizes_.air, seen);
+    moon_air_of_ = air_.air();
+  }
+  moon_air_->SetQuality(sizes_.air);
+  keep_up(*moon_air_, seen);
+}
+
+void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
+  if (!fog_) return;
+  const auto keep_up = [&](SceneFog& fog, const KeyLight& light) {
+    pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light.disk)
+                          : fog.Settle(air_.air(), view.eye, light.disk);
+  };
+  if (const KeyLight* sun = OfSource(lights, LightSource::kSun)) keep_up(*fog_, *sun);
+  if (const KeyLight* moon = OfSource(lights, LightSource::kMoon)) keep_up(*moon_fog_, *moon);
+}
+
+void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
+  const SunPosition& casting = lights.key.disk;
+  KeepUpAir(view, lights, Pace::kFollow);
   land_.Update(view.eye.place, LandViewOf(view), seconds);
   TakeHeights();
-  if (ground_.Follow(air_.air(), {view.eye.place, sun, view.now})) TakeLight();
-  if (sizes_.has_shafts) shade_.Follow(view.eye.place, sun, kShadeUnit);
-  if (fog_) fog_->Follow(air_.air(), view.eye, sun);
+  if (!land_.IsRelighting() && ground_.lit()) edges_of_ = ground_.casts();
+  if (ground_.Follow(air_.air(), GroundViewOf(view, lights))) TakeLight();
+  if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);
+  KeepUpFog(view, lights, Pace::kFollow);
 }
 
-void PaintedScene::Settle(const PaintedView& view, const SunPosition& sun, int samples) {
-  air_.Settle(AirViewOf(view.eye, sun));
+void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, int samples) {
+  KeepUpAir(view, lights, Pace::kSettle);
   land_.Settle(view.eye.place, LandViewOf(view, samples));
   TakeHeights();
-  if (ground_.Settle(air_.air(), {view.eye.place, sun, view.now})) {
+  if (ground_.Settle(air_.air(), GroundViewOf(view, lights))) {
     TakeLight();
     land_.Settle(view.eye.place, LandViewOf(view, samples));
   }
-  if (sizes_.has_shafts) shade_.Settle(view.eye.place, sun, kShadeUnit);
-  if (fog_) fog_->Settle(air_.air(), view.eye, sun);
+  if (ground_.lit()) edges_of_ = ground_.casts();
+  if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);
+  KeepUpFog(view, lights, Pace::kSettle);
 }
 
 std::optional<PhaseKind> PaintedScene::fog_phase() const {

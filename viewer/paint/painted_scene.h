@@ -15,6 +15,7 @@
 #include "viewer/ground/scene_drape.h"
 #include "viewer/lamps/scene_fog.h"
 #include "viewer/land/landscape.h"
+#include "viewer/paint/key_light.h"
 #include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_view.h"
 #include "viewer/shade/shade_follower.h"
@@ -34,13 +35,13 @@ class PaintedScene {
   void Replace(const Medium& medium) { air_.Replace(medium); }
 
   /// Takes over what has become ready and asks for what is missing. Never waits, but for the first
-  /// fog in other air.
-  /// @param sun      apparent, seen from the eye.
+  /// fog in other air or under a moon.
+  /// @param lights   seen from the eye.
   /// @param seconds  since the last call.
-  void Update(const PaintedView& view, const SunPosition& sun, double seconds);
+  void Update(const PaintedView& view, const LightsOfSky& lights, double seconds);
   /// Waits until all is there that the view needs.
   /// @param samples  rays a pixel that will be painted.
-  void Settle(const PaintedView& view, const SunPosition& sun, int samples);
+  void Settle(const PaintedView& view, const LightsOfSky& lights, int samples);
 
   [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
   [[nodiscard]] const GeodeticPosition& place() const { return scene_.place; }
@@ -49,7 +50,12 @@ class PaintedScene {
   [[nodiscard]] const SceneGround& lamp_ground() const { return lamp_ground_; }
   [[nodiscard]] const SceneDrape& drape() const { return drape_; }
   [[nodiscard]] const GroundMaterial& material() const { return material_; }
+  /// As the sun lights it.
   [[nodiscard]] const AirFollower& air() const { return air_; }
+  /// As a source does that counts.
+  [[nodiscard]] const AirTextures& air_textures(LightSource source) const {
+    return source == LightSource::kMoon && moon_air_ ? moon_air_->textures() : air_.textures();
+  }
   [[nodiscard]] const Landscape& land() const { return land_; }
   [[nodiscard]] Landscape& land() { return land_; }
   /// Whether there is any, somewhere.
@@ -57,14 +63,27 @@ class PaintedScene {
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
-  /// Whether terrain keeps light from the air, and that is painted.
-  [[nodiscard]] bool HasShade() const { return sizes_.has_shafts && shade_.shade().Shades(); }
-  /// Null: none.
-  [[nodiscard]] const SceneFog* fog() const { return fog_ ? &*fog_ : nullptr; }
+  /// Whether terrain keeps light of the key from the air, and that is painted.
+  [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
+    return sizes_.has_shafts && shade_.shade().Shades() && shade_.IsOf(view.eye.place, key.disk);
+  }
+  /// Whether the edges of terrain that vertices of land have are all those before this source.
+  [[nodiscard]] bool HasEdgesOf(LightSource source) const {
+    return edges_of_ == source && ground_.casts() == source;
+  }
+  /// As a source lights it. Null: none.
+  [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
+    if (source == LightSource::kMoon && moon_fog_) return &*moon_fog_;
+    return fog_ ? &*fog_ : nullptr;
+  }
   /// Nothing without fog.
   [[nodiscard]] std::optional<PhaseKind> fog_phase() const;
 
  private:
+  /// Followers keep up (Update) or wait until they have (Settle).
+  enum class Pace { kFollow, kSettle };
+  void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace);
+  void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void TakeHeights();
   void TakeLight();
 
@@ -75,12 +94,17 @@ class PaintedScene {
   SceneGround lamp_ground_;
   SceneDrape drape_;
   GroundMaterial material_;
-  AirFollower air_;
+  AirView sun_view_;                              // the last one that the sun counted in
+  AirFollower air_;                               // of that
+  std::shared_ptr<const SolvedAir> known_air_;    // that ground_textures_ have
+  std::optional<AirFollower> moon_air_;           // once it counts
+  std::shared_ptr<const SolvedAir> moon_air_of_;  // that it was made for
   Landscape land_;
   GroundFollower ground_;
   GroundTextures ground_textures_;
   ShadeFollower shade_;
-  std::optional<SceneFog> fog_;
+  std::optional<SceneFog> fog_, moon_fog_;
+  std::optional<LightSource> edges_of_;  // all vertices of land are lit with the edges of its shade
   int heights_version_ = -1;
 };
 

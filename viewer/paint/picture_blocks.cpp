@@ -56,13 +56,15 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 }
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
-                             const SunPosition& sun) {
-  if (!scene.ground().lit()) {
-    GroundLightBlock bare{};
-    bare.ground_view.x = static_cast<float>(PixelAngle(view));  // waves of the planet's sea
-    return bare;
-  }
-  return GroundLightBlockOf(scene.ground().lit()->tilt(), DirectionToSun(sun), PixelAngle(view));
+                             const KeyLight& light) {
+  const SkyTilt* tilt = scene.ground().TiltUnder(light.source());
+  GroundLightBlock block =
+      tilt == nullptr ? EvenGroundLight(PixelAngle(view))
+                      : GroundLightBlockOf(*tilt, DirectionToSun(light.disk), PixelAngle(view));
+  block.sky_at_zero =
+      GpuBandsOf(LevelSky::Under(scene.air().air()->diffuse, light.disk.elevation_rad));
+  block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
+  return block;
 }
 
 GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
@@ -98,10 +100,13 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
   Upload(view_, kViewBinding, block);
 }
 
-void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view,
-                                 const SunPosition& sun) const {
+void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
+                                      const KeyLight& light) const {
+  Upload(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
+}
+
+void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {
   Upload(ground_, kGroundBinding, GroundAround(scene, view));
-  Upload(ground_light_, kGroundLightBinding, LightAround(scene, view, sun));
   Upload(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));
 }
 

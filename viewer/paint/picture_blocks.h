@@ -23,8 +23,9 @@ class PictureBlocks {
   /// @param ray  that is painted of each pixel.
   void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
                   const PixelRay& ray) const;
-  void UploadGround(const PaintedScene& scene, const PaintedView& view,
-                    const SunPosition& sun) const;
+  void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
+  void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
+                         const KeyLight& light) const;
 
  private:
   GlBuffer air_, view_, ground_, ground_light_, ground_surface_;

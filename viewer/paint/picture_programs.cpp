@@ -29,6 +29,7 @@ void ConnectMaps(const ShaderProgram& program) {
   program.BindSampler("surface_map", kSurfaceUnit);
   program.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
   program.BindSampler("shaft_map", kShaftUnit);
+  program.BindSampler("fog_shaft_map", kFogShaftUnit);
 }
 
 }  // namespace
@@ -55,9 +56,9 @@ const ShaderProgram& PicturePrograms::Of(const PictureStage& stage) {
   return made_.emplace(stage, Made(stage)).first->second;
 }
 
-void PicturePrograms::Paint(const PictureStage& stage) {
+void PicturePrograms::Paint(const PictureStage& stage, LightSource source) {
   const ShaderProgram& program = Of(stage);
-  scene_.ground_textures().Bind(program, kGroundUnit);
+  scene_.ground_textures().Bind(program, kGroundUnit, source);
   if (stage.has_shade) shafts_.Bind(program, kShaftUnit);
   program.Use();
   glDepthFunc(DepthTestOf(stage.pass));

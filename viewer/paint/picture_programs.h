@@ -24,7 +24,8 @@ class PicturePrograms {
 
   /// Paints the whole viewport, but land only over land, and sky and disks only beside it: by the
   /// depth of the target that is bound, which must be tested.
-  void Paint(const PictureStage& stage);
+  /// @param source  whose sky waves mirror; its air, blocks and maps are bound.
+  void Paint(const PictureStage& stage, LightSource source = LightSource::kSun);
   /// Draws with a stage that Paint was not called for yet. Whether that was to be done.
   bool MakeReady(const PictureStage& stage);
 

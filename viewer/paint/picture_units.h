@@ -26,6 +26,7 @@ enum PictureUnit {
   kSurfaceUnit,
   kSkyOnSurfaceUnit,
   kShaftUnit,
+  kFogShaftUnit,
   kShadeUnit,
   kUploadUnit,
   kAirUnit,

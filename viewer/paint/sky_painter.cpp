@@ -15,10 +15,14 @@
 namespace alpenglow {
 namespace {
 
-ShaftPass ConnectedShafts() {
-  ShaftPass pass(AirTexts());
+ShaftPass ConnectedShafts(const PaintedScene& scene) {
+  std::vector<ShaderPiece> texts = AirTexts();
+  if (scene.fog_phase())
+    for (ShaderPiece& piece : FogTexts(*scene.fog_phase())) texts.push_back(std::move(piece));
+  ShaftPass pass(std::move(texts), scene.fog_phase().has_value());
   pass.program().BindBlock("View", kViewBinding);
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
+  if (scene.fog() != nullptr) scene.fog()->Connect(pass.program());
   return pass;
 }
 
@@ -59,7 +63,7 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
       lamps_(scene, scene_.lamp_ground(),
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
-      shaft_pass_(ConnectedShafts()),
+      shaft_pass_(ConnectedShafts(scene_)),
       night_floor_(
           {scene.town_zenith, std::max(GroundHeightUnder(scene_.lamp_ground(), scene.place), 0.0)}),
       has_towns_(scene.town_zenith.has_value()),
@@ -79,20 +83,19 @@ const SkyPainter::Shining& SkyPainter::LightsOf(const PaintedView& view) {
 }
 
 void SkyPainter::Update(const PaintedView& view, double seconds) {
-  const KeyLight& key = LightsOf(view).lights.key;
+  const LightsOfSky& lights = LightsOf(view).lights;
   Begin("update");
-  scene_.Update(view, key.disk, seconds);
-  stars_.Follow(view, key, *scene_.air().air());
-  if (HasNightFloor())
-    night_floor_.Follow(view, scene_.air().air(), LightsOf(view).lights.beside, false);
+  scene_.Update(view, lights, seconds);
+  stars_.Follow(view, lights, *scene_.air().air());
+  // A jump into the night waits for its first map.
+  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), !night_floor_.HasAny());
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
-  scene_.Settle(view, LightsOf(view).lights.key.disk, samples);
+  scene_.Settle(view, LightsOf(view).lights, samples);
   lamps_.SettlePlans();
-  stars_.Settle(view, LightsOf(view).lights.key, *scene_.air().air());
-  if (HasNightFloor())
-    night_floor_.Follow(view, scene_.air().air(), LightsOf(view).lights.beside, true);
+  stars_.Settle(view, LightsOf(view).lights, *scene_.air().air());
+  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), true);
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -113,7 +116,6 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   surface_->Bind();
   scene_.land().Draw(kViewBinding);
   surface_->BindTexture(kSurfaceUnit, SurfaceMap::kSurface);
-  surface_->BindTexture(kSkyOnSurfaceUnit, SurfaceMap::kSky);
 }
 
 void SkyPainter::PaintOutline(const LandOutline& outline) {
@@ -123,7 +125,7 @@ void SkyPainter::PaintOutline(const LandOutline& outline) {
 }
 
 void SkyPainter::PaintShafts(const PaintedView& view) {
-  if (!scene_.HasShade()) return;
+  if (!scene_.HasShade(view, LightsOf(view).lights.key)) return;
   Begin("shafts");
   const ShadeFollower& shade = scene_.shade();
   shaft_pass_.Paint(shade.shade(), shade.MapFromEye(view.eye.place), view.width, view.height,
@@ -157,30 +159,29 @@ void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
   for (const PictureStage& stage :
        {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOpenSky, has_shade, has_lamps},
         PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight}})
+        PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight},
+        PictureStage{kLand}, PictureStage{kSky}, PictureStage{kOpenSky}})
     if (programs_.MakeReady(stage)) return;
   stars_.MakeReady(scene_.fog(), scene_.fog_phase());
 }
 
 // Software drivers work out the planet of every pixel that a program has it for.
-void SkyPainter::PaintSky(const PaintedView& view, bool has_shade, bool has_lamps) {
+void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
   using enum PictureStage::Pass;
   const int rows = RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
   if (rows > 0) {
     const Scissor below({0, 0, view.width, rows});
-    programs_.Paint({kSky, has_shade, has_lamps});
+    programs_.Paint({kSky, lit.has_shade, lit.has_lamps}, lit.source);
   }
   if (rows < view.height) {
     const Scissor above({0, rows, view.width, view.height - rows});
-    programs_.Paint({kOpenSky, has_shade, has_lamps});
+    programs_.Paint({kOpenSky, lit.has_shade, lit.has_lamps}, lit.source);
   }
 }
 
-void SkyPainter::PaintLandAndSky(const PaintedView& view, double share) {
-  const bool has_shade = scene_.HasShade(), has_lamps = !lamp_painter_.IsDark();
-  if (share == 1.0) MakeOneReady(has_shade, has_lamps);
-  programs_.Paint({PictureStage::Pass::kLand, has_shade, has_lamps});
-  PaintSky(view, has_shade, has_lamps);
+void SkyPainter::PaintLandAndSky(const PaintedView& view, const Lit& lit) {
+  programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps}, lit.source);
+  PaintSky(view, lit);
 }
 
 std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
@@ -215,16 +216,48 @@ void SkyPainter::PaintDisksOver(const RenderTarget& target, const LandOutline& o
   CheckGl("SkyPainter::PaintDisksOver");
 }
 
+// What programs read of one light of the sky.
+void SkyPainter::BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray) {
+  blocks_.UploadView(scene_, view, light, ray);
+  blocks_.UploadGroundLight(scene_, view, light);
+  scene_.air_textures(light.source()).Bind(kAirUnit, kTablesBinding);
+}
+
+void SkyPainter::BindMaps(const PaintedView& view, const KeyLight& light) {
+  surface_->BindTexture(kSkyOnSurfaceUnit, light.is_moon ? SurfaceMap::kMoonSky : SurfaceMap::kSky);
+  if (scene_.fog() != nullptr) scene_.fog(light.source())->Bind(view.eye, light.disk);
+}
+
 void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   Begin("picture");
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
-  if (scene_.fog() != nullptr) scene_.fog()->Bind(view.eye, LightsOf(view).lights.key.disk);
+  const KeyLight& key = LightsOf(view).lights.key;
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
-  PaintLandAndSky(view, share);
+  const Lit lit{key.source(), scene_.HasShade(view, key), !lamp_painter_.IsDark()};
+  if (share == 1.0) MakeOneReady(lit.has_shade, lit.has_lamps);
+  PaintLandAndSky(view, lit);
+}
+
+// Without the nearness of land, which is there.
+void SkyPainter::PaintOtherLight(const PaintedView& view, const PixelRay& ray) {
+  const std::optional<KeyLight>& other = LightsOf(view).lights.other;
+  if (!other) return;
+  Begin("other light");
+  BindLight(view, *other, ray);
+  BindMaps(view, *other);
+  {
+    const BesideLand beside;
+    const Adding adding(1.0 / ray.of);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+    PaintLandAndSky(view, {other->source(), false, false});
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+  BindLight(view, LightsOf(view).lights.key, ray);
+  BindMaps(view, LightsOf(view).lights.key);
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
@@ -255,11 +288,13 @@ void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
 }
 
 void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray) {
-  blocks_.UploadView(scene_, view, LightsOf(view).lights.key, ray);
+  BindLight(view, LightsOf(view).lights.key, ray);
   PaintLand(view);
+  BindMaps(view, LightsOf(view).lights.key);
   PaintShafts(view);
   PaintLamps(view);
   PaintPicture(view, 1.0 / ray.of);
+  PaintOtherLight(view, ray);
   if (HasNightFloor() && night_floor_.HasAny()) PaintNightFloor(1.0 / ray.of);
   if (disks == Disks::kPainted) PaintDisks(view, ray);
 }
@@ -278,10 +313,9 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
   const Bodies bodies = BodiesOf(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
-  blocks_.UploadGround(scene_, view, LightsOf(view).lights.key.disk);
+  blocks_.UploadGround(scene_, view);
   DescribeMoon(bodies.moon);
   PrepareLamps(view);
-  scene_.air().textures().Bind(kAirUnit, kTablesBinding);
   picture_->Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);

@@ -108,10 +108,18 @@ class SkyPainter {
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
+  /// What a picture is painted with.
+  struct Lit {
+    LightSource source;
+    bool has_shade, has_lamps;
+  };
+  void BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray);
+  void BindMaps(const PaintedView& view, const KeyLight& light);
   void PaintPicture(const PaintedView& view, double share);
+  void PaintOtherLight(const PaintedView& view, const PixelRay& ray);
   void MakeOneReady(bool has_shade, bool has_lamps);
-  void PaintSky(const PaintedView& view, bool has_shade, bool has_lamps);
-  void PaintLandAndSky(const PaintedView& view, double share);
+  void PaintSky(const PaintedView& view, const Lit& lit);
+  void PaintLandAndSky(const PaintedView& view, const Lit& lit);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   [[nodiscard]] bool HasNightFloor() const;

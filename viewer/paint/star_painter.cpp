@@ -33,16 +33,18 @@ StarPainter::StarPainter()
                     StarLightsOver(request.place, request.now, view, *request.colour, kAll)};
       }) {}
 
-bool StarPainter::IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
+bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
+                          const SolvedAir& air) {
   constexpr double kSureDay_rad = 12.0 * kRadiansPerDegree;
   constexpr double kNightSky_lux = 1e-3;
   sky_lux_ = 0.0;
   if (!air.medium.follows_wgs84) return false;  // another planet's sky has other stars
-  if (!key.is_moon && key.disk.elevation_rad > kSureDay_rad) return false;
+  if (!lights.key.is_moon && lights.key.disk.elevation_rad > kSureDay_rad) return false;
   if (!colour_ || colour_->wavelengths_nm() != air.medium.wavelengths_nm)
     colour_ = std::make_shared<const BandColour>(air.medium.wavelengths_nm);
-  const double lux =
-      kNightSky_lux + LevelIlluminance(key, air, std::max(view.eye.place.height_m, 0.0), *colour_);
+  const double altitude_m = std::max(view.eye.place.height_m, 0.0);
+  double lux = kNightSky_lux + LevelIlluminance(lights.key, air, altitude_m, *colour_);
+  if (lights.other) lux += LevelIlluminance(*lights.other, air, altitude_m, *colour_);
   if (lux <= kDaylight_lux) sky_lux_ = lux;
   return sky_lux_ > 0.0;
 }
@@ -52,8 +54,8 @@ void StarPainter::Ask(const PaintedView& view, const Medium& medium) {
   maker_.Ask(*asked_);
 }
 
-void StarPainter::Follow(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
-  if (!IsNight(view, key, air)) return;
+void StarPainter::Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
+  if (!IsNight(view, lights, air)) return;
   if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
   const GeodeticPosition& place = view.eye.place;
   const auto suits = [&](const Request& asked) {
@@ -65,8 +67,8 @@ void StarPainter::Follow(const PaintedView& view, const KeyLight& key, const Sol
   if (!maker_.Busy() && !(asked_ && suits(*asked_))) Ask(view, air.medium);
 }
 
-void StarPainter::Settle(const PaintedView& view, const KeyLight& key, const SolvedAir& air) {
-  if (!IsNight(view, key, air)) return;
+void StarPainter::Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
+  if (!IsNight(view, lights, air)) return;
   maker_.Wait();
   Ask(view, air.medium);
   maker_.Wait();

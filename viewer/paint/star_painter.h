@@ -27,9 +27,9 @@ class StarPainter {
   StarPainter();
 
   /// Once a frame: takes over what is ready and asks for what is missing. Never waits.
-  void Follow(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
+  void Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
   /// The same, but the list of the very instant is there when it returns.
-  void Settle(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
+  void Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
 
   /// Of the sky that they stand in, on a level plane; 0 by day.
   [[nodiscard]] double sky_lux() const { return sky_lux_; }
@@ -55,7 +55,8 @@ class StarPainter {
     std::vector<StarLight> lights;
   };
 
-  [[nodiscard]] bool IsNight(const PaintedView& view, const KeyLight& key, const SolvedAir& air);
+  [[nodiscard]] bool IsNight(const PaintedView& view, const LightsOfSky& lights,
+                             const SolvedAir& air);
   void Ask(const PaintedView& view, const Medium& medium);
   void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
   void Draw(const std::vector<StarPoint>& points) const;

@@ -15,14 +15,14 @@
 namespace alpenglow {
 
 /// Error of trilinear interpolation for colours whose channels lie within three stops of each other,
-/// in codes of 8 bits: of photo half below 0.06, all but one in a hundred below 0.25, all below 0.7;
+/// in codes of 8 bits: of photo half below 0.06, all but one in a hundred below 0.25, all below 0.9;
 /// of other looks, which clip a channel at an edge between nodes, half below 0.1, all but one in
 /// twenty below 0.5, all but one in a hundred below 3.
 class ToneTable {
  public:
-  static constexpr int kSide = 88;
+  static constexpr int kSide = 96;
   static constexpr double kLowestStop = -13.5;
-  static constexpr double kHighestStop = 3.5;
+  static constexpr double kHighestStop = 5.0;
 
   explicit ToneTable(AgxLook look);
 

@@ -48,7 +48,8 @@ class ShadeFollower::Maker {
         heights_ ? ShadeMapOf(*heights_, request.to_sun, request.sun_radius_rad, request.size.cells)
                  : ShadeMap{};
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    return std::make_shared<const Made>(Made{request.frame, std::move(map), took.count()});
+    return std::make_shared<const Made>(
+        Made{request.frame, request.to_sun, std::move(map), took.count()});
   }
 
  private:
@@ -129,6 +130,15 @@ void ShadeFollower::Settle(const GeodeticPosition& eye, const SunPosition& sun, 
   maker_.Wait();
   TakeFinished();
   Upload(std::numeric_limits<int>::max(), unit);
+}
+
+bool ShadeFollower::IsOf(const GeodeticPosition& eye, const SunPosition& sun) const {
+  const double near = std::cos(3.0 * kRadiansPerDegree);
+  if (!used_) return false;
+  const LocalFrame here(ellipsoid_, eye);
+  const Vector<Ecef> to_sun =
+      here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
+  return glm::dot(glm::normalize(used_->frame.EnuFromEcef(to_sun).xyz), used_->to_sun) > near;
 }
 
 glm::dmat4 ShadeFollower::MapFromEye(const GeodeticPosition& eye) const {

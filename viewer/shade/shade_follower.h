@@ -49,6 +49,9 @@ class ShadeFollower {
 
   /// What is shown.
   [[nodiscard]] const ShadeTexture& shade() const { return texture_; }
+  /// Whether that is the shade of a sun or moon within three degrees of one: after a jump in time it is
+  /// of another for some frames.
+  [[nodiscard]] bool IsOf(const GeodeticPosition& eye, const SunPosition& sun) const;
   /// From metres in the frame (east, north, up) at an eye to those of the map's. Only where
   /// shade().Shades().
   [[nodiscard]] glm::dmat4 MapFromEye(const GeodeticPosition& eye) const;
@@ -65,6 +68,7 @@ class ShadeFollower {
   };
   struct Made {
     LocalFrame frame;
+    glm::dvec3 to_sun;  // in the frame
     ShadeMap map;
     double making_s;
   };

@@ -29,7 +29,8 @@ class ShaftPass {
  public:
   /// @param air  texts that say what View is and define SingleTo (shade_march.glsl) and SkyRadiance. Their blocks
   ///             and samplers are for the caller to bind, in program().
-  explicit ShaftPass(std::vector<ShaderPiece> air);
+  /// @param has_fog  these are followed by FogTexts, and shade takes sunlight from fog, too.
+  explicit ShaftPass(std::vector<ShaderPiece> air, bool has_fog = false);
 
   [[nodiscard]] const ShaderProgram& program() const { return program_; }
 
@@ -42,15 +43,19 @@ class ShaftPass {
 
   /// Whether Paint has been called.
   [[nodiscard]] bool HasMap() const { return map_.has_value(); }
-  /// Gives a program, which becomes the one in use, what shafts.glsl reads. After Paint.
+  /// Gives a program, which becomes the one in use, what shafts.glsl reads: from two units. After Paint.
   void Bind(const ShaderProgram& picture, int unit) const;
 
  private:
+  bool has_fog_;
   ShaderProgram program_;
   GlVertexArray no_vertices_;
   std::optional<RenderTarget> map_;
   int scale_ = 1;
 };
+
+/// Texts of the pass but its last, shafts.frag.glsl; parameters as of ShaftPass.
+[[nodiscard]] std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_fog);
 
 /// What the fragment shader of a picture needs to ask TakenByShade.
 [[nodiscard]] std::vector<ShaderPiece> ShaftTexts();

@@ -4,6 +4,8 @@
 // per unit solar irradiance. Fog is grey.
 #define FOG_STRETCHES 4
 
+const float kOutOfFog_km = 1e3;  // where rays that meet nothing end
+
 layout(std140) uniform Fog {
   vec4 fog_layer;  // extinction at the base [1/km]; scale height, 0 where it is homogeneous; base,
                    // top of the air

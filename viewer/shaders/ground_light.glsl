@@ -9,7 +9,8 @@ layout(std140) uniform GroundLight {
   vec4 sky_up;
   vec4 sky_sunward;
   vec4 sky_towards;  // horizontal direction towards the sun
-  vec4 ground_view;  // angle of a pixel [rad]
+  vec4 sky_at_zero;  // irradiance on a level place at altitude 0, by band
+  vec4 ground_view;  // angle of a pixel [rad]; 1: edges of terrain are those before this sun, else 0
 };
 
 // A place of the ground as its light and material see it.

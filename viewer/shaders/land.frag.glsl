@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 // What the eye sees of the land.
 in vec3 facing;
-in vec4 sky_light;
-in float sun_height;
-layout(location = 0) out vec4 surface;  // normal on the side that is seen, octahedral; height of
-                                        // the sun over the terrain's edge; distance [m]
-layout(location = 1) out vec4 sky_irradiance;  // in bands, per unit solar irradiance
+in vec4 sky_light, moon_sky_light;
+in float disk_height;
+// SurfaceMap of surface_map.h, the normal on the side that is seen.
+layout(location = 0) out vec4 surface;
+layout(location = 1) out vec4 sky_irradiance;
+layout(location = 2) out vec4 moon_sky_irradiance;
 
 void main() {
   if (sunk > 0.0) discard;
   float d = Distance();
   vec3 n = gl_FrontFacing ? facing : -facing;
-  surface = vec4(OctahedralFromVector(n), sun_height, d);
+  surface = vec4(OctahedralFromVector(n), disk_height, d);
   sky_irradiance = sky_light;
+  moon_sky_irradiance = moon_sky_light;
   WriteDepth(d);
 }

@@ -6,13 +6,14 @@ in vec3 coarse_position;
 in vec2 sample_place;
 in vec4 normal;  // of any length; the level
 in vec4 coarse_normal;
-in vec4 sky, coarse_sky;  // irradiance per unit solar irradiance, in bands
-in vec2 sun_over_edge;    // height of the sun over the terrain's edge: own, coarser
-in vec4 new_sky, new_coarse_sky;
-in vec2 new_sun_over_edge;
+// ChunkLight of land_chunk.h, own and of the coarser level.
+in vec4 sky, coarse_sky, moon_sky, coarse_moon_sky;
+in vec2 disk_over_edge;
+in vec4 new_sky, new_coarse_sky, new_moon_sky, new_coarse_moon_sky;
+in vec2 new_disk_over_edge;
 out vec3 facing;  // normal, in the eye's frame: east, north, up
-out vec4 sky_light;
-out float sun_height;
+out vec4 sky_light, moon_sky_light;
+out float disk_height;
 out float sunk;  // [km]; over 0: the planet hides it
 
 vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
@@ -43,8 +44,10 @@ void main() {
   vec3 from_eye = InEyeFrame((at - eye_high.xyz) - eye_low.xyz);
   facing = InEyeFrame(mix(normal.xyz, coarse_normal.xyz, turned));
   sky_light = mix(mix(sky, coarse_sky, turned), mix(new_sky, new_coarse_sky, turned), eye_above.y);
-  sun_height = mix(mix(sun_over_edge.x, sun_over_edge.y, turned),
-                   mix(new_sun_over_edge.x, new_sun_over_edge.y, turned), eye_above.y);
+  moon_sky_light = mix(mix(moon_sky, coarse_moon_sky, turned),
+                       mix(new_moon_sky, new_coarse_moon_sky, turned), eye_above.y);
+  disk_height = mix(mix(disk_over_edge.x, disk_over_edge.y, turned),
+                    mix(new_disk_over_edge.x, new_disk_over_edge.y, turned), eye_above.y);
   sunk = SunkBehindPlanet(from_eye);
   float along_view = dot(from_eye, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);

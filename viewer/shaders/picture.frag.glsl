@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The linear picture [cd/m^2, linear sRGB] and the nearness of land (nearness.glsl), in passes that
+// The linear picture [cd/m^2, linear sRGB] under the sun or the moon, which the block View has as its
+// sun, and the nearness of land (nearness.glsl), in passes that
 // the depth of the land tells apart, for software drivers work through both sides of a branch.
 // Defined before this text:
 //   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; OPEN_SKY_PASS:
 //             sky where no planet is; DISK_PASS: what the disks of sun and moon add;
-//             NIGHT_PASS: what the night's own sky, and the lesser of sun and moon, add to land, air
-//             and sky
+//             NIGHT_PASS: what the night's own sky adds to land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
 in vec2 screen;
 out vec4 picture;
 
 uniform sampler2D surface_map;     // of land.frag.glsl
-uniform sampler2D sky_on_surface;  // of the same
+uniform sampler2D sky_on_surface;  // of the same, that of this sun
 
 // Light of the air before a distance as fog lets it through; `all` of the whole way, clear.
 vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
@@ -31,7 +31,7 @@ vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
 #endif
 }
 
-// What comes from a distance, and from the air and the fog on the way.
+// What comes from a distance, and from the air and the fog on the way. Terrain shades neither.
 vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
 #if HAS_FOG
   FogAlong fog = FogTo(direction, distance_km);
@@ -39,6 +39,19 @@ vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
 #else
   return air + behind;
 #endif
+}
+
+// What shade takes of that. @param shaded_km  the distance on the map of shafts; single  light that TakenByShade
+// is a share of.
+vec4 ShadeOnTheWay(vec3 direction, float distance_km, float shaded_km, vec4 single) {
+  vec4 taken = vec4(0.0);
+#if HAS_SHADE
+  taken = TakenByShade(shaded_km, single);
+#if HAS_FOG
+  taken += FogTakenByShade(shaded_km, FogSunTo(direction, distance_km));
+#endif
+#endif
+  return taken;
 }
 
 // Land as a texel of the surface map has it.
@@ -70,13 +83,12 @@ void main() {
   vec4 surface = texelFetch(surface_map, pixel, 0);
   float distance_km = 1e-3 * surface.w;
   AirTo air = AirToPoint(direction, distance_km);
-#if HAS_SHADE
-  air.single -= TakenByShade(distance_km, air.single);
-#endif
   SeenGround seen = LandOf(surface, direction);
-  vec4 sky = texelFetch(sky_on_surface, pixel, 0);
-  vec4 ground = air.transmittance * SunlitGround(seen, surface.z, sky, -direction);
-  vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
+  vec4 sky = sky_at_zero * texelFetch(sky_on_surface, pixel, 0);
+  float over_edge = ground_view.y > 0.0 ? surface.z : kNoEdge;
+  vec4 ground = air.transmittance * SunlitGround(seen, over_edge, sky, -direction);
+  vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground) -
+                  ShadeOnTheWay(direction, distance_km, distance_km, air.single);
   float along_m = surface.w * dot(direction, view_forward.xyz);
   picture = vec4(LinearSrgb(sun_irradiance * radiance), Nearness(along_m));
 #if HAS_LAMPS
@@ -111,13 +123,13 @@ vec4 PlanetUnderLamps(vec3 direction) {
 
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 radiance = SkyRadiance(direction);
-#if HAS_SHADE
-  radiance -= min(TakenByShade(1e9, radiance), radiance);
-#endif
+  vec4 clear = SkyRadiance(direction);
+  vec4 radiance = clear;
 #if HAS_FOG
-  const float out_of_fog_km = 1e3;
-  radiance = ThroughFog(direction, out_of_fog_km, radiance, vec4(0.0));
+  radiance = ThroughFog(direction, kOutOfFog_km, clear, vec4(0.0));
+  radiance -= min(ShadeOnTheWay(direction, kOutOfFog_km, 1e9, clear), radiance);
+#elif HAS_SHADE
+  radiance -= min(TakenByShade(1e9, clear), clear);
 #endif
 #if PASS == SKY_PASS && !PLANET_IS_PLAIN
   if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
@@ -159,45 +171,17 @@ void main() {
 uniform sampler2D night_sky;   // NightFloor of night_floor.h
 uniform vec4 night_scattered;  // what air without an end would send [W m^-2 sr^-1 nm^-1]
 uniform vec4 night_level;      // on level ground [W m^-2 nm^-1]
-uniform sampler2D beside_sky;  // LightBeside of light_beside.h, also the next three
-uniform vec4 beside_level;
-uniform vec4 beside_direct;
-uniform vec3 beside_towards;
-
-// Where maps of the whole sky have a direction, at least so high.
-vec2 PlaceOnSky(vec3 direction, float lowest) {
-  float elevation = max(AngleOfSine(clamp(direction.z, -1.0, 1.0)), lowest);
-  return vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359 + vec2(0.0, 0.5);
-}
 
 vec4 NightAbove(vec3 direction) {
-  return textureLod(night_sky, PlaceOnSky(direction, -2.0), 0.0);
-}
-
-// Of the lesser light, as the eye sees it where no land is.
-vec4 SkyBeside(vec3 direction) {
-  return textureLod(beside_sky, PlaceOnSky(direction, -2.0), 0.0);
-}
-
-// The same of air near the ground that takes all light: as just over the horizon, off the texels that
-// see the planet. A light that is down lights only the sky over such air, and that sky it evenly.
-vec4 AirBeside(vec3 direction) {
-  const float kOverHorizon = 0.03;
-  if (beside_towards.z < 0.0) return 0.5 / 3.14159265359 * beside_level;
-  return textureLod(beside_sky, PlaceOnSky(direction, kOverHorizon), 0.0);
+  float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
+  vec2 place = vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359;
+  return textureLod(night_sky, place + vec2(0.0, 0.5), 0.0);
 }
 
 // What ground sends back, which sees the part of an even sky that its tilt leaves.
 vec4 NightReflected(SeenGround seen, vec3 to_eye) {
-  vec4 level = 0.5 * (1.0 + dot(seen.normal, seen.at.up)) * (night_level + beside_level);
-  vec4 direct = max(dot(seen.normal, beside_towards), 0.0) * beside_direct;
-  return SentOfIrradiance(seen, level + direct, to_eye);
-}
-
-// The light that the even planet sends under the sky of the lesser light (SkyBeside).
-vec4 EvenBeside(vec3 up) {
-  vec4 irradiance = beside_level + max(dot(up, beside_towards), 0.0) * beside_direct;
-  return ground_albedo / 3.14159265359 * irradiance;
+  vec4 level = 0.5 * (1.0 + dot(seen.normal, seen.at.up)) * night_level;
+  return SentOfIrradiance(seen, level, to_eye);
 }
 
 void main() {
@@ -209,18 +193,15 @@ void main() {
   float distance_km = land ? 1e-3 * surface.w : planet ? to_planet_km : 1e3;
   float clear = FogTransmittance(direction, distance_km);
   vec4 left = TransmittanceToSpace(direction) * clear;
-  vec4 behind, beside = clear * SkyBeside(direction);
+  vec4 behind;
   if (land) {
     left = AirToPoint(direction, distance_km).transmittance * clear;
     behind = NightReflected(LandOf(surface, direction), -direction);
-    beside = (1.0 - left) * AirBeside(direction);
   } else if (planet) {
-    SeenGround seen = PlanetSeen(1e3 * distance_km * direction, -direction);
-    behind = NightReflected(seen, -direction) - EvenBeside(seen.at.up);
+    behind = NightReflected(PlanetSeen(1e3 * distance_km * direction, -direction), -direction);
   } else {
     behind = NightAbove(direction);
   }
-  vec4 sum = (1.0 - left) * night_scattered + max(left * behind + beside, vec4(0.0));
-  picture = vec4(LinearSrgb(sum), 0.0);
+  picture = vec4(LinearSrgb((1.0 - left) * night_scattered + left * behind), 0.0);
 }
 #endif

@@ -3,7 +3,8 @@
 // (viewer/shade/shade_map.h).
 //
 // Needs vec4 SingleTo(vec3 direction, float distance_km): sunlight scattered once on the way to a
-// distance in unshaded air.
+// distance in unshaded air. Defined before this text: LEFT_BY_FOG(direction, distance_km), what fog leaves
+// of light from a distance.
 
 uniform sampler2D shade_map;  // height of the shade of the disk's middle, half that of its ends [m]
 // From metres around the eye (east, north, up, 1) to the map's coordinates and height in its frame.
@@ -76,7 +77,8 @@ float ShadeDistance(vec2 stretch, float share, float left) {
   return mix(stretch.x, stretch.y, log(1.0 - share * thinning) / log(1.0 - thinning));
 }
 
-// Light [1/sr per unit irradiance] that shade takes from the ray on its way to a distance. Steps
+// Light [1/sr per unit irradiance] that shade takes from the ray on its way to a distance, as it arrives
+// through fog. Steps
 // bring about the same light each; how much a piece of them brings says SingleTo.
 vec4 MarchedShade(vec3 direction, float distance_km) {
   ShadeRay ray = ShadeRayOf(direction);
@@ -89,6 +91,7 @@ vec4 MarchedShade(vec3 direction, float distance_km) {
   float left = dot(whole - middle, vec4(1.0)) / max(dot(middle - single, vec4(1.0)), 1e-20);
   left = clamp(left, 0.1, 0.99);
   vec4 shaded = vec4(0.0);
+  float clear = LEFT_BY_FOG(direction, 1e-3 * stretch.x);
   vec2 over = OverShade(ray, stretch.x);
   for (int piece = 1; piece <= pieces; ++piece) {
     float dark = 0.0;
@@ -100,8 +103,10 @@ vec4 MarchedShade(vec3 direction, float distance_km) {
     }
     float end = ShadeDistance(stretch, float(piece) / float(shade_pieces), left);
     vec4 farther = piece < shade_pieces ? SingleTo(direction, 1e-3 * end) : whole;
-    shaded += dark / float(shade_steps) * (farther - single);
+    float clear_there = LEFT_BY_FOG(direction, 1e-3 * end);
+    shaded += 0.5 * (clear + clear_there) * dark / float(shade_steps) * (farther - single);
     single = farther;
+    clear = clear_there;
   }
   return shaded;
 }

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 // What share of their single scattering shade takes from the rays of every shaft_scale-th pixel in
 // both directions; of rays that meet no terrain what share of all their light. Shares change less
-// from ray to ray than light does, and in full shade not at all.
+// from ray to ray than light does, and in full shade not at all. Defined before this text: HAS_FOG, 1 for
+// a second output, the share of the sunlight in fog.
 
 uniform sampler2D surface_map;  // distance [m] in the fourth component, 0 where no terrain is seen
 uniform ivec2 picture_size;
 uniform int shaft_scale;
 
-out vec4 shaft;
+layout(location = 0) out vec4 shaft;
+#if HAS_FOG
+layout(location = 1) out vec4 fog_shaft;
+#endif
 
 void main() {
   ivec2 pixel = min(ivec2(gl_FragCoord.xy) * shaft_scale + shaft_scale / 2, picture_size - 1);
@@ -17,4 +21,9 @@ void main() {
   float distance_km = distance_m > 0.0 ? 1e-3 * distance_m : 1e9;
   vec4 light = distance_m > 0.0 ? SingleTo(direction, distance_km) : SkyRadiance(direction);
   shaft = ShaftTexel(MarchedShade(direction, distance_km) / max(light, vec4(1e-20)), distance_km);
+#if HAS_FOG
+  float in_fog_km = min(distance_km, kOutOfFog_km);
+  vec4 sun = max(FogSunTo(direction, in_fog_km), vec4(1e-20));
+  fog_shaft = ShaftTexel(MarchedFogShade(direction, in_fog_km) / sun, distance_km);
+#endif
 }

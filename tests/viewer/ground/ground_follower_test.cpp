@@ -13,12 +13,12 @@ const GeodeticPosition kFollowedPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
 constexpr GroundExtent kSmall{8e3, 128};
 
 GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_deg) {
-  GroundFollower::View view{place, {}, ParseInstant("2026-06-21T12:00:00Z")};
+  GroundFollower::View view{place, ParseInstant("2026-06-21T12:00:00Z"), LightSource::kSun, {}};
   view.eye.height_m = 1500.0;
-  view.sun.elevation_rad = elevation_deg * kRadiansPerDegree;
-  view.sun.azimuth_rad = 4.0;
-  view.sun.angular_radius_rad = 0.00465;
-  view.sun.distance_au = 1.0;
+  view.by.elevation_rad = elevation_deg * kRadiansPerDegree;
+  view.by.azimuth_rad = 4.0;
+  view.by.angular_radius_rad = 0.00465;
+  view.by.distance_au = 1.0;
   return view;
 }
 
@@ -68,8 +68,8 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
   GroundFollower follower(sea, nullptr, kSmall);
   EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
-  ASSERT_EQ(follower.sea_mirror().size(), SeaMirror::kSide * SeaMirror::kSide);
-  for (const BandTexel& texel : follower.sea_mirror()) EXPECT_GT(texel[1], 0.0F);
+  ASSERT_EQ(follower.sea_mirror(LightSource::kSun).size(), SeaMirror::kSide * SeaMirror::kSide);
+  for (const BandTexel& texel : follower.sea_mirror(LightSource::kSun)) EXPECT_GT(texel[1], 0.0F);
 }
 
 TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {

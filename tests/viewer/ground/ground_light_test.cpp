@@ -59,7 +59,8 @@ class Blocks {
       : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().diffuse) {
     if (const ColourDrape* drape = lit.site().material().drape())
       textures_.SetDrape(DrapeTexels(*drape, Picture(), 256));
-    textures_.SetSeaMirror(SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().diffuse,
+    textures_.SetSeaMirror(LightSource::kSun,
+                           SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().diffuse,
                                          lit.site().material().water(), lit.lighting().to_sun));
   }
 
@@ -81,7 +82,7 @@ class Blocks {
          GroundLightBlockOf(lit_.tilt(), light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
          Draped(GroundSurfaceBlockOf(site.material()), Picture(), 0.0, 0.0));
-    textures_.Bind(program, 0);
+    textures_.Bind(program, 0, LightSource::kSun);
   }
 
  private:
@@ -229,7 +230,7 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
   pieces.push_back({"main", "void main() { gl_Position = sky_level + cover_albedo; }\n"});
   const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
   int member = 0;
-  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "sky_towards", "ground_view"})
+  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "sky_towards", "sky_at_zero", "ground_view"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :

@@ -203,7 +203,9 @@ TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
   const auto light = LightOfChunk(chunk, anchor_.frame, [](const LocalFrame&, auto vertices) {
     std::vector<VertexLight> lit;
     for (const LandVertex& vertex : vertices)
-      lit.push_back({{1e-3F * vertex.position_m.x, 0.25F, 0.5F, 1.0F}, 2.0F * vertex.normal.z});
+      lit.push_back({{1e-3F * vertex.position_m.x, 0.25F, 0.5F, 1.0F},
+                     {0.75F, 2e-3F * vertex.position_m.y, 0.5F, 1.0F},
+                     2.0F * vertex.normal.z});
     return lit;
   });
   for (std::size_t v = 0; v < light.size(); ++v) {
@@ -211,6 +213,9 @@ TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
     EXPECT_NEAR(glm::unpackHalf1x16(light[v].coarse_sky[0]), x, 1e-3F + 1e-3F * std::abs(x))
         << "half floats: linear light stays linear";
     EXPECT_EQ(glm::unpackHalf1x16(light[v].sky[1]), 0.25F);
+    const float y = 2e-3F * chunk.vertices[v].coarse_position_m[1];
+    EXPECT_NEAR(glm::unpackHalf1x16(light[v].coarse_moon_sky[1]), y, 1e-3F + 1e-3F * std::abs(y));
+    EXPECT_EQ(glm::unpackHalf1x16(light[v].moon_sky[0]), 0.75F);
   }
 }
 

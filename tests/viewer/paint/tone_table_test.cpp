@@ -62,7 +62,7 @@ TEST(ToneTable, ShowsTheCurveToAFractionOfACode) {
   const std::vector<double> errors = ErrorsOf(AgxLook::kPhoto);
   EXPECT_LT(errors[errors.size() / 2], 0.06);
   EXPECT_LT(errors[errors.size() * 99 / 100], 0.25) << "less than half the dither";
-  EXPECT_LT(errors.back(), 0.7);
+  EXPECT_LT(errors.back(), 0.9);
 }
 
 TEST(ToneTable, OtherLooksAreOffWhereTheyClipAChannel) {

@@ -14,11 +14,13 @@
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
+#include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/paint/developer.h"
 #include "viewer/paint/enlarger.h"
 #include "viewer/paint/picture_texts.h"
+#include "viewer/shade/shaft_pass.h"
 #include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
@@ -57,14 +59,17 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
     for (const bool dithers : {false, true})
       ExpectAccepted(DeveloperTexts(static_cast<ToneCurve>(curve), dithers), "develop.frag.glsl");
   }
-  const std::vector<ShaderPiece> shafts = {
-      view,
-      {"air",
-       "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"
-       "vec4 SkyRadiance(vec3 direction) { return vec4(direction.z); }\n"},
-      ViewerPiece("viewer/shaders/shade_march.glsl"),
-      ViewerPiece("viewer/shaders/shaft_texel.glsl")};
-  ExpectAccepted(shafts, "shafts.frag.glsl");
+  const ShaderPiece single = {
+      "air",
+      "vec4 SingleTo(vec3 direction, float km) { return vec4(km * direction.z); }\n"
+      "vec4 SkyRadiance(vec3 direction) { return vec4(direction.z); }\n"};
+  ExpectAccepted(ShaftPassTexts({view, single}, false), "shafts.frag.glsl");
+  std::vector<ShaderPiece> in_fog =
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
+  in_fog.push_back(single);
+  for (ShaderPiece& piece : FogTexts(PhaseKind::kHenyeyGreenstein))
+    in_fog.push_back(std::move(piece));
+  ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts.frag.glsl");
   std::vector<ShaderPiece> land = SharedTexts();
   land.push_back(view);
   land.push_back(ViewerPiece("viewer/shaders/land_block.glsl"));
