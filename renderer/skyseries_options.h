@@ -24,12 +24,13 @@ namespace alpenglow {
 
 inline constexpr char kSkyseriesFooter[] =
     "A time is an instant (2026-06-21T04:00:00Z, with an offset, or local with --zone), a clock "
-    "time of the --date (18:30), an event with an offset (sunrise-1h, sunset+20m, noon, "
-    "civil-dawn, "
+    "time of the --date (18:30 or 1830), an event with an offset (sunrise-1h, sunset+20m, noon, "
+    "midnight, civil-dawn, "
     "civil-dusk, nautical-..., astronomical-..., moonrise, moonset, moon-transit; "
     "first-contact, second-contact, eclipse-maximum, third-contact and last-contact of an eclipse "
     "of the sun), either of them "
-    "after a day of its own (\"tomorrow sunrise\", \"2026-06-22 18:30\"), or now, now+2h\n\n"
+    "after a day of its own (\"tomorrow sunrise\", \"2026-06-22 18:30\"), or now, now+2h, tomorrow "
+    "(its noon)\n\n"
     "Example: a day over the built-in range\n"
     "  skyseries --out 'out/frame.%04d.exr' --png --date 2026-06-21 --from sunrise-1h "
     "--to sunset+1h --every 10m\n"

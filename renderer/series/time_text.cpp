@@ -25,13 +25,25 @@ constexpr std::size_t kDateLength = 10;  // "2026-06-21"
 constexpr std::array<std::pair<std::string_view, int>, 3> kDayWords = {
     {{"yesterday", -1}, {"today", 0}, {"tomorrow", 1}}};
 
-const std::vector<std::string> kEventNames = {
-    "noon",          "sunrise",           "sunset",
-    "civil-dawn",    "civil-dusk",        "nautical-dawn",
-    "nautical-dusk", "astronomical-dawn", "astronomical-dusk",
-    "moonrise",      "moonset",           "moon-transit",
-    "first-contact", "second-contact",    "eclipse-maximum",
-    "third-contact", "last-contact",      "now"};
+const std::vector<std::string> kEventNames = {"noon",
+                                              "midnight",
+                                              "sunrise",
+                                              "sunset",
+                                              "civil-dawn",
+                                              "civil-dusk",
+                                              "nautical-dawn",
+                                              "nautical-dusk",
+                                              "astronomical-dawn",
+                                              "astronomical-dusk",
+                                              "moonrise",
+                                              "moonset",
+                                              "moon-transit",
+                                              "first-contact",
+                                              "second-contact",
+                                              "eclipse-maximum",
+                                              "third-contact",
+                                              "last-contact",
+                                              "now"};
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -62,6 +74,14 @@ std::optional<int> DaysFromToday(std::string_view word) {
     if (name == word) return days;
   }
   return std::nullopt;
+}
+
+/// "1830" as "18:30", also with "Z" after it; nothing for other texts.
+std::optional<std::string> FourDigitClockTime(std::string_view text) {
+  const std::string_view zulu = text.ends_with('Z') ? "Z" : "";
+  text.remove_suffix(zulu.size());
+  if (text.size() != 4 || !std::all_of(text.begin(), text.end(), IsDigit)) return std::nullopt;
+  return fmt::format("{}:{}{}", text.substr(0, 2), text.substr(2), zulu);
 }
 
 /// "18:00" for what people write instead: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; nothing for
@@ -124,9 +144,17 @@ const UtcInstant& AroundOf(std::string_view text, const EventDay& day) {
 std::optional<std::size_t> EndOfDay(std::string_view text) {
   const std::size_t space = text.find(' ');
   if (space == std::string_view::npos || space + 1 == text.size()) return std::nullopt;
-  const bool is_instant = IsDigit(text[0]) && IsDigit(text[space + 1]);
+  const bool is_instant =
+      IsDigit(text[0]) && IsDigit(text[space + 1]) && !FourDigitClockTime(text.substr(space + 1));
   if (is_instant || !IsDayText(text.substr(0, space))) return std::nullopt;
   return space;
+}
+
+/// The sun is lowest then, but for the half minute by which noons are not evenly apart.
+std::optional<UtcInstant> FindMidnight(const GeodeticPosition& place, const UtcInstant& around) {
+  const auto noon = FindSunEvent(SunEvent::kNoon, place, around);
+  const auto next = FindSunEvent(SunEvent::kNoon, place, AddSeconds(around, kSecondsPerDay));
+  return AddSeconds(noon.value(), 0.5 * SecondsBetween(noon.value(), next.value()));
 }
 
 /// The event that clocks of the place show on the date of `around`. Each comes 50 minutes later from
@@ -217,7 +245,8 @@ TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day) {
 }
 
 bool IsClockTime(std::string_view text) {
-  return text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':';
+  return (text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':') ||
+         FourDigitClockTime(text).has_value();
 }
 
 bool IsDailyEvent(std::string_view text) {
@@ -230,7 +259,9 @@ std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& 
   if (parts.name.empty()) RefuseEvent(parts.name, text);
   const double offset_s = OffsetOf(parts);
   std::optional<UtcInstant> instant;
-  if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
+  if (parts.name == "midnight") {
+    instant = FindMidnight(day.place, AroundOf(text, day));
+  } else if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
     instant = FindSunEvent(*sun, day.place, AroundOf(text, day));
   } else if (const std::optional<MoonEvent> moon = MoonEventFromName(parts.name)) {
     instant = FindMoonEvent(*moon, AroundOf(text, day), day);
@@ -249,10 +280,13 @@ UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
     const TimeOfDay time = TimeOfDayFromText(text, day);
     return InstantFromText(time.text, time.day);
   }
+  if (DaysFromToday(text)) return InstantFromText(fmt::format("{} noon", text), day);
   if (IsDayText(text)) {
     throw InputError(fmt::format(
         "time \"{0}\": at what time of that day? write \"{0} 18:30\" or \"{0} sunrise\"", text));
   }
+  if (const std::optional<std::string> clock = FourDigitClockTime(text))
+    return InstantFromText(*clock, day);
   if (IsClockTime(text)) {
     return ParseInstant(fmt::format("{}T{}", DateAt(AroundOf(text, day), day), text), day.zone);
   }

@@ -38,7 +38,7 @@ struct TimeOfDay {
 };
 [[nodiscard]] TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day);
 
-/// Whether a text is a clock time without a day: "18:30".
+/// Whether a text is a clock time without a day: "18:30", "1830".
 [[nodiscard]] bool IsClockTime(std::string_view text);
 
 /// Whether every day has its own instant of a text ("sunrise-1h", not "now+1h", "18:30" or
@@ -55,9 +55,10 @@ struct TimeOfDay {
 /// Reads a time:
 /// - an instant, "2026-06-21T04:00:00Z" (ParseInstant), in the day's zone without Z or offset;
 /// - an event of the sun, the moon or an eclipse with an offset, "sunrise-1h", "noon", "civil-dusk",
-///   "moonrise", "second-contact-10s";
-/// - a clock time, "18:30", "18:30:15", "18:30Z", of the day;
+///   "midnight" (half way from the day's noon to the next), "moonrise", "second-contact-10s";
+/// - a clock time, "18:30", "18:30:15", "18:30Z", "1830", of the day;
 /// - both after a day of their own: "2026-06-21 sunrise", "tomorrow 18:30", "today moonset";
+/// - "today", "tomorrow", "yesterday": the noon of that day;
 /// - "now", "now+2h".
 /// Throws InputError for other texts, and for an event that does not happen that day.
 [[nodiscard]] UtcInstant InstantFromText(std::string_view text, const EventDay& day);

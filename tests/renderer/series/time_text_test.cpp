@@ -151,7 +151,34 @@ TEST(TimeText, TodayAndTomorrowAreDaysOfThePlace) {
   EXPECT_EQ(FormatUtc(InstantFromText("tomorrow 18:30", day)), "2026-06-22T09:30:00Z");
   EXPECT_EQ(InstantFromText("tomorrow sunrise-5m", day),
             InstantFromText("2026-06-22 sunrise-5m", day));
-  EXPECT_THAT(FaultOf([&] { return InstantFromText("tomorrow", day); }), HasSubstr("what time"));
+  EXPECT_EQ(InstantFromText("tomorrow", day), InstantFromText("tomorrow noon", day));
+  EXPECT_THAT(FaultOf([&] { return InstantFromText("2026-06-22", day); }), HasSubstr("what time"))
+      << "a date may be meant to begin or to end a series";
+}
+
+TEST(TimeText, FourDigitsAreAClockTime) {
+  const EventDay day = Fuji();
+  EXPECT_EQ(InstantFromText("1830", day), InstantFromText("18:30", day));
+  EXPECT_EQ(InstantFromText("0005Z", day), InstantFromText("00:05Z", day));
+  EXPECT_EQ(InstantFromText("tomorrow 0600", LateOnTheDay()),
+            InstantFromText("tomorrow 06:00", LateOnTheDay()));
+  EXPECT_EQ(InstantFromText("2026-06-22 1830", day), InstantFromText("2026-06-22 18:30", day));
+  EXPECT_TRUE(IsClockTime("1830"));
+  for (const char* bad : {"2460", "183", "18300"})
+    EXPECT_NE(FaultOf([&] { return InstantFromText(bad, day); }), "no fault") << bad;
+}
+
+TEST(TimeText, MidnightIsWhereTheSunIsLowest) {
+  for (const double latitude : {0.0, 46.5, 69.0}) {
+    EventDay day = Fuji();
+    day.place.latitude_rad = latitude * kRadiansPerDegree;
+    const UtcInstant midnight = InstantFromText("midnight", day);
+    const double lowest = SunAt(day.place, midnight).elevation_rad;
+    for (const double seconds : {-600.0, 600.0})
+      EXPECT_LT(lowest, SunAt(day.place, AddSeconds(midnight, seconds)).elevation_rad) << latitude;
+    EXPECT_GT(SecondsBetween(InstantFromText("noon", day), midnight), 0.0) << "it ends the day";
+    EXPECT_EQ(InstantFromText("midnight+20m", day), AddSeconds(midnight, 1200.0));
+  }
 }
 
 TEST(TimeText, TomorrowIsTheNextDayWhereClocksAreSet) {
