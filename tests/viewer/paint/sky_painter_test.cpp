@@ -165,7 +165,7 @@ std::array<double, 2> MeanLuminances(const Image& picture) {
   return {sum[0] / count[0], sum[1] / count[1]};
 }
 
-// From noon to dusk with a moon, to night and to the morning, as the keys F5 to F9 jump.
+// From noon to dusk with a moon and on, as the keys F5 to F9 jump.
 TEST_F(SkyPainterTest, AfterAJumpInTimeLandIsLitByTheNewSunAtOnce) {
   const Scene scene = RangeScene({200.0, true}, 250.0, -8.0);
   const auto ground = std::make_shared<const SceneGround>(LoadGround(scene));
@@ -175,8 +175,11 @@ TEST_F(SkyPainterTest, AfterAJumpInTimeLandIsLitByTheNewSunAtOnce) {
   SkyPainter painter(scene, LandSourceOf(scene), at("2026-12-23T11:00:00Z"),
                      SizesOf(Quality::kLow));
   painter.Settle(at("2026-12-23T11:00:00Z"));
-  for (const char* utc : {"2026-12-23T15:50:00Z", "2026-12-23T16:30:00Z", "2026-12-23T22:00:00Z",
-                          "2026-12-24T07:20:00Z", "2026-12-24T11:00:00Z"}) {
+  std::vector<const char*> jumps{"2026-12-23T16:30:00Z", "2026-12-24T11:00:00Z",
+                                 "2026-12-23T15:50:00Z", "2026-12-23T22:00:00Z",
+                                 "2026-12-24T07:20:00Z"};
+  jumps.resize(tests::ScaledDown(jumps.size(), std::size_t{2}));
+  for (const char* utc : jumps) {
     std::vector<std::array<double, 2>> shown;
     for (int frame = 0; frame < 8; ++frame) {
       painter.Update(at(utc), 0.04);
