@@ -93,6 +93,10 @@ HudAir AirOf(const Flythrough& flight) {
   HudAir shown;
   shown.planet = flight.medium().name;
   shown.visibility_km = std::min(1e-3 * VisibilityOf(air), 1e4);
+  const double height_m = flight.eye().place.height_m;
+  const SceneFog* fog = flight.painter().fog();
+  const double fog_per_m = fog != nullptr ? fog->ExtinctionAt(height_m) : 0.0;
+  shown.visibility_here_km = std::min(1e-3 * VisibilityAt(air, height_m, fog_per_m), 1e4);
   shown.aerosol_scale = flight.air_choice().aerosol;
   shown.ozone_du = OzoneDobson(air);
   double albedo = 0.0;

@@ -49,6 +49,16 @@ double VisibilityOf(const Medium& medium) {
          (medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
 }
 
+double VisibilityAt(const Medium& medium, double altitude_m, double more_per_m) {
+  const std::size_t band = BandOfGreen(medium);
+  const double height_m = std::max(altitude_m, 0.0);
+  const double per_m =
+      MoleculeDensity(medium, height_m) * medium.rayleigh_scattering_per_m[band] +
+      std::exp(-height_m / medium.mie_scale_height_m) * medium.mie_extinction_per_m[band] +
+      more_per_m;
+  return kOpticalDepthOfVisibility / per_m;
+}
+
 double AerosolForVisibility(const Medium& medium, double visibility_m) {
   const std::size_t band = BandOfGreen(medium);
   const double wanted_per_m =

@@ -20,6 +20,9 @@ struct AirChoice {
 
 /// Koschmieder's visibility at altitude 0 in the band nearest to 550 nm [m]; infinite in a vacuum.
 [[nodiscard]] double VisibilityOf(const Medium& medium);
+/// The same at an altitude, of molecules and aerosol there and of what else takes light.
+/// @param more_per_m  extinction of fog [1/m].
+[[nodiscard]] double VisibilityAt(const Medium& medium, double altitude_m, double more_per_m);
 /// AirChoice::aerosol for a visibility [m]: 0 where molecules alone leave no more, 1000 at most.
 [[nodiscard]] double AerosolForVisibility(const Medium& medium, double visibility_m);
 /// Of the column, in the band that absorbs most; 0 without ozone.

@@ -77,12 +77,17 @@ std::string FrameText(const HudSpeed& speed) {
   return fmt::format("{:.1f} ms  {:.0f}/s", speed.frame_ms, 1000.0 / speed.frame_ms);
 }
 
+std::string VisibilityText(double visibility_km) {
+  if (visibility_km < 1.0) return fmt::format("visibility {:.3g} m", 1e3 * visibility_km);
+  return fmt::format("visibility {:.3g} km", visibility_km);
+}
+
 Lines LightLines(const HudModel& model) {
   Lines lines;
   if (model.exposure.cursor_luminance_cd_per_m2)
     lines.push_back("cursor " + LuminanceText(*model.exposure.cursor_luminance_cd_per_m2));
   lines.push_back(ExposureText(model.exposure));
-  lines.push_back(fmt::format("visibility {:.3g} km", model.air.visibility_km));
+  lines.push_back(VisibilityText(model.air.visibility_here_km));
   lines.push_back(fmt::format("view {:.3g}°", model.flight.fov_rad / kRadiansPerDegree));
   lines.push_back(model.speed.quality);
   lines.push_back(FrameText(model.speed));

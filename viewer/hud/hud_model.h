@@ -69,11 +69,12 @@ struct HudExposure {
 };
 
 struct HudAir {
-  std::string planet;   // one of HudChoices::planets
-  std::string mixture;  // one of HudChoices::mixtures
-  double visibility_km = 50.0;
-  double aerosol_scale = 1.0;  // on what the mixture has
-  double ozone_du = 300.0;     // 0 where the air has none
+  std::string planet;                // one of HudChoices::planets
+  std::string mixture;               // one of HudChoices::mixtures
+  double visibility_km = 50.0;       // of the air at altitude 0
+  double visibility_here_km = 50.0;  // at the camera, also in fog
+  double aerosol_scale = 1.0;        // on what the mixture has
+  double ozone_du = 300.0;           // 0 where the air has none
   double ground_albedo = 0.1;
 };
 

@@ -50,6 +50,11 @@ void SceneFog::Settle(const std::shared_ptr<const SolvedAir>& air, const Eye& ey
   painter_.Upload(*follower_->map());
 }
 
+double SceneFog::ExtinctionAt(double altitude_m) const {
+  const LocalMedium& fog = *media_->fog();
+  return fog.optics.extinction_per_m[0] * fog.fog()->DensityAtAltitude(altitude_m);
+}
+
 void SceneFog::Bind(const Eye& eye, const SunPosition& sun) const {
   painter_.Bind(*follower_->map(), FogViewOf(eye, sun));
 }

@@ -30,6 +30,9 @@ class SceneFog {
   /// Waits for what the view needs.
   void Settle(const std::shared_ptr<const SolvedAir>& air, const Eye& eye, const SunPosition& sun);
 
+  /// At an altitude [1/m].
+  [[nodiscard]] double ExtinctionAt(double altitude_m) const;
+
   /// Ties a program of FogTexts() to what it reads.
   void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
   /// For the next draw of such a program. After Follow or Settle.

@@ -18,6 +18,14 @@ TEST(AirChoice, AVisibilityThatIsAskedForIsThatOfTheAir) {
   EXPECT_EQ(AerosolForVisibility(earth, 1e7), 0.0) << "molecules alone leave less";
 }
 
+TEST(AirChoice, VisibilityIsThatOfTheAirAndTheFogAtTheEye) {
+  const Medium earth = MediumPreset("earth");
+  EXPECT_DOUBLE_EQ(VisibilityAt(earth, 0.0, 0.0), VisibilityOf(earth));
+  EXPECT_GT(VisibilityAt(earth, 3000.0, 0.0), 1.5 * VisibilityOf(earth)) << "over the haze";
+  EXPECT_NEAR(VisibilityAt(earth, 0.0, 3.912 / 900.0), 900.0, 15.0) << "in fog";
+  EXPECT_EQ(VisibilityAt(earth, -100.0, 0.0), VisibilityOf(earth));
+}
+
 TEST(AirChoice, OzoneIsCountedInDobsonUnits) {
   const Medium earth = MediumPreset("earth");
   EXPECT_NEAR(OzoneDobson(earth), 300.0, 60.0) << "the preset has the mean of the earth";

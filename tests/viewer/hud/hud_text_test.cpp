@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/hud/hud_text.h"
+#include "lut/picture/tone_curve.h"
 
 #include <gtest/gtest.h>
+
+#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/hud_theme.h"
@@ -74,6 +77,32 @@ TEST(HudTheme, TheNightIsDimAndHasNoBlue) {
     EXPECT_LT(colour[2], 0.1F);
     EXPECT_LT(colour[1], 0.5F * day.text[1]);
     EXPECT_GE(colour[0], colour[1]);
+  }
+}
+
+double LuminanceOf(const HudColour& colour) {
+  return shared::Luminance<double>(shared::SrgbLight(double{colour[0]}),
+                                   shared::SrgbLight(double{colour[1]}),
+                                   shared::SrgbLight(double{colour[2]}));
+}
+
+// Of a plate over a grey of the picture.
+HudColour Over(float code, const HudColour& plate) {
+  HudColour seen{0.0F, 0.0F, 0.0F, 1.0F};
+  for (std::size_t c = 0; c < 3; ++c) seen[c] = code + plate[3] * (plate[c] - code);
+  return seen;
+}
+
+TEST(HudTheme, WhatIsWrittenOnAPlateIsReadable) {
+  for (const auto& [theme, brightest] :
+       {std::pair{HudTheme::kDay, 1.0}, std::pair{HudTheme::kNight, 0.1}}) {
+    const HudColours& colours = ColoursOf(theme);
+    const auto code = static_cast<float>(shared::SrgbCode(brightest));
+    const double behind = LuminanceOf(Over(code, colours.plate));
+    for (const HudColour& colour : {colours.text, colours.quiet, colours.accent, colours.warning}) {
+      EXPECT_GE((LuminanceOf(colour) + 0.05) / (behind + 0.05), 4.5)
+          << colour[0] << " " << colour[1] << ", over " << brightest;
+    }
   }
 }
 
