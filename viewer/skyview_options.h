@@ -17,7 +17,7 @@ inline constexpr char kSkyviewFooter[] =
     "Keys: ? shows them all. W A S D fly along and across the view, R F up and down, arrows turn, "
     "2 takes the aircraft, 1 the free camera again; t T change the rate of time, F5 to F9 jump to "
     "sunrise, noon, sunset and the like, x X change the field of view, F3 writes a screenshot, F10 "
-    "opens panels, h hides all, Esc leaves.\n\n"
+    "opens panels, h hides all, Esc asks whether to leave.\n\n"
     "Example: sunrise over the built-in range, without a display\n"
     "  skyview --time sunrise+15m --headless --screenshot dawn.png\n"
     "A flight as a film:\n"

@@ -11,7 +11,8 @@
 //
 // The mean of the others is printed as middle grey (K = 12.5, ISO 2720): the mean of light and not of
 // its logarithm, which would fall faster than the sky where land grows dark, so that a dusk would get
-// brighter on the display. But the light below which all but the brightest twentieth lie never brighter than white paper beside a
+// brighter on the display. But the light below which all but the brightest twentieth lie is never
+// printed brighter than white paper beside a
 // grey card, 90 % beside 18 %: nobody lets a sunlit planet below a black sky, snow behind a dark
 // wood, or fog around lamps run white.
 #pragma once

@@ -69,9 +69,9 @@ SHARED Number AgxContrast(Number code, Number contrast) {
   return min(max(grey + (code - grey) * contrast, Number(0.0)), Number(1.0));
 }
 
-// The same under middle grey. Over it the contrast fades, so that the encoding's white stays where it
-// is, 6.5 stops over grey, and bright skies keep their gradient: with x from 0 at grey to 1 at white,
-// c x / (1 + (c^3 - 1) x^3)^(1/3), which is within 1 % of c x up to 1.6 stops for c = 1.8.
+// Under middle grey this is AgxContrast. Over it the contrast fades, so that the encoding's white stays
+// where it is, 6.5 stops over grey, and bright skies keep their gradient: with x from 0 at grey to 1 at white,
+// c x / (1 + (c^3 - 1) x^3)^(1/3), which is within 1 % of c x up to 1.1 stops for c = 1.8.
 SHARED Number AgxContrastWithShoulder(Number code, Number contrast) {
   Number grey = Number(0.6060606060606061);
   Number x = max(code - grey, Number(0.0)) / (Number(1.0) - grey);
@@ -104,7 +104,8 @@ SHARED Number AgxLight(Number code, Number code_share) {
 }
 
 // The toe of a print: in deep shade, where the sigmoid goes to black as a power of the scene's light,
-// display light is in proportion to that, a share of it; over middle grey no more than half the share.
+// display light is in proportion to that, a share of it. The toe ends over middle grey: it adds no more
+// than 0.18 of the share.
 SHARED Number AgxWithToe(Number light, Number printed, Number share) {
   Number toe = share * printed / (Number(1.0) + printed / Number(0.18));
   return min(sqrt(light * light + toe * toe), Number(1.0));

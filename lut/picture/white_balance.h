@@ -31,9 +31,9 @@ struct WhiteBalance {
   Kind kind = Kind::kDaylight;
   std::optional<double> kelvin = {};  // of kKelvin, and of kAuto and kCamera once they are settled
 
-  /// Whether colours stay as they are.
+  /// It is true where colours stay as they are.
   [[nodiscard]] bool IsDaylight() const;
-  /// Whether it is another one for each picture.
+  /// It is true where each picture has another one.
   [[nodiscard]] bool IsOfPicture() const { return kind == Kind::kAuto || kind == Kind::kCamera; }
 
   bool operator==(const WhiteBalance&) const = default;
@@ -60,7 +60,7 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 /// The temperature of camera [K] for a picture that is metered at an EV.
 [[nodiscard]] double CameraWhite(double metered_ev100);
 
-/// What auto or camera is for a picture; others as they are.
+/// The white balance with the kelvins that auto or camera has for a picture; others stay as they are.
 [[nodiscard]] WhiteBalance Settled(const WhiteBalance& white, const Image& image,
                                    Projection projection);
 

@@ -279,8 +279,8 @@ class Series {
     return readings_[frame.number] = reading;
   }
 
-  /// What the eye is adapted to, from the nodes of the time before in which the light of a whole day
-  /// would be forgotten: the same whichever frames are rendered.
+  /// The EV that the eye is adapted to. It follows from the nodes of the time before in which an eye would
+  /// forget the light of a whole day, so it does not depend on which frames are rendered.
   [[nodiscard]] double AdaptedEv100(const Frame& frame, int frames_per_node) {
     constexpr double kForgotten_s =
         60.0 * (kBrightestEv100 - kDarkestEv100) / EyeAdaptation::kRegenerated_ev_per_min;

@@ -38,7 +38,7 @@ struct TimeOfDay {
 };
 [[nodiscard]] TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day);
 
-/// Whether a text is a clock time without a day: "18:30", "1830".
+/// It is true for a clock time without a day: "18:30", "1830".
 [[nodiscard]] bool IsClockTime(std::string_view text);
 
 /// Whether every day has its own instant of a text ("sunrise-1h", not "now+1h", "18:30" or

@@ -23,8 +23,8 @@
 namespace alpenglow {
 
 /// How fine a map is. Off from MediaLight by 0.1 % in the mean by day and 0.5 % with the sun on the
-/// horizon, where light in fog falls by e every few metres (99 %: 2 % and 5 %; fine: half of all);
-/// made in 0.1 s of one core (fine: 0.25 s).
+/// horizon, where light in fog falls by e every few metres (99 %: 2 % and 5 %; fine: half of all).
+/// The time to make one grows with elevations times azimuths.
 struct FogMapSize {
   int elevations = 128;  // even: half of them over the horizon
   int azimuths = 16;     // from 0 to pi

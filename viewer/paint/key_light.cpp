@@ -14,7 +14,7 @@
 namespace alpenglow {
 namespace {
 
-// The brightest moon brings less than a thousandth of what the sun does over this elevation.
+// Over this elevation the sun brings more than a thousand times what the brightest moon does.
 constexpr double kMoonDoesNotCount_rad = 1.0 * kRadiansPerDegree;
 // A sun that is lower lights no land: from 4 km the horizon is 2 degrees down.
 constexpr double kSetOnLand_rad = -2.5 * kRadiansPerDegree;

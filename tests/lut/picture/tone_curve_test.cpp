@@ -175,6 +175,17 @@ TEST(AgxLooks, APhotoHasDeepShadeAndWhiteSnow) {
   EXPECT_GT(code(6.5), 254.0);
 }
 
+TEST(Agx, TheShoulderLeavesContrastNearGreyAndEndsAtWhite) {
+  const double grey = 20.0 / 33.0;
+  for (const double stops : {0.2, 0.6, 1.1}) {
+    const double code = grey + stops / 16.5;
+    EXPECT_NEAR((shared::AgxContrastWithShoulder(code, 1.8) - grey) / (1.8 * (code - grey)), 1.0,
+                0.01);
+  }
+  EXPECT_NEAR(shared::AgxContrastWithShoulder(1.0, 1.8), 1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(shared::AgxContrastWithShoulder(0.5, 1.8), shared::AgxContrast(0.5, 1.8));
+}
+
 TEST(AgxLooks, DeepShadeOfAPhotoIsInProportionToTheScene) {
   const auto light = [](double stop) {
     const double y = 0.125 / 1.2 * std::exp2(stop);
