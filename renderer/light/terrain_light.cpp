@@ -63,11 +63,11 @@ void TerrainLight::AddSlopes(const Medium& medium, const SlopeLight::Outgoing& o
   slopes_.emplace(horizons_->views(), medium, outgoing, sky_, mu_s);
 }
 
-BandLight TerrainLight::Irradiance(const SlopePoint& at) const {
+TerrainLight::OnSlope TerrainLight::On(const SlopePoint& at) const {
   const SurfaceSectors surface = SectorsOf(AtPlace(at.normal, at.up));
   const Horizons horizons = horizons_->map().At(at.point);
   const BandLight sky = sky_.Irradiance(at.altitude_m, at.mu_s, surface, horizons);
-  return slopes_ ? sky + slopes_->Irradiance(at.point, surface, horizons) : sky;
+  return {sky, slopes_ ? slopes_->Irradiance(at.point, surface, horizons) : BandLight(sky.count)};
 }
 
 BandLight TerrainLight::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {

@@ -77,8 +77,17 @@ class TerrainLight {
   /// Adds what slopes send to each other. Needs horizons.
   void AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing, double mu_s);
 
+  /// Per unit solar irradiance [1].
+  struct OnSlope {
+    BandLight sky, slopes;
+  };
+  /// Needs horizons.
+  [[nodiscard]] OnSlope On(const SlopePoint& at) const;
   /// Of sky and slopes, per unit solar irradiance [1]. Needs horizons.
-  [[nodiscard]] BandLight Irradiance(const SlopePoint& at) const;
+  [[nodiscard]] BandLight Irradiance(const SlopePoint& at) const {
+    const OnSlope on = On(at);
+    return on.sky + on.slopes;
+  }
 
   /// Radiance [1/sr] of the sky in a direction, whatever stands before it.
   [[nodiscard]] BandLight SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const;

@@ -167,6 +167,20 @@ HorizonMap::HorizonMap(const HeightRaster& heights, double planet_radius_m)
   });
 }
 
+HeightRaster HorizonMap::Towards(double azimuth_rad) const {
+  const BetweenAzimuths azimuths(azimuth_rad);
+  const auto along = static_cast<float>(azimuths.along);
+  HeightRaster sines = grid_;
+  sines.z_m.resize(sine_.size() / kHorizonAzimuths);
+  for (std::size_t node = 0; node < sines.z_m.size(); ++node) {
+    const std::uint16_t* of_node = &sine_[node * kHorizonAzimuths];
+    const auto before = static_cast<float>(of_node[azimuths.before]);
+    const auto after = static_cast<float>(of_node[azimuths.after]);
+    sines.z_m[node] = kLowest + kRange / kSteps * (before + along * (after - before));
+  }
+  return sines;
+}
+
 Horizons HorizonMap::At(const glm::dvec3& point) const {
   const GridCell cell = CellAt(grid_, point.x, point.y);
   const std::array<float, 4> weight{(1.0F - cell.x) * (1.0F - cell.y), cell.x * (1.0F - cell.y),

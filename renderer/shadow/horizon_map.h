@@ -52,6 +52,11 @@ class HorizonMap {
   /// Bilinear between nodes; at the rim beyond it. In steps of 1.7e-5.
   [[nodiscard]] Horizons At(const glm::dvec3& point) const;
 
+  /// Towards one azimuth, node by node: sines in the place of heights.
+  [[nodiscard]] HeightRaster Towards(double azimuth_rad) const;
+  /// The nodes, without heights.
+  [[nodiscard]] const HeightRaster& grid() const { return grid_; }
+
   [[nodiscard]] std::size_t bytes() const { return sine_.size() * sizeof(std::uint16_t); }
 
  private:

@@ -43,15 +43,7 @@ GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_su
           GpuBandsOf(tilt.up),
           GpuBandsOf(tilt.sunward),
           {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0},
-          {},
           {pixel_angle_rad, 1.0, 0.0, 0.0}};
-}
-
-GroundLightBlock EvenGroundLight(double pixel_angle_rad) {
-  GroundLightBlock even{};
-  even.sky_level = glm::vec4(1.0F);
-  even.ground_view = {pixel_angle_rad, 0.0, 0.0, 0.0};
-  return even;
 }
 
 GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
@@ -102,6 +94,7 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
                        planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
                        LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
                        SeaMirror::kSide)},
+          ViewerPiece("viewer/ground/sky_tilt.glsl"),
           ViewerPiece("viewer/shaders/ground.glsl"),
           ViewerPiece("viewer/shaders/ground_surface.glsl"),
           ViewerPiece("viewer/shaders/ground_light.glsl")};

@@ -20,18 +20,16 @@ namespace alpenglow {
 
 /// `block GroundLight` of ground_light.glsl.
 struct GroundLightBlock {
-  glm::vec4 sky_level, sky_up, sky_sunward, sky_towards, sky_at_zero;
+  glm::vec4 sky_level, sky_up, sky_sunward, sky_towards;
   glm::vec4 ground_view;
 };
-static_assert(sizeof(GroundLightBlock) == 6 * sizeof(glm::vec4));
-static_assert(offsetof(GroundLightBlock, ground_view) == 5 * sizeof(glm::vec4));
+static_assert(sizeof(GroundLightBlock) == 5 * sizeof(glm::vec4));
+static_assert(offsetof(GroundLightBlock, ground_view) == 4 * sizeof(glm::vec4));
 
 /// @param to_sun  unit, in the frame of the eye.
 /// @param pixel_angle_rad  between neighbouring pixels; larger: coarser detail.
 [[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
                                                   double pixel_angle_rad);
-/// Where no light of land is made: relief changes nothing.
-[[nodiscard]] GroundLightBlock EvenGroundLight(double pixel_angle_rad);
 
 /// `block GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {

@@ -44,20 +44,37 @@ bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
   return turned < kSunMoves * wanted.angular_radius_rad;
 }
 
-// Of the sky that a source makes, on a level place at altitude 0: what the shaders multiply the light of
-// vertices by (GroundLightBlock::sky_at_zero), whatever the source does meanwhile.
-std::array<float, 4> SkyAtZero(const DiffuseLight& diffuse, const SunPosition& disk) {
-  const BandLight level = LevelSky::Under(diffuse, disk.elevation_rad);
-  std::array<float, 4> sky{};
-  std::copy_n(level.value.begin(), level.count, sky.begin());
-  return sky;
+double OpenAltitude_m(const GroundSite& site) {
+  const OpenSky::Extent& extent = site.horizons()->extent();
+  return std::max(0.5 * (extent.lowest_m + extent.highest_m), 0.0);
 }
 
-std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<float, 4>& level) {
+SkyTilt OpenSkyUnder(const GroundSite& site, const SunPosition& disk) {
+  return {*site.air().integrator, *site.air().diffuse, OpenAltitude_m(site),
+          std::sin(disk.elevation_rad)};
+}
+
+std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<float, 4>& open) {
   std::array<float, 4> over{};
   for (std::size_t band = 0; band < over.size(); ++band)
-    over[band] = level[band] > 0.0F ? sky[band] / level[band] : 1.0F;
+    over[band] = open[band] > 0.0F ? sky[band] / open[band] : 1.0F;
   return over;
+}
+
+// Shares of the open sky's light on its slope that a vertex gets, of sky and slopes and of the sky
+// alone. The shaders multiply them by the open sky's light of the moment (GroundLightBlock), whatever the
+// source has done meanwhile.
+struct SharesOfOpenSky {
+  std::array<float, 4> all, sky;
+};
+SharesOfOpenSky SharesAt(const GroundVertex& vertex, const GroundSky& sky, const SkyTilt& open) {
+  const glm::dvec3 normal = InDoubles(vertex.normal), to_sun = sky.lighting().to_sun;
+  const glm::dvec3 up = sky.site().geometry().UpAt(InDoubles(vertex.position_m));
+  const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
+  const double towards = (normal.x * to_sun.x + normal.y * to_sun.y) / flat;
+  const std::array<float, 4> on_slope = open.On(glm::dot(normal, up), towards);
+  const TerrainLight::OnSlope on = sky.On(vertex);
+  return {Over(InFourBands(on.sky + on.slopes), on_slope), Over(InFourBands(on.sky), on_slope)};
 }
 
 }  // namespace
@@ -85,10 +102,11 @@ class GroundFollower::Maker {
       made.sea_mirrors[IndexOf(OtherThan(view.casts))] = MirrorFor(request, *view.other);
     if (const std::shared_ptr<const GroundSite> site = SiteFor(request)) {
       made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
-      made.level = SkyAtZero(request.air->diffuse, view.by);
+      made.open_altitude_m = OpenAltitude_m(*site);
+      made.open = OpenSkyUnder(*site, view.by);
       if (view.other) {
         made.other = std::make_shared<const GroundSky>(site, LightingBy(*view.other, view, *site));
-        made.other_level = SkyAtZero(request.air->diffuse, *view.other);
+        made.other_open = OpenSkyUnder(*site, *view.other);
       }
     }
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -224,23 +242,19 @@ bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const V
   return is_new;
 }
 
-const SkyTilt* GroundFollower::TiltUnder(LightSource source) const {
-  if (!made_.lit) return nullptr;
-  return source == made_.casts || !made_.other ? &made_.lit->tilt() : &made_.other->tilt();
-}
-
 std::optional<LightOfVertices> GroundFollower::Light() const {
   if (!made_.lit) return std::nullopt;
   return [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());
     for (const GroundVertex& vertex : VerticesIn(made.lit->site(), anchor, vertices)) {
-      const LitVertex lit = made.lit->At(vertex);
-      const std::array<float, 4> by = Over(lit.sky, made.level);
+      const SharesOfOpenSky by = SharesAt(vertex, made.lit->sky(), *made.open);
+      // Of a source that does not count yet, as it begins to: low, with slopes that it does not reach.
       const std::array<float, 4> other =
-          made.other ? Over(made.other->On(vertex), made.other_level) : by;
+          made.other ? SharesAt(vertex, *made.other, *made.other_open).all : by.sky;
       const bool sun_casts = made.casts == LightSource::kSun;
-      light.push_back({sun_casts ? by : other, sun_casts ? other : by, lit.sun_x});
+      light.push_back(
+          {sun_casts ? by.all : other, sun_casts ? other : by.all, made.lit->EdgeOver(vertex)});
     }
     return light;
   };

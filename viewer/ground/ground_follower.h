@@ -13,6 +13,7 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sea_mirror.h"
+#include "viewer/ground/sky_tilt.h"
 #include "viewer/job/latest_job.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shade_follower.h"
@@ -58,9 +59,6 @@ class GroundFollower {
   [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return made_.lit; }
   /// What throws the shadows of that.
   [[nodiscard]] LightSource casts() const { return made_.casts; }
-  /// How the sky of a source lights relief: of one that did not count, as that of the other; null
-  /// without lit().
-  [[nodiscard]] const SkyTilt* TiltUnder(LightSource source) const;
   /// The light of vertices in the frame of any anchor; empty without lit().
   [[nodiscard]] std::optional<LightOfVertices> Light() const;
   /// What waves show of the sky of a source over it (SeaMirror); empty where nothing mirrors and for one
@@ -68,6 +66,8 @@ class GroundFollower {
   [[nodiscard]] const std::vector<BandTexel>& sea_mirror(LightSource source) const {
     return made_.sea_mirrors[IndexOf(source)];
   }
+  /// Altitude of the open sky that the light of vertices is a share of: half the height of the land.
+  [[nodiscard]] double open_altitude_m() const { return made_.open_altitude_m; }
   /// Time that the light took to make; 0 before the first.
   [[nodiscard]] double making_s() const { return made_.making_s; }
 
@@ -80,9 +80,10 @@ class GroundFollower {
   struct Made {
     LightSource casts = LightSource::kSun;
     std::shared_ptr<const LitGround> lit;
-    std::shared_ptr<const GroundSky> other;       // null: it does not count
-    std::array<float, 4> level{}, other_level{};  // LevelSky::Under of either
+    std::shared_ptr<const GroundSky> other;   // null: it does not count
+    std::optional<SkyTilt> open, other_open;  // the open sky of either
     std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
+    double open_altitude_m = 0.0;
     double making_s = 0.0;
   };
   class Maker;

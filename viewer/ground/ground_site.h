@@ -61,6 +61,9 @@ class GroundSite {
   [[nodiscard]] const SiteAir& air() const { return air_; }
   [[nodiscard]] const GroundLight& light() const { return light_; }
 
+  /// Null: the ground is not one surface.
+  [[nodiscard]] std::shared_ptr<const TerrainHorizons> horizons() const { return horizons_.Get(); }
+
   /// A vertex made ready for light of any sun. Meshes of another detail than the site's lie over
   /// and under it; so that its shadow neither covers nor misses them, they have that of its ground.
   [[nodiscard]] GroundVertex Vertex(const std::array<float, 3>& position_m,

@@ -12,13 +12,6 @@
 namespace alpenglow {
 namespace {
 
-// At half the height of the land.
-SkyTilt TiltUnder(const TerrainLight& light, const glm::dvec3& to_sun) {
-  const OpenSky::Extent& extent = light.horizons()->extent();
-  return {light.sky(), 0.5 * (extent.lowest_m + extent.highest_m), std::atan2(to_sun.y, to_sun.x),
-          to_sun.z};
-}
-
 std::array<float, 3> InFloats(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
@@ -43,26 +36,21 @@ std::array<float, 3> SiteFromFrame::Along(const glm::vec3& direction) const {
 }
 
 GroundSky::GroundSky(std::shared_ptr<const GroundSite> site, Lighting light)
-    : site_(std::move(site)),
-      light_(OnThisThread([&] {
+    : site_(std::move(site)), light_(OnThisThread([&] {
         light.on_terrain = site_->Under(light);
         return std::move(light);
-      })),
-      tilt_(TiltUnder(*light_.on_terrain, light_.to_sun)) {
+      })) {
   ALPENGLOW_ENSURE(site_->medium().wavelengths_nm.size(), <=, LitVertex{}.sky.size());
 }
 
-std::array<float, 4> GroundSky::On(const GroundVertex& vertex) const {
+TerrainLight::OnSlope GroundSky::On(const GroundVertex& vertex) const {
   const SceneGeometry& geometry = site_->geometry();
   const glm::dvec3 point = InDoubles(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);
   const SlopePoint at{point, InDoubles(vertex.normal), up,
                       std::max(geometry.AltitudeOf(point), 0.0),
                       std::clamp(glm::dot(up, light_.to_sun), -1.0, 1.0)};
-  const BandLight light = light_.on_terrain->Irradiance(at);
-  std::array<float, 4> sky{};
-  std::copy_n(light.value.begin(), light.count, sky.begin());
-  return sky;
+  return light_.on_terrain->On(at);
 }
 
 LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
@@ -72,11 +60,10 @@ LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
                              lighting().sun_radius_rad, shadow);
       })) {}
 
-LitVertex LitGround::At(const GroundVertex& vertex) const {
+float LitGround::EdgeOver(const GroundVertex& vertex) const {
   const glm::dvec3 point = InDoubles(vertex.position_m);
-  return {sky_.On(vertex),
-          static_cast<float>(
-              shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii))};
+  return static_cast<float>(
+      shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii));
 }
 
 }  // namespace alpenglow

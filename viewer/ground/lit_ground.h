@@ -6,6 +6,7 @@
 // over the ground but for the edges, which are interpolated as a height over them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <memory>
@@ -15,7 +16,6 @@
 #include "renderer/light/lighting.h"
 #include "renderer/shadow/shadow_heights.h"
 #include "viewer/ground/ground_site.h"
-#include "viewer/ground/sky_tilt.h"
 
 namespace alpenglow {
 
@@ -55,6 +55,12 @@ template <typename Vertex>
   return ready;
 }
 
+[[nodiscard]] inline std::array<float, 4> InFourBands(const BandLight& light) {
+  std::array<float, 4> four{};
+  std::copy_n(light.value.begin(), light.count, four.begin());
+  return four;
+}
+
 /// The light of the sky that a sun or moon makes over a site, and of its slopes. Immutable; safe to ask
 /// from many threads.
 class GroundSky {
@@ -64,16 +70,13 @@ class GroundSky {
   GroundSky(std::shared_ptr<const GroundSite> site, Lighting light);
 
   [[nodiscard]] const Lighting& lighting() const { return light_; }
-  [[nodiscard]] const SkyTilt& tilt() const { return tilt_; }
   [[nodiscard]] const GroundSite& site() const { return *site_; }
 
-  /// Irradiance per unit solar irradiance, by band.
-  [[nodiscard]] std::array<float, 4> On(const GroundVertex& vertex) const;
+  [[nodiscard]] TerrainLight::OnSlope On(const GroundVertex& vertex) const;
 
  private:
   std::shared_ptr<const GroundSite> site_;
   Lighting light_;
-  SkyTilt tilt_;
 };
 
 /// Immutable; safe to ask from many threads.
@@ -91,10 +94,14 @@ class LitGround {
 
   [[nodiscard]] const GroundSky& sky() const { return sky_; }
   [[nodiscard]] const Lighting& lighting() const { return sky_.lighting(); }
-  [[nodiscard]] const SkyTilt& tilt() const { return sky_.tilt(); }
   [[nodiscard]] const GroundSite& site() const { return sky_.site(); }
 
-  [[nodiscard]] LitVertex At(const GroundVertex& vertex) const;
+  [[nodiscard]] LitVertex At(const GroundVertex& vertex) const {
+    const TerrainLight::OnSlope on = sky_.On(vertex);
+    return {InFourBands(on.sky + on.slopes), EdgeOver(vertex)};
+  }
+  /// LitVertex::sun_x.
+  [[nodiscard]] float EdgeOver(const GroundVertex& vertex) const;
 
   /// Of vertices in another frame of the same ellipsoid, which have position_m and normal.
   template <typename Vertex>

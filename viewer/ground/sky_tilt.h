@@ -1,25 +1,37 @@
 // SPDX-License-Identifier: MIT
-// How the light of the sky on a surface changes when it tilts a little: relief finer than the mesh
-// against the mesh.
+// The light of the open sky on surfaces of any tilt (sky_tilt.glsl), for the sun of one moment.
 //
-//   E(n) = level + up n.up + sunward n.s,     s the horizontal direction towards the sun
-//
-// fitted to the open sky over a plain for surfaces up to 60 degrees steep. Where terrain hides a
-// part of the sky the ratio of two surfaces is taken to be the same: over rough mountains that is
-// wrong by below 2.5 % rms for MountainSurface's relief, which changes the light by 2.8 to 3.6 %.
+// It takes about a millisecond, so that the light of land follows a sun that jumps: vertices keep the
+// share of the open sky's light that terrain leaves them. Relief finer than the mesh changes the light
+// in the ratio of two surfaces under the open sky, too: over rough mountains that is wrong by below
+// 2.5 % rms for MountainSurface's relief, which changes the light by 2.8 to 3.6 %.
 #pragma once
 
+#include <array>
+
+#include "atmosphere/dialect/shared_math.h"
 #include "renderer/ground/band_light.h"
-#include "renderer/light/open_sky.h"
 
 namespace alpenglow {
 
-/// Irradiance per unit solar irradiance [1], by band.
+namespace shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "viewer/ground/sky_tilt.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace shared
+
+/// Irradiance per unit solar irradiance [1], by band, over a plain: the terms of OpenSkyOn.
 struct SkyTilt {
   BandLight level, up, sunward;
 
-  /// @param sun_azimuth_rad  counter-clockwise from east; mu_s: zenith cosine of the sun.
-  SkyTilt(const OpenSky& sky, double altitude_m, double sun_azimuth_rad, double mu_s);
+  /// @param air, diffuse  of one medium; mu_s: zenith cosine of the sun or moon.
+  SkyTilt(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+          double mu_s);
+
+  /// On a surface whose unit normal has these components upwards and towards the sun.
+  [[nodiscard]] std::array<float, 4> On(double n_up, double n_sunward) const;
 };
 
 }  // namespace alpenglow

@@ -58,7 +58,7 @@ struct LandVertex {
 /// Light at a vertex.
 struct VertexLight {
   /// Irradiance of the sky that the sun makes, and of the one that the moon makes, in four bands, over
-  /// that of a level place at altitude 0 under the same sun or moon.
+  /// that of the open sky on the same slope (SkyTilt) under the same sun or moon.
   std::array<float, 4> sky{1.0F, 1.0F, 1.0F, 1.0F}, moon_sky{1.0F, 1.0F, 1.0F, 1.0F};
   /// Height of the centre of the disk that throws shadows over the edge of terrain that hides it, in
   /// radii of the disk, a share of the disk between -1 and 1.
@@ -125,7 +125,7 @@ struct LandChunk {
 /// What a chunk takes in memory.
 [[nodiscard]] std::size_t BytesOf(const LandChunk& chunk);
 
-/// One a vertex. Where no light is made yet: as on a level place.
+/// One a vertex. Where no light is made yet: as under the open sky.
 [[nodiscard]] std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& frame,
                                                    const std::optional<LightOfVertices>& light);
 

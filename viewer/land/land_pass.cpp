@@ -91,13 +91,26 @@ void LandPass::Clear(LandDrawn drawn) {
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
 }
 
-void LandPass::Run(LandDrawn drawn, LandBlock block, GLuint view_binding, bool one_side,
-                   const std::function<void()>& draw) const {
+void LandPass::BindEdges(const ShaderProgram& program) {
+  constexpr int kUnit = 0;
+  horizon_.Bind(kUnit, edges_.to_sun);
+  program.BindSampler("horizon_sines", kUnit);
+}
+
+void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
+                   bool one_side, const std::function<void()>& draw) {
   const ShaderProgram& program = drawn == LandDrawn::kSurface ? surface_ : outline_;
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
+  program.Use();
+  if (drawn == LandDrawn::kSurface && edges_.share > 0.0 && horizon_.HasAny()) {
+    const HorizonTexture::Place place = horizon_.PlaceIn(anchor);
+    block.horizon_u = place.u;
+    block.horizon_v = place.v;
+    block.eye_above.w = static_cast<float>(edges_.share);
+    BindEdges(program);
+  }
   glBindBufferBase(GL_UNIFORM_BUFFER, kLandBinding, block_.id());
   glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
-  program.Use();
   program.BindBlock("Land", kLandBinding);
   program.BindBlock("View", view_binding);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);

@@ -12,6 +12,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
+#include "viewer/land/horizon_texture.h"
 
 namespace alpenglow {
 
@@ -29,9 +30,10 @@ struct LandBlock {
   glm::vec4 eye_high, eye_low;
   glm::vec4 east, north, up;
   glm::vec4 eye_sample, eye_above, pixel;
+  glm::vec4 horizon_u, horizon_v;
   std::array<glm::vec4, kMostLevels> turning;
 };
-static_assert(sizeof(LandBlock) == (8 + LandBlock::kMostLevels) * sizeof(glm::vec4));
+static_assert(sizeof(LandBlock) == (10 + LandBlock::kMostLevels) * sizeof(glm::vec4));
 
 /// An eye and its axes in the frame of an anchor.
 struct EyeInAnchor {
@@ -52,6 +54,12 @@ struct EyeInAnchor {
 /// A block without levels: vertices stay where they are. The picture's size is the viewport's.
 /// @param new_light  share of the new light.
 [[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light);
+
+/// Edges of shade before the sun of this moment instead of those that vertices have (HorizonTexture).
+struct MomentaryEdges {
+  double share = 0.0;  // 0: those of the vertices alone
+  Vector<Ecef> to_sun{};
+};
 
 /// What is drawn of land: all that SurfaceMap holds, or its depth alone, into a LandOutline.
 enum class LandDrawn { kSurface, kOutline };
@@ -75,16 +83,25 @@ class LandPass {
 
   /// Empties the bound SurfaceMap or LandOutline.
   static void Clear(LandDrawn drawn);
+  void Use(const TerrainHorizon& horizon) { horizon_.Use(horizon); }
+  void Use(const MomentaryEdges& edges) { edges_ = edges; }
+  [[nodiscard]] bool HasHorizon() const { return horizon_.HasAny(); }
+
   /// Sets program and state and calls `draw`. The uniform block View must be bound to
-  /// `view_binding`.
+  /// `view_binding`. Texture unit 0 is used.
+  /// @param anchor  the frame of the vertices.
   /// @param one_side  leave out triangles that face away.
-  void Run(LandDrawn drawn, LandBlock block, GLuint view_binding, bool one_side,
-           const std::function<void()>& draw) const;
+  void Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
+           bool one_side, const std::function<void()>& draw);
 
   /// The text that says what depth is of the driver's context.
   [[nodiscard]] static ShaderPiece DepthText();
 
  private:
+  void BindEdges(const ShaderProgram& program);
+
+  HorizonTexture horizon_;
+  MomentaryEdges edges_;
   bool reversed_depth_;
   GlBuffer block_;
   ShaderProgram surface_, outline_;

@@ -217,7 +217,8 @@ void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
   if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_binding);
   if (!set_ || drawn_.empty()) return;
   // Over the ground no slope that faces away is seen before one that faces the eye.
-  pass_.Run(what, Block(), view_binding, over_ground_, [&] { set_->Draw(drawn_, fade_.from()); });
+  pass_.Run(what, Block(), set_->anchor().frame, view_binding, over_ground_,
+            [&] { set_->Draw(drawn_, fade_.from()); });
 }
 
 void Landscape::Draw(GLuint view_binding) { DrawAll(LandDrawn::kSurface, view_binding); }

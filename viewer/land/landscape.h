@@ -81,6 +81,11 @@ class Landscape {
   /// Whether new light is on its way or fading in.
   [[nodiscard]] bool IsRelighting() const;
 
+  /// What stands before suns, and for which of them: see HorizonTexture.
+  void Use(const TerrainHorizon& horizon) { pass_.Use(horizon); }
+  void Use(const MomentaryEdges& edges) { pass_.Use(edges); }
+  [[nodiscard]] bool HasHorizon() const { return pass_.HasHorizon(); }
+
   /// Height of the ground [m] that an eye at a place is over, the same as is drawn near the eye;
   /// nothing where there is none or it is not loaded. Of a mesh with roofs it is the highest surface
   /// that is not above the place.

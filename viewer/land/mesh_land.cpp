@@ -108,14 +108,14 @@ void MeshLand::Update(double seconds) {
   if (fade_.number() != before) lighter_.Ask({terrain_, fade_.light().value()});
 }
 
-void MeshLand::Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
+void MeshLand::Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
                     GLuint view_binding) {
   if (!terrain_) return;
   glBindVertexArray(layout_.id());
   DescribeLight(LightOn(fade_.from()), LandPass::kOldLight);
   DescribeLight(LightOn(Other(fade_.from())), LandPass::kNewLight);
   const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), fade_.share());
-  pass.Run(what, block, view_binding, false, [&] {
+  pass.Run(what, block, frame_, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),
                    GL_UNSIGNED_INT, nullptr);
   });

@@ -30,7 +30,7 @@ class MeshLand {
     reader_.Wait();
     lighter_.Wait();
   }
-  void Draw(const LandPass& pass, LandDrawn what, const GeodeticPosition& eye, GLuint view_binding);
+  void Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye, GLuint view_binding);
 
   void Relight(LightOfVertices light) { fade_.Ask(std::move(light)); }
   [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }

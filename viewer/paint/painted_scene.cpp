@@ -2,13 +2,19 @@
 #include "viewer/paint/painted_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
 
+#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "renderer/media/local_media.h"
 #include "viewer/paint/picture_units.h"
 
 namespace alpenglow {
 namespace {
+
+constexpr double kLong_s = 1e3;  // after which everything has faded in
 
 // Lamps and fog stand on ground that is there before the first picture; a landing light needs none.
 SceneGround LampGroundOf(const Scene& scene) {
@@ -88,7 +94,9 @@ void PaintedScene::TakeHeights() {
 }
 
 void PaintedScene::TakeLight() {
-  if (edges_of_ != ground_.casts()) edges_of_ = std::nullopt;
+  if (const std::shared_ptr<const LitGround>& lit = ground_.lit())
+    land_.Use(TerrainHorizon{{lit->site().horizons(), &lit->site().horizons()->map()},
+                             lit->site().ground().frame});
   if (std::optional<LightOfVertices> light = ground_.Light()) land_.Relight(std::move(*light));
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
     if (ground_.sea_mirror(source).empty()) continue;
@@ -107,6 +115,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   keep_up(air_, sun_view_);
   if (known_air_ != air_.air()) {
     known_air_ = air_.air();
+    integrator_.emplace(OnOsculatingSphere(known_air_->medium, view.eye.place.latitude_rad));
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
     ground_textures_.SetAir(known_air_->diffuse);
   }
@@ -118,6 +127,33 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   }
   moon_air_->SetQuality(sizes_.air);
   keep_up(*moon_air_, seen);
+}
+
+void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights) {
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
+    if (const KeyLight* light = OfSource(lights, source))
+      open_skies_[IndexOf(source)].emplace(*integrator_, known_air_->diffuse,
+                                           ground_.open_altitude_m(),
+                                           std::sin(light->disk.elevation_rad));
+  }
+}
+
+std::optional<Vector<Ecef>> PaintedScene::CastsOnVertices() const {
+  if (!ground_.lit() || ground_.casts() != casts_) return std::nullopt;
+  const LitGround& lit = *ground_.lit();
+  return lit.site().ground().frame.EcefFromEnu(Vector<Enu>{lit.lighting().to_sun});
+}
+
+// While time runs a thousand times as fast, light of vertices is a few degrees behind.
+void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds) {
+  constexpr double kBehind_rad = 1.5 * kRadiansPerDegree, kFades_s = 0.3;
+  if (std::exchange(casts_, key.source()) != key.source()) edges_ = std::nullopt;
+  if (!land_.IsRelighting()) edges_ = CastsOnVertices();
+  const Vector<Ecef> to_light =
+      LocalFrame(ellipsoid_, view.eye.place).EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
+  const bool is_behind = !edges_ || glm::dot(edges_->xyz, to_light.xyz) < std::cos(kBehind_rad);
+  momentary_edges_ = is_behind ? 1.0 : std::max(momentary_edges_ - seconds / kFades_s, 0.0);
+  land_.Use(MomentaryEdges{momentary_edges_, to_light});
 }
 
 void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
@@ -135,8 +171,9 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   KeepUpAir(view, lights, Pace::kFollow);
   land_.Update(view.eye.place, LandViewOf(view), seconds);
   TakeHeights();
-  if (!land_.IsRelighting() && ground_.lit()) edges_of_ = ground_.casts();
+  KeepUpEdges(view, lights.key, seconds);
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights))) TakeLight();
+  KeepUpOpenSkies(lights);
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);
   KeepUpFog(view, lights, Pace::kFollow);
 }
@@ -149,7 +186,8 @@ void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, in
     TakeLight();
     land_.Settle(view.eye.place, LandViewOf(view, samples));
   }
-  if (ground_.lit()) edges_of_ = ground_.casts();
+  KeepUpOpenSkies(lights);
+  KeepUpEdges(view, lights.key, kLong_s);
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);
   KeepUpFog(view, lights, Pace::kSettle);
 }

@@ -3,8 +3,10 @@
 // each made beside drawing and kept up with an eye that moves and a sun that does.
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/ground/ground_material.h"
 #include "renderer/ground/scene_ground.h"
@@ -13,6 +15,7 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/ground/scene_drape.h"
+#include "viewer/ground/sky_tilt.h"
 #include "viewer/lamps/scene_fog.h"
 #include "viewer/land/landscape.h"
 #include "viewer/paint/key_light.h"
@@ -61,15 +64,20 @@ class PaintedScene {
   /// Whether there is any, somewhere.
   [[nodiscard]] LandKind land_kind() const { return {has_land_, scene_.terrain.HasFineRelief()}; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
+  /// How the open sky of a source that counts lights slopes, at the moment that was updated or settled
+  /// last.
+  [[nodiscard]] const SkyTilt& OpenSky(LightSource source) const {
+    return open_skies_[IndexOf(source)].value();
+  }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
   /// Whether terrain keeps light of the key from the air, and that is painted.
   [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
     return sizes_.has_shafts && shade_.shade().Shades() && shade_.IsOf(view.eye.place, key.disk);
   }
-  /// Whether the edges of terrain that vertices of land have are all those before this source.
+  /// Whether the edges of terrain that land is painted with are all those before this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
-    return edges_of_ == source && ground_.casts() == source;
+    return source == casts_ && (momentary_edges_ == 1.0 ? land_.HasHorizon() : edges_.has_value());
   }
   /// As a source lights it. Null: none.
   [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
@@ -83,6 +91,9 @@ class PaintedScene {
   /// Followers keep up (Update) or wait until they have (Settle).
   enum class Pace { kFollow, kSettle };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace);
+  void KeepUpOpenSkies(const LightsOfSky& lights);
+  [[nodiscard]] std::optional<Vector<Ecef>> CastsOnVertices() const;
+  void KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds);
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void TakeHeights();
   void TakeLight();
@@ -94,9 +105,11 @@ class PaintedScene {
   SceneGround lamp_ground_;
   SceneDrape drape_;
   GroundMaterial material_;
-  AirView sun_view_;                              // the last one that the sun counted in
-  AirFollower air_;                               // of that
-  std::shared_ptr<const SolvedAir> known_air_;    // that ground_textures_ have
+  AirView sun_view_;                                // the last one that the sun counted in
+  AirFollower air_;                                 // of that
+  std::shared_ptr<const SolvedAir> known_air_;      // that ground_textures_ have
+  std::optional<AirIntegrator<float>> integrator_;  // of that
+  std::array<std::optional<SkyTilt>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once it counts
   std::shared_ptr<const SolvedAir> moon_air_of_;  // that it was made for
   Landscape land_;
@@ -104,7 +117,11 @@ class PaintedScene {
   GroundTextures ground_textures_;
   ShadeFollower shade_;
   std::optional<SceneFog> fog_, moon_fog_;
-  std::optional<LightSource> edges_of_;  // all vertices of land are lit with the edges of its shade
+  LightSource casts_ = LightSource::kSun;  // what throws shadows
+  /// Towards where that stood when all edges of shade were made that vertices have; nothing: some are
+  /// those before the other source, or there are none.
+  std::optional<Vector<Ecef>> edges_;
+  double momentary_edges_ = 0.0;  // MomentaryEdges::share
   int heights_version_ = -1;
 };
 

@@ -57,12 +57,8 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
                              const KeyLight& light) {
-  const SkyTilt* tilt = scene.ground().TiltUnder(light.source());
-  GroundLightBlock block =
-      tilt == nullptr ? EvenGroundLight(PixelAngle(view))
-                      : GroundLightBlockOf(*tilt, DirectionToSun(light.disk), PixelAngle(view));
-  block.sky_at_zero =
-      GpuBandsOf(LevelSky::Under(scene.air().air()->diffuse, light.disk.elevation_rad));
+  GroundLightBlock block = GroundLightBlockOf(scene.OpenSky(light.source()),
+                                              DirectionToSun(light.disk), PixelAngle(view));
   block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
   return block;
 }

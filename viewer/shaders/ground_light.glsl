@@ -3,13 +3,12 @@
 // renderer, with the light of sky and slopes, and the edges of shade, as LitGround interpolates
 // them. Lamps are apart.
 
-// What the sky's light gains where a surface tilts: GroundLightBlock of ground_block.h.
+// The open sky's light on surfaces of any tilt: GroundLightBlock of ground_block.h.
 layout(std140) uniform GroundLight {
-  vec4 sky_level;  // irradiance of an open place: level + up n.up + sunward n.sunward, by band
+  vec4 sky_level;  // irradiance of an open place by band: the terms of OpenSkyOn
   vec4 sky_up;
   vec4 sky_sunward;
   vec4 sky_towards;  // horizontal direction towards the sun
-  vec4 sky_at_zero;  // irradiance on a level place at altitude 0, by band
   vec4 ground_view;  // angle of a pixel [rad]; 1: edges of terrain are those before this sun, else 0
 };
 
@@ -54,14 +53,19 @@ vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 #endif
 }
 
+// The light of the open sky on a surface, at half the height of the land.
+vec4 OpenSkyOnSlope(vec3 normal, vec3 up) {
+  float n_up = dot(normal, up), n_sunward = dot(normal, sky_towards.xyz);
+  return vec4(OpenSkyOn(sky_level.x, sky_up.x, sky_sunward.x, n_up, n_sunward),
+              OpenSkyOn(sky_level.y, sky_up.y, sky_sunward.y, n_up, n_sunward),
+              OpenSkyOn(sky_level.z, sky_up.z, sky_sunward.z, n_up, n_sunward),
+              OpenSkyOn(sky_level.w, sky_up.w, sky_sunward.w, n_up, n_sunward));
+}
+
 // The light of the sky on a surface that is tilted against that of the mesh: in an open place's
 // ratio.
 vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
-  vec3 tilt = normal - mesh_normal;
-  vec4 open =
-      sky_level + sky_up * dot(mesh_normal, up) + sky_sunward * dot(mesh_normal, sky_towards.xyz);
-  vec4 gained = sky_up * dot(tilt, up) + sky_sunward * dot(tilt, sky_towards.xyz);
-  return sky_irradiance * max(1.0 + gained / max(open, 0.1 * sky_level), 0.1);
+  return sky_irradiance * OpenSkyOnSlope(normal, up) / max(OpenSkyOnSlope(mesh_normal, up), 1e-30);
 }
 
 // Ground that a ray ends on, land or the planet beyond it, as all its light sees it.

@@ -26,6 +26,17 @@ float Turned() {
   return clamp((d - range.x) * range.y, 0.0, 1.0);
 }
 
+// Sines of the horizon's elevation towards the sun of this moment: HorizonTexture.
+uniform sampler2D horizon_sines;
+
+// Height of the disk over that horizon, in its radii. Beyond the map no terrain stands before it.
+float DiskOverHorizonHere(vec3 at, vec3 from_eye) {
+  vec2 place = vec2(dot(horizon_u, vec4(at, 1.0)), dot(horizon_v, vec4(at, 1.0)));
+  if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) return 64.0;
+  vec3 up_here = normalize(from_eye + vec3(0.0, 0.0, 1e3 * (PLANET_RADIUS + EYE_ALTITUDE)));
+  return (asin(dot(up_here, sun.xyz)) - asin(textureLod(horizon_sines, place, 0.0).x)) / sun.w;
+}
+
 // How far below all land, half a kilometre under the sphere, the ray to a place beyond the horizon
 // dips before it gets there.
 float SunkBehindPlanet(vec3 from_eye) {
@@ -48,6 +59,8 @@ void main() {
                        mix(new_moon_sky, new_coarse_moon_sky, turned), eye_above.y);
   disk_height = mix(mix(disk_over_edge.x, disk_over_edge.y, turned),
                     mix(new_disk_over_edge.x, new_disk_over_edge.y, turned), eye_above.y);
+  if (eye_above.w > 0.0)
+    disk_height = mix(disk_height, DiskOverHorizonHere(at, from_eye), eye_above.w);
   sunk = SunkBehindPlanet(from_eye);
   float along_view = dot(from_eye, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);

@@ -9,7 +9,10 @@ layout(std140) uniform Land {
   vec4 north;
   vec4 up;
   vec4 eye_sample;  // column and row of the eye from the anchor's; metres a column and a row
-  vec4 eye_above;   // height over all ground about [m]; share of the new light; depth is reversed
+  vec4 eye_above;   // height over all ground about [m]; share of the new light; depth is reversed;
+                    // share of the edges of horizon_sines in the edges of shade
   vec4 pixel;       // its width and height, of a picture from (-1, -1) to (1, 1)
+  vec4 horizon_u;   // from (x, y, z, 1) in the anchor's frame to a place of horizon_sines
+  vec4 horizon_v;
   vec4 turning[32];  // a level: distance where it begins to turn [m], one over how far it takes
 };

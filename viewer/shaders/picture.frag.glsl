@@ -84,7 +84,7 @@ void main() {
   float distance_km = 1e-3 * surface.w;
   AirTo air = AirToPoint(direction, distance_km);
   SeenGround seen = LandOf(surface, direction);
-  vec4 sky = sky_at_zero * texelFetch(sky_on_surface, pixel, 0);
+  vec4 sky = OpenSkyOnSlope(seen.mesh_normal, seen.at.up) * texelFetch(sky_on_surface, pixel, 0);
   float over_edge = ground_view.y > 0.0 ? surface.z : kNoEdge;
   vec4 ground = air.transmittance * SunlitGround(seen, over_edge, sky, -direction);
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground) -

@@ -97,6 +97,20 @@ TEST(HorizonMap, IsTheHighestOfAllThatStandsInADirection) {
   EXPECT_LT(std::sqrt(sum2 / count), 0.015) << "heights are linear over 60 m of rough land";
 }
 
+TEST(HorizonMap, TowardsAnAzimuthEachNodeHasItsOwnHorizon) {
+  const HorizonMap map(RasterOf(LandMesh(RoughLand, 33, 120.0), 1 << 12), kFlatPlanet_m);
+  constexpr double kAzimuth_rad = 1.0;
+  const HeightRaster sines = map.Towards(kAzimuth_rad);
+  for (int row = 0; row < sines.rows; row += 5) {
+    for (int column = 0; column < sines.columns; column += 3) {
+      const auto [x, y] = sines.Place(column, row);
+      EXPECT_NEAR(static_cast<double>(sines.at(column, row)),
+                  BetweenAzimuths(kAzimuth_rad).Mean(map.At({x, y, 0.0})), 1e-5)
+          << "both in float";
+    }
+  }
+}
+
 TEST(HorizonMap, IsTheSameForAnyNumberOfThreads) {
   const TriangleMesh mesh = LandMesh(RoughLand, 65, 120.0);
   std::vector<Horizons> made;

@@ -79,7 +79,8 @@ class Blocks {
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
     Bind(program, "Ground", 2, ground_, ground);
     Bind(program, "GroundLight", 3, light_,
-         GroundLightBlockOf(lit_.tilt(), light.to_sun, kPixel_rad));
+         GroundLightBlockOf({*site.air().integrator, *site.air().diffuse, 1000.0, light.to_sun.z},
+                            light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
          Draped(GroundSurfaceBlockOf(site.material()), Picture(), 0.0, 0.0));
     textures_.Bind(program, 0, LightSource::kSun);
@@ -230,7 +231,8 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
   pieces.push_back({"main", "void main() { gl_Position = sky_level + cover_albedo; }\n"});
   const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
   int member = 0;
-  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "sky_towards", "sky_at_zero", "ground_view"})
+  for (const char* name :
+       {"sky_level", "sky_up", "sky_sunward", "sky_towards", "sky_at_zero", "ground_view"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :

@@ -207,10 +207,11 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
     const glm::dvec3& to_sun = lit.lighting().to_sun;
     const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
+    const OpenSky::Extent& extent = TheSite()->horizons()->extent();
+    const SkyTilt tilt(*TheSite()->air().integrator, *TheSite()->air().diffuse,
+                       0.5 * (extent.lowest_m + extent.highest_m), to_sun.z);
     const auto open = [&](const glm::dvec3& n) {
-      return static_cast<double>(lit.tilt().level[1]) +
-             static_cast<double>(lit.tilt().up[1]) * n.z +
-             static_cast<double>(lit.tilt().sunward[1]) * glm::dot(n, sunward);
+      return static_cast<double>(tilt.On(n.z, glm::dot(n, sunward))[1]);
     };
     double sum2 = 0.0, without2 = 0.0;
     constexpr int kPlaces = 1000;

@@ -3,6 +3,7 @@
 #include "viewer/paint/sky_painter.h"
 #include "lut/picture/tone_curve.h"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 
@@ -154,8 +155,11 @@ TEST_F(SkyPainterTest, WhereSunAndMoonBothCountTheRangeIsLitByBoth) {
     ExpectWithin(both.Difference(ViewNamed(name)), bounds, why);
 }
 
-// Of land, and of sky.
-std::array<double, 2> MeanLuminances(const Image& picture) {
+struct MeanLuminance {
+  double land, sky, all;
+};
+
+MeanLuminance MeanLuminanceOf(const Image& picture) {
   std::array<double, 2> sum{}, count{};
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
@@ -165,38 +169,78 @@ std::array<double, 2> MeanLuminances(const Image& picture) {
       count[part] += 1.0;
     }
   }
-  return {sum[0] / count[0], sum[1] / count[1]};
+  return {sum[0] / count[0], sum[1] / count[1], (sum[0] + sum[1]) / (count[0] + count[1])};
 }
 
-// From noon to dusk with a moon and on, as the keys F5 to F9 jump.
-TEST_F(SkyPainterTest, AfterAJumpInTimeLandIsLitByTheNewSunAtOnce) {
-  const Scene scene = RangeScene({200.0, true}, 250.0, -8.0);
-  const auto ground = std::make_shared<const SceneGround>(LoadGround(scene));
-  const auto at = [&](const char* utc) {
-    return ViewOf(scene, ground->eye_height_m, ParseInstant(utc), {64, 36});
-  };
-  SkyPainter painter(scene, LandSourceOf(scene), at("2026-12-23T11:00:00Z"),
+/// The built-in range, painted while time jumps or runs, and settled.
+class RangeInTime : public SkyPainterTest {
+ protected:
+  void SetUp() override {
+    SkyPainterTest::SetUp();
+    painter_.emplace(scene_, LandSourceOf(scene_), At("2026-12-23T11:00:00Z"),
                      SizesOf(Quality::kLow));
-  painter.Settle(at("2026-12-23T11:00:00Z"));
+    painter_->Settle(At("2026-12-23T11:00:00Z"));
+  }
+
+  [[nodiscard]] PaintedView At(const UtcInstant& now) const {
+    return ViewOf(scene_, ground_->eye_height_m, now, {64, 36});
+  }
+  [[nodiscard]] PaintedView At(const char* utc) const { return At(ParseInstant(utc)); }
+
+  MeanLuminance Frame(const PaintedView& view) {
+    painter_->Update(view, 0.04);
+    return Paint(*painter_, view);
+  }
+  MeanLuminance Settled(SkyPainter& painter, const PaintedView& view) {
+    painter.Settle(view);
+    return Paint(painter, view);
+  }
+  static MeanLuminance Paint(SkyPainter& painter, const PaintedView& view) {
+    painter.Paint(view, 1, SkyPainter::Disks::kLeftOut);
+    return MeanLuminanceOf(painter.picture().Read());
+  }
+
+  /// Half of the picture is land that is darker than the sky.
+  static void ExpectNear(const MeanLuminance& shown, const MeanLuminance& settled,
+                         const std::string& when) {
+    EXPECT_NEAR(shown.all / settled.all, 1.0, 0.1) << when;
+    EXPECT_NEAR(shown.sky / settled.sky, 1.0, 0.1) << when << ", sky";
+    EXPECT_NEAR(shown.land / settled.land, 1.0, 0.15)
+        << when << ", land: what slopes see of each other and of the sky is the old sun's";
+  }
+
+  Scene scene_ = RangeScene({200.0, true}, 250.0, -8.0);
+  std::shared_ptr<const SceneGround> ground_ = std::make_shared<SceneGround>(LoadGround(scene_));
+  std::optional<SkyPainter> painter_;
+};
+
+// From noon to dusk with a moon and on, as the keys F5 to F9 jump.
+TEST_F(RangeInTime, AfterAJumpEachFrameIsLitByTheNewSun) {
   std::vector<const char*> jumps{"2026-12-23T16:30:00Z", "2026-12-24T11:00:00Z",
                                  "2026-12-23T15:50:00Z", "2026-12-23T22:00:00Z",
                                  "2026-12-24T07:20:00Z"};
   jumps.resize(tests::ScaledDown(jumps.size(), std::size_t{2}));
   for (const char* utc : jumps) {
-    std::vector<std::array<double, 2>> shown;
-    for (int frame = 0; frame < 8; ++frame) {
-      painter.Update(at(utc), 0.04);
-      painter.Paint(at(utc), 1, SkyPainter::Disks::kLeftOut);
-      shown.push_back(MeanLuminances(painter.picture().Read()));
-    }
-    painter.Settle(at(utc));
-    painter.Paint(at(utc), 1, SkyPainter::Disks::kLeftOut);
-    const std::array<double, 2> settled = MeanLuminances(painter.picture().Read());
-    for (std::size_t frame = 0; frame < shown.size(); ++frame) {
-      EXPECT_NEAR(shown[frame][0] / settled[0], 1.0, 0.25)
-          << utc << ", land, frame " << frame << ": what slopes see of the sky is the old sun's";
-      EXPECT_NEAR(shown[frame][1] / settled[1], 1.0, 0.1) << utc << ", sky, frame " << frame;
-    }
+    std::vector<MeanLuminance> shown;
+    for (int frame = 0; frame < 8; ++frame) shown.push_back(Frame(At(utc)));
+    const MeanLuminance settled = Settled(*painter_, At(utc));
+    for (std::size_t frame = 0; frame < shown.size(); ++frame)
+      ExpectNear(shown[frame], settled, fmt::format("{}, frame {}", utc, frame));
+  }
+}
+
+// From the last sun into the night, at 25 frames a second of time that runs 600 times as fast.
+TEST_F(RangeInTime, SixHundredTimesAsFastDuskIsLitByItsSun) {
+  SkyPainter judge(scene_, LandSourceOf(scene_), At("2026-12-23T15:20:00Z"),
+                   SizesOf(Quality::kLow));
+  UtcInstant now = ParseInstant("2026-12-23T15:20:00Z");
+  const int frames = tests::ScaledDown(240, 24);
+  for (int frame = 0; frame < frames; ++frame) {
+    now = AddSeconds(now, 24.0);
+    const MeanLuminance shown = Frame(At(now));
+    if (frame % 24 != 23) continue;
+    const MeanLuminance settled = Settled(judge, At(now));
+    ExpectNear(shown, settled, fmt::format("frame {}", frame));
   }
 }
 
