@@ -83,7 +83,7 @@ class OneRay {
 
  private:
   void Show(const PaintedView& painted) {
-    painter_.Paint(painted, 1, SkyPainter::Disks::kLeftOut);
+    painter_.Paint(painted, 1, SkyPainter::Bodies::kStars);
     painter_.PaintOutline(outline_);
     enlarger_.Enlarge(painter_.picture(), outline_, HalfViewOf(painted), light_.framebuffer());
   }

@@ -332,7 +332,7 @@ std::optional<double> Flythrough::LuminanceAt(double right, double down) {
 
 void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   const PaintedQuality wanted = Painted();
-  if (wanted.quality != used_.quality) painter_.Use(SizesOf(wanted.quality));
+  if (wanted != used_) painter_.Use(SizesOf(wanted));
   used_ = wanted;
   const auto scaled = [&](int side) {
     const int part = std::max(static_cast<int>(std::lround(wanted.scale * side)), 1);
@@ -344,9 +344,9 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   painter_.Update(view, seconds);
   const bool has_reference = reference_ && reference_->samples() > 0 && still_s_ > 0.0;
   if (!has_reference) {
-    painter_.Paint(view, 1,
-                   Darkroom::Enlarges(view, screen) ? SkyPainter::Disks::kLeftOut
-                                                    : SkyPainter::Disks::kPainted);
+    painter_.Paint(
+        view, 1,
+        Darkroom::Enlarges(view, screen) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
   }
   ShowReference({screen.width, screen.height});
   if (const std::optional<MeterReading> metered = meter_.Take(look_)) metered_ = metered;
@@ -369,7 +369,7 @@ Image Flythrough::Picture(const ImageSize& size, int samples) {
   Settle(size, samples);
   AimLandingLight();
   Image image = PaintedInParts(ViewOf(size), samples);
-  painter_.Use(SizesOf(used_.quality));
+  painter_.Use(SizesOf(used_));
   return image;
 }
 

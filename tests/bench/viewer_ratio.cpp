@@ -115,7 +115,7 @@ Times TimesOf(const View& view) {
   const RenderTarget screen(kWidth, kHeight, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone);
   const auto draw = [&] {
     constexpr double kEv100 = 13.0;
-    painter.Paint(painted, 1, SkyPainter::Disks::kLeftOut);
+    painter.Paint(painted, 1, SkyPainter::Bodies::kNone);
     darkroom.Print(painter, painted, kEv100, {screen.framebuffer(), kWidth, kHeight});
   };
   const ReferencePass reference;

@@ -34,11 +34,11 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   const std::vector<LampLayer>& layers = shape.layers();
   std::string text = fmt::format(
       "#define LAMP_MOST {}\n#define LAMP_CONE {}\n#define LAMP_TABLE {}\n"
-      "#define LAMP_NODES {}\n#define LAMP_STEP {}\n"
+      "#define LAMP_NODES {}\n#define LAMP_LATTICE {}\n"
       "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
       "#define LAMP_GLOW_FARTHEST {:.7f}\n#define LAMP_GLOW_TERMS {}\n",
       kMostGpuLamps, static_cast<int>(LampProfile::Kind::kCone),
-      static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step,
+      static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step > 1 ? 1 : 0,
       PhaseExpression(layers[1].phase.kind), kNearestGlow_m, kFarthestGlow_m, kGlowTerms);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
   if (!shape.shades().empty()) {
@@ -197,7 +197,8 @@ void LampPainter::UploadPlans(const SceneLamps& shape) {
   }
 }
 
-void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2) {
+void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2,
+                          std::size_t most) {
   std::array<double, 2> core{0.0, 0.0};
   if (quality_.step > 1) {
     const double step_rad = quality_.step * view.pixel_angle_rad;
@@ -205,7 +206,8 @@ void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmes
   }
   lamps.FollowPlans();
   if (uploaded_plans_ < lamps.plans().size()) UploadPlans(lamps);
-  const SceneLamps::InView in_view = lamps.Before(view, core, dimmest_cd_per_m2);
+  SceneLamps::InView in_view = lamps.Before(view, core, dimmest_cd_per_m2, most);
+  in_view.block.planet.z = static_cast<float>(quality_.step);
   lamps_ = static_cast<int>(in_view.block.count.x);
   disks_ = static_cast<int>(in_view.disks.size());
   glBindBuffer(GL_UNIFORM_BUFFER, block_.id());

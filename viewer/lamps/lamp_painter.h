@@ -33,7 +33,7 @@ struct LampQuality {
 /// (tests/viewer/lamps/lamp_picture_test.cpp). Medium was measured against 12 nodes at each of
 /// 1280 x 720 pixels, eight lamps in fog: mean 0.2 %, 99.9 % within 3.5 %, but for edges of beams,
 /// which are as coarse as the steps.
-inline constexpr LampQuality kLowLamps{4, 8};
+inline constexpr LampQuality kLowLamps{4, 4};
 inline constexpr LampQuality kMediumLamps{5, 6};
 inline constexpr LampQuality kHighLamps{12, 1};
 
@@ -63,9 +63,14 @@ class LampPainter {
   /// Ties a program made of these texts to what it reads; once.
   void Connect(const ShaderProgram& program) const;
 
-  /// @param dimmest_cd_per_m2  see SceneLamps::Before.
-  void Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2);
-  [[nodiscard]] const LampQuality& quality() const { return quality_; }
+  /// @param dimmest_cd_per_m2, most  see SceneLamps::Before.
+  void Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2,
+               std::size_t most = kMostGpuLamps);
+  /// Whether a quality has the same programs; then SetStep is enough to have it.
+  [[nodiscard]] bool Suits(const LampQuality& quality) const {
+    return quality.nodes == quality_.nodes && (quality.step == 1) == (quality_.step == 1);
+  }
+  void SetStep(int step) { quality_.step = step; }
   /// Nothing of what follows adds any light.
   [[nodiscard]] bool IsDark() const { return lamps_ == 0 && disks_ == 0; }
 

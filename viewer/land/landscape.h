@@ -28,10 +28,11 @@ struct LandSize {
   static constexpr double kLeastDetail = 64.0, kMostDetail = 1024.0;
   /// Samples from the eye to where the second level begins. Triangles and chunks grow as its
   /// square: 1,300 chunks at 96, over a square of 3601 samples. A view narrower than 60 degrees has
-  /// up to twice as much detail and one from high above up to three times, together four times: as
-  /// many triangles are seen. Pictures of several rays a pixel have the root of their number times
-  /// as much. All this as far as `most_chunks` go.
+  /// up to twice as much detail and one from high above up to three times, together `most_growth`
+  /// times: as many triangles are seen. Pictures of several rays a pixel have the root of their number
+  /// times as much. All this as far as `most_chunks` go.
   double detail = 96.0;
+  double most_growth = 4.0;
   /// Of chunks that are kept, unless kLeastDetail takes more (2,500 at most). Beside heights they
   /// take 51 kB each, 13 in memory and 38 on the card, whose buffers have room for up to a quarter
   /// more: 2.4 GB. There are two sets of them for as long as it takes to make another about an eye
@@ -97,8 +98,9 @@ class Landscape {
   /// LoadedHeights::SampledGrid or GridOverMesh of what is loaded now, for any thread.
   [[nodiscard]] GroundSampler Sampler() const;
   /// Another range of the finest level, see LandSize.
-  void SetDetail(double detail) {
+  void SetDetail(double detail, double most_growth) {
     size_.detail = detail;
+    size_.most_growth = most_growth;
     cache_.SetDetail(detail);
   }
   /// Counts up when heights have come: the Sampler may have changed.

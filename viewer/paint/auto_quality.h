@@ -23,22 +23,28 @@ struct QualityRule {
 /// "low", "medium", "high", "reference" or "auto"; throws InputError for another text.
 [[nodiscard]] QualityRule QualityRuleFromText(const std::string& text);
 
+/// What is left out of a picture of half the window's resolution before it becomes smaller; each has
+/// those before it.
+enum class Saving { kNone, kCoarseShafts, kFewLamps, kNearLand };
+
 /// A quality, and the share of the window's width and height at which light is painted; land has its
-/// edges at all of it (darkroom.h).
+/// edges, and stars and disks their places, at all of it (darkroom.h).
 struct PaintedQuality {
   Quality quality = Quality::kHigh;
   double scale = 1.0;
+  Saving saving = Saving::kNone;
 
   bool operator==(const PaintedQuality&) const = default;
 };
 /// How a quality that was asked for is painted: kLow has light for every second pixel, across and
 /// down.
 [[nodiscard]] PaintedQuality PaintedAlways(Quality quality);
-/// "high", or "low, light at 0.7x".
+/// "high", or "low, light at 0.5x, coarse shafts, few lamps".
 [[nodiscard]] std::string TextOf(const PaintedQuality& painted);
 
-/// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a quarter of it, so
-/// that frames take about as long as wanted; it begins with kLow at half the resolution. What counts
+/// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a quarter of it with
+/// every Saving, so that frames take about as long as wanted; it begins with kLow at half the resolution.
+/// What counts
 /// is the median of the last nine frames: one in which a driver finished a program says nothing. It
 /// goes down a step after half a second, and three frames, that take 1.15 times too long, several at
 /// once if they take much longer, and up after two seconds to the best step that would still take

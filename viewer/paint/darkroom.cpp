@@ -4,6 +4,13 @@
 #include "viewer/gl/scissor.h"
 
 namespace alpenglow {
+namespace {
+
+PaintedView OnScreen(const PaintedView& view, const Developer::Screen& screen) {
+  return {view.eye, view.now, screen.width, screen.height, view.part};
+}
+
+}  // namespace
 
 void Darkroom::PrintEnlarged(SkyPainter& painter, const PaintedView& view, double ev100,
                              const Developer::Screen& screen) {
@@ -18,20 +25,16 @@ void Darkroom::PrintEnlarged(SkyPainter& painter, const PaintedView& view, doubl
 }
 
 // Their edges are not where land has edges: around them light is enlarged before it is developed.
-void Darkroom::PrintDisks(SkyPainter& painter, const PaintedView& view, double ev100,
-                          const Developer::Screen& screen, const std::vector<PixelBox>& boxes) {
+void Darkroom::PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
+                           const Developer::Screen& screen, const std::vector<PixelBox>& boxes) {
   if (boxes.empty()) return;
+  painter.Time("bodies");
   Fit(light_, screen.width, screen.height, PixelFormat::kRgba32F);
-  for (const PixelBox& box : boxes) {
-    const Scissor within(box);
-    light_enlarger_.Enlarge(painter.picture(), *outline_, HalfViewOf(view), light_->framebuffer());
-  }
-  painter.PaintDisksOver(*light_, *outline_,
-                         {view.eye, view.now, screen.width, screen.height, view.part});
-  for (const PixelBox& box : boxes) {
-    const Scissor within(box);
-    developer_.Develop(*light_, ev100, screen);
-  }
+  bodies_.Set(boxes, screen.width, screen.height);
+  light_enlarger_.Enlarge(painter.picture(), *outline_, HalfViewOf(view), light_->framebuffer(),
+                          bodies_);
+  painter.PaintBodiesOver(*light_, *outline_, OnScreen(view, screen));
+  developer_.Develop(*light_, ev100, screen, bodies_);
 }
 
 // Drivers finish programs when they are drawn with, which takes tenths of a second: over one pixel
@@ -43,7 +46,7 @@ void Darkroom::MakeReady(SkyPainter& painter, const PaintedView& view, double ev
     const Scissor within(kOnePixel);
     PrintEnlarged(painter, view, ev100, screen);
   }
-  if (prints_ == 3) PrintDisks(painter, view, ev100, screen, {kOnePixel});
+  if (prints_ == 3) PrintBodies(painter, view, ev100, screen, {kOnePixel});
 }
 
 void Darkroom::Print(SkyPainter& painter, const PaintedView& view, double ev100,
@@ -52,8 +55,7 @@ void Darkroom::Print(SkyPainter& painter, const PaintedView& view, double ev100,
   MakeReady(painter, view, ev100, screen);
   if (Enlarges(view, screen)) {
     PrintEnlarged(painter, view, ev100, screen);
-    PrintDisks(painter, view, ev100, screen,
-               painter.DisksSeen({view.eye, view.now, screen.width, screen.height, view.part}));
+    PrintBodies(painter, view, ev100, screen, painter.BodiesSeen(OnScreen(view, screen)));
   } else {
     painter.Time("develop");
     developer_.Develop(painter.picture(), ev100, screen);

@@ -22,8 +22,8 @@ class Darkroom {
   [[nodiscard]] Developer& developer() { return developer_; }
   [[nodiscard]] const Developer& developer() const { return developer_; }
 
-  /// Whether a view will be enlarged on a screen, with disks as sharp as that: its picture is to be
-  /// painted without them.
+  /// Whether a view will be enlarged on a screen, with disks and stars as sharp as that: its picture is
+  /// to be painted without them.
   [[nodiscard]] static bool Enlarges(const PaintedView& view, const Developer::Screen& screen) {
     return view.width < screen.width || view.height < screen.height;
   }
@@ -34,8 +34,8 @@ class Darkroom {
  private:
   void PrintEnlarged(SkyPainter& painter, const PaintedView& view, double ev100,
                      const Developer::Screen& screen);
-  void PrintDisks(SkyPainter& painter, const PaintedView& view, double ev100,
-                  const Developer::Screen& screen, const std::vector<PixelBox>& boxes);
+  void PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
+                   const Developer::Screen& screen, const std::vector<PixelBox>& boxes);
   void MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
                  const Developer::Screen& screen);
 
@@ -43,6 +43,7 @@ class Darkroom {
   Enlarger code_enlarger_{Enlarger::Shows::kCodes}, light_enlarger_{Enlarger::Shows::kLight};
   std::optional<RenderTarget> codes_, light_;  // of the picture's size; of the screen's
   std::optional<LandOutline> outline_;
+  PassArea bodies_;
   int prints_ = 0;
 };
 

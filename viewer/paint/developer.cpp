@@ -9,7 +9,6 @@
 
 #include "viewer/gl/gl_context.h"
 #include "viewer/paint/tone_table.h"
-#include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
@@ -67,7 +66,7 @@ void Developer::Use(const Look& look) {
 }
 
 void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
-                     const Screen& screen) const {
+                     const Screen& screen, const PassArea& area) const {
   glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer);
   glViewport(0, 0, screen.width, screen.height);
   picture.BindTexture(kPicture);
@@ -83,17 +82,19 @@ void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, 
   for (std::size_t i = 0; i < rows.size(); ++i)
     rows[i] = static_cast<GLfloat>(balance[i / 3][i % 3]);
   glUniformMatrix3fv(program.Uniform("balance"), 1, GL_TRUE, rows.data());
-  DrawFullScreen(program, no_vertices_);
+  area.Draw(program);
   CheckGl("Developer::Develop");
 }
 
-void Developer::Develop(const RenderTarget& picture, double ev100, const Screen& screen) const {
-  Fill(program_, picture, ev100, screen);
+void Developer::Develop(const RenderTarget& picture, double ev100, const Screen& screen,
+                        const PassArea& area) const {
+  Fill(program_, picture, ev100, screen, area);
 }
 
 void Developer::DevelopSmall(const RenderTarget& picture, double ev100,
                              const RenderTarget& codes) const {
-  Fill(small_program_, picture, ev100, {codes.framebuffer(), codes.width(), codes.height()});
+  Fill(small_program_, picture, ev100, {codes.framebuffer(), codes.width(), codes.height()},
+       whole_);
 }
 
 }  // namespace alpenglow

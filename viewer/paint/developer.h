@@ -9,6 +9,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/paint/dither_texture.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow {
 
@@ -29,7 +30,12 @@ class Developer {
     int width, height;
   };
   /// Fills the screen; a picture of another size is scaled, bilinearly.
-  void Develop(const RenderTarget& picture, double ev100, const Screen& screen) const;
+  void Develop(const RenderTarget& picture, double ev100, const Screen& screen) const {
+    Develop(picture, ev100, screen, whole_);
+  }
+  /// The pixels of an area alone.
+  void Develop(const RenderTarget& picture, double ev100, const Screen& screen,
+               const PassArea& area) const;
   /// Codes in [0, 1], not dithered, for an Enlarger: into a target of the picture's size, whose
   /// fourth component it gets too.
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
@@ -37,11 +43,11 @@ class Developer {
  private:
   void FillTable();
   void Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
-            const Screen& screen) const;
+            const Screen& screen, const PassArea& area) const;
 
   Look look_;
   ShaderProgram program_, small_program_;
-  GlVertexArray no_vertices_;
+  PassArea whole_;
   GlTexture table_;
   DitherTexture dither_;
 };

@@ -6,7 +6,6 @@
 
 #include "viewer/gl/gl_context.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow {
@@ -36,7 +35,8 @@ std::vector<ShaderPiece> EnlargerTexts(Enlarger::Shows shows, const ShaderPiece&
 Enlarger::Enlarger(Shows shows) : shows_(shows), program_(ProgramOf(shows)) {}
 
 void Enlarger::Enlarge(const RenderTarget& small, const LandOutline& outline,
-                       const glm::dvec2& half_view, GLuint framebuffer) const {
+                       const glm::dvec2& half_view, GLuint framebuffer,
+                       const PassArea& area) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, outline.width(), outline.height());
   small.BindTexture(kSmall);
@@ -46,7 +46,7 @@ void Enlarger::Enlarge(const RenderTarget& small, const LandOutline& outline,
     dither_.Bind(program_, kPrintDither, outline.width(), outline.height());
   glUniform2f(program_.Uniform("half_view"), static_cast<float>(half_view.x),
               static_cast<float>(half_view.y));
-  DrawFullScreen(program_, no_vertices_);
+  area.Draw(program_);
   CheckGl("Enlarger::Enlarge");
 }
 

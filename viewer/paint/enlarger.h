@@ -11,6 +11,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/land/land_outline.h"
 #include "viewer/paint/dither_texture.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow {
 
@@ -27,12 +28,17 @@ class Enlarger {
   ///     size.
   /// @param half_view  tangents of half the width and half the height of the view.
   void Enlarge(const RenderTarget& small, const LandOutline& outline, const glm::dvec2& half_view,
-               GLuint framebuffer) const;
+               GLuint framebuffer) const {
+    Enlarge(small, outline, half_view, framebuffer, whole_);
+  }
+  /// The pixels of an area alone.
+  void Enlarge(const RenderTarget& small, const LandOutline& outline, const glm::dvec2& half_view,
+               GLuint framebuffer, const PassArea& area) const;
 
  private:
   Shows shows_;
   ShaderProgram program_;
-  GlVertexArray no_vertices_;
+  PassArea whole_;
   DitherTexture dither_;
 };
 

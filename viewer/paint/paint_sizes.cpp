@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/paint_sizes.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace alpenglow {
+namespace {
+
+// At least two: with one, passes are left out and programs are others.
+int Scaled(int pixels, double scale) {
+  return std::max(static_cast<int>(std::lround(pixels * scale)), 2);
+}
+
+}  // namespace
 
 PaintSizes SizesOf(Quality quality) {
   PaintSizes sizes;
@@ -25,6 +36,20 @@ PaintSizes SizesOf(Quality quality) {
       sizes.lamps = kHighLamps;
       sizes.fog = kFineFog;
       break;
+  }
+  return sizes;
+}
+
+PaintSizes SizesOf(const PaintedQuality& painted) {
+  PaintSizes sizes = SizesOf(painted.quality);
+  if (painted.saving >= Saving::kCoarseShafts) sizes.shade.detail = kCoarseShafts;
+  if (painted.saving >= Saving::kFewLamps) sizes.most_lamps = 12;
+  if (painted.saving >= Saving::kNearLand) sizes.land_growth = 1.0;
+  const double usual = PaintedAlways(painted.quality).scale;
+  if (painted.scale < usual) {
+    const double scale = painted.scale / usual;
+    sizes.shade.detail.scale = Scaled(sizes.shade.detail.scale, scale);
+    sizes.lamps.step = Scaled(sizes.lamps.step, scale);
   }
   return sizes;
 }

@@ -31,6 +31,7 @@ Medium MediumAt(const Scene& scene) {
 LandSize LandSizeOf(const PaintSizes& sizes) {
   LandSize size;
   size.detail = sizes.land_detail;
+  size.most_growth = sizes.land_growth;
   return size;
 }
 
@@ -82,7 +83,7 @@ void PaintedScene::Use(const PaintSizes& sizes) {
   if (moon_fog_) moon_fog_->SetSize(sizes.fog);
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
-  land_.SetDetail(sizes.land_detail);
+  land_.SetDetail(sizes.land_detail, sizes.land_growth);
 }
 
 void PaintedScene::TakeHeights() {

@@ -102,12 +102,15 @@ void SkyPainter::PrepareLamps(const PaintedView& view) {
   // Lamps dimmer than this are not seen beside what else there is.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
   const LampView seen = LampViewFrom(scene_.lamp_ground().frame, view.eye.place, PixelAngle(view));
-  lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2);
-  if (lamp_painter_.IsDark() || lamp_painter_.quality() == scene_.sizes().lamps) return;
+  const PaintSizes& sizes = scene_.sizes();
+  const bool suits = lamp_painter_.Suits(sizes.lamps);
+  if (suits) lamp_painter_.SetStep(sizes.lamps.step);
+  lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2, sizes.most_lamps);
+  if (lamp_painter_.IsDark() || suits) return;
   // Programs of another quality, now that they are needed.
   programs_.ForgetThoseWithLamps();
-  lamp_painter_ = LampPainter(lamps_, scene_.sizes().lamps, kLampUnits);
-  lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2);
+  lamp_painter_ = LampPainter(lamps_, sizes.lamps, kLampUnits);
+  lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2, sizes.most_lamps);
 }
 
 void SkyPainter::PaintLand(const PaintedView& view) {
@@ -154,7 +157,7 @@ void SkyPainter::DescribeMoon(const MoonDisk& moon) {
 }
 
 // One stage is made ready a frame: each takes tenths of a second.
-void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
+void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps) {
   using enum PictureStage::Pass;
   for (const PictureStage& stage :
        {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOpenSky, has_shade, has_lamps},
@@ -162,7 +165,7 @@ void SkyPainter::MakeOneReady(bool has_shade, bool has_lamps) {
         PictureStage{kOpenSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight},
         PictureStage{kLand}, PictureStage{kSky}, PictureStage{kOpenSky}})
     if (programs_.MakeReady(stage)) return;
-  stars_.MakeReady(scene_.fog(), scene_.fog_phase());
+  stars_.MakeReady(view, scene_.fog(), scene_.fog_phase());
 }
 
 // Software drivers work out the planet of every pixel that a program has it for.
@@ -185,13 +188,20 @@ void SkyPainter::PaintLandAndSky(const PaintedView& view, const Lit& lit) {
 }
 
 std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
-  const Bodies bodies = BodiesOf(view);
+  const SkyDisks disks = DisksOf(view);
   std::vector<PixelBox> boxes;
   const auto add = [&](const std::optional<PixelBox>& box) {
     if (box) boxes.push_back(*box);
   };
-  add(PixelsOfDisk(DirectionToSun(bodies.sun), bodies.sun.angular_radius_rad, view));
-  add(PixelsOfDisk(bodies.moon.to_moon, bodies.moon.radius_rad, view));
+  add(PixelsOfDisk(DirectionToSun(disks.sun), disks.sun.angular_radius_rad, view));
+  add(PixelsOfDisk(disks.moon.to_moon, disks.moon.radius_rad, view));
+  return boxes;
+}
+
+std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
+  std::vector<PixelBox> boxes = DisksSeen(view);
+  const std::vector<PixelBox> stars = stars_.Seen(view, DisksOf(view).moon);
+  boxes.insert(boxes.end(), stars.begin(), stars.end());
   return boxes;
 }
 
@@ -208,12 +218,17 @@ void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   }
 }
 
-void SkyPainter::PaintDisksOver(const RenderTarget& target, const LandOutline& outline,
-                                const PaintedView& view) {
+void SkyPainter::PaintBodiesOver(const RenderTarget& target, const LandOutline& outline,
+                                 const PaintedView& view) {
   target.Bind();
   target.UseDepthOf(outline);
   PaintDisks(view, {});
-  CheckGl("SkyPainter::PaintDisksOver");
+  if (stars_.HasAny()) {
+    const BesideLand beside;
+    stars_.Paint(view, DisksOf(view).moon, StarPainter::Land::kByDepth, scene_.fog(),
+                 scene_.fog_phase());
+  }
+  CheckGl("SkyPainter::PaintBodiesOver");
 }
 
 // What programs read of one light of the sky.
@@ -238,7 +253,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
   const Lit lit{key.source(), scene_.HasShade(view, key), !lamp_painter_.IsDark()};
-  if (share == 1.0) MakeOneReady(lit.has_shade, lit.has_lamps);
+  if (share == 1.0) MakeOneReady(view, lit.has_shade, lit.has_lamps);
   PaintLandAndSky(view, lit);
 }
 
@@ -284,10 +299,10 @@ void SkyPainter::PaintNightFloor(double share) {
 void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
   if (!stars_.HasAny()) return;
   Begin("stars");
-  stars_.Paint(view, moon, scene_.fog(), scene_.fog_phase());
+  stars_.Paint(view, moon, StarPainter::Land::kBySurface, scene_.fog(), scene_.fog_phase());
 }
 
-void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray) {
+void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray) {
   BindLight(view, LightsOf(view).lights.key, ray);
   PaintLand(view);
   BindMaps(view, LightsOf(view).lights.key);
@@ -296,34 +311,34 @@ void SkyPainter::PaintSample(const PaintedView& view, Disks disks, const PixelRa
   PaintPicture(view, 1.0 / ray.of);
   PaintOtherLight(view, ray);
   if (HasNightFloor() && night_floor_.HasAny()) PaintNightFloor(1.0 / ray.of);
-  if (disks == Disks::kPainted) PaintDisks(view, ray);
+  if (bodies == Bodies::kAll) PaintDisks(view, ray);
 }
 
-SkyPainter::Bodies SkyPainter::BodiesOf(const PaintedView& view) {
+SkyPainter::SkyDisks SkyPainter::DisksOf(const PaintedView& view) {
   const SunPosition& sun = LightsOf(view).sun;
   const GeodeticPosition& place = view.eye.place;
-  Bodies bodies{sun, ApparentMoonDisk(place, view.now, sun.distance_au,
-                                      GentleAirOf(scene_.air().air()->medium))};
+  SkyDisks disks{sun, ApparentMoonDisk(place, view.now, sun.distance_au,
+                                       GentleAirOf(scene_.air().air()->medium))};
   if (EclipsedDiskOf(sun, MoonAt(place, view.now)).IsCovered())
-    bodies.moon.to_moon = ToMoonBefore(sun, place, view.now);
-  return bodies;
+    disks.moon.to_moon = ToMoonBefore(sun, place, view.now);
+  return disks;
 }
 
-void SkyPainter::Paint(const PaintedView& view, int samples, Disks disks) {
-  const Bodies bodies = BodiesOf(view);
+void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies) {
+  const SkyDisks disks = DisksOf(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
   blocks_.UploadGround(scene_, view);
-  DescribeMoon(bodies.moon);
+  DescribeMoon(disks.moon);
   PrepareLamps(view);
   picture_->Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
   for (int sample = 0; sample < samples; ++sample) {
-    PaintSample(view, disks, {sample, samples});
+    PaintSample(view, bodies, {sample, samples});
   }
   PaintLampsOver(view);
-  PaintStars(view, bodies.moon);
+  if (bodies != Bodies::kNone) PaintStars(view, disks.moon);
   EndTime();
   CheckGl("SkyPainter::Paint");
 }

@@ -54,11 +54,11 @@ class SkyPainter {
   /// @param samples  that will be painted.
   void Settle(const PaintedView& view, int samples = 1);
 
-  /// Whether a picture has the disks of sun and moon.
-  enum class Disks { kPainted, kLeftOut };
+  /// What a picture has of the sky's bodies: the disks of sun and moon, and stars.
+  enum class Bodies { kAll, kStars, kNone };
   /// Paints the linear picture of the view that was updated or settled last.
   /// @param samples  rays a pixel, spread over it.
-  void Paint(const PaintedView& view, int samples = 1, Disks disks = Disks::kPainted);
+  void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll);
   /// Shows another picture of the view instead: linear, of any size.
   void Show(const Image& image);
 
@@ -67,12 +67,11 @@ class SkyPainter {
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
   /// Where the land of that picture stands.
   void PaintOutline(const LandOutline& outline);
-  /// Pixels that the disks of sun and moon may reach.
-  [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
-  /// Adds the disks to another picture of that view, of one ray a pixel, beside the land of an
-  /// outline of its size.
-  void PaintDisksOver(const RenderTarget& target, const LandOutline& outline,
-                      const PaintedView& view);
+  /// Pixels that the sky's bodies may reach in a picture of the view that was painted last, of any size.
+  [[nodiscard]] std::vector<PixelBox> BodiesSeen(const PaintedView& view);
+  /// Adds them to such a picture, of one ray a pixel, beside the land of an outline of its size.
+  void PaintBodiesOver(const RenderTarget& target, const LandOutline& outline,
+                       const PaintedView& view);
   /// A pass of others in the same frame.
   void Time(const char* pass) const { Begin(pass); }
   void EndTime() const {
@@ -90,8 +89,7 @@ class SkyPainter {
   [[nodiscard]] const ShadeFollower& shade() const { return scene_.shade(); }
 
  private:
-  /// Disks of the sky.
-  struct Bodies {
+  struct SkyDisks {
     SunPosition sun;
     MoonDisk moon;
   };
@@ -103,10 +101,11 @@ class SkyPainter {
     LightsOfSky lights;
   };
   [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
-  [[nodiscard]] Bodies BodiesOf(const PaintedView& view);
+  [[nodiscard]] SkyDisks DisksOf(const PaintedView& view);
+  [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
   void DescribeMoon(const MoonDisk& moon);
-  void PaintSample(const PaintedView& view, Disks disks, const PixelRay& ray);
+  void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
@@ -119,7 +118,7 @@ class SkyPainter {
   void BindMaps(const PaintedView& view, const KeyLight& light);
   void PaintPicture(const PaintedView& view, double share);
   void PaintOtherLight(const PaintedView& view, const PixelRay& ray);
-  void MakeOneReady(bool has_shade, bool has_lamps);
+  void MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintSky(const PaintedView& view, const Lit& lit);
   void PaintLandAndSky(const PaintedView& view, const Lit& lit);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);

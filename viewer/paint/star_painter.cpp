@@ -7,6 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/stars.h"
+#include "renderer/picture/star_pixels.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/paint/picture_texts.h"
@@ -90,7 +91,8 @@ void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phas
   if (fog != nullptr) fog->Connect(*program_);
 }
 
-void StarPainter::Draw(const std::vector<StarPoint>& points) const {
+void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& view,
+                       Land land) const {
   glBindVertexArray(vertices_.id());
   glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(StarPoint) * points.size()),
@@ -102,6 +104,10 @@ void StarPainter::Draw(const std::vector<StarPoint>& points) const {
     glVertexAttribDivisor(attribute.location, 1);
   }
   program_->Use();
+  glUniform2f(program_->Uniform("picture_size"), static_cast<float>(view.width),
+              static_cast<float>(view.height));
+  glUniform1i(program_->Uniform("surface_hides"), land == Land::kBySurface ? 1 : 0);
+  glDepthFunc(GL_EQUAL);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points.size()));
@@ -109,24 +115,36 @@ void StarPainter::Draw(const std::vector<StarPoint>& points) const {
 }
 
 // With a star without light or width.
-void StarPainter::MakeReady(const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+void StarPainter::MakeReady(const PaintedView& view, const SceneFog* fog,
+                            std::optional<PhaseKind> fog_phase) {
   if (program_) return;
   Connect(fog, fog_phase);
-  Draw({StarPoint{}});
+  Draw({StarPoint{}}, view, Land::kBySurface);
 }
 
-void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, const SceneFog* fog,
-                        std::optional<PhaseKind> fog_phase) {
-  if (!HasAny()) return;
-  const GeodeticPosition& place = view.eye.place;
+std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const MoonDisk& moon) const {
+  if (!HasAny()) return {};
   const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
   const glm::dmat3 turn =
-      TurnOfSky(place.latitude_rad, SecondsBetween(made_->request.now, view.now));
-  const std::vector<StarPoint> points =
-      StarPointsIn(view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad});
+      TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made_->request.now, view.now));
+  return StarPointsIn(view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad});
+}
+
+std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const MoonDisk& moon) const {
+  constexpr int kSide = 2 * kStarReach + 1;
+  std::vector<PixelBox> boxes;
+  for (const StarPoint& point : PointsIn(view, moon))
+    boxes.push_back(
+        {static_cast<int>(point.corner.x), static_cast<int>(point.corner.y), kSide, kSide});
+  return boxes;
+}
+
+void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, Land land,
+                        const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+  const std::vector<StarPoint> points = PointsIn(view, moon);
   if (points.empty()) return;
   Connect(fog, fog_phase);
-  Draw(points);
+  Draw(points, view, land);
   CheckGl("StarPainter::Paint");
 }
 

@@ -8,11 +8,13 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/moon_disk.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/gl/scissor.h"
 #include "viewer/gl/shader.h"
 #include "viewer/job/latest_job.h"
 #include "viewer/lamps/scene_fog.h"
@@ -37,10 +39,15 @@ class StarPainter {
   [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
   /// Draws with their program, if nothing has yet: drivers finish it then, which takes tenths of a
   /// second.
-  void MakeReady(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
-  /// Adds them to the target that is bound, whose surface map, air and blocks are bound.
+  void MakeReady(const PaintedView& view, const SceneFog* fog, std::optional<PhaseKind> fog_phase);
+  /// Pixels that they reach in a picture of a view.
+  [[nodiscard]] std::vector<PixelBox> Seen(const PaintedView& view, const MoonDisk& moon) const;
+  /// What tells where land hides them: the surface map, which has the size of the target, the pixel of a
+  /// star's middle; or the depth of the target, whose test is on, each pixel.
+  enum class Land { kBySurface, kByDepth };
+  /// Adds them to the target that is bound. Surface map, air and blocks are bound.
   /// @param fog  null: none.
-  void Paint(const PaintedView& view, const MoonDisk& moon, const SceneFog* fog,
+  void Paint(const PaintedView& view, const MoonDisk& moon, Land land, const SceneFog* fog,
              std::optional<PhaseKind> fog_phase);
 
  private:
@@ -59,7 +66,9 @@ class StarPainter {
                              const SolvedAir& air);
   void Ask(const PaintedView& view, const Medium& medium);
   void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
-  void Draw(const std::vector<StarPoint>& points) const;
+  [[nodiscard]] std::vector<StarPoint> PointsIn(const PaintedView& view,
+                                                const MoonDisk& moon) const;
+  void Draw(const std::vector<StarPoint>& points, const PaintedView& view, Land land) const;
 
   GlBuffer buffer_;
   GlVertexArray vertices_;

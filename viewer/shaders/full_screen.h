@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Passes over a whole picture: one triangle, one fragment stage.
+// Passes over a whole picture, or over boxes of it: one fragment stage.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "viewer/gl/gl_objects.h"
+#include "viewer/gl/scissor.h"
 #include "viewer/gl/shader.h"
 
 namespace alpenglow {
@@ -14,5 +17,19 @@ namespace alpenglow {
 
 /// Draws into what is bound, over the whole viewport.
 void DrawFullScreen(const ShaderProgram& program, const GlVertexArray& no_vertices);
+
+/// Which pixels a pass fills: all, or those of some boxes. Thousands of boxes are one draw.
+class PassArea {
+ public:
+  /// @param width, height  of the viewport that is drawn into.
+  void Set(std::span<const PixelBox> boxes, int width, int height);
+
+  void Draw(const ShaderProgram& program) const;
+
+ private:
+  std::optional<int> boxes_;  // nothing: all
+  GlBuffer squares_;
+  GlVertexArray layout_, no_vertices_;
+};
 
 }  // namespace alpenglow

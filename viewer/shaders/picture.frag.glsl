@@ -77,6 +77,14 @@ vec4 LampsReflected(SeenGround seen, vec3 direction, float distance_m) {
 #endif
 
 #if PASS == LAND_PASS
+// The height of the disk over edges of shade, spread out so that an edge is as wide as the pixels that
+// it runs through. Across crests, where distances jump, there is no edge to see.
+float OverSmoothEdge(vec4 surface) {
+  float half_step = 0.5 * fwidth(surface.z);
+  bool is_crest = fwidth(surface.w) > 0.3 * surface.w;
+  return surface.z / (is_crest ? 1.0 : max(half_step * RAY_ANGLE / ground_view.x, 1.0));
+}
+
 void main() {
   vec3 direction = ViewDirection(screen);
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -85,7 +93,7 @@ void main() {
   AirTo air = AirToPoint(direction, distance_km);
   SeenGround seen = LandOf(surface, direction);
   vec4 sky = OpenSkyOnSlope(seen.mesh_normal, seen.at.up) * texelFetch(sky_on_surface, pixel, 0);
-  float over_edge = ground_view.y > 0.0 ? surface.z : kNoEdge;
+  float over_edge = ground_view.y > 0.0 ? OverSmoothEdge(surface) : kNoEdge;
   vec4 ground = air.transmittance * SunlitGround(seen, over_edge, sky, -direction);
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground) -
                   ShadeOnTheWay(direction, distance_km, distance_km, air.single);

@@ -14,11 +14,13 @@ flat out vec4 last;
 flat out vec2 corner;
 
 uniform sampler2D surface_map;  // of land.frag.glsl
+uniform vec2 picture_size;      // [pixels]
+uniform bool surface_hides;     // the surface map is of that size; else the depth test hides stars
 
 bool IsHidden() {
   bool planet = GroundClearance(EYE_ALTITUDE, star_towards.z, RADIUS) > 0.0;
   ivec2 middle = clamp(ivec2(star_corner.zw), ivec2(0), textureSize(surface_map, 0) - 1);
-  return planet || texelFetch(surface_map, middle, 0).w > 0.0;
+  return planet || (surface_hides && texelFetch(surface_map, middle, 0).w > 0.0);
 }
 
 void main() {
@@ -29,6 +31,6 @@ void main() {
   last = star_last;
   corner = star_corner.xy;
   vec2 at = corner + 5.0 * vec2(gl_VertexID % 2, gl_VertexID / 2);
-  vec2 screen = 2.0 * at / vec2(textureSize(surface_map, 0)) - 1.0;
-  gl_Position = IsHidden() ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(screen, 0.0, 1.0);
+  vec2 screen = 2.0 * at / picture_size - 1.0;
+  gl_Position = IsHidden() ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(screen, -1.0, 1.0);  // depth 0
 }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tests/fixtures/fault_of.h"
+#include "viewer/paint/paint_sizes.h"
 
 namespace alpenglow {
 namespace {
@@ -64,13 +65,32 @@ TEST(AutoQuality, FramesTakeAsLongAsWantedWhereAnyQualityDoes) {
 }
 
 TEST(AutoQuality, ASlowMachineGetsTheCheapestPicture) {
-  EXPECT_EQ(RunFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.25}));
+  EXPECT_EQ(RunFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
+}
+
+TEST(AutoQuality, UnderHalfTheResolutionAllElseIsLeftOutFirst) {
+  for (const double full_s : {0.08, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4, 2.0}) {
+    AutoQuality quality(1.0 / 30.0);
+    for (int frame = 0; frame < 400; ++frame) {
+      quality.Note(FrameOf(quality.painted(), full_s));
+      const PaintedQuality& painted = quality.painted();
+      EXPECT_TRUE(painted.scale >= 0.5 || painted.saving == Saving::kNearLand) << full_s;
+      EXPECT_TRUE(painted.scale <= 0.5 || painted.saving == Saving::kNone) << full_s;
+    }
+  }
+}
+
+TEST(AutoQuality, RaysOfShaftsAndLampsAreAsFarApartOnTheScreen) {
+  const PaintSizes half = SizesOf(PaintedQuality{Quality::kLow, 0.5, Saving::kNearLand});
+  const PaintSizes quarter = SizesOf(PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand});
+  EXPECT_EQ(2 * quarter.lamps.step, half.lamps.step);
+  EXPECT_EQ(2 * quarter.shade.detail.scale, half.shade.detail.scale);
 }
 
 TEST(AutoQuality, ThreeHugeFramesAreAnsweredAtOnce) {
   AutoQuality quality(1.0 / 30.0);
   for (int frame = 0; frame < 3; ++frame) quality.Note(0.6);
-  EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.25}));
+  EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
 }
 
 TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
@@ -89,6 +109,8 @@ TEST(QualityRule, IsReadFromItsName) {
   EXPECT_NE(tests::FaultOf([] { return QualityRuleFromText("best"); }).find("--quality"),
             std::string::npos);
   EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.7}), "low, light at 0.7x");
+  EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.5, Saving::kFewLamps}),
+            "low, light at 0.5x, coarse shafts, few lamps");
 }
 
 }  // namespace

@@ -8,9 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "lut/picture/agx_look.h"
 #include "tests/viewer/land/headless_land.h"
-#include "viewer/flythrough.h"
 #include "viewer/gl/scissor.h"
 #include "viewer/paint/darkroom.h"
 #include "viewer/paint/view_difference.h"
@@ -117,48 +115,6 @@ TEST_F(EnlargerTest, OnOneSurfaceLightIsInterpolated) {
       }
     }
   }
-}
-
-class DarkroomTest : public tests::HeadlessTile {
- protected:
-  static constexpr ImageSize kScreen{480, 270};
-
-  [[nodiscard]] DisplayImage Shown(Quality quality) const {
-    const Scene scene = SceneOverTile(tests::PlaceOfSample(225.0, 215.0, 0.0),
-                                      CameraFromDegrees({2200.0, false}, 303.0, 0.0, 7.0, 50.0));
-    FlythroughSettings settings;
-    settings.land = LandSourceOf(scene);
-    settings.quality = {quality};
-    settings.size = kScreen;
-    Flythrough flight(scene, ParseInstant("2026-06-21T18:40:00Z"), settings);
-    flight.Settle(kScreen);
-    flight.SetExposure(15.0);
-    const RenderTarget screen(kScreen.width, kScreen.height, {PixelFormat::kRgba8},
-                              RenderTarget::Depth::kNone);
-    flight.Paint({screen.framebuffer(), kScreen.width, kScreen.height}, 0.0);
-    return screen.ReadBytes();
-  }
-};
-
-// The sun stands over a ridge.
-TEST_F(DarkroomTest, LowQualityShowsWhatMediumDoes) {
-  const DisplayImage low = Shown(Quality::kLow), medium = Shown(Quality::kMedium);
-  ASSERT_EQ(low.rgb.size(), medium.rgb.size());
-  std::vector<int> off;
-  int white = 0, white_too = 0;
-  for (std::size_t i = 0; i < low.rgb.size(); ++i) {
-    off.push_back(std::abs(low.rgb[i] - medium.rgb[i]));
-    if (medium.rgb[i] == 255) ++white;
-    if (medium.rgb[i] == 255 && low.rgb[i] == 255) ++white_too;
-  }
-  std::sort(off.begin(), off.end());
-  EXPECT_LE(off[off.size() / 2], 1) << "codes; dither and rounding";
-  // The same light is further apart on the display by the contrast of the look, 1.4.
-  const double contrast = GradeOf(AgxLook::kPhoto).contrast;
-  EXPECT_LE(off[off.size() * 99 / 100], 6 * contrast) << "relief is as fine as the pixels of light";
-  EXPECT_LE(off[off.size() * 995 / 1000], 9 * contrast) << "crests of coarser land lie a pixel off";
-  EXPECT_GT(white, 30) << "the sun";
-  EXPECT_GT(white_too, white * 9 / 10) << "its disk is as sharp as the screen";
 }
 
 }  // namespace

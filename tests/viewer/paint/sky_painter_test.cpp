@@ -196,7 +196,7 @@ class RangeInTime : public SkyPainterTest {
     return Paint(painter, view);
   }
   static MeanLuminance Paint(SkyPainter& painter, const PaintedView& view) {
-    painter.Paint(view, 1, SkyPainter::Disks::kLeftOut);
+    painter.Paint(view, 1, SkyPainter::Bodies::kNone);
     return MeanLuminanceOf(painter.picture().Read());
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of lamps in the air at every LAMP_STEP-th pixel, without that in their cores; and the
+// Light of lamps in the air at every LampStep()-th pixel, without that in their cores; and the
 // inverse of the distance at which the ray ends [1/m].
 out vec4 lattice;
 
@@ -7,7 +7,7 @@ uniform sampler2D surface_map;
 uniform vec2 picture_size;  // [pixels]
 
 void main() {
-  vec2 at = floor(gl_FragCoord.xy) * float(LAMP_STEP);
+  vec2 at = floor(gl_FragCoord.xy) * float(LampStep());
   vec2 screen = (2.0 * at + 1.0) / picture_size - 1.0;
   vec3 direction = ViewDirection(screen);
   ivec2 texel = min(ivec2(at), textureSize(surface_map, 0) - 1);

@@ -28,7 +28,7 @@ struct Lamp {
 layout(std140) uniform Lamps {
   vec4 lamp_count;      // lamps; angles at which cores begin to fade and end [rad]; of the lamps,
                         // those before the first that does not shine evenly
-  vec4 lamp_planet;     // radius; altitude of the eye [km]
+  vec4 lamp_planet;     // radius; altitude of the eye [km]; pixels between rays of the lattice
   vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, fog [1/m]
   vec4 lamp_bases;      // altitudes at which their densities are 1 [m]
   vec4 lamp_molecules;  // scattering where density is 1 [1/m]

@@ -11,15 +11,17 @@ float LampRayEnd(vec3 direction, float surface_m) {
   return surface_m > 0.0 ? surface_m : planet ? to_planet : 1e12;
 }
 
-#if LAMP_STEP > 1
+int LampStep() { return int(lamp_planet.z); }
+
+#if LAMP_LATTICE
 uniform sampler2D lamp_lattice;  // light; inverse of the distance at which the ray ends [1/m]
 
 // Rays whose ends lie in one plane, or in the sky, have inverse distances that are linear over the
 // picture. Where that of the pixel is not, those of its neighbours count that end nearest to it.
 vec3 LampGlowRgb(vec3 direction, float end_m) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  ivec2 corner = pixel / LAMP_STEP;
-  vec2 share = vec2(pixel - corner * LAMP_STEP) / float(LAMP_STEP);
+  ivec2 corner = pixel / LampStep();
+  vec2 share = vec2(pixel - corner * LampStep()) / float(LampStep());
   vec4 a = texelFetch(lamp_lattice, corner, 0);
   vec4 b = texelFetch(lamp_lattice, corner + ivec2(1, 0), 0);
   vec4 c = texelFetch(lamp_lattice, corner + ivec2(0, 1), 0);
