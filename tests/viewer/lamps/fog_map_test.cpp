@@ -115,12 +115,12 @@ std::vector<tests::Arguments<float>> Rays(const BothFogs& both, int count) {
   return rays;
 }
 
-struct Deviation {
+struct FogDeviation {
   double mean, p99, of_transmittance;
 };
 
 // Of radiance relative to the brightest a tenth of which is worth the name.
-Deviation Compare(const BothFogs& both) {
+FogDeviation CompareFog(const BothFogs& both) {
   const auto rays = Rays(both, 300);
   const std::vector<float> gpu =
       both.OnGpu("FogTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
@@ -148,28 +148,28 @@ Deviation Compare(const BothFogs& both) {
 using FogOnTheCard = tests::Headless;
 
 TEST_F(FogOnTheCard, AroundTheEyeIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0));
+  const FogDeviation deviation = CompareFog(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3) << "columns of thin layers in float";
 }
 
 TEST_F(FogOnTheCard, UnderTheEyeIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(BothFogs(FogOf(0.02, 60.0, 0.0), 500.0));
+  const FogDeviation deviation = CompareFog(BothFogs(FogOf(0.02, 60.0, 0.0), 500.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3);
 }
 
 TEST_F(FogOnTheCard, OverTheEyeIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(BothFogs(FogOf(0.002, 80.0, 300.0), 250.0));
+  const FogDeviation deviation = CompareFog(BothFogs(FogOf(0.002, 80.0, 300.0), 250.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3);
 }
 
 TEST_F(FogOnTheCard, WithoutAnEndAboveIsThatOfTheRenderer) {
-  const Deviation deviation = Compare(BothFogs(FogOf(1e-4, kEndless, 0.0), 100.0));
+  const FogDeviation deviation = CompareFog(BothFogs(FogOf(1e-4, kEndless, 0.0), 100.0));
   EXPECT_LT(deviation.mean, 2e-3);
   EXPECT_LT(deviation.p99, 0.02);
   EXPECT_LT(deviation.of_transmittance, 2e-3);
@@ -177,8 +177,8 @@ TEST_F(FogOnTheCard, WithoutAnEndAboveIsThatOfTheRenderer) {
 
 TEST_F(FogOnTheCard, IsThatOfTheRendererAtSunsetAndAfter) {
   for (const double elevation_rad : {0.0, -0.05}) {
-    const Deviation deviation =
-        Compare(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
+    const FogDeviation deviation =
+        CompareFog(BothFogs(FogOf(0.02, 60.0, 0.0), 10.0, ToSun(elevation_rad)));
     EXPECT_LT(deviation.mean, 5e-3) << "light falls by e every few metres into the fog";
     EXPECT_LT(deviation.p99, 0.05);
   }
