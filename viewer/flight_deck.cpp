@@ -173,7 +173,7 @@ HudModel FlightDeck::Model() const {
   model.air = AirOf(flight_);
   model.speed = {frame_ms_, flight_.QualityText()};
   for (const Message& message : messages_)
-    model.messages.push_back({message.text, message.age_s, message.is_warning});
+    model.messages.push_back({message.text, message.is_warning});
   const LandProgress progress = flight_.painter().land().Progress();
   if (progress.share < 1.0) model.progress = HudProgress{progress.text, progress.share};
   model.recording = recorder_.file().has_value();

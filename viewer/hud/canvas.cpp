@@ -2,7 +2,6 @@
 #include "viewer/hud/canvas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace alpenglow {
@@ -77,28 +76,27 @@ void Canvas::Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2
   list_.AddTriangleFilled(At(a), At(b), At(c), Packed(colour));
 }
 
-void Canvas::Letters(const glm::dvec2& at, HudAlign align, const std::string& text,
-                     const HudColour& colour, std::span<const glm::dvec2> shadows) const {
+double Canvas::LeftOf(double x, HudAlign align, const std::string& text) const {
   const double share = align == HudAlign::kLeft ? 0.0 : align == HudAlign::kMiddle ? 0.5 : 1.0;
-  const glm::dvec2 corner{at.x - share * WidthOf(text), at.y};
-  const double step = std::max(1.0, Pixels(0.9));
-  const ImU32 shadow = Packed(Faded(colours_.shadow, static_cast<double>(colour[3])));
-  for (const glm::dvec2& side : shadows)
-    list_.AddText(OnPixel(corner + step * side), shadow, text.c_str());
-  list_.AddText(OnPixel(corner), Packed(colour), text.c_str());
+  return x - share * WidthOf(text);
 }
 
 void Canvas::Text(const glm::dvec2& at, HudAlign align, const std::string& text,
                   const HudColour& colour) const {
-  static constexpr std::array<glm::dvec2, 4> kAround{
-      {{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, {0.0, 1.0}}};
-  Letters(at, align, text, colour, kAround);
+  const double margin = Pixels(3.0), left = LeftOf(at.x, align, text);
+  // As high as a line, so that the plates of two lines meet; the shadow needs room below.
+  const double top = at.y - 0.25 * (LineHeight() - static_cast<double>(ImGui::GetFontSize()));
+  Plate({left - margin, std::round(top)},
+        {left + WidthOf(text) + margin, std::round(top + LineHeight())});
+  TextOnPlate(at, align, text, colour);
 }
 
 void Canvas::TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
                          const HudColour& colour) const {
-  static constexpr std::array<glm::dvec2, 1> kBelow{{{1.0, 1.0}}};
-  Letters(at, align, text, colour, kBelow);
+  const glm::dvec2 corner{LeftOf(at.x, align, text), at.y};
+  const double step = std::max(1.0, Pixels(0.9));
+  list_.AddText(OnPixel(corner + step), Packed(colours_.shadow), text.c_str());
+  list_.AddText(OnPixel(corner), Packed(colour), text.c_str());
 }
 
 void Canvas::Plate(const glm::dvec2& from, const glm::dvec2& to) const {

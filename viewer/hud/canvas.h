@@ -5,7 +5,6 @@
 #include <imgui.h>
 
 #include <glm/vec2.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -36,10 +35,11 @@ class Canvas {
   void Disk(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
   void Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
                 const HudColour& colour) const;
+  /// On a plate of its own: the text is read over any picture.
   /// @param at  its upper left corner, upper middle, or upper right corner.
   void Text(const glm::dvec2& at, HudAlign align, const std::string& text,
             const HudColour& colour) const;
-  /// The same where a plate is behind it: cheaper.
+  /// The same where a plate is drawn already.
   void TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
                    const HudColour& colour) const;
   void Plate(const glm::dvec2& from, const glm::dvec2& to) const;
@@ -58,8 +58,8 @@ class Canvas {
   };
 
  private:
-  void Letters(const glm::dvec2& at, HudAlign align, const std::string& text,
-               const HudColour& colour, std::span<const glm::dvec2> shadows) const;
+  /// The left edge of a text [pixels].
+  [[nodiscard]] double LeftOf(double x, HudAlign align, const std::string& text) const;
 
   ImDrawList& list_;
   const HudColours& colours_;

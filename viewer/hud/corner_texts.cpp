@@ -124,23 +124,21 @@ void DrawBlock(const Canvas& canvas, const Corner& corner, const Lines& lines) {
 
 void DrawLineOfMessage(const Canvas& canvas, const HudFrame& frame, double y,
                        const HudMessage& message) {
-  const double opacity = MessageOpacity(message.age_s);
   const HudColour& colour = message.is_warning ? canvas.colours().warning : canvas.colours().text;
   const double half = 0.5 * canvas.WidthOf(message.text) + canvas.Pixels(6.0);
   const double middle = frame.middle().x;
-  if (opacity == 1.0) canvas.Plate({middle - half, y}, {middle + half, y + canvas.LineHeight()});
-  canvas.TextOnPlate({middle, y}, HudAlign::kMiddle, message.text, Faded(colour, opacity));
+  canvas.Plate({middle - half, y}, {middle + half, y + canvas.LineHeight()});
+  canvas.TextOnPlate({middle, y}, HudAlign::kMiddle, message.text, colour);
 }
 
-// What is still said, in lines that fit, the lowest first.
+// What is said, in lines that fit, the lowest first.
 std::vector<HudMessage> LinesOfMessages(const Canvas& canvas, const HudFrame& frame,
                                         const std::vector<HudMessage>& messages) {
   const double widest = frame.width - canvas.Pixels(24.0);
   std::vector<HudMessage> lines;
   for (const HudMessage& message : messages) {
-    if (MessageOpacity(message.age_s) == 0.0) continue;
     for (const std::string& line : canvas.Wrapped(message.text, widest))
-      lines.push_back({line, message.age_s, message.is_warning});
+      lines.push_back({line, message.is_warning});
   }
   std::reverse(lines.begin(), lines.end());
   return lines;
@@ -151,7 +149,7 @@ constexpr double kBarHeight = 5.0;  // units
 void DrawProgress(const Canvas& canvas, const HudFrame& frame, double y,
                   const HudProgress& progress) {
   const std::string text = fmt::format("{} {:.0f} %", progress.text, 100.0 * progress.share);
-  DrawLineOfMessage(canvas, frame, y, {text, 0.0, false});
+  DrawLineOfMessage(canvas, frame, y, {text, false});
   const double half = std::min(canvas.Pixels(140.0), 0.3 * frame.width);
   const double left = frame.middle().x - half;
   const double top = y + canvas.LineHeight();
@@ -184,16 +182,10 @@ void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTe
   DrawBlock(canvas, {{right, bottom}, true, true}, texts.lower_right);
 }
 
-double MessageOpacity(double age_s) {
-  constexpr double kFadesFrom_s = 6.0, kGone_s = 8.0;
-  return std::clamp((kGone_s - age_s) / (kGone_s - kFadesFrom_s), 0.0, 1.0);
-}
-
 void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
   constexpr double kLinesBelow = 3.8;  // the corners' texts of small pictures are lower
   double y = std::min(0.86 * frame.height, frame.height - kLinesBelow * canvas.LineHeight());
-  if (model.flight.stall)
-    DrawLineOfMessage(canvas, frame, 0.36 * frame.height, {"STALL", 0.0, true});
+  if (model.flight.stall) DrawLineOfMessage(canvas, frame, 0.36 * frame.height, {"STALL", true});
   if (model.progress) {
     DrawProgress(canvas, frame, y - canvas.Pixels(kBarHeight), *model.progress);
     y -= canvas.LineHeight() + canvas.Pixels(kBarHeight);

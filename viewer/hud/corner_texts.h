@@ -21,9 +21,6 @@ struct CornerTexts {
 
 void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts);
 
-/// Opacity of what was said `age_s` ago: 1, then falling to 0 from 6 to 8 s.
-[[nodiscard]] double MessageOpacity(double age_s);
-
 /// Messages, progress of loading and warnings, in the lower middle.
 void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 

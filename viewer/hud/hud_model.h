@@ -83,10 +83,9 @@ struct HudSpeed {
   std::string quality;     // "auto: medium, 0.75x"
 };
 
-/// Something to be said once; it fades.
+/// Something to be said once.
 struct HudMessage {
   std::string text;
-  double age_s = 0.0;
   bool is_warning = false;
 };
 

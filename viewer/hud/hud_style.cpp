@@ -19,22 +19,23 @@ void ApplyColours(ImGuiStyle& style, const HudColours& colours) {
                          ImGuiCol_TitleBgCollapsed}) {
     style.Colors[part] = panel;
   }
-  for (const int part : {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_Header, ImGuiCol_TitleBgActive,
-                         ImGuiCol_ScrollbarGrab, ImGuiCol_TableHeaderBg}) {
+  // Frames stay as they are under the mouse: the grab of a slider differs from them.
+  for (const int part :
+       {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_Button,
+        ImGuiCol_Header, ImGuiCol_TitleBgActive, ImGuiCol_ScrollbarGrab, ImGuiCol_TableHeaderBg}) {
     style.Colors[part] = control;
   }
   for (const int part :
-       {ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_ButtonHovered,
-        ImGuiCol_ButtonActive, ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive,
-        ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive, ImGuiCol_ResizeGripHovered,
-        ImGuiCol_ResizeGripActive, ImGuiCol_SeparatorHovered, ImGuiCol_SeparatorActive}) {
+       {ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive, ImGuiCol_TextSelectedBg,
+        ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive, ImGuiCol_HeaderHovered,
+        ImGuiCol_HeaderActive, ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive,
+        ImGuiCol_ResizeGripHovered, ImGuiCol_ResizeGripActive, ImGuiCol_SeparatorHovered,
+        ImGuiCol_SeparatorActive}) {
     style.Colors[part] = active;
   }
   for (const int part : {ImGuiCol_ScrollbarBg, ImGuiCol_TableRowBg, ImGuiCol_TableRowBgAlt}) {
     style.Colors[part] = Dimmed(colours.control, 0.4F);
   }
-  for (const int part : {ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive, ImGuiCol_TextSelectedBg})
-    style.Colors[part] = Dimmed(colours.accent, 0.45F);  // numbers stand on them
   style.Colors[ImGuiCol_CheckMark] = Vec4(colours.accent);
   style.Colors[ImGuiCol_Text] = Vec4(colours.text);
   style.Colors[ImGuiCol_TextDisabled] = quiet;

@@ -13,7 +13,7 @@ const HudColours& ColoursOf(HudTheme theme) {
       .plate = {0.03F, 0.05F, 0.07F, 0.64F},
       .panel = {0.07F, 0.09F, 0.12F, 0.93F},
       .control = {0.22F, 0.30F, 0.38F, 0.90F},
-      .active = {0.28F, 0.52F, 0.66F, 1.0F},
+      .active = {0.24F, 0.46F, 0.60F, 1.0F},
   };
   static constexpr HudColours kNight{
       .text = {0.95F, 0.42F, 0.08F, 1.0F},
@@ -21,10 +21,10 @@ const HudColours& ColoursOf(HudTheme theme) {
       .accent = {0.95F, 0.48F, 0.06F, 1.0F},
       .warning = {1.0F, 0.34F, 0.08F, 1.0F},
       .shadow = {0.0F, 0.0F, 0.0F, 0.75F},
-      .plate = {0.02F, 0.0F, 0.0F, 0.62F},
+      .plate = {0.02F, 0.0F, 0.0F, 0.86F},
       .panel = {0.04F, 0.01F, 0.005F, 0.92F},
       .control = {0.20F, 0.05F, 0.02F, 0.95F},
-      .active = {0.36F, 0.10F, 0.03F, 1.0F},
+      .active = {0.33F, 0.09F, 0.03F, 1.0F},
   };
   return theme == HudTheme::kDay ? kDay : kNight;
 }

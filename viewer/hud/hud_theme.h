@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Colours of instruments and panels: bright ones for the day, red and amber ones that leave the eye
-// adapted to the dark. What is written on a plate has a contrast of 4.5 at least to the picture behind it
-// (Web Content Accessibility Guidelines 2.1, 1.4.3): by day to white, and by night to a tenth of white,
-// which is more than a night is shown with (CameraEv100, look.h).
+// adapted to the dark. What is written has a plate or a panel behind it, and a contrast to it of 4.5
+// at least (Web Content Accessibility Guidelines 2.1, 1.4.3), whatever the picture is, up to white.
 #pragma once
 
 #include <array>

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/hud_theme.h"
 
@@ -86,23 +84,35 @@ double LuminanceOf(const HudColour& colour) {
                                    shared::SrgbLight(double{colour[2]}));
 }
 
-// Of a plate over a grey of the picture.
-HudColour Over(float code, const HudColour& plate) {
-  HudColour seen{0.0F, 0.0F, 0.0F, 1.0F};
-  for (std::size_t c = 0; c < 3; ++c) seen[c] = code + plate[3] * (plate[c] - code);
+HudColour Over(const HudColour& behind, const HudColour& plate) {
+  HudColour seen = behind;
+  for (std::size_t c = 0; c < 3; ++c) seen[c] += plate[3] * (plate[c] - behind[c]);
   return seen;
 }
 
-TEST(HudTheme, WhatIsWrittenOnAPlateIsReadable) {
-  for (const auto& [theme, brightest] :
-       {std::pair{HudTheme::kDay, 1.0}, std::pair{HudTheme::kNight, 0.1}}) {
+double ContrastOf(const HudColour& text, const HudColour& behind) {
+  return (LuminanceOf(text) + 0.05) / (LuminanceOf(behind) + 0.05);
+}
+
+constexpr HudColour kWhite{1.0F, 1.0F, 1.0F, 1.0F};
+
+TEST(HudTheme, WhatIsWrittenOnAPlateIsReadableOverWhite) {
+  for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
     const HudColours& colours = ColoursOf(theme);
-    const auto code = static_cast<float>(shared::SrgbCode(brightest));
-    const double behind = LuminanceOf(Over(code, colours.plate));
     for (const HudColour& colour : {colours.text, colours.quiet, colours.accent, colours.warning}) {
-      EXPECT_GE((LuminanceOf(colour) + 0.05) / (behind + 0.05), 4.5)
-          << colour[0] << " " << colour[1] << ", over " << brightest;
+      for (const HudColour& plate : {colours.plate, colours.panel})
+        EXPECT_GE(ContrastOf(colour, Over(kWhite, plate)), 4.5) << colour[0] << " " << colour[1];
     }
+  }
+}
+
+TEST(HudTheme, WhatIsWrittenOnControlsIsReadableOverWhite) {
+  for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
+    const HudColours& colours = ColoursOf(theme);
+    const HudColour control = Over(Over(kWhite, colours.panel), colours.control);
+    for (const HudColour& behind : {control, Over(control, colours.active)})
+      EXPECT_GE(ContrastOf(colours.text, behind), 4.5) << behind[0] << " " << behind[1];
+    EXPECT_GE(ContrastOf(colours.quiet, control), 4.5) << "hints in fields";
   }
 }
 

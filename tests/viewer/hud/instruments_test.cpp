@@ -10,7 +10,6 @@
 
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
-#include "viewer/hud/corner_texts.h"
 #include "viewer/hud/pitch_ladder.h"
 #include "viewer/hud/tapes.h"
 
@@ -46,7 +45,7 @@ TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
       {"exposure", [](HudModel& m) { m.exposure.ev100 = 12.0; }, 0.8, 0.75, 1.0, 1.0},
       {"message",
        [](HudModel& m) {
-         m.messages = {{"the terrain is made up", 1.0, false}};
+         m.messages = {{"the terrain is made up", false}};
        },
        0.3, 0.75, 0.7, 0.9},
       {"stall", [](HudModel& m) { m.flight.stall = true; }, 0.4, 0.3, 0.6, 0.45},
@@ -167,7 +166,7 @@ TEST_F(Instruments, ALongMessageIsWrappedIntoTheSmallestPicture) {
   model.messages = {
       {"N46E008.hgt has 1201 rows of 3601 samples; the missing ones are taken from "
        "the neighbours of the file",
-       0.0, true}};
+       true}};
   const Box box = Difference(before, Drawn(hud, model, 320, 240));
   EXPECT_GT(box.left, 0);
   EXPECT_LT(box.right, 320);
@@ -202,14 +201,6 @@ TEST(Tapes, MarksAreRoundNumbers) {
   EXPECT_EQ(MarkStep(3200.0, 10.0), 100.0);
   EXPECT_EQ(MarkStep(-90000.0, 10.0), 5000.0);
   EXPECT_EQ(MarkStep(245.0, 5.0), 10.0);
-}
-
-TEST(Messages, AreSaidForSixSecondsAndGoneAfterEight) {
-  EXPECT_EQ(MessageOpacity(0.0), 1.0);
-  EXPECT_EQ(MessageOpacity(6.0), 1.0);
-  EXPECT_DOUBLE_EQ(MessageOpacity(7.0), 0.5);
-  EXPECT_EQ(MessageOpacity(8.0), 0.0);
-  EXPECT_EQ(MessageOpacity(1e9), 0.0);
 }
 
 }  // namespace
