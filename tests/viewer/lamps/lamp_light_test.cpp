@@ -19,7 +19,7 @@
 namespace alpenglow {
 namespace {
 
-constexpr double kPixel_rad = 1e-3;
+constexpr double kLitPixel_rad = 1e-3;
 
 Light LightAt(double north_m, double east_m, double height_m, double candela) {
   const double radius = 6371000.0;
@@ -70,7 +70,7 @@ struct BothLamps {
         lamps(scene, ground, medium),
         painter(lamps, {}, {}),
         eye_m(0.0, 0.0, ground.eye_height_m) {
-    painter.Prepare(lamps, {eye_m, glm::dmat3(1.0), eye_m.z, kPixel_rad}, 0.0);
+    painter.Prepare(lamps, {eye_m, glm::dmat3(1.0), eye_m.z, kLitPixel_rad}, 0.0);
   }
 
   [[nodiscard]] std::vector<float> OnGpu(const std::string& expression,
@@ -155,7 +155,7 @@ Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
   std::vector<double> truth;
   for (const auto& ray : rays) {
     const LampRayEnd end{DirectionOf(ray), double{ray[3]}};
-    truth.push_back(double{both.light.InAir(both.light.All(), end, kPixel_rad, 48)[kBand]});
+    truth.push_back(double{both.light.InAir(both.light.All(), end, kLitPixel_rad, 48)[kBand]});
   }
   return Compare(gpu, truth);
 }
@@ -215,8 +215,8 @@ TEST_F(LampsOnTheCard, AnEyeInsideALampSeesAsTheRenderer) {
     const LampRayEnd end{direction, double{rays[i][3]}};
     const CameraRay seen{
         .eye = both.eye_m, .origin = both.eye_m, .direction = direction, .through = direction};
-    const double truth = double{both.light.InAir(both.light.All(), end, kPixel_rad, 48)[2]} +
-                         double{both.light.Seen(both.light.All(), seen, kPixel_rad)[2]};
+    const double truth = double{both.light.InAir(both.light.All(), end, kLitPixel_rad, 48)[2]} +
+                         double{both.light.Seen(both.light.All(), seen, kLitPixel_rad)[2]};
     EXPECT_NEAR(double{gpu[i]}, truth, 0.01 * truth);
   }
 }
@@ -307,7 +307,7 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   const std::vector<float> over =
       both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), 1e9, 1.0)[2]", ways);
   const auto truth = [&](const glm::dvec3& way, double length_m) {
-    return double{both.light.InAir(both.light.All(), {way, length_m}, kPixel_rad, 32)[2]};
+    return double{both.light.InAir(both.light.All(), {way, length_m}, kLitPixel_rad, 32)[2]};
   };
   double sum = 0.0, worst = 0.0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -356,7 +356,7 @@ TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
   };
   EXPECT_GT(wrong(), 4e-3) << "the horizon around the lamp, while plans are made";
   both.lamps.SettlePlans();
-  both.painter.Prepare(both.lamps, {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kPixel_rad}, 0.0);
+  both.painter.Prepare(both.lamps, {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kLitPixel_rad}, 0.0);
   EXPECT_LT(wrong(), 2e-3) << "corners of shade";
 }
 
@@ -386,8 +386,8 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
     scene.lights.push_back(LightAt(200.0 + 30.0 * (i / 2), i % 2 == 0 ? 20.0 : -20.0, 0.5, 500.0));
   }
   BothLamps both(scene);
-  const SceneLamps::InView in_view =
-      both.lamps.Before({both.eye_m, glm::dmat3(1.0), both.eye_m.z, kPixel_rad}, {0.0, 0.0}, 0.0);
+  const SceneLamps::InView in_view = both.lamps.Before(
+      {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kLitPixel_rad}, {0.0, 0.0}, 0.0);
   EXPECT_EQ(in_view.block.count.x, 64.0F);
   EXPECT_EQ(in_view.disks.size(), 300U) << "each lamp itself is seen";
   EXPECT_LT(GlowDeviation(both, false).mean, 0.02)
@@ -398,7 +398,7 @@ TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
 TEST(LampView, OfAnEyeFarFromTheSceneTurnsItsDirectionsIntoEastNorthUpThere) {
   const LocalFrame ground(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
   const GeodeticPosition place = PlaceFromDegrees(47.0, 9.0, 1000.0);
-  const LampView view = LampViewFrom(ground, place, kPixel_rad);
+  const LampView view = LampViewFrom(ground, place, kLitPixel_rad);
   EXPECT_LT(glm::length(view.eye_m - ground.EnuFromGeodetic(place).xyz), 1e-6);
   const glm::dvec3 up =
       ground.EnuFromGeodetic(PlaceFromDegrees(47.0, 9.0, 2000.0)).xyz - view.eye_m;
@@ -411,7 +411,7 @@ TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
   LandingLight landing;
   both.lamps.SetLandingLight(landing);
   for (const double north_m : {0.0, 5000.0}) {
-    const LampView view{{0.0, north_m, 6.0}, glm::dmat3(1.0), 6.0, kPixel_rad};
+    const LampView view{{0.0, north_m, 6.0}, glm::dmat3(1.0), 6.0, kLitPixel_rad};
     const SceneLamps::InView in_view = both.lamps.Before(view, {0.0, 0.0}, 1.0);
     const auto number = static_cast<std::size_t>(in_view.block.count.w);
     const GpuLamp& lamp = in_view.block.lamps[number];
