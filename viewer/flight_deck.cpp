@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kMessage_s = 8.0;
 const std::vector<std::string> kCurves{"agx", "aces", "reinhard", "pbr-neutral", "linear"};
+const std::vector<std::string> kWhiteBalances{"camera", "daylight", "auto"};
 const std::vector<std::string> kQualities{"auto", "low", "medium", "high", "reference"};
 
 const char* NameOf(FlightMode mode) {
@@ -35,7 +36,7 @@ const char* NameOf(FlightMode mode) {
     case FlightMode::kFree:
       break;
   }
-  return "free";
+  return "free camera";
 }
 
 HudFlight FlightOf(const Flythrough& flight) {
@@ -107,7 +108,34 @@ HudAir AirOf(const Flythrough& flight) {
 
 HudAutopilot AutopilotOf(const Pilot& pilot) {
   const AutopilotTargets& held = pilot.autopilot().targets();
-  return {held.heading_rad, held.height_m};
+  return {held.heading_rad, held.height_m, held.speed_m_per_s};
+}
+
+std::string WhiteBalanceOf(const Look& look) {
+  for (const std::string& name : kWhiteBalances) {
+    if (WhiteBalanceFromText(name) == look.white) return name;
+  }
+  return fmt::format("{:.0f} K", look.white.kelvin.value_or(kDaylight_k));
+}
+
+HudExposure ExposureOf(const Flythrough& flight) {
+  const FlightExposure& exposure = flight.exposure();
+  HudExposure shown;
+  shown.ev100 = exposure.ev100.value_or(15.0);
+  shown.locked = exposure.locked;
+  shown.compensation_ev = exposure.compensation_ev;
+  shown.tone_curve = NameOf(flight.look().curve);
+  shown.look = NameOf(flight.look().agx);
+  shown.white_balance = WhiteBalanceOf(flight.look());
+  shown.white_k = flight.white_k();
+  return shown;
+}
+
+// In the words of the keys that enter them.
+std::vector<Action> ModesOf(const Pilot& pilot) {
+  std::vector<Action> modes{Action::kFreeMode, Action::kAircraftMode};
+  if (pilot.HasTrack()) modes.push_back(Action::kTrackMode);
+  return modes;
 }
 
 std::vector<HudRow> TablesOf(const Flythrough& flight) {
@@ -167,9 +195,8 @@ HudModel FlightDeck::Model() const {
   model.longitude_rad = flight_.eye().place.longitude_rad;
   model.time = TimeOf(flight_);
   model.sky = SkyOf(flight_);
-  const FlightExposure& exposure = flight_.exposure();
-  model.exposure = {exposure.ev100.value_or(15.0), exposure.locked, exposure.compensation_ev,
-                    cursor_cd_per_m2_, NameOf(flight_.curve())};
+  model.exposure = ExposureOf(flight_);
+  model.exposure.cursor_luminance_cd_per_m2 = cursor_cd_per_m2_;
   model.air = AirOf(flight_);
   model.speed = {frame_ms_, flight_.QualityText()};
   for (const Message& message : messages_)
@@ -183,16 +210,17 @@ HudModel FlightDeck::Model() const {
 
 HudChoices FlightDeck::Choices() const {
   HudChoices choices;
-  for (const NamedPlace& place : NamedPlaces()) choices.places.push_back(place.name);
+  for (const Action mode : ModesOf(flight_.cockpit().pilot()))
+    choices.modes.emplace_back(RowOf(mode).does);
   for (const SkyEvent event : kSkyEvents) choices.moments.emplace_back(NameOf(event));
   choices.planets = MediumPresetNames();
   choices.tone_curves = kCurves;
+  choices.looks = AgxLookNames();
+  choices.white_balances = kWhiteBalances;
   choices.qualities = kQualities;
   choices.lamps = {{"landing light", landing_light_}};
   choices.table_heading = {"", "made in", "memory"};
   choices.tables = TablesOf(flight_);
-  for (const ActionRow& row : ActionTable())
-    choices.help.push_back({KeysText(row), std::string(row.does)});
   return choices;
 }
 
@@ -364,6 +392,28 @@ void FlightDeck::ServeAir(const HudAirRequest& asked) {
     flight_.Use(choice);
 }
 
+void FlightDeck::ServeLook(const HudRequest& asked) {
+  Look look = flight_.look();
+  if (asked.tone_curve) look.curve = ToneCurveFromName(*asked.tone_curve);
+  if (asked.look) look.agx = AgxLookFromName(*asked.look);
+  if (asked.white_balance) look.white = WhiteBalanceFromText(*asked.white_balance);
+  if (look != flight_.look()) flight_.Use(look);
+}
+
+void FlightDeck::ServeFlight(const HudRequest& asked) {
+  Pilot& pilot = flight_.cockpit().pilot();
+  for (const Action mode : ModesOf(pilot)) {
+    if (asked.mode == RowOf(mode).does) Say(flight_.Do(mode).value_or(""));
+  }
+  if (asked.throttle) pilot.SetThrottle(*asked.throttle);
+  AutopilotTargets targets = pilot.autopilot().targets();
+  if (asked.hold_heading_rad) targets.heading_rad = asked.hold_heading_rad->value;
+  if (asked.hold_height_m) targets.height_m = asked.hold_height_m->value;
+  if (asked.hold_speed_m_per_s) targets.speed_m_per_s = asked.hold_speed_m_per_s->value;
+  if (asked.hold_heading_rad || asked.hold_height_m || asked.hold_speed_m_per_s)
+    pilot.autopilot().Set(targets);
+}
+
 void FlightDeck::SetLandingLight(bool is_on) {
   landing_light_ = is_on;
   flight_.SetLandingLight(is_on);
@@ -379,16 +429,12 @@ void FlightDeck::Serve(const HudRequest& asked) {
     ServeTime(asked.time);
     ServeAir(asked.air);
     if (asked.lamp) SetLandingLight(asked.lamp->is_on);
-    if (asked.tone_curve) flight_.Use(ToneCurveFromName(*asked.tone_curve));
+    ServeLook(asked);
     if (asked.exposure_locked) flight_.LockExposure(*asked.exposure_locked);
     if (asked.ev100) flight_.SetExposure(*asked.ev100);
     if (asked.compensation_ev) flight_.Compensate(*asked.compensation_ev);
     if (asked.quality) flight_.Use(QualityRuleFromText(*asked.quality));
-    Autopilot& autopilot = flight_.cockpit().pilot().autopilot();
-    AutopilotTargets targets = autopilot.targets();
-    if (asked.hold_heading_rad) targets.heading_rad = asked.hold_heading_rad->value;
-    if (asked.hold_height_m) targets.height_m = asked.hold_height_m->value;
-    if (asked.hold_heading_rad || asked.hold_height_m) autopilot.Set(targets);
+    ServeFlight(asked);
     if (asked.units) units_ = *asked.units;
     if (asked.capture) Capture(*asked.capture);
     if (asked.record) Record(*asked.record);

@@ -57,6 +57,8 @@ class FlightDeck {
   void Do(Action action, const ImageSize& size);
   void ServeTime(const HudTimeRequest& asked);
   void ServeAir(const HudAirRequest& asked);
+  void ServeLook(const HudRequest& asked);
+  void ServeFlight(const HudRequest& asked);
   void Capture(const HudCaptureRequest& asked);
   void Screenshot(const char* extension, const ImageSize& size);
   void Record(bool records);

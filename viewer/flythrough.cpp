@@ -401,11 +401,17 @@ Metadata Flythrough::PictureHeader(const ImageSize& size) const {
   return metadata;
 }
 
-void Flythrough::Use(ToneCurve curve) {
-  look_.curve = curve;
-  Look shown = darkroom_.developer().look();
-  shown.curve = curve;
-  darkroom_.developer().Use(shown);
+void Flythrough::Use(const Look& look) {
+  if (look.white != look_.white) {
+    white_.reset();  // nothing adapts from one rule to another
+    metered_.reset();
+  }
+  look_ = look;
+}
+
+std::optional<double> Flythrough::white_k() const {
+  if (!white_) return std::nullopt;
+  return white_->IsDaylight() ? std::optional(kDaylight_k) : white_->kelvin;
 }
 
 double Flythrough::AdaptedTo(double metered_ev100, double seconds) {

@@ -90,7 +90,8 @@ class Flythrough {
   [[nodiscard]] std::string JumpTo(SkyEvent event);
 
   void Use(const QualityRule& rule);
-  void Use(ToneCurve curve);
+  /// Another look, from the next picture on; its white balance is not settled.
+  void Use(const Look& look);
   void Use(const AirChoice& choice);
   /// Another planet by the name of a preset, with the changes that were made to the last one.
   void UsePlanet(const std::string& preset);
@@ -143,7 +144,10 @@ class Flythrough {
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const AirChoice& air_choice() const { return air_; }
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
-  [[nodiscard]] ToneCurve curve() const { return look_.curve; }
+  /// As asked for: its white balance is not settled.
+  [[nodiscard]] const Look& look() const { return look_; }
+  /// Of the light that is shown as white; nothing before the first picture.
+  [[nodiscard]] std::optional<double> white_k() const;
   /// Height of the ground under a place; of the bare planet where there is no land.
   [[nodiscard]] GroundHeight Ground() const;
   /// Whether the eye stands where it was put: over the ground there, or where there is none. Until

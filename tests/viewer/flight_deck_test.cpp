@@ -20,7 +20,8 @@ using ::testing::HasSubstr;
 
 constexpr ImageSize kSize{320, 240};
 // Of GLFW.
-constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262;
+constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262,
+              kEscape = 256, kEnterKey = 257;
 
 class FlightDeckTest : public tests::Headless {
  protected:
@@ -181,7 +182,7 @@ TEST_F(FlightDeckTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
     EXPECT_NEAR(again[i].eye.heading_rad, flown[i + 1].eye.heading_rad, 1e-3);
   }
   const std::vector<Moment> on = Fly(40);
-  EXPECT_EQ(deck_->Model().flight.mode, "free");
+  EXPECT_EQ(deck_->Model().flight.mode, "free camera");
   EXPECT_THAT(Messages().back().text, HasSubstr("ends"));
   EXPECT_GT(Apart_m(on.back().eye, flown.back().eye), 100.0) << "the key is still held";
   EXPECT_LT(Apart_m(on.back().eye, flown.back().eye), 20 * 20.0) << "but was not while it replayed";
@@ -209,7 +210,7 @@ TEST_F(FlightDeckTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
   EXPECT_TRUE(Messages().back().is_warning);
   EXPECT_THAT(Messages().back().text, HasSubstr("nothing has been flown"));
   EXPECT_EQ(flight_->eye(), before);
-  EXPECT_EQ(deck_->Model().flight.mode, "free");
+  EXPECT_EQ(deck_->Model().flight.mode, "free camera");
 }
 
 TEST_F(FlightDeckFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
@@ -385,6 +386,73 @@ TEST_F(FlightDeckTest, EachMomentOfThePanelIsTheOneThatItNames) {
     EXPECT_THAT(FormatUtc(flight_->now()), ::testing::StartsWith(time)) << moment;
     EXPECT_EQ(Messages().back().text, moment);
   }
+}
+
+TEST_F(FlightDeckTest, ThePanelEntersTheModesThatThereAre) {
+  HudRequest request;
+  request.mode = "aircraft";
+  deck_->Serve(request);
+  EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kAircraft);
+  request.mode = "follow the track";
+  deck_->Serve(request);
+  EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kAircraft) << "there is no track";
+  request.mode = "free camera";
+  deck_->Serve(request);
+  EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kFree);
+}
+
+TEST_F(FlightDeckTest, ThePanelSetsThrottleAndHeldSpeedOfTheAircraft) {
+  HudRequest throttle, speed;
+  throttle.throttle = 0.25;
+  speed.hold_speed_m_per_s = HudHold{55.0};
+  deck_->Serve(throttle);
+  EXPECT_FALSE(deck_->Model().flight.throttle) << "the free camera has none";
+  Press('2');
+  deck_->Serve(throttle);
+  EXPECT_EQ(deck_->Model().flight.throttle, 0.25);
+  deck_->Serve(speed);
+  EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, 55.0);
+  deck_->Serve(throttle);
+  EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, std::nullopt) << "a hand has the throttle";
+}
+
+TEST_F(FlightDeckTest, ThePanelSetsLookAndWhiteBalance) {
+  flight_->SetExposure(14.0);
+  const DisplayImage photo = Shown();
+  HudRequest request;
+  request.look = "none";
+  deck_->Serve(request);
+  EXPECT_EQ(deck_->Model().exposure.look, "none");
+  const DisplayImage none = Shown();
+  EXPECT_GT(Changed(photo, none), 10000);
+  request = {};
+  request.white_balance = "3000";
+  deck_->Serve(request);
+  EXPECT_EQ(deck_->Model().exposure.look, "none") << "the rest stays";
+  EXPECT_EQ(deck_->Model().exposure.white_balance, "3000 K");
+  EXPECT_GT(Changed(none, Shown()), 10000) << "bluer";
+  EXPECT_EQ(deck_->Model().exposure.white_k, 3000.0);
+  request.white_balance = "daylight";
+  deck_->Serve(request);
+  EXPECT_LT(Changed(none, Shown()), 4000) << "daylight, as camera is by day; instruments changed";
+  EXPECT_EQ(deck_->Model().exposure.white_balance, "daylight");
+}
+
+TEST_F(FlightDeckTest, EscAsksAndEnterLeaves) {
+  Press(kEscape);
+  EXPECT_FALSE(deck_->quit());
+  static_cast<void>(Fly(2));
+  Press(kEnterKey);
+  EXPECT_TRUE(deck_->quit());
+}
+
+TEST_F(FlightDeckTest, EscTwiceStays) {
+  Press(kEscape);
+  static_cast<void>(Fly(2));
+  Press(kEscape);
+  Press(kEnterKey);
+  static_cast<void>(Fly(2));
+  EXPECT_FALSE(deck_->quit());
 }
 
 TEST_F(FlightDeckTest, MessagesGoAfterAWhile) {

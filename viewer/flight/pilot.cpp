@@ -198,6 +198,14 @@ void Pilot::Lift(double height_m, const GroundHeight& ground) {
   Show(ground);
 }
 
+void Pilot::SetThrottle(double share) {
+  if (mode_ != FlightMode::kAircraft) return;
+  aircraft_.throttle = shown_.throttle = std::clamp(share, 0.0, 1.0);
+  AutopilotTargets targets = autopilot_.targets();
+  targets.speed_m_per_s.reset();
+  autopilot_.Set(targets);
+}
+
 void Pilot::ToggleHold(Autopilot::Hold hold) {
   if (mode_ != FlightMode::kAircraft) return;
   autopilot_.Toggle(hold, ReadoutOf(aircraft_, kind_, ellipsoid_),

@@ -84,6 +84,8 @@ class Pilot {
   /// Up by so much; in the aircraft with enough speed to fly on. A track stays where it is.
   void Lift(double height_m, const GroundHeight& ground);
 
+  /// Opens the throttle to a share, clamped to [0, 1], and lets go of the speed; in aircraft mode.
+  void SetThrottle(double share);
   /// In aircraft mode; elsewhere nothing is held.
   void ToggleHold(Autopilot::Hold hold);
   void ReleaseAutopilot() { autopilot_.Release(); }

@@ -185,6 +185,19 @@ std::vector<const NamedPlace*> FindPlaces(std::string_view text, std::size_t mos
   return found;
 }
 
+std::vector<const NamedPlace*> PlacesByName(std::string_view text) {
+  std::vector<Ranked> ranked = RankedPlaces(text);
+  if (Folded(text).empty()) {
+    for (const NamedPlace& place : NamedPlaces()) ranked.push_back({0, &place});
+  }
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return std::pair(a.rank, Folded(a.place->name)) < std::pair(b.rank, Folded(b.place->name));
+  });
+  std::vector<const NamedPlace*> places;
+  for (const Ranked& one : ranked) places.push_back(one.place);
+  return places;
+}
+
 const NamedPlace& PlaceNamed(std::string_view text) {
   const std::vector<Ranked> ranked = RankedPlaces(text);
   if (ranked.empty()) FailUnknown(text);

@@ -34,6 +34,10 @@ struct NamedPlace {
 [[nodiscard]] std::vector<const NamedPlace*> FindPlaces(std::string_view text,
                                                         std::size_t most = 10);
 
+/// Those that FindPlaces finds, by name among equals; all by name for a text without letters. Names
+/// are in alphabetical order without their accents.
+[[nodiscard]] std::vector<const NamedPlace*> PlacesByName(std::string_view text);
+
 /// The one that is meant: by its code, its whole name, or a beginning that only one has. Throws
 /// InputError otherwise, with the names that could be meant.
 [[nodiscard]] const NamedPlace& PlaceNamed(std::string_view text);

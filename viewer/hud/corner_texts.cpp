@@ -29,12 +29,15 @@ std::string AutopilotText(const HudModel& model) {
   if (model.autopilot.heading_rad) text += " heading " + HeadingText(*model.autopilot.heading_rad);
   if (model.autopilot.height_m)
     text += " height " + Joined(HeightText(*model.autopilot.height_m, model.units));
+  if (model.autopilot.speed_m_per_s)
+    text += " speed " + Joined(SpeedText(*model.autopilot.speed_m_per_s, model.units));
   return text;
 }
 
 Lines FlightLines(const HudModel& model) {
   Lines lines = ModeLines(model);
-  if (model.autopilot.heading_rad || model.autopilot.height_m)
+  const HudAutopilot& held = model.autopilot;
+  if (held.heading_rad || held.height_m || held.speed_m_per_s)
     lines.push_back(AutopilotText(model));
   if (model.flight.throttle)
     lines.push_back(fmt::format("throttle {:.0f} %", 100.0 * *model.flight.throttle));
@@ -106,11 +109,17 @@ struct Corner {
   bool right, lower;
 };
 
+constexpr double kEdge = 3.0;    // from the edges of the picture to plates [units]
+constexpr double kMargin = 4.0;  // from the edges of plates to texts [units]
+
+double HeightOf(const Canvas& canvas, const Lines& lines) {
+  return static_cast<double>(lines.size()) * canvas.LineHeight() + 2.0 * canvas.Pixels(kMargin);
+}
+
 void DrawBlock(const Canvas& canvas, const Corner& corner, const Lines& lines) {
   if (lines.empty()) return;
-  const double margin = canvas.Pixels(4.0);
-  const glm::dvec2 size{WidestOf(canvas, lines) + 2.0 * margin,
-                        static_cast<double>(lines.size()) * canvas.LineHeight() + 2.0 * margin};
+  const double margin = canvas.Pixels(kMargin);
+  const glm::dvec2 size{WidestOf(canvas, lines) + 2.0 * margin, HeightOf(canvas, lines)};
   const glm::dvec2 from{corner.at.x - (corner.right ? size.x : 0.0),
                         corner.at.y - (corner.lower ? size.y : 0.0)};
   canvas.Plate(from, from + size);
@@ -172,8 +181,12 @@ CornerTexts ShortCornerTextsOf(const HudModel& model) {
           {ExposureText(model.exposure), FrameText(model.speed)}};
 }
 
+double BottomOfClock(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts) {
+  return frame.top + canvas.Pixels(kEdge) + HeightOf(canvas, texts.upper_right);
+}
+
 void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts) {
-  const double edge = canvas.Pixels(3.0);
+  const double edge = canvas.Pixels(kEdge);
   const double left = edge, right = frame.width - edge;
   const double top = frame.top + edge, bottom = frame.height - edge;
   DrawBlock(canvas, {{left, top}, false, false}, texts.upper_left);

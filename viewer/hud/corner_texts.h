@@ -19,6 +19,10 @@ struct CornerTexts {
 /// The same for small pictures: a line or two each.
 [[nodiscard]] CornerTexts ShortCornerTextsOf(const HudModel& model);
 
+/// Where the plate of the upper right corner ends, the clock's [pixels from the upper edge].
+[[nodiscard]] double BottomOfClock(const Canvas& canvas, const HudFrame& frame,
+                                   const CornerTexts& texts);
+
 void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts);
 
 /// Messages, progress of loading and warnings, in the lower middle.

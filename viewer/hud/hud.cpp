@@ -81,9 +81,10 @@ HudRequest Hud::Update(const HudModel& model, const HudChoices& choices, const D
   TellInput(ImGui::GetIO(), input);
   ImGui::NewFrame();
   const Canvas canvas(*ImGui::GetBackgroundDrawList(), ColoursOf(theme_), scale_);
-  DrawInstruments(canvas, {input.width, input.height, panels_.MenuHeight()}, model);
-  HudRequest request =
-      panels_.Draw({model, choices, strip, theme_, choice_, scale_, input.width, input.height});
+  const HudFrame frame{input.width, input.height, panels_.MenuHeight()};
+  DrawInstruments(canvas, frame, model);
+  HudRequest request = panels_.Draw({model, choices, strip, theme_, choice_, scale_, input.width,
+                                     input.height, ClockHeight(canvas, frame, model)});
   if (request.theme) choice_ = *request.theme;
   ImGui::Render();
   return request;

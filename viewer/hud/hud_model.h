@@ -17,7 +17,7 @@ struct HudDirection {
 };
 
 struct HudFlight {
-  std::string mode;  // "free", "aircraft", "replay", ...
+  std::string mode;  // "free camera", "light aircraft", "replay", ...
   double heading_rad = 0.0;
   double pitch_rad = 0.0;
   double roll_rad = 0.0;                // clockwise seen from behind
@@ -34,9 +34,11 @@ struct HudFlight {
   bool stall = false;
 };
 
+/// What is held.
 struct HudAutopilot {
-  std::optional<double> heading_rad = {};  // held
-  std::optional<double> height_m = {};     // held
+  std::optional<double> heading_rad = {};
+  std::optional<double> height_m = {};
+  std::optional<double> speed_m_per_s = {};
 };
 
 struct HudTime {
@@ -65,7 +67,10 @@ struct HudExposure {
   bool locked = false;
   double compensation_ev = 0.0;  // added to what the meter says; over 0 is brighter
   std::optional<double> cursor_luminance_cd_per_m2 = {};
-  std::string tone_curve;  // one of HudChoices::tone_curves
+  std::string tone_curve;              // one of HudChoices::tone_curves
+  std::string look;                    // one of HudChoices::looks; of the curve agx
+  std::string white_balance;           // one of HudChoices::white_balances, or "5600 K"
+  std::optional<double> white_k = {};  // of the light that is shown as white
 };
 
 struct HudAir {
@@ -118,26 +123,20 @@ struct HudLamp {
   bool is_on = true;
 };
 
-/// What a key does.
-struct HudKeyHelp {
-  std::string key, action;
-};
-
 /// A row of a table: "sky view", "64 x 104", "0.2 %", ...; columns as in its heading.
 using HudRow = std::vector<std::string>;
 
 /// What panels offer and list; changes rarely.
 struct HudChoices {
-  std::vector<std::string> places;    // names
+  std::vector<std::string> modes;     // of flight
   std::vector<std::string> moments;   // "sunrise", "noon", "moonrise", ...
   std::vector<std::string> planets;   // presets of the atmosphere
   std::vector<std::string> mixtures;  // of aerosol; none: there is no list of them
-  std::vector<std::string> tone_curves;
+  std::vector<std::string> tone_curves, looks, white_balances;
   std::vector<std::string> qualities;  // "auto", "low", ...
   std::vector<HudLamp> lamps;
   HudRow table_heading;
   std::vector<HudRow> tables;  // of the viewer: size, age, error
-  std::vector<HudKeyHelp> help;
 };
 
 }  // namespace alpenglow

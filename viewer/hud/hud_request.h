@@ -56,17 +56,23 @@ struct HudCaptureRequest {
 
 struct HudRequest {
   std::optional<HudPlaceRequest> place = {};
-  std::optional<std::string> named_place = {};  // one of HudChoices::places
+  std::optional<std::string> named_place = {};  // as PlaceNamed (places.h) reads it
   HudTimeRequest time;
   HudAirRequest air;
   std::optional<HudLampRequest> lamp = {};
   std::optional<std::string> tone_curve = {};
+  std::optional<std::string> look = {};
+  std::optional<std::string> white_balance =
+      {};  // as WhiteBalanceFromText (white_balance.h) reads it
   std::optional<bool> exposure_locked = {};
   std::optional<double> ev100 = {};  // and locked at it
   std::optional<double> compensation_ev = {};
   std::optional<std::string> quality = {};
+  std::optional<std::string> mode = {};
+  std::optional<double> throttle = {};  // share, [0, 1]
   std::optional<HudHold> hold_heading_rad = {};
   std::optional<HudHold> hold_height_m = {};
+  std::optional<HudHold> hold_speed_m_per_s = {};
   std::optional<HudCaptureRequest> capture = {};
   std::optional<bool> record = {};  // begin or end
   std::optional<HudUnits> units = {};

@@ -18,4 +18,7 @@ struct HudFrame {
 /// Draws them. Pictures of less than 800 x 540 units get numbers instead of tapes.
 void DrawInstruments(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
+/// Height of the part of the picture that the clock needs, the menu's included [pixels].
+[[nodiscard]] int ClockHeight(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
+
 }  // namespace alpenglow

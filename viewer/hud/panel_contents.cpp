@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/hud/panel_contents.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "lut/picture/image.h"
+#include "lut/picture/white_balance.h"
 #include "viewer/hud/hud_text.h"
 #include "viewer/hud/panel_parts.h"
+#include "viewer/hud/place_search.h"
 
 namespace alpenglow {
 namespace {
@@ -85,21 +90,46 @@ std::optional<HudPlaceRequest> PlaceControls(const PanelView& view, PanelTyping&
                          height};
 }
 
-// A check box that holds what the eye has now, and a slider for what is held.
-std::optional<HudHold> HoldControl(const char* name, const std::optional<double>& held, double now,
-                                   const SliderRange& range) {
+/// What can be held: how it is called, what its slider shows for one of SI, and the slider's range.
+struct Holdable {
+  const char* name;
+  double per_si;
+  SliderRange range;
+};
+
+// A check box that holds what the eye has now, and a slider for what is held. All in SI.
+std::optional<HudHold> HoldControl(const Holdable& what, const std::optional<double>& held,
+                                   double now) {
+  const double shown = what.per_si * held.value_or(now);
   std::optional<HudHold> request;
-  ImGui::PushID(name);
-  if (const auto on = CheckBox(name, held.has_value()))
-    request = HudHold{*on ? std::optional(std::clamp(now, range.low, range.high)) : std::nullopt};
-  if (const auto value = Slider("##held", held.value_or(now), range)) request = HudHold{*value};
+  ImGui::PushID(what.name);
+  if (const auto on = CheckBox(what.name, held.has_value())) {
+    const double value = std::clamp(shown, what.range.low, what.range.high) / what.per_si;
+    request = HudHold{*on ? std::optional(value) : std::nullopt};
+  }
+  if (const auto value = Slider("##held", shown, what.range))
+    request = HudHold{*value / what.per_si};
   ImGui::PopID();
   return request;
 }
 
-std::optional<HudHold> Scaled(std::optional<HudHold> hold, double factor) {
-  if (hold && hold->value) hold->value = *hold->value * factor;
-  return hold;
+HudRequest WithHolds(const HudModel& model, HudRequest request) {
+  constexpr double kHighest_m = 20000.0, kSlowest_m_per_s = 25.0, kFastest_m_per_s = 280.0;
+  const HudAutopilot& held = model.autopilot;
+  const double turns = model.flight.heading_rad / (2.0 * kPi);
+  request.hold_heading_rad =
+      HoldControl({"hold heading", 1.0 / kRadiansPerDegree, {0.0, 360.0, "%03.0f°"}},
+                  held.heading_rad, 2.0 * kPi * (turns - std::floor(turns)));
+  const Quantity height = HeightText(0.0, model.units), speed = SpeedText(0.0, model.units);
+  const std::string in_heights = "%.0f " + height.unit, in_speeds = "%.0f " + speed.unit;
+  request.hold_height_m = HoldControl(
+      {"hold height", height.per_si, {0.0, kHighest_m * height.per_si, in_heights.c_str()}},
+      held.height_m, model.flight.height_m);
+  const SliderRange speeds{kSlowest_m_per_s * speed.per_si, kFastest_m_per_s * speed.per_si,
+                           in_speeds.c_str()};
+  request.hold_speed_m_per_s = HoldControl({"hold speed", speed.per_si, speeds}, held.speed_m_per_s,
+                                           model.flight.ground_speed_m_per_s);
+  return request;
 }
 
 void ShowRow(const HudRow& row) {
@@ -108,6 +138,17 @@ void ShowRow(const HudRow& row) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(cell.c_str());
   }
+}
+
+// One of the names, or a light that is chosen by its temperature.
+HudRequest WithWhiteBalance(const PanelView& view, HudRequest request) {
+  const HudExposure& exposure = view.model.exposure;
+  request.white_balance =
+      NameList("white balance", exposure.white_balance, view.choices.white_balances);
+  if (const auto kelvin = Slider("white light", exposure.white_k.value_or(kDaylight_k),
+                                 {kWarmestWhite_k, kCoolestWhite_k, "%.0f K", true}))
+    request.white_balance = fmt::format("{:.0f}", *kelvin);
+  return request;
 }
 
 std::optional<HudThemeChoice> ThemeList(HudThemeChoice current) {
@@ -146,8 +187,8 @@ std::optional<HudCaptureRequest> PictureButtons(const PanelTyping& typing) {
 HudRequest WithPlaceAndTime(const PanelView& view, PanelTyping& typing, HudRequest request) {
   request.time = TimeControls(view, typing);
   ImGui::Separator();
+  request.named_place = PlaceSearch(typing.place_name, StripWidth_px(view));
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  request.named_place = NameList("place", "choose", view.choices.places);
   request.place = PlaceControls(view, typing);
   ImGui::PopItemWidth();
   return request;
@@ -161,7 +202,8 @@ HudRequest WithAir(const PanelView& view, HudRequest request) {
       Slider("visibility", air.visibility_km, {1.0, 400.0, "%.3g km", true});
   if (!view.choices.mixtures.empty())
     request.air.mixture = NameList("aerosol", air.mixture, view.choices.mixtures);
-  request.air.aerosol_scale = Slider("its amount", air.aerosol_scale, {0.01, 10.0, "x %.2f", true});
+  request.air.aerosol_scale =
+      Slider("amount of aerosol", air.aerosol_scale, {0.01, 10.0, "x %.2f", true});
   request.air.ozone_du = Slider("ozone", air.ozone_du, {0.0, 600.0, "%.0f DU"});
   request.air.ground_albedo = Slider("ground albedo", air.ground_albedo, {0.0, 1.0, "%.2f"});
   ImGui::PopItemWidth();
@@ -187,6 +229,9 @@ HudRequest WithExposure(const PanelView& view, HudRequest request) {
   request.ev100 = Slider("EV at ISO 100", exposure.ev100, {kDarkestEv100, kBrightestEv100, "%.1f"});
   request.compensation_ev = Slider("compensation", exposure.compensation_ev, {-5.0, 5.0, "%+.1f"});
   request.tone_curve = NameList("tone curve", exposure.tone_curve, view.choices.tone_curves);
+  if (exposure.tone_curve == "agx")
+    request.look = NameList("look", exposure.look, view.choices.looks);
+  request = WithWhiteBalance(view, std::move(request));
   request.theme = ThemeList(view.theme_choice);
   ImGui::PopItemWidth();
   return request;
@@ -195,16 +240,15 @@ HudRequest WithExposure(const PanelView& view, HudRequest request) {
 HudRequest WithFlight(const PanelView& view, HudRequest request) {
   const HudModel& model = view.model;
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  const auto held_deg = model.autopilot.heading_rad
-                            ? std::optional(Degrees(*model.autopilot.heading_rad))
-                            : std::nullopt;
-  const double heading_deg = Degrees(model.flight.heading_rad);
-  request.hold_heading_rad = Scaled(
-      HoldControl("hold heading", held_deg, heading_deg - 360.0 * std::floor(heading_deg / 360.0),
-                  {0.0, 360.0, "%03.0f°"}),
-      kRadiansPerDegree);
-  request.hold_height_m = HoldControl("hold height", model.autopilot.height_m,
-                                      model.flight.height_m, {0.0, 20000.0, "%.0f m"});
+  request.mode = NameList("mode", model.flight.mode, view.choices.modes);
+  if (model.flight.throttle) {
+    if (const auto percent =
+            Slider("throttle", 100.0 * *model.flight.throttle, {0.0, 100.0, "%.0f %%"}))
+      request.throttle = 0.01 * *percent;
+    request = WithHolds(model, std::move(request));
+  } else {
+    ImGui::TextUnformatted("Throttle and autopilot: in the aircraft.");
+  }
   if (const auto aviation = CheckBox("feet and knots", model.units == HudUnits::kAviation))
     request.units = *aviation ? HudUnits::kAviation : HudUnits::kMetric;
   ImGui::PopItemWidth();
@@ -230,12 +274,6 @@ HudRequest WithCapture(const PanelView& view, PanelTyping& typing, HudRequest re
   request.record = CheckBox("record the flight", view.model.recording);
   ImGui::PopItemWidth();
   return request;
-}
-
-void ShowHelp(const PanelView& view) {
-  if (!ImGui::BeginTable("keys", 2, kTableFlags)) return;
-  for (const HudKeyHelp& row : view.choices.help) ShowRow({row.key, row.action});
-  ImGui::EndTable();
 }
 
 }  // namespace alpenglow

@@ -23,11 +23,12 @@ struct PanelView {
   HudThemeChoice theme_choice;
   double scale;       // pixels a unit
   int width, height;  // of the picture [pixels]
+  int top;            // of it that panels leave free: menu and clock [pixels]
 };
 
 /// Texts and numbers that are typed before they are asked for.
 struct PanelTyping {
-  std::array<char, 64> instant{};
+  std::array<char, 64> instant{}, place_name{};
   std::array<double, 3> place{};  // latitude and longitude [deg], height [m]
   bool is_place_typed = false;    // else it follows the eye
   std::array<int, 2> picture_size{};
@@ -44,6 +45,5 @@ struct PanelTyping {
 [[nodiscard]] HudRequest WithTables(const PanelView& view, HudRequest request);
 [[nodiscard]] HudRequest WithCapture(const PanelView& view, PanelTyping& typing,
                                      HudRequest request);
-void ShowHelp(const PanelView& view);
 
 }  // namespace alpenglow

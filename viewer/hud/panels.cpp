@@ -6,25 +6,51 @@
 #include <algorithm>
 #include <utility>
 
+#include "viewer/hud/key_help.h"
+
 namespace alpenglow {
 namespace {
 
-/// Where a panel appears: this share of the free picture, the same share of the panel put there.
+/// Where a panel appears: this share of what is free, the same share of the panel put there.
 struct Placement {
   HudPanel panel;
   const char* name;
   float x, y;
 };
 constexpr std::array<Placement, kHudPanels> kPlacements{
-    {{HudPanel::kPlaceAndTime, "Place and time", 0.0F, 0.06F},
-     {HudPanel::kAir, "Air", 1.0F, 0.06F},
+    {{HudPanel::kPlaceAndTime, "Place and time", 0.0F, 0.0F},
+     {HudPanel::kAir, "Air", 1.0F, 0.0F},
      {HudPanel::kLights, "Lights", 1.0F, 0.50F},
-     {HudPanel::kExposure, "Exposure", 1.0F, 0.94F},
-     {HudPanel::kFlight, "Flight", 0.0F, 0.94F},
-     {HudPanel::kTables, "Tables", 0.50F, 0.94F},
-     {HudPanel::kCapture, "Capture", 0.50F, 0.10F},
+     {HudPanel::kExposure, "Exposure", 1.0F, 1.0F},
+     {HudPanel::kFlight, "Flight", 0.0F, 1.0F},
+     {HudPanel::kTables, "Tables", 0.50F, 1.0F},
+     {HudPanel::kCapture, "Capture", 0.50F, 0.0F},
      {HudPanel::kHelp, "Help", 0.50F, 0.50F},
      {HudPanel::kLeave, "Leave", 0.50F, 0.50F}}};
+
+/// The part of the picture that panels may cover [pixels].
+struct FreeArea {
+  ImVec2 from, size;
+
+  explicit FreeArea(const PanelView& view) {
+    const auto margin = static_cast<float>(kPanelMargin * view.scale);
+    from = {margin, static_cast<float>(view.top) + margin};
+    size = {static_cast<float>(view.width) - from.x - margin,
+            static_cast<float>(view.height) - from.y - margin};
+  }
+};
+
+// Puts the window that is begun back into the area, unless a hand is moving it.
+void KeepInside(const FreeArea& area) {
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  const auto kept = [](float begin, float length, float from, float room) {
+    return std::max(std::min(begin, from + room - length), from);
+  };
+  const ImVec2 inside{kept(at.x, size.x, area.from.x, area.size.x),
+                      kept(at.y, size.y, area.from.y, area.size.y)};
+  if (inside.x != at.x || inside.y != at.y) ImGui::SetWindowPos(inside);
+}
 
 /// A window of Dear ImGui: begun here, ended with it.
 class Shown {
@@ -44,9 +70,11 @@ class Shown {
   bool visible_;
 };
 
+// Enter leaves too, where no text is typed.
 bool AskToLeave() {
-  ImGui::TextUnformatted("Leave the flight?");
-  return ImGui::Button("leave");
+  ImGui::TextUnformatted("Leave the flight? Enter leaves, Esc stays.");
+  const bool enters = ImGui::IsKeyPressed(ImGuiKey_Enter, false) && !ImGui::GetIO().WantTextInput;
+  return ImGui::Button("leave") || enters;
 }
 
 }  // namespace
@@ -83,7 +111,7 @@ HudRequest Panels::Contents(HudPanel panel, const PanelView& view, HudRequest re
     case HudPanel::kCapture:
       return WithCapture(view, typing_, std::move(request));
     case HudPanel::kHelp:
-      ShowHelp(view);
+      ShowKeyHelp(view);
       return request;
     case HudPanel::kLeave:
       request.quit = AskToLeave();
@@ -94,15 +122,18 @@ HudRequest Panels::Contents(HudPanel panel, const PanelView& view, HudRequest re
 
 HudRequest Panels::DrawPanel(HudPanel panel, const PanelView& view, HudRequest request) {
   const Placement& placement = kPlacements[static_cast<std::size_t>(panel)];
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const auto menu = static_cast<float>(MenuHeight());
+  const FreeArea area(view);
   const ImVec2 share{placement.x, placement.y};
-  const auto margin = static_cast<float>(kPanelMargin * view.scale);
-  const ImVec2 free{size.x - 2.0F * margin, size.y - menu - 2.0F * margin};
-  ImGui::SetNextWindowPos({margin + share.x * free.x, menu + margin + share.y * free.y},
-                          resized_ ? ImGuiCond_Always : ImGuiCond_Appearing, share);
-  ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, free);
+  ImGui::SetNextWindowPos(
+      {area.from.x + share.x * area.size.x, area.from.y + share.y * area.size.y},
+      resized_ ? ImGuiCond_Always : ImGuiCond_Appearing, share);
+  ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, area.size);
   const Shown window(placement.name, &Open(panel));
+  // Until then Dear ImGui measures it and keeps where it is to appear.
+  constexpr int kMeasured = 3;
+  int& frames = frames_[static_cast<std::size_t>(panel)];
+  frames = ImGui::IsWindowAppearing() ? 0 : std::min(frames + 1, kMeasured);
+  if (frames == kMeasured) KeepInside(area);
   return window.visible() ? Contents(panel, view, std::move(request)) : request;
 }
 

@@ -43,6 +43,7 @@ class Panels {
   [[nodiscard]] HudRequest Contents(HudPanel panel, const PanelView& view, HudRequest request);
 
   std::array<bool, kHudPanels> open_{};
+  std::array<int, kHudPanels> frames_{};  // since it appeared
   bool menu_ = false;
   PanelTyping typing_;
   std::array<int, 2> picture_{};  // size of the last one [pixels]

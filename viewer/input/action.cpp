@@ -20,11 +20,29 @@ static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
 constexpr Modes kAll{true, true, true}, kFree{true, false, false}, kAircraft{false, true, false},
     kTrack{false, false, true}, kCockpit{false, true, true}, kNotAircraft{true, false, true};
 constexpr Press kOnce = Press::kOnce, kAgain = Press::kRepeating, kHeld = Press::kHeld;
-constexpr std::string_view kCameraKeys = "Free camera", kAircraftKeys = "Aircraft",
-                           kModeKeys = "Modes and speed", kAutopilotKeys = "Autopilot",
-                           kTimeKeys = "Time", kPictureKeys = "Picture", kProgramKeys = "Program";
+constexpr std::string_view kAllKeys = "Everywhere", kCameraKeys = "Free camera",
+                           kSpeedKeys = "Free camera and track", kTrackKeys = "Track",
+                           kAircraftKeys = "Aircraft", kAutopilotKeys = "Autopilot of the aircraft",
+                           kTimeKeys = "Time", kViewKeys = "View, air and light",
+                           kExposureKeys = "Exposure", kCaptureKeys = "Capture and replay",
+                           kWindowKeys = "Window";
 
 constexpr ActionRow kActionRows[] = {
+    {Action::kFreeMode, kOnce, kAll, kAllKeys, "free camera", "1, Ctrl+V", ""},
+    {Action::kAircraftMode, kOnce, kAll, kAllKeys, "aircraft", "2", ""},
+    {Action::kTrackMode, kOnce, kAll, kAllKeys, "follow the track", "3", ""},
+    {Action::kNextMode, kOnce, kAll, kAllKeys, "next mode", "V", ""},
+    {Action::kPreviousMode, kOnce, kAll, kAllKeys, "previous mode", "Shift+V", ""},
+    {Action::kCentre, kOnce, kAll, kAllKeys, "centre the stick and look ahead, level",
+     "5, Keypad 5", ""},
+    {Action::kHigher, kOnce, kAll, kAllKeys, "1000 ft higher", "Ctrl+U", ""},
+    {Action::kHud, kOnce, kAll, kWindowKeys, "hide everything but the picture", "H", ""},
+    {Action::kNightTheme, kOnce, kAll, kWindowKeys, "colours for the night", "Shift+H", ""},
+    {Action::kMouseMode, kOnce, kAll, kWindowKeys, "mouse: cursor, look, fly", "Tab", ""},
+    {Action::kPanels, kOnce, kAll, kWindowKeys, "panels", "F10", ""},
+    {Action::kFullScreen, kOnce, kAll, kWindowKeys, "full screen", "Shift+F10", ""},
+    {Action::kHelp, kOnce, kAll, kWindowKeys, "these keys", "?, F1", ""},
+    {Action::kQuit, kOnce, kAll, kWindowKeys, "close panels; ask whether to leave", "Esc", ""},
     {Action::kForward, kHeld, kFree, kCameraKeys, "fly forward", "W", ""},
     {Action::kBack, kHeld, kFree, kCameraKeys, "fly back", "S", ""},
     {Action::kLeft, kHeld, kFree, kCameraKeys, "fly to the left", "A", ""},
@@ -37,6 +55,14 @@ constexpr ActionRow kActionRows[] = {
     {Action::kTurnRight, kHeld, kFree, kCameraKeys, "turn to the right", "Right, Keypad 6", ""},
     {Action::kLookUp, kHeld, kFree, kCameraKeys, "look up", "Up, Keypad 8", ""},
     {Action::kLookDown, kHeld, kFree, kCameraKeys, "look down", "Down, Keypad 2", ""},
+    {Action::kFaster, kAgain, kNotAircraft, kSpeedKeys, "faster; the mouse wheel too",
+     "+, Keypad +", ""},
+    {Action::kSlower, kAgain, kNotAircraft, kSpeedKeys, "slower; the mouse wheel too",
+     "-, Keypad -", ""},
+    {Action::kTrackAhead, kAgain, kTrack, kTrackKeys, "ten seconds on along the track", "Right",
+     ""},
+    {Action::kTrackBack, kAgain, kTrack, kTrackKeys, "ten seconds back along the track", "Left",
+     ""},
     {Action::kNoseDown, kHeld, kAircraft, kAircraftKeys, "stick forward: nose down", "Up, Keypad 8",
      ""},
     {Action::kNoseUp, kHeld, kAircraft, kAircraftKeys, "stick back: nose up", "Down, Keypad 2", ""},
@@ -52,36 +78,34 @@ constexpr ActionRow kActionRows[] = {
     {Action::kThrottleDown, kHeld, kAircraft, kAircraftKeys, "less throttle", "Page Down, Keypad 3",
      ""},
     {Action::kBrake, kHeld, kAircraft, kAircraftKeys, "brakes of the wheels", "B", ""},
-    {Action::kFaster, kAgain, kNotAircraft, kModeKeys, "fly faster; the mouse wheel too",
-     "+, Keypad +", ""},
-    {Action::kSlower, kAgain, kNotAircraft, kModeKeys, "fly slower; the mouse wheel too",
-     "-, Keypad -", ""},
-    {Action::kFasterFlight, kOnce, kAircraft, kModeKeys, "flight twice as fast, up to 32 times",
+    {Action::kFasterFlight, kOnce, kAircraft, kAircraftKeys, "flight twice as fast, up to 32 times",
      "A", ""},
-    {Action::kSlowerFlight, kOnce, kAircraft, kModeKeys, "flight half as fast, down to real time",
-     "Shift+A", ""},
-    {Action::kTrackAhead, kAgain, kTrack, kModeKeys, "ten seconds on along the track", "Right", ""},
-    {Action::kTrackBack, kAgain, kTrack, kModeKeys, "ten seconds back along the track", "Left", ""},
-    {Action::kCentre, kOnce, kAll, kModeKeys, "centre the stick and look ahead, level",
-     "5, Keypad 5", ""},
-    {Action::kHigher, kOnce, kAll, kModeKeys, "1000 ft higher", "Ctrl+U", ""},
-    {Action::kFreeMode, kOnce, kAll, kModeKeys, "free camera", "1", ""},
-    {Action::kAircraftMode, kOnce, kAll, kModeKeys, "aircraft", "2", ""},
-    {Action::kTrackMode, kOnce, kAll, kModeKeys, "follow the track", "3", ""},
-    {Action::kNextMode, kOnce, kAll, kModeKeys, "next of the three", "V", ""},
-    {Action::kPreviousMode, kOnce, kAll, kModeKeys, "previous of the three", "Shift+V", ""},
-    {Action::kFirstMode, kOnce, kAll, kModeKeys, "back to the free camera", "Ctrl+V", ""},
-    {Action::kHoldHeading, kOnce, kAircraft, kAutopilotKeys,
-     "hold the heading; banking moves what is held", "Ctrl+H", ""},
-    {Action::kHoldAltitude, kOnce, kAircraft, kAutopilotKeys,
-     "hold the height; the stick moves what is held", "Ctrl+A", ""},
-    {Action::kHoldClimb, kOnce, kAircraft, kAutopilotKeys,
-     "hold the vertical speed; the stick moves what is held", "Ctrl+P", ""},
-    {Action::kHoldSpeed, kOnce, kAircraft, kAutopilotKeys,
-     "hold the speed; the throttle moves what is held", "Ctrl+S", ""},
+    {Action::kSlowerFlight, kOnce, kAircraft, kAircraftKeys,
+     "flight half as fast, down to real time", "Shift+A", ""},
+    {Action::kHoldHeading, kOnce, kAircraft, kAutopilotKeys, "hold the heading; banking moves it",
+     "Ctrl+H", ""},
+    {Action::kHoldAltitude, kOnce, kAircraft, kAutopilotKeys, "hold the height; the stick moves it",
+     "Ctrl+A", ""},
+    {Action::kHoldClimb, kOnce, kAircraft, kAutopilotKeys, "hold the climb; the stick moves it",
+     "Ctrl+P", ""},
+    {Action::kHoldSpeed, kOnce, kAircraft, kAutopilotKeys, "hold the speed; the throttle moves it",
+     "Ctrl+S", ""},
     {Action::kLevelWings, kOnce, kAircraft, kAutopilotKeys, "keep the wings level", "Ctrl+W", ""},
-    {Action::kAutopilotOff, kOnce, kAircraft, kAutopilotKeys, "let go of everything", "Backspace",
+    {Action::kAutopilotOff, kOnce, kAircraft, kAutopilotKeys, "hold nothing", "Backspace", ""},
+    {Action::kExposureLock, kOnce, kAll, kExposureKeys, "lock the exposure", "L", ""},
+    {Action::kBrighter, kAgain, kAll, kExposureKeys, "a third of a stop brighter", "K", ""},
+    {Action::kDarker, kAgain, kAll, kExposureKeys, "a third of a stop darker", "Shift+K", ""},
+    {Action::kResetExposure, kOnce, kAll, kExposureKeys, "exposure of the meter", "Ctrl+K", ""},
+    {Action::kNarrowerView, kAgain, kAll, kViewKeys, "narrower view (aircraft: wheel too)", "X",
      ""},
+    {Action::kWiderView, kAgain, kAll, kViewKeys, "wider view (aircraft: wheel too)", "Shift+X",
+     ""},
+    {Action::kResetView, kOnce, kAll, kViewKeys, "view that the scene began with", "Ctrl+X", ""},
+    {Action::kClearer, kAgain, kAll, kViewKeys, "farther visibility", "Z", ""},
+    {Action::kHazier, kAgain, kAll, kViewKeys, "shorter visibility", "Shift+Z", ""},
+    {Action::kResetVisibility, kOnce, kAll, kViewKeys, "visibility of the scene", "Ctrl+Z", ""},
+    {Action::kLandingLight, kOnce, kAll, kViewKeys, "landing light on and off", "Ctrl+L", ""},
+    {Action::kNextQuality, kOnce, kAll, kViewKeys, "next quality", "O", ""},
     {Action::kPause, kOnce, kAll, kTimeKeys, "pause: time, aircraft and track stand", "P", ""},
     {Action::kFasterTime, kAgain, kAll, kTimeKeys, "rate of time up: -3600 to 3600", "T", ""},
     {Action::kSlowerTime, kAgain, kAll, kTimeKeys, "rate of time down, and backwards", "Shift+T",
@@ -100,32 +124,11 @@ constexpr ActionRow kActionRows[] = {
     {Action::kToDusk, kOnce, kAll, kTimeKeys, "on to dusk", "F8", ""},
     {Action::kToMoonrise, kOnce, kAll, kTimeKeys, "on to moonrise", "F9", ""},
     {Action::kToMoonset, kOnce, kAll, kTimeKeys, "on to moonset", "Shift+F9", ""},
-    {Action::kNarrowerView, kAgain, kAll, kPictureKeys, "narrower view", "X", ""},
-    {Action::kWiderView, kAgain, kAll, kPictureKeys, "wider view", "Shift+X", ""},
-    {Action::kResetView, kOnce, kAll, kPictureKeys, "the view that the scene began with", "Ctrl+X",
-     ""},
-    {Action::kClearer, kAgain, kAll, kPictureKeys, "see farther", "Z", ""},
-    {Action::kHazier, kAgain, kAll, kPictureKeys, "see less far", "Shift+Z", ""},
-    {Action::kResetVisibility, kOnce, kAll, kPictureKeys, "the visibility of the scene", "Ctrl+Z",
-     ""},
-    {Action::kExposureLock, kOnce, kAll, kPictureKeys, "lock the exposure", "L", ""},
-    {Action::kBrighter, kAgain, kAll, kPictureKeys, "a third of a stop brighter", "K", ""},
-    {Action::kDarker, kAgain, kAll, kPictureKeys, "a third of a stop darker", "Shift+K", ""},
-    {Action::kResetExposure, kOnce, kAll, kPictureKeys, "as the meter says", "Ctrl+K", ""},
-    {Action::kNextQuality, kOnce, kAll, kPictureKeys, "next quality", "O", ""},
-    {Action::kLandingLight, kOnce, kAll, kPictureKeys, "landing light on and off", "Ctrl+L", ""},
-    {Action::kHud, kOnce, kAll, kProgramKeys, "hide everything but the picture", "H", ""},
-    {Action::kNightTheme, kOnce, kAll, kProgramKeys, "colours for the night", "Shift+H", ""},
-    {Action::kMouseMode, kOnce, kAll, kProgramKeys, "mouse: cursor, look, fly", "Tab", ""},
-    {Action::kPanels, kOnce, kAll, kProgramKeys, "panels", "F10", ""},
-    {Action::kFullScreen, kOnce, kAll, kProgramKeys, "full screen", "Shift+F10", ""},
-    {Action::kScreenshot, kOnce, kAll, kProgramKeys, "screenshot, PNG", "F3", ""},
-    {Action::kScreenshotExr, kOnce, kAll, kProgramKeys, "screenshot, linear EXR", "Shift+F3", ""},
-    {Action::kReplay, kOnce, kAll, kProgramKeys, "fly this flight again", "Ctrl+R", ""},
-    {Action::kSaveFlight, kOnce, kAll, kProgramKeys, "write down the flight so far", "Shift+F2",
-     ""},
-    {Action::kHelp, kOnce, kAll, kProgramKeys, "this table", "?, F1", ""},
-    {Action::kQuit, kOnce, kAll, kProgramKeys, "quit", "Esc", ""},
+    {Action::kScreenshot, kOnce, kAll, kCaptureKeys, "screenshot, PNG", "F3", ""},
+    {Action::kScreenshotExr, kOnce, kAll, kCaptureKeys, "screenshot, linear EXR", "Shift+F3", ""},
+    {Action::kSaveFlight, kOnce, kAll, kCaptureKeys, "write the flight so far to a file",
+     "Shift+F2", ""},
+    {Action::kReplay, kOnce, kAll, kCaptureKeys, "fly this flight again", "Ctrl+R", ""},
 };
 
 constexpr std::pair<std::string_view, int> kKeyNames[] = {
@@ -223,6 +226,17 @@ const ActionRow& RowOf(Action action) {
   return row;
 }
 
+std::vector<ActionSection> ActionSections() {
+  std::vector<ActionSection> sections;
+  for (const ActionRow& row : kActionRows) {
+    if (sections.empty() || sections.back().heading != row.heading)
+      sections.push_back({row.heading, {&row, 0}});
+    std::span<const ActionRow>& rows = sections.back().rows;
+    rows = {rows.data(), rows.size() + 1};
+  }
+  return sections;
+}
+
 KeyChord KeyChordFromText(std::string_view text) {
   if (text == "+") return {GLFW_KEY_EQUAL, 0, true};
   if (text == "?") return {GLFW_KEY_SLASH, kShiftKey};
@@ -260,16 +274,17 @@ int PrintedKey(int key, const char* name) {
 
 std::string KeysText(const ActionRow& row) {
   if (row.keys_in_cockpit.empty()) return std::string(row.keys);
-  return fmt::format("{}; not in the free camera {}", row.keys, row.keys_in_cockpit);
+  return fmt::format("{}; {} (aircraft, track)", row.keys, row.keys_in_cockpit);
 }
 
 std::string ControlsMarkdown() {
   std::string text = "| | keys | what they do |\n|---|---|---|\n";
-  std::string_view section;
-  for (const ActionRow& row : kActionRows) {
-    text += fmt::format("| {} | {} | {} |\n", row.section == section ? "" : row.section,
-                        KeysText(row), row.does);
-    section = row.section;
+  for (const ActionSection& section : ActionSections()) {
+    for (const ActionRow& row : section.rows) {
+      const bool is_first = &row == section.rows.data();
+      text += fmt::format("| {} | {} | {} |\n", is_first ? section.heading : "", KeysText(row),
+                          row.does);
+    }
   }
   return text;
 }

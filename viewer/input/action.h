@@ -10,12 +10,29 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "viewer/flight/flight.h"
 
 namespace alpenglow {
 
 enum class Action {
+  // Modes, and where the eye is.
+  kFreeMode,
+  kAircraftMode,
+  kTrackMode,
+  kNextMode,
+  kPreviousMode,
+  kCentre,
+  kHigher,
+  // The window.
+  kHud,
+  kNightTheme,
+  kMouseMode,
+  kPanels,
+  kFullScreen,
+  kHelp,
+  kQuit,
   // The eye of the free camera, while a key is held.
   kForward,
   kBack,
@@ -29,7 +46,13 @@ enum class Action {
   kTurnRight,
   kLookUp,
   kLookDown,
-  // The aircraft, while a key is held.
+  // Speed of free camera and track.
+  kFaster,
+  kSlower,
+  // The place along the track.
+  kTrackAhead,
+  kTrackBack,
+  // The aircraft, most of them while a key is held.
   kNoseDown,
   kNoseUp,
   kBankLeft,
@@ -39,21 +62,8 @@ enum class Action {
   kThrottleUp,
   kThrottleDown,
   kBrake,
-  // Speeds, and where one is.
-  kFaster,
-  kSlower,
   kFasterFlight,
   kSlowerFlight,
-  kTrackAhead,
-  kTrackBack,
-  kCentre,
-  kHigher,
-  kFreeMode,
-  kAircraftMode,
-  kTrackMode,
-  kNextMode,
-  kPreviousMode,
-  kFirstMode,
   // The autopilot.
   kHoldHeading,
   kHoldAltitude,
@@ -61,6 +71,20 @@ enum class Action {
   kHoldSpeed,
   kLevelWings,
   kAutopilotOff,
+  // Exposure.
+  kExposureLock,
+  kBrighter,
+  kDarker,
+  kResetExposure,
+  // What is seen.
+  kNarrowerView,
+  kWiderView,
+  kResetView,
+  kClearer,
+  kHazier,
+  kResetVisibility,
+  kLandingLight,
+  kNextQuality,
   // Time.
   kPause,
   kFasterTime,
@@ -79,31 +103,11 @@ enum class Action {
   kToDusk,
   kToMoonrise,
   kToMoonset,
-  // The picture.
-  kNarrowerView,
-  kWiderView,
-  kResetView,
-  kClearer,
-  kHazier,
-  kResetVisibility,
-  kExposureLock,
-  kBrighter,
-  kDarker,
-  kResetExposure,
-  kNextQuality,
-  kLandingLight,
-  // The program.
-  kHud,
-  kNightTheme,
-  kMouseMode,
-  kPanels,
-  kFullScreen,
+  // Pictures and flights in files.
   kScreenshot,
   kScreenshotExr,
-  kReplay,
   kSaveFlight,
-  kHelp,
-  kQuit,
+  kReplay,
 };
 
 /// In which flight modes a key does something.
@@ -121,7 +125,7 @@ struct ActionRow {
   Action action;
   Press press;
   Modes modes;
-  std::string_view section, does;
+  std::string_view heading, does;
   std::string_view keys;             // "Page Up, Keypad 9"
   std::string_view keys_in_cockpit;  // keys that it has with aircraft and track alone
 };
@@ -129,6 +133,14 @@ struct ActionRow {
 /// All lines, an action each, in the order of the enumeration.
 [[nodiscard]] std::span<const ActionRow> ActionTable();
 [[nodiscard]] const ActionRow& RowOf(Action action);
+
+/// The lines under one heading.
+struct ActionSection {
+  std::string_view heading;
+  std::span<const ActionRow> rows;
+};
+/// All lines: first what works everywhere, then mode by mode, then what is seen.
+[[nodiscard]] std::vector<ActionSection> ActionSections();
 
 /// Modifiers, as GLFW counts them.
 inline constexpr int kShiftKey = 1, kControlKey = 2, kAltKey = 4;

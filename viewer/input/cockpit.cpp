@@ -166,7 +166,6 @@ std::optional<std::string> Cockpit::DoFlight(Action action, const GroundHeight& 
       pilot_.Lift(kThousandFeet_m, ground);
       return "";
     case Action::kFreeMode:
-    case Action::kFirstMode:
       return Enter(FlightMode::kFree, ground);
     case Action::kAircraftMode:
       return Enter(FlightMode::kAircraft, ground);

@@ -98,6 +98,42 @@ TEST(Places, ASearchGivesTheBestFirstAndNoMoreThanAskedFor) {
   EXPECT_TRUE(FindPlaces("").empty());
 }
 
+std::vector<std::string> NamesOf(const std::vector<const NamedPlace*>& places) {
+  std::vector<std::string> names;
+  for (const NamedPlace* place : places) names.push_back(place->name);
+  return names;
+}
+
+TEST(Places, AllAreListedByNameWithoutRegardToAccents) {
+  const std::vector<std::string> names = NamesOf(PlacesByName(""));
+  EXPECT_EQ(names.size(), NamedPlaces().size());
+  EXPECT_EQ(names, NamesOf(PlacesByName(" ")));
+  const auto at = [&](const char* name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    EXPECT_NE(found, names.end()) << name;
+    return found;
+  };
+  EXPECT_LT(at("Großglockner"), at("Hvannadalshnúkur"));
+  EXPECT_LT(at("Zürich"), at("Zürich Airport"));
+  EXPECT_GT(at("Zürich"), at("Vienna"));
+  EXPECT_EQ(names.back(), "Zürich Airport") << "not behind all that is written in ASCII";
+}
+
+TEST(Places, AListedNameLeadsToItsPlace) {
+  for (const NamedPlace& place : NamedPlaces()) EXPECT_EQ(&PlaceNamed(place.name), &place);
+}
+
+TEST(Places, AListThatIsSearchedHasTheBestFirst) {
+  EXPECT_EQ(NamesOf(PlacesByName("zurich")),
+            (std::vector<std::string>{"Zürich", "Zürich Airport"}));
+  EXPECT_EQ(NamesOf(PlacesByName("ZÜRICH")), NamesOf(PlacesByName("zurich")));
+  EXPECT_EQ(NamesOf(PlacesByName("kloten")), (std::vector<std::string>{"Zürich Airport"}));
+  const std::vector<std::string> mounts = NamesOf(PlacesByName("mount"));
+  EXPECT_GT(mounts.size(), 10U) << "more than FindPlaces gives";
+  EXPECT_TRUE(std::is_sorted(mounts.begin(), mounts.begin() + 5));
+  EXPECT_TRUE(PlacesByName("qqqqqq").empty());
+}
+
 TEST(Places, AnEyeStandsOnTheRunwayAndFliesOverTheCity) {
   const Eye zurich = EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";

@@ -110,15 +110,14 @@ TEST_F(HudTest, RefusesAScaleOutOfRangeAndAFontThatIsNone) {
 
 TEST_F(HudTest, TheMouseIsThePanelsWhereTheyAreAndTheFlightsElsewhere) {
   Hud hud;
-  hud.Toggle(HudPanel::kHelp);  // in the middle
-  choices_.help = {{"h", "hides all of this"}, {"F10", "shows the menu"}};
+  hud.Toggle(HudPanel::kLeave);  // in the middle below the clock
   for (int frame = 0; frame < 3; ++frame)
-    static_cast<void>(At(hud, 0.5 * kWidth, 0.5 * kHeight, false));
+    static_cast<void>(At(hud, 0.5 * kWidth, 0.57 * kHeight, false));
   EXPECT_TRUE(hud.WantsMouse());
   static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, false));
   EXPECT_FALSE(hud.WantsMouse());
   static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, true));
-  static_cast<void>(At(hud, 0.5 * kWidth, 0.5 * kHeight, true));
+  static_cast<void>(At(hud, 0.5 * kWidth, 0.57 * kHeight, true));
   EXPECT_FALSE(hud.WantsMouse()) << "a drag that began in the picture stays the flight's";
 }
 
@@ -228,7 +227,7 @@ TEST_F(HudTest, LeavingIsAskedOnce) {
   hud.Toggle(HudPanel::kLeave);
   const auto quits = [](const HudRequest& request) { return request.quit; };
   EXPECT_FALSE(At(hud, 1.0, 1.0, false).quit);
-  EXPECT_TRUE(Find(hud, 0.5 * kWidth - 30.0, 330, 410, quits).has_value());
+  EXPECT_TRUE(Find(hud, 0.5 * kWidth - 110.0, 360, 470, quits).has_value());
 }
 
 TEST_F(HudTest, PanelsGrowWithTheScale) {
@@ -256,7 +255,6 @@ TEST_F(HudTest, KeysClosePanelsFirst) {
 TEST_F(HudTest, EveryPanelFitsIntoTheSmallestPicture) {
   for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
     Hud hud;
-    choices_.help.assign(30, {"PageUp PageDown", "a line that is longer than the window is wide"});
     choices_.moments = {"now", "sunrise", "noon", "sunset", "dusk", "moonrise"};
     const Image bare = Drawn(hud, model_, 320, 240);
     hud.Toggle(static_cast<HudPanel>(panel));

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -21,7 +22,7 @@ constexpr FlightMode kModes[] = {FlightMode::kFree, FlightMode::kAircraft, Fligh
 
 TEST(Action, EveryActionHasItsLineInTheTable) {
   const auto table = ActionTable();
-  EXPECT_EQ(table.back().action, Action::kQuit) << "the last of the enumeration";
+  EXPECT_EQ(table.back().action, Action::kReplay) << "the last of the enumeration";
   for (std::size_t i = 0; i < table.size(); ++i) {
     EXPECT_EQ(static_cast<std::size_t>(table[i].action), i) << table[i].does;
     EXPECT_EQ(RowOf(table[i].action).does, table[i].does);
@@ -57,6 +58,44 @@ TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
     }
   });
   EXPECT_GT(keys, 150);
+}
+
+TEST(Action, NoKeyIsListedTwiceForOneMode) {
+  for (const FlightMode mode : kModes) {
+    std::vector<std::pair<int, int>> chords;
+    ForEachKey([&](const std::string& text, const ActionRow& row, bool cockpit) {
+      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) return;
+      const KeyChord chord = KeyChordFromText(text);
+      const std::pair<int, int> pair{chord.key, chord.modifiers};
+      EXPECT_THAT(chords, ::testing::Not(::testing::Contains(pair)))
+          << text << " in mode " << static_cast<int>(mode);
+      chords.push_back(pair);
+    });
+  }
+}
+
+TEST(Action, SectionsHaveEveryActionOnceUnderAHeadingOfItsOwn) {
+  std::vector<std::string_view> headings, actions;
+  std::vector<Action> listed;
+  for (const ActionSection& section : ActionSections()) {
+    headings.push_back(section.heading);
+    for (const ActionRow& row : section.rows) {
+      EXPECT_EQ(row.heading, section.heading) << row.does;
+      EXPECT_EQ(row.modes.free, section.rows.front().modes.free) << row.does;
+      EXPECT_EQ(row.modes.aircraft, section.rows.front().modes.aircraft) << row.does;
+      EXPECT_EQ(row.modes.track, section.rows.front().modes.track) << row.does;
+      actions.push_back(row.does);
+      listed.push_back(row.action);
+    }
+  }
+  EXPECT_EQ(listed.size(), static_cast<std::size_t>(Action::kReplay) + 1);
+  for (std::size_t i = 0; i < listed.size(); ++i)
+    EXPECT_EQ(static_cast<std::size_t>(listed[i]), i) << actions[i];
+  for (std::vector<std::string_view>* texts : {&headings, &actions}) {
+    std::sort(texts->begin(), texts->end());
+    const auto twice = std::adjacent_find(texts->begin(), texts->end());
+    EXPECT_EQ(twice, texts->end()) << *twice;
+  }
 }
 
 TEST(Action, KeysAreThoseOfFlightGear) {

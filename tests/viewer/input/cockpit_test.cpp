@@ -37,7 +37,7 @@ TEST(Cockpit, GoesAroundTheModesThatThereAre) {
   EXPECT_EQ(cockpit.Do(Action::kPreviousMode, CockpitSea), "aircraft");
   EXPECT_EQ(cockpit.Do(Action::kHoldHeading, CockpitSea), "HDG 000");
   EXPECT_EQ(cockpit.Do(Action::kAutopilotOff, CockpitSea), "autopilot off");
-  EXPECT_EQ(cockpit.Do(Action::kFirstMode, CockpitSea), "free camera");
+  EXPECT_EQ(cockpit.Do(Action::kFreeMode, CockpitSea), "free camera");
 }
 
 TEST(Cockpit, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
