@@ -22,8 +22,8 @@ constexpr std::array<Placement, kHudPanels> kPlacements{
      {HudPanel::kAir, "Air", 1.0F, 0.0F},
      {HudPanel::kLights, "Lights", 1.0F, 0.50F},
      {HudPanel::kExposure, "Exposure", 1.0F, 1.0F},
-     {HudPanel::kFlight, "Flight", 0.0F, 1.0F},
-     {HudPanel::kTables, "Tables", 0.50F, 1.0F},
+     {HudPanel::kFlight, "Flight", 0.50F, 1.0F},
+     {HudPanel::kTables, "Tables", 0.0F, 1.0F},
      {HudPanel::kCapture, "Capture", 0.50F, 0.0F},
      {HudPanel::kHelp, "Help", 0.50F, 0.50F},
      {HudPanel::kLeave, "Leave", 0.50F, 0.50F}}};

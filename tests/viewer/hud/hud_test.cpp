@@ -214,11 +214,11 @@ TEST_F(HudTest, TheHeadingThatIsHeldIsTheOneFlown) {
     hold = request.hold_heading_rad;
     return hold.has_value();
   };
-  ASSERT_TRUE(Find(hud, 30.0, 500, 680, asked).has_value());
+  ASSERT_TRUE(Find(hud, 0.5 * kWidth - 100.0, 500, 680, asked).has_value());
   ASSERT_TRUE(hold->value.has_value());
   EXPECT_NEAR(*hold->value, 2.0 * kPi - 0.5, 1e-9) << "in [0, 2 pi]";
   model_.autopilot.heading_rad = *hold->value;
-  ASSERT_TRUE(Find(hud, 30.0, 500, 680, asked).has_value());
+  ASSERT_TRUE(Find(hud, 0.5 * kWidth - 100.0, 500, 680, asked).has_value());
   EXPECT_EQ(hold->value, std::nullopt) << "a second click lets it go";
 }
 

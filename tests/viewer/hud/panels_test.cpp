@@ -90,21 +90,21 @@ TEST_F(PanelsTest, NoPanelCoversTheClock) {
        {Case{1280, 800, 1.0, false}, Case{1280, 800, 1.0, true}, Case{1280, 800, 1.5, true},
         Case{1280, 800, 2.0, false}, Case{1280, 800, 4.0, true}, Case{320, 240, 1.0, false},
         Case{320, 240, 1.0, true}, Case{320, 240, 1.5, false}, Case{320, 240, 2.0, false}}) {
+    Hud hud({.scale = shown.scale});
+    if (shown.menu) hud.ToggleMenu();
+    const Image bare = Drawn(hud, model_, shown.width, shown.height);
+    const Box clock =
+        Difference(bare, Drawn(hud, AtAnotherTime(model_), shown.width, shown.height));
+    ASSERT_FALSE(clock.empty());
     for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
       SCOPED_TRACE(::testing::Message() << "panel " << panel << ", " << shown.width << " x "
                                         << shown.height << ", scale " << shown.scale);
-      Hud hud({.scale = shown.scale});
-      if (shown.menu) hud.ToggleMenu();
-      const Image bare = Drawn(hud, model_, shown.width, shown.height);
-      const Box clock =
-          Difference(bare, Drawn(hud, AtAnotherTime(model_), shown.width, shown.height));
       hud.Toggle(static_cast<HudPanel>(panel));
-      static_cast<void>(Drawn(hud, model_, shown.width, shown.height));
       Image with = Drawn(hud, model_, shown.width, shown.height);
+      hud.Toggle(static_cast<HudPanel>(panel));
       // The menu, over the clock, marks which panels are open.
       std::copy_n(bare.rgb.begin(), clock.top * shown.width, with.rgb.begin());
       const Box box = Difference(bare, with);
-      ASSERT_FALSE(clock.empty());
       ASSERT_FALSE(box.empty());
       EXPECT_GE(box.top, clock.bottom);
       EXPECT_LE(box.bottom, shown.height);
@@ -216,12 +216,13 @@ TEST_F(PanelsTest, TheFlightPanelSetsModeThrottleAndSpeed) {
   Hud hud;
   choices_.modes = {"free camera", "aircraft"};
   hud.Toggle(HudPanel::kFlight);
-  EXPECT_THAT(Listed(hud, 60.0, 560, [](const HudRequest& request) { return request.mode; }),
+  EXPECT_THAT(Listed(hud, 0.5 * kPictureWidth - 60.0, 560,
+                     [](const HudRequest& request) { return request.mode; }),
               ::testing::UnorderedElementsAre("free camera", "aircraft"));
   std::optional<double> throttle;
   std::optional<HudHold> speed;
   for (int y = 540; y < 790; y += 4) {
-    for (const HudRequest& request : Click(hud, 22.0, y)) {
+    for (const HudRequest& request : Click(hud, 0.5 * kPictureWidth - 102.0, y)) {
       if (request.throttle) throttle = request.throttle;
       if (request.hold_speed_m_per_s && !speed) speed = request.hold_speed_m_per_s;
     }
@@ -239,7 +240,7 @@ TEST_F(PanelsTest, OutsideOfTheAircraftThereIsNoThrottle) {
   model_.flight.throttle.reset();
   hud.Toggle(HudPanel::kFlight);
   for (int y = 600; y < 790; y += 4) {
-    for (const HudRequest& request : Click(hud, 40.0, y)) {
+    for (const HudRequest& request : Click(hud, 0.5 * kPictureWidth - 80.0, y)) {
       EXPECT_FALSE(request.throttle) << y;
       EXPECT_FALSE(request.hold_heading_rad) << y;
     }
