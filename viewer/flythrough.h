@@ -146,7 +146,7 @@ class Flythrough {
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
   /// As asked for: its white balance is not settled.
   [[nodiscard]] const Look& look() const { return look_; }
-  /// Of the light that is shown as white; nothing before the first picture.
+  /// Temperature of the light that is shown as white [K]; nothing before the first picture.
   [[nodiscard]] std::optional<double> white_k() const;
   /// Height of the ground under a place; of the bare planet where there is no land.
   [[nodiscard]] GroundHeight Ground() const;

@@ -34,7 +34,7 @@ struct HudFlight {
   bool stall = false;
 };
 
-/// What is held.
+/// The values that are held.
 struct HudAutopilot {
   std::optional<double> heading_rad = {};
   std::optional<double> height_m = {};
@@ -70,7 +70,7 @@ struct HudExposure {
   std::string tone_curve;              // one of HudChoices::tone_curves
   std::string look;                    // one of HudChoices::looks; of the curve agx
   std::string white_balance;           // one of HudChoices::white_balances, or "5600 K"
-  std::optional<double> white_k = {};  // of the light that is shown as white
+  std::optional<double> white_k = {};  // temperature of the light that is shown as white [K]
 };
 
 struct HudAir {

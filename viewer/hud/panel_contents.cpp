@@ -90,7 +90,7 @@ std::optional<HudPlaceRequest> PlaceControls(const PanelView& view, PanelTyping&
                          height};
 }
 
-/// What can be held: how it is called, what its slider shows for one of SI, and the slider's range.
+/// A value that can be held: its name, how many of its slider's units are one of SI, and the range.
 struct Holdable {
   const char* name;
   double per_si;

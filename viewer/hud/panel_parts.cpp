@@ -52,7 +52,9 @@ void DrawHours(ImDrawList& list, const StripBox& box, ImU32 colour) {
     list.AddLine({foot.x, foot.y - mark}, foot, colour);
     const std::string text = fmt::format("{}", hour);
     const float half = 0.5F * ImGui::CalcTextSize(text.c_str()).x;
-    const float x = std::clamp(foot.x - half, box.from.x, box.from.x + box.size.x - 2.0F * half);
+    // Large letters are wider than a narrow strip.
+    const float last = std::max(box.from.x + box.size.x - 2.0F * half, box.from.x);
+    const float x = std::clamp(foot.x - half, box.from.x, last);
     list.AddText({x, foot.y}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
   }
 }

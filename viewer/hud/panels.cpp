@@ -28,15 +28,16 @@ constexpr std::array<Placement, kHudPanels> kPlacements{
      {HudPanel::kHelp, "Help", 0.50F, 0.50F},
      {HudPanel::kLeave, "Leave", 0.50F, 0.50F}}};
 
-/// The part of the picture that panels may cover [pixels].
+/// The part of the picture that panels may cover [pixels]: below the clock, but where letters are so
+/// large that less than a quarter of the picture would be left.
 struct FreeArea {
   ImVec2 from, size;
 
   explicit FreeArea(const PanelView& view) {
     const auto margin = static_cast<float>(kPanelMargin * view.scale);
-    from = {margin, static_cast<float>(view.top) + margin};
-    size = {static_cast<float>(view.width) - from.x - margin,
-            static_cast<float>(view.height) - from.y - margin};
+    const auto width = static_cast<float>(view.width), height = static_cast<float>(view.height);
+    from = {margin, std::min(static_cast<float>(view.top) + margin, 0.75F * height - margin)};
+    size = {width - from.x - margin, height - from.y - margin};
   }
 };
 

@@ -76,7 +76,7 @@ enum class Action {
   kBrighter,
   kDarker,
   kResetExposure,
-  // What is seen.
+  // The view, the air and lights.
   kNarrowerView,
   kWiderView,
   kResetView,

@@ -21,7 +21,7 @@ class PanelsTest : public tests::HudPicture {
     input.buttons[0] = pressed;
     return hud.Update(model_, choices_, nullptr, input);
   }
-  /// What was asked for while the button was down and when it was let go.
+  /// The requests while the button was down and when it was let go.
   std::vector<HudRequest> Click(Hud& hud, double x, double y) {
     static_cast<void>(At(hud, x, y, false));
     std::vector<HudRequest> requests{At(hud, x, y, true)};
@@ -110,6 +110,19 @@ TEST_F(PanelsTest, NoPanelCoversTheClock) {
       EXPECT_LE(box.bottom, shown.height);
       EXPECT_LE(box.right, shown.width);
     }
+  }
+}
+
+TEST_F(PanelsTest, PanelsAreSeenInASmallPictureWithTheLargestLetters) {
+  Hud hud({.scale = 8.0});
+  const Image bare = Drawn(hud, model_, 320, 240);
+  for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
+    hud.Toggle(static_cast<HudPanel>(panel));
+    static_cast<void>(Drawn(hud, model_, 320, 240));
+    const Box box = Difference(bare, Drawn(hud, model_, 320, 240));
+    hud.Toggle(static_cast<HudPanel>(panel));
+    EXPECT_GE(box.bottom - box.top, 60) << panel << ": a quarter of the picture";
+    EXPECT_GE(box.right - box.left, 100) << panel;
   }
 }
 
