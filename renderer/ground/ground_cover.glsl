@@ -2,9 +2,9 @@
 // details of the ground are as fine as that.
 
 // Families of noise: two make the lines between materials waver, one is relief, one the grain of
-// crowns, tussocks and stones, one the waves of water. Each is a sum of octaves, half as long from
-// one to the next and lower by the factor of its fall: that of the grain is 1, for ground looks as
-// rough from a hand's height as from a tower's.
+// crowns and rocks, one the waves of water. Each is a sum of octaves, half as long from one to the
+// next and lower by the factor of its fall. Relief ends at waves of 7 m and grain at 1.5 m, parts of a
+// crown: no model of terrain is finer, and invented detail looks like felt from a man's height.
 SHARED_CONSTANT int kBroadWave_m = 900;  // of the longest octave
 SHARED_CONSTANT int kBroadOctaves = 5;
 SHARED_CONSTANT int kBroadFall = 2;
@@ -14,12 +14,12 @@ SHARED_CONSTANT int kFineOctaves = 4;
 SHARED_CONSTANT int kFineFall = 2;
 SHARED_CONSTANT Bits kFineSeed = 29u;
 SHARED_CONSTANT int kReliefWave_m = 220;
-SHARED_CONSTANT int kReliefOctaves = 10;
+SHARED_CONSTANT int kReliefOctaves = 6;
 SHARED_CONSTANT int kReliefFall = 2;
 SHARED_CONSTANT Bits kReliefSeed = 47u;
 SHARED_CONSTANT int kReliefHeight_m = 14;
 SHARED_CONSTANT int kGrainWave_m = 12;  // of crowns
-SHARED_CONSTANT int kGrainOctaves = 9;
+SHARED_CONSTANT int kGrainOctaves = 4;
 SHARED_CONSTANT int kGrainFall = 1;
 SHARED_CONSTANT Bits kGrainSeed = 83u;
 
@@ -46,13 +46,22 @@ SHARED Number SmoothRise(Number low, Number high, Number x) {
   return t * t * (Number(3.0) - Number(2.0) * t);
 }
 
-// Altitude and vertical component of the normal, as the lines between materials take them.
-SHARED Length WaveringAltitude(Length altitude, Number broad, Number fine) {
-  return altitude + Length(260.0) * broad + Length(120.0) * fine;
+// Extent of the land that such a ray averages: the depth of its width on the ground, and behind every
+// plant and stone the ground that its height hides from a slanting ray. A flat pattern without the
+// second would be smeared into streaks where it is seen from the side.
+SHARED Length LandFootprint(Length across, Number cosine) {
+  Number mu = min(max(cosine, Number(0.1)), Number(1.0));
+  return (across + Length(0.7) * sqrt(Number(1.0) - mu * mu)) / mu;
 }
 
-SHARED Number WaveringLevel(Number normal_up, Number broad, Number fine) {
-  return normal_up + Number(0.03) * broad + Number(0.08) * fine;
+// Altitude as the lines between materials take it.
+SHARED Length WaveringAltitude(Length altitude, Number broad, Number fine) {
+  return altitude + Length(260.0) * broad + Length(60.0) * fine;
+}
+
+// As the snow line takes it, which is smoother: snow fades in by height and not in spots.
+SHARED Length SnowAltitude(Length altitude, Number broad) {
+  return altitude + Length(260.0) * broad;
 }
 
 // Rises of 0 to 1 with the wavering altitude: no trees left; bare of grass; cold enough for snow,
@@ -69,11 +78,16 @@ SHARED Number ColdRise(Length altitude, Length snow_line) {
   return SmoothRise(snow_line - Length(150.0), snow_line + Length(250.0), altitude);
 }
 
-// With the wavering level: not too steep for soil, which woods hold up to about 50 degrees; and not
-// so steep, over about 45 degrees, that it sheds its snow.
-SHARED Number SoilRise(Number level) { return SmoothRise(Number(0.56), Number(0.74), level); }
+// By the slope of the mesh alone, for rock stands where the ground is steep: not too steep for soil,
+// which woods hold up to about 50 degrees; and not so steep, over about 45 degrees, that it sheds its
+// snow.
+SHARED Number SoilRise(Number normal_up) {
+  return SmoothRise(Number(0.59), Number(0.70), normal_up);
+}
 
-SHARED Number SnowHoldRise(Number level) { return SmoothRise(Number(0.60), Number(0.76), level); }
+SHARED Number SnowHoldRise(Number normal_up) {
+  return SmoothRise(Number(0.60), Number(0.76), normal_up);
+}
 
 // Land that is flat to 4 degrees, a meadow rather than a wood; up to 15 degrees some of it is.
 SHARED Number FlatRise(Number normal_up) {
@@ -84,7 +98,7 @@ SHARED Number FlatRise(Number normal_up) {
 // as ragged as the fine noise.
 SHARED Number ForestShare(Number treeless, Number flat_ground, Number broad, Number fine) {
   Number density =
-      Number(1.0) - Number(0.7) * flat_ground + Number(0.5) * broad + Number(0.6) * fine;
+      Number(1.0) - Number(0.7) * flat_ground + Number(0.5) * broad + Number(0.4) * fine;
   return (Number(1.0) - treeless) * SmoothRise(Number(0.05), Number(0.75), density);
 }
 
@@ -100,21 +114,17 @@ SHARED Number IsMapped(Number stone, Number snow) {
   return select(stone + snow < Number(1.5), Number(1.0), Number(0.0));
 }
 
-// Share of rock and scree in ground without snow: where it is bare, in half of what is too steep
-// under the tree line, for trees stand in its cracks, and as earth and stones between tussocks.
-SHARED Number RockShare(Number bare, Number soil, Number forest, Number grain) {
-  Number steep = (Number(1.0) - soil) * (Number(0.5) + Number(0.5) * bare);
-  Number stones =
-      Number(0.5) * (Number(1.0) - forest) * SmoothRise(Number(0.3), Number(1.0), -grain);
-  return max(max(bare, steep), stones);
+// Share of rock and scree in ground without snow: where it is bare, and in half of what is too steep
+// under the tree line, for trees stand in its cracks.
+SHARED Number RockShare(Number bare, Number soil) {
+  return max(bare, (Number(1.0) - soil) * (Number(0.5) + Number(0.5) * bare));
 }
 
-// Lightness of patches and of the grain, as a share of the albedo: crowns and the gaps between them
-// differ most, blades of grass least.
+// Lightness of patches and of the grain, as a share of the albedo: crowns and rocks differ from the
+// gaps between them, blades of grass are too fine to be seen.
 SHARED Number GroundTone(Number broad, Number fine, Number grain, Number forest,
                          Number rock_share) {
-  Number green = Number(0.3) + Number(0.3) * forest;
-  Number contrast = green + rock_share * (Number(0.6) - green);
+  Number contrast = Number(0.6) * (forest + rock_share * (Number(1.0) - forest));
   Number tone = Number(0.2) * fine + Number(0.12) * broad + contrast * grain;
   return min(max(tone, Number(-0.6)), Number(0.8));
 }
@@ -144,13 +154,14 @@ SHARED Length SunnySide(Number normal_sunward) { return Length(400.0) * normal_s
 // under it has 0.75 (Betts, Ball 1997, J. Geophys. Res. 102, 28901). Stands are denser and thinner.
 SHARED Number CanopyGap(Number leafless, Number broad, Number fine, Number grain) {
   Number gap = Number(0.12) + Number(0.08) * leafless;
-  Number thinner = Number(1.4) * broad + Number(1.1) * fine + Number(1.5) * grain;
-  return gap * min(max(Number(1.0) + thinner, Number(0.2)), Number(3.0));
+  Number thinner = Number(0.5) * broad + Number(0.3) * fine + Number(0.2) * grain;
+  return gap * min(max(Number(1.0) + thinner, Number(0.5)), Number(1.5));
 }
 
-// What is seen of the snow on the ground.
+// What is seen of the snow on the ground: trees hide it as layers do, by a power of their share
+// (Monsi, Saeki 1953, Jap. J. Bot. 14, 22), so that a thin wood is nearly as dark as a dense one.
 SHARED Number SnowSeen(Number snow_share, Number forest, Number rock_share, Number gap) {
-  return snow_share * (Number(1.0) - (Number(1.0) - gap) * forest * (Number(1.0) - rock_share));
+  return snow_share * exp(log(gap) * forest * (Number(1.0) - rock_share));
 }
 
 // Albedo of what grows there, in a band. Between leaf and bare trees are the yellow of autumn.

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/ray/ray.h"
-#include "renderer/ground/ground_cover.h"
 
 namespace alpenglow {
 
@@ -49,7 +48,6 @@ GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m,
   return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius_m() + point.x,
           origin.latitude_rad * radius_m() + point.y,
           std::max(AltitudeOf(point), 0.0),
-          shared::SeenFootprint(footprint_m, cosine),
           footprint_m,
           cosine,
           point.z};

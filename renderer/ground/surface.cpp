@@ -72,20 +72,24 @@ std::vector<NoiseOctave> MadeOctaves(GroundNoise family) {
 
 // Calls visit(octave, amplitude) for the octaves that a footprint keeps.
 template <typename Visit>
-void VisitOctaves(const GroundPoint& point, GroundNoise family, const Visit& visit) {
+void VisitOctaves(double footprint_m, GroundNoise family, const Visit& visit) {
   const double fall = kNoises[static_cast<std::size_t>(family)].fall;
   double amplitude = 1.0;
   for (const NoiseOctave& octave : OctavesOf(family)) {
-    const double kept = shared::OctaveShare(octave.wavelength_m, point.footprint_m);
+    const double kept = shared::OctaveShare(octave.wavelength_m, footprint_m);
     if (kept == 0.0) break;
     visit(octave, kept * amplitude);
     amplitude /= fall;
   }
 }
 
+double LandFootprint(const GroundPoint& point) {
+  return shared::LandFootprint(point.across_m, point.cosine);
+}
+
 double DetailNoise(const GroundPoint& point, GroundNoise family) {
   double sum = 0.0;
-  VisitOctaves(point, family, [&](const NoiseOctave& octave, double amplitude) {
+  VisitOctaves(LandFootprint(point), family, [&](const NoiseOctave& octave, double amplitude) {
     const glm::dvec2 at = octave.PlaceOf(point);
     sum += amplitude * GradientNoise(at.x, at.y, octave.seed);
   });
@@ -134,7 +138,7 @@ MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const M
                  AlbedoBands({0.068, 0.060, 0.045}, wavelengths_nm),
                  Wetted(AlbedoBands({0.098, 0.115, 0.055}, wavelengths_nm), wetness),
                  Wetted(AlbedoBands({0.126, 0.108, 0.060}, wavelengths_nm), wetness),
-                 Wetted(AlbedoBands({0.185, 0.170, 0.150}, wavelengths_nm), wetness),
+                 Wetted(AlbedoBands({0.173, 0.172, 0.166}, wavelengths_nm), wetness),
                  AlbedoBands({0.820, 0.840, 0.860}, wavelengths_nm)} {}
 
 Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
@@ -143,7 +147,6 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
   const double fine = DetailNoise(point, GroundNoise::kFine);
   const double grain = DetailNoise(point, GroundNoise::kGrain);
   const double altitude = shared::WaveringAltitude(point.altitude_m, broad, fine);
-  const double level = shared::WaveringLevel(normal_up, broad, fine);
   const auto rise = [](double value) { return static_cast<float>(value); };
   const float forest =
       mapped ? mapped->wood
@@ -151,7 +154,7 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
                                    rise(shared::FlatRise(normal_up)), rise(broad), rise(fine));
   const float rock = shared::RockShare(
       mapped ? mapped->stone : rise(shared::BareRise(altitude, cover_.tree_line_m)),
-      mapped ? 1.0F : rise(shared::SoilRise(level)), forest, rise(grain));
+      mapped ? 1.0F : rise(shared::SoilRise(normal_up)));
   const double snow_line_m =
       cover_.snow_line_m + shared::SunnySide(-cover_.sun_in_south * point.normal_north);
   const float broadleaf =
@@ -162,7 +165,8 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
   const float gap =
       shared::CanopyGap(broadleaf * (1.0F - not_bare), rise(broad), rise(fine), rise(grain));
   const float lying =
-      rise(shared::ColdRise(altitude, snow_line_m)) * rise(shared::SnowHoldRise(level));
+      rise(shared::ColdRise(shared::SnowAltitude(point.altitude_m, broad), snow_line_m)) *
+      rise(shared::SnowHoldRise(normal_up));
   const float snow =
       std::max(shared::SnowSeen(lying, forest, rock, gap), mapped ? mapped->snow : 0.0F);
   const auto tone = shared::GroundTone(rise(broad), rise(fine), rise(grain), forest, rock);
@@ -182,13 +186,14 @@ Bands<float> MountainSurface::Albedo(const GroundPoint& point, double normal_up,
 
 glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::dvec3& normal) {
   glm::dvec3 tilt(0.0);
-  VisitOctaves(point, GroundNoise::kRelief, [&](const NoiseOctave& octave, double amplitude) {
-    const glm::dvec2 at = octave.PlaceOf(point);
-    const NoiseSlope noise = GradientNoiseSlope(at.x, at.y, octave.seed);
-    tilt -= shared::kReliefHeight_m * amplitude / octave.wavelength_m *
-            glm::dvec3(noise.by_x, noise.by_y,
-                       octave.lean_east * noise.by_x + octave.lean_north * noise.by_y);
-  });
+  VisitOctaves(LandFootprint(point), GroundNoise::kRelief,
+               [&](const NoiseOctave& octave, double amplitude) {
+                 const glm::dvec2 at = octave.PlaceOf(point);
+                 const NoiseSlope noise = GradientNoiseSlope(at.x, at.y, octave.seed);
+                 tilt -= shared::kReliefHeight_m * amplitude / octave.wavelength_m *
+                         glm::dvec3(noise.by_x, noise.by_y,
+                                    octave.lean_east * noise.by_x + octave.lean_north * noise.by_y);
+               });
   return glm::normalize(normal + tilt - glm::dot(tilt, normal) * normal);
 }
 
@@ -201,7 +206,8 @@ WavySurface WavesAt(const GroundPoint& point, double slope_variance) {
   const double each = shared::WaveOctaveVariance(slope_variance, longest_m);
   const double shown = shared::WaveShown(std::max(point.cosine, 0.0), slope_variance);
   WavySurface waves{0.0, 0.0, slope_variance};
-  VisitOctaves(point, GroundNoise::kWaves, [&](const NoiseOctave& octave, double height) {
+  const double footprint_m = shared::SeenFootprint(point.across_m, point.cosine);
+  VisitOctaves(footprint_m, GroundNoise::kWaves, [&](const NoiseOctave& octave, double height) {
     const double kept = shown * height * shared::kWaveWave_m / octave.wavelength_m *
                         shared::WaveRaised(octave.wavelength_m, longest_m);
     if (kept == 0.0) return;

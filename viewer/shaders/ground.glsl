@@ -23,8 +23,8 @@ layout(std140) uniform Ground {
   vec4 cover_lines;      // tree line, snow line [m]; octaves of the finest detail that are left out,
                          // to save time; how much of the sun is in the south
   vec4 green_lines;      // of leaves, bare trees, grass and broad-leaved woods [m]
-  ivec4 octave_cell[42]; // of the eye, east and north: by octave of all families, NoiseOctave
-  vec4 octave_place[42]; // fraction of the square, east and north; lean, east and north
+  ivec4 octave_cell[33]; // of the eye, east and north: by octave of all families, NoiseOctave
+  vec4 octave_place[33]; // fraction of the square, east and north; lean, east and north
   vec4 mesh_east;        // axes of the mesh in the frame of the eye
   vec4 mesh_north;
   vec4 mesh_up;
@@ -126,18 +126,17 @@ vec4 GroundAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 
   float fine = DetailNoise(offset, FINE, width);
   float grain = DetailNoise(offset, GRAIN, width);
   float wavering = WaveringAltitude(altitude, broad, fine);
-  float level = WaveringLevel(tilt.x, broad, fine);
   float wood = ForestShare(TreelessRise(wavering, cover_lines.x), FlatRise(tilt.x), broad, fine);
   wood = PartlyCovered(wood, mapped.x, mapped.w);
   float bare = PartlyCovered(BareRise(wavering, cover_lines.x), mapped.y, mapped.w);
-  float stone = RockShare(bare, PartlyCovered(SoilRise(level), 1.0, mapped.w), wood, grain);
+  float stone = RockShare(bare, PartlyCovered(SoilRise(tilt.x), 1.0, mapped.w));
   float broadleaf = BroadleafShare(wavering, green_lines.w, broad, fine);
   float in_leaf = LeafShare(wavering, green_lines.x);
   float not_bare = LeafShare(wavering, green_lines.y);
   float grass = LeafShare(wavering, green_lines.z);
   float gap = CanopyGap(broadleaf * (1.0 - not_bare), broad, fine, grain);
   float snow_line = cover_lines.y + SunnySide(-cover_lines.w * tilt.y);
-  float lying = ColdRise(wavering, snow_line) * SnowHoldRise(level);
+  float lying = ColdRise(SnowAltitude(altitude, broad), snow_line) * SnowHoldRise(tilt.x);
   float white = max(SnowSeen(lying, wood, stone, gap), mapped.z * mapped.w);
   float tone = GroundTone(broad, fine, grain, wood, stone);
   vec4 albedo;

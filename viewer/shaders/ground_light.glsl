@@ -91,7 +91,7 @@ SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
   return WaterSeen(at, mesh_normal);
 #else
   float altitude = 1e3 * at.altitude;
-  float footprint = SeenFootprint(at.footprint, dot(mesh_normal, to_eye));
+  float footprint = LandFootprint(at.footprint, dot(mesh_normal, to_eye));
   vec4 draped = DrapeAt(at.offset, altitude, at.footprint);
 #if HAS_SEA || HAS_LAND_COVER
   if (IsWater(altitude, draped)) return WaterSeen(at, mesh_normal);
@@ -109,7 +109,7 @@ SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
   return WaterSeen(at, at.up);
 #elif GROUND_COVER == MOUNTAIN_COVER && PLANET_IS_LAND
   vec4 albedo = GroundAlbedo(at.offset, 0.0, TiltOf(at.up, at.up),
-                             SeenFootprint(at.footprint, dot(at.up, to_eye)), vec4(0.0));
+                             LandFootprint(at.footprint, dot(at.up, to_eye)), vec4(0.0));
   return SeenGround(at, at.up, at.up, albedo, false);
 #elif GROUND_COVER == MOUNTAIN_COVER
   return SeenGround(at, at.up, at.up, ground_albedo, false);

@@ -39,13 +39,13 @@ static_assert(offsetof(ViewBlock, eye) == 5 * sizeof(glm::vec4));
 struct GroundBlock {
   glm::vec4 conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
   glm::vec4 cover_lines, green_lines;
-  std::array<glm::ivec4, 42> octave_cell;
-  std::array<glm::vec4, 42> octave_place;
+  std::array<glm::ivec4, 33> octave_cell;
+  std::array<glm::vec4, 33> octave_place;
   glm::vec4 mesh_east, mesh_north, mesh_up;
 };
-static_assert(sizeof(GroundBlock) == 97 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, octave_place) == 52 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, mesh_up) == 96 * sizeof(glm::vec4));
+static_assert(sizeof(GroundBlock) == 79 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, octave_place) == 43 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, mesh_up) == 78 * sizeof(glm::vec4));
 
 /// Throws InputError when the medium has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
