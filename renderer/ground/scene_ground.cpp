@@ -96,7 +96,8 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
   if (scene.terrain.kind != TerrainSource::Kind::kNone) Prepare(progress, "terrain");
   switch (scene.terrain.kind) {
     case TerrainSource::Kind::kBuiltInRange: {
-      const ElevationGrid range = BuiltInRange(scene.terrain.centre.value_or(scene.place));
+      const ElevationGrid range =
+          BuiltInRange(scene.terrain.centre.value_or(scene.place), scene.terrain.range_seed);
       Prepare(progress, "mesh");
       return {MeshFromElevation(range, frame),
               scene.terrain.is_default

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -67,6 +68,7 @@ struct TerrainSource {
   VoidPolicy voids = VoidPolicy::kFill;
   UpAxis up = UpAxis::kZ;                                 // of the mesh
   std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
+  std::uint32_t range_seed = 0;                           // of the range
   bool is_default = true;  // nothing was said about the terrain: the range stands in for it
   std::filesystem::path colour = {};      // over it, see ColourDrape; empty: none
   std::filesystem::path land_cover = {};  // as colour, and not both

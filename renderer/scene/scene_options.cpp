@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene_options.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "atmosphere/air/medium_choice.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
 #include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/lattice_noise.h"
 
 namespace alpenglow {
 namespace {
@@ -22,14 +27,19 @@ GeodeticPosition PlaceTyped(const SceneOptions& options) {
                           options.longitude.value_or(kHomeLongitude), 0.0);
 }
 
+GeodeticPosition Home() { return PlaceFromDegrees(kHomeLatitude, kHomeLongitude, 0.0); }
+
 /// The range comes to a place that is typed; nobody else moves.
-GeodeticPosition CentreOfTheRange(const SceneOptions& options) {
-  const GeodeticPosition typed = PlaceTyped(options);
-  return IsPlaceTyped(options) ? CentreOfRangeSeenFrom(typed) : typed;
+TerrainSource RangeOf(const SceneOptions& options) {
+  if (IsPlaceTyped(options)) return RangeSeenFrom(PlaceTyped(options));
+  TerrainSource range;
+  range.centre = Home();
+  range.is_default = false;  // nobody looks for other mountains there
+  return range;
 }
 
 View ViewOfTheRange(const SceneOptions& options) {
-  const BuiltInView view = BuiltInRangeViewAboveGround(CentreOfTheRange(options));
+  const BuiltInView view = BuiltInRangeViewAboveGround(*RangeOf(options).centre);
   GeodeticPosition place = IsPlaceTyped(options) ? PlaceTyped(options) : view.eye;
   place.height_m = 0.0;
   return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
@@ -48,7 +58,30 @@ Height HeightFrom(const SceneOptions& options, const Height& fallback) {
   return fallback;
 }
 
+// Places that are typed or computed alike have the same: none of them lies where two meet.
+std::uint32_t SeedAt(const GeodeticPosition& place) {
+  constexpr double kCellsPerDegree = 100.0, kOffset = 0.5 + 1.0 / 3e3;
+  const auto cell = [](double angle_rad) {
+    return static_cast<std::int32_t>(
+        std::floor(angle_rad / kRadiansPerDegree * kCellsPerDegree + kOffset));
+  };
+  const std::uint32_t seed =
+      LatticeHash(cell(WrappedLongitude(place.longitude_rad)), cell(place.latitude_rad), 90);
+  return std::max(seed, 1U);
+}
+
 }  // namespace
+
+bool IsOnRangeAtHome(const GeodeticPosition& place) {
+  return BuiltInRangeExtent(Home()).Covers(place.latitude_rad, place.longitude_rad);
+}
+
+TerrainSource RangeSeenFrom(const GeodeticPosition& place) {
+  TerrainSource range;
+  range.centre = CentreOfRangeSeenFrom(place);
+  range.range_seed = IsOnRangeAtHome(place) ? 0 : SeedAt(place);
+  return range;
+}
 
 Scene SceneFromOptions(const SceneOptions& options) {
   const View view =
@@ -68,9 +101,7 @@ Scene SceneFromOptions(const SceneOptions& options) {
     scene.terrain.kind = TerrainSource::Kind::kElevationModel;
     scene.terrain.file = *options.dem;
   } else {
-    scene.terrain.centre = CentreOfTheRange(options);
-    // Nobody looks for other mountains at the range's own place.
-    scene.terrain.is_default = IsPlaceTyped(options);
+    scene.terrain = RangeOf(options);
   }
   return scene;
 }

@@ -24,10 +24,18 @@ struct SceneOptions {
   std::optional<int> bortle;              // ZenithOfBortleClass
 };
 
+/// The built-in range of a place: the place is that of its view. Places on the range around
+/// kHomeLatitude and kHomeLongitude have its mountains (seed 0), others their own: the same within a
+/// hundredth of a degree, and each time.
+[[nodiscard]] TerrainSource RangeSeenFrom(const GeodeticPosition& place);
+
+/// Whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
+[[nodiscard]] bool IsOnRangeAtHome(const GeodeticPosition& place);
+
 /// The eye stands at latitude and longitude, whatever the ground is. With `dem` it stands 2 m above
 /// the ground and looks north, horizontally, 60 degrees wide, unless said otherwise. Without it the
-/// built-in range lies so that the place is that of BuiltInRangeView, whose height and directions
-/// hold unless said otherwise. The scene's time is noon (UTC) of 2026-06-21: the day of events when
+/// built-in range is RangeSeenFrom the place, and height and directions of BuiltInRangeView hold
+/// unless said otherwise. The scene's time is noon (UTC) of 2026-06-21: the day of events when
 /// none is given. Throws InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);
 

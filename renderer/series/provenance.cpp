@@ -49,10 +49,14 @@ std::string HeightText(const Height& height) {
 std::string TerrainText(const TerrainSource& terrain) {
   switch (terrain.kind) {
     case TerrainSource::Kind::kBuiltInRange:
-      return !terrain.centre ? "built-in range"
-                             : fmt::format("built-in range around {}, {}",
-                                           DegreesText(terrain.centre->latitude_rad),
-                                           DegreesText(terrain.centre->longitude_rad));
+      return !terrain.centre
+                 ? "built-in range"
+                 : fmt::format("{} around {}, {}",
+                               terrain.range_seed == 0
+                                   ? "built-in range"
+                                   : fmt::format("built-in range {}", terrain.range_seed),
+                               DegreesText(terrain.centre->latitude_rad),
+                               DegreesText(terrain.centre->longitude_rad));
     case TerrainSource::Kind::kElevationModel:
       return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
                          HashOfFile(terrain.file),

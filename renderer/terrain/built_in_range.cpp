@@ -6,15 +6,20 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/terrain/cell_diagonal.h"
 #include "renderer/terrain/erosion.h"
 #include "renderer/terrain/kept_heights.h"
 #include "renderer/terrain/land.h"
@@ -44,18 +49,18 @@ std::vector<float> Everywhere(const Land& grid, const Function& value_at) {
 // The range's grid at a part of its samples a side, without heights.
 Land GridOf(int size) { return {size, 1e3 * kRangeSpacing_km * kRangeSize / size, {}}; }
 
-Rock RockOf(const Land& grid) {
+Rock RockOf(const Land& grid, std::uint32_t seed) {
   const std::size_t samples = grid.index(grid.size, 0);
   Rock rock{std::vector<float>(samples), std::vector<float>(samples), std::vector<float>(samples)};
   tbb::parallel_for(0, grid.size, [&](int row) {
     for (int column = 0; column < grid.size; ++column) {
       const auto [x, y] = grid.PlaceOf(row, column);
       const std::size_t i = grid.index(row, column);
-      const double uplift = RelativeUplift(x, y);
+      const double uplift = RelativeUplift(x, y, seed);
       rock.uplift_m_per_step[i] = static_cast<float>(kUpliftPerStep_m * uplift);
-      rock.erodibility_per_step[i] =
-          static_cast<float>(kUpliftPerStep_m / kUpliftOverErodibility * RelativeErodibility(x, y));
-      rock.steepest_slope[i] = static_cast<float>(SteepestSlope(x, y, uplift));
+      rock.erodibility_per_step[i] = static_cast<float>(kUpliftPerStep_m / kUpliftOverErodibility *
+                                                        RelativeErodibility(x, y, seed));
+      rock.steepest_slope[i] = static_cast<float>(SteepestSlope(x, y, uplift, seed));
     }
   });
   return rock;
@@ -102,8 +107,8 @@ void Erode(Land& land, const Rock& rock, int steps, std::uint32_t seed) {
 }
 
 // Rivers find their way on a coarse grid, where a step reaches far, and cut it finer and finer.
-Land ErodedLand() {
-  const auto rock_of = [](int size) { return [=] { return RockOf(GridOf(size)); }; };
+Land ErodedLand(std::uint32_t seed) {
+  const auto rock_of = [&](int size) { return [=] { return RockOf(GridOf(size), seed); }; };
   Ahead<Rock> first(rock_of(kRangeSize / 8)), second(rock_of(kRangeSize / 4)),
       third(rock_of(kRangeSize / 2)), last(rock_of(kRangeSize));
   Land land = Plain(kRangeSize / 8);
@@ -118,8 +123,9 @@ Land ErodedLand() {
 }
 
 // What ice, gravel and soil do after the rivers: ribs on the faces, soft foreland, level valleys.
-Land Finished(Land land) {
-  const std::vector<float> alpine = Everywhere(land, Alpine);
+Land Finished(Land land, std::uint32_t seed) {
+  const std::vector<float> alpine =
+      Everywhere(land, [&](double x_km, double y_km) { return Alpine(x_km, y_km, seed); });
   std::vector<float> soil;
   std::vector<float> gravel_m;
   for (const float value : alpine) {
@@ -134,26 +140,61 @@ Land Finished(Land land) {
   return land;
 }
 
+// Height on the triangles under the view.
+double GroundUnderView(const Land& land) {
+  const double row = 0.5 * (land.size - 1) - 1e3 * kRangeViewNorth_km / land.spacing_m;
+  const double column = 0.5 * (land.size - 1) + 1e3 * kRangeViewEast_km / land.spacing_m;
+  const int first_row = static_cast<int>(row), first_column = static_cast<int>(column);
+  CellHeights around;
+  for (int i = 0; i < 16; ++i) {
+    around[static_cast<std::size_t>(i)] =
+        static_cast<double>(land.at(first_row + i / 4 - 1, first_column + i % 4 - 1));
+  }
+  return HeightOnTriangles(around, column - first_column, row - first_row).value();
+}
+
+// The crest of the foothills is raised until the view stands as high as that of seed 0.
+void RaiseView(Land& land) {
+  const double missing_m = kRangeViewGround_m - GroundUnderView(land);
+  const std::vector<float> raised_m = Everywhere(
+      land, [&](double x_km, double y_km) { return missing_m * CrestUnderView(x_km, y_km); });
+  for (std::size_t i = 0; i < raised_m.size(); ++i) land.height_m[i] += raised_m[i];
+}
+
 // The whole range with its foreland, which falls to 0 at the rim.
-Land RangeLand() {
-  Land land = Finished(ErodedLand());
+Land RangeLand(std::uint32_t seed) {
+  Land land = Finished(ErodedLand(seed), seed);
   const std::vector<float> base_m = Everywhere(land, BaseHeight);
   for (std::size_t i = 0; i < base_m.size(); ++i) land.height_m[i] += base_m[i];
+  if (seed != 0) RaiseView(land);
   static_cast<void>(
       DrainAndFill(land, ScatteredSamples(land.size, 6)));  // ribs and bends have left some pits
   return land;
 }
 
-// Found once a process: it is the same wherever it stands. Isolated, so that a thread that waits
-// for its parts does not take up another task that waits for the land.
-const Land& TheLand() {
-  static const Land kLand = tbb::this_task_arena::isolate([] {
+// Isolated, so that a thread that waits for its parts does not take up another task that waits for
+// the land.
+Land MadeOrKept(std::uint32_t seed) {
+  return tbb::this_task_arena::isolate([&] {
+    if (seed != 0) return RangeLand(seed);
     Land land = GridOf(kRangeSize);
     land.height_m = KeptHeights({"range", kBuiltInRangeFingerprint, land.index(land.size, 0)},
-                                MadeRangeHeights);
+                                [] { return MadeRangeHeights(0); });
     return land;
   });
-  return kLand;
+}
+
+// Seed 0 and the last other one stay for the process: they are the same wherever they stand.
+std::shared_ptr<const Land> LandOf(std::uint32_t seed) {
+  static std::mutex mutex;
+  static std::array<std::pair<std::uint32_t, std::shared_ptr<const Land>>, 2> kept;
+  const std::scoped_lock lock(mutex);
+  auto& [of, land] = kept[seed == 0 ? 0 : 1];
+  if (!land || of != seed) {
+    land = std::make_shared<const Land>(MadeOrKept(seed));
+    of = seed;
+  }
+  return land;
 }
 
 // From here on a box of longitudes and latitudes is too
@@ -312,8 +353,8 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
 }
 
 // Where the view of the range stands, from its centre.
-constexpr double kViewEast_m = 2000.0;
-constexpr double kViewNorth_m = 16560.0;
+constexpr double kViewEast_m = 1e3 * kRangeViewEast_km;
+constexpr double kViewNorth_m = 1e3 * kRangeViewNorth_km;
 
 ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
   const double most = 0.5 * kPi + kViewNorth_m / MeridianRadius(0.5 * kPi);
@@ -325,9 +366,11 @@ ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
 
 }  // namespace
 
-std::vector<float> MadeRangeHeights() { return RangeLand().height_m; }
+std::vector<float> MadeRangeHeights(std::uint32_t seed) { return RangeLand(seed).height_m; }
 
-ElevationGrid BuiltInRange(const GeodeticPosition& centre) { return GridAt(centre, TheLand()); }
+ElevationGrid BuiltInRange(const GeodeticPosition& centre, std::uint32_t seed) {
+  return GridAt(centre, *LandOf(seed));
+}
 
 ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre) {
   return GridAt(centre, GridOf(kRangeSize));

@@ -10,20 +10,21 @@
 
 namespace alpenglow {
 
-/// The range, centred on a place (also one of CentreOfRangeSeenFrom): foreland in the north,
-/// valleys at 500-900 m, chains that rise southwards, one peak above all. Its heights are the same
-/// bytes on every machine with IEEE arithmetic, for any number of threads and any centre; it falls
-/// to 0 m at the rim.
-[[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre);
+/// The range of a seed, centred on a place (also one of CentreOfRangeSeenFrom): foreland in the
+/// north, valleys at 500-900 m, chains that rise southwards, one peak above all. Its heights are the
+/// same bytes on every machine with IEEE arithmetic, for any number of threads and any centre; it
+/// falls to 0 m at the rim. Each seed has mountains of its own; the foreland behind the view is that
+/// of seed 0. Takes two seconds of processor time, but for seed 0 only once a machine.
+[[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre, std::uint32_t seed = 0);
 
 /// Its grid without heights, at once.
 [[nodiscard]] ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre);
 
-/// Of its heights, see FingerprintOf (kept_heights.h). It changes with the range.
+/// Fingerprint of the heights of seed 0, see FingerprintOf (kept_heights.h).
 inline constexpr std::uint64_t kBuiltInRangeFingerprint = 15784046122448507333ULL;
 
-/// Its heights, rows from the north, made anew: BuiltInRange keeps them between runs.
-[[nodiscard]] std::vector<float> MadeRangeHeights();
+/// The heights of a seed, rows from the north, made anew: BuiltInRange keeps them.
+[[nodiscard]] std::vector<float> MadeRangeHeights(std::uint32_t seed);
 
 /// An eye and where it looks.
 struct BuiltInView {
@@ -37,6 +38,10 @@ struct BuiltInView {
 /// chain behind chain, east at the left.
 [[nodiscard]] BuiltInView BuiltInRangeView(const GeodeticPosition& centre,
                                            const ElevationGrid& range);
+
+/// Height of the ground [m] under the view, of every seed to a centimetre; beside a pole, where the
+/// heights are resampled, to some metres. It is known before a range is made.
+inline constexpr double kRangeViewGround_m = 2084.44;
 
 /// The same view without the range at hand: eye.height_m counts from the ground.
 [[nodiscard]] BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Which way four samples are cut into two triangles.
+// Which way four samples are cut into two triangles, and the height on these.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 namespace alpenglow {
 
@@ -22,6 +23,26 @@ using CellHeights = std::array<double, 16>;
   const double falling = 0.5 * (around[5] + around[10]);
   const double rising = 0.5 * (around[9] + around[6]);
   return std::abs(falling - centre) < std::abs(rising - centre);
+}
+
+/// Height [m] on the triangle over a place in the cell, `east` and `south` of its north-west corner
+/// as shares of the cell; nothing beside a void.
+[[nodiscard]] inline std::optional<double> HeightOnTriangles(const CellHeights& around, double east,
+                                                             double south) {
+  const double nw = around[5], ne = around[6], sw = around[9], se = around[10];
+  const bool void_off_falling = std::isnan(ne) || std::isnan(sw);
+  const bool void_off_rising = std::isnan(nw) || std::isnan(se);
+  const bool falling = void_off_falling || (!void_off_rising && FallingDiagonalFits(around));
+  double height = 0.0;
+  if (falling) {
+    height = east > south ? nw + east * (ne - nw) + south * (se - ne)
+                          : nw + south * (sw - nw) + east * (se - sw);
+  } else {
+    height = east + south < 1.0 ? nw + east * (ne - nw) + south * (sw - nw)
+                                : se + (1.0 - east) * (sw - se) + (1.0 - south) * (ne - se);
+  }
+  if (std::isnan(height)) return std::nullopt;
+  return height;
 }
 
 }  // namespace alpenglow

@@ -64,11 +64,11 @@ double SmoothStep(double t) {
 }
 
 // Chains wander and vary along their strike.
-double ChainUplift(const StrikeFrame& place) {
+double ChainUplift(const StrikeFrame& place, std::uint32_t range_seed) {
   double uplift = 0.0;
   for (std::size_t i = 0; i < kChains.size(); ++i) {
     const Chain& chain = kChains[i];
-    const auto seed = static_cast<std::uint32_t>(100 + 10 * i);
+    const auto seed = range_seed + static_cast<std::uint32_t>(100 + 10 * i);
     constexpr double kWander_km = 3.5;
     constexpr double kOctaves_km = kWander_km * (1.0 + 0.5 + 0.25);  // no noise reaches 1
     const double from_chain_km = place.across_km - chain.across_km;
@@ -99,39 +99,71 @@ double RimFade(double x_km, double y_km, double width_km) {
 }
 
 // The place that noise has moved: nothing in the range is straight.
-StrikeFrame Warped(double x_km, double y_km) {
-  const double warp_x = 5.5 * FractalNoise(x_km / 17.0, y_km / 17.0, 4, 1);
-  const double warp_y = 5.5 * FractalNoise(x_km / 17.0, y_km / 17.0, 4, 2);
+StrikeFrame Warped(double x_km, double y_km, std::uint32_t seed) {
+  const double warp_x = 5.5 * FractalNoise(x_km / 17.0, y_km / 17.0, 4, seed + 1);
+  const double warp_y = 5.5 * FractalNoise(x_km / 17.0, y_km / 17.0, 4, seed + 2);
   return ToStrikeFrame(x_km + warp_x, y_km + warp_y);
 }
 
 // 0 in the northern foreland, 1 from the first chain on.
 double South(const StrikeFrame& place) { return SmoothStep((place.across_km + 26.0) / 12.0); }
 
-}  // namespace
+// 1 from the view of the range northwards, where the ground is that of the first one, 0 from 9 km
+// south of it on.
+double ForelandShare(double y_km) {
+  constexpr double kAlike_km = 2.0, kOther_km = 9.0;
+  return SmoothStep((y_km - kRangeViewNorth_km + kOther_km) / (kOther_km - kAlike_km));
+}
 
-double RelativeUplift(double x_km, double y_km) {
-  const StrikeFrame place = Warped(x_km, y_km);
-  const double ridges = RidgedNoise(place.along_km / 13.0, place.across_km / 13.0, 4, 3);
-  const double mountains = (ChainUplift(place) + SummitUplift(place)) * (0.35 + 1.15 * ridges);
+// The value of a range, and that of the first one in the north.
+template <typename Value>
+double OverForeland(double y_km, std::uint32_t seed, const Value& value_of) {
+  const double foreland = seed == 0 ? 1.0 : ForelandShare(y_km);
+  if (foreland == 1.0) return value_of(std::uint32_t{0});
+  if (foreland == 0.0) return value_of(seed);
+  return std::lerp(value_of(seed), value_of(std::uint32_t{0}), foreland);
+}
+
+double UpliftOf(double x_km, double y_km, std::uint32_t seed) {
+  const StrikeFrame place = Warped(x_km, y_km, seed);
+  const double ridges = RidgedNoise(place.along_km / 13.0, place.across_km / 13.0, 4, seed + 3);
+  const double mountains =
+      (ChainUplift(place, seed) + SummitUplift(place)) * (0.35 + 1.15 * ridges);
   const double foreland = 0.02 + 0.04 * ridges + 0.05 * South(place);
   return (foreland + mountains) * RimFade(x_km, y_km, 9.0);
 }
 
-double RelativeErodibility(double x_km, double y_km) {
-  return std::clamp(1.0 + 0.9 * FractalNoise(x_km / 6.0, y_km / 6.0, 4, 20), 0.5, 2.0);
+}  // namespace
+
+double RelativeUplift(double x_km, double y_km, std::uint32_t seed) {
+  return OverForeland(y_km, seed, [&](std::uint32_t of) { return UpliftOf(x_km, y_km, of); });
 }
 
-double SteepestSlope(double x_km, double y_km, double relative_uplift) {
+double RelativeErodibility(double x_km, double y_km, std::uint32_t seed) {
+  return OverForeland(y_km, seed, [&](std::uint32_t of) {
+    return std::clamp(1.0 + 0.9 * FractalNoise(x_km / 6.0, y_km / 6.0, 4, of + 20), 0.5, 2.0);
+  });
+}
+
+double SteepestSlope(double x_km, double y_km, double relative_uplift, std::uint32_t seed) {
   const double fresh = std::min(1.0, relative_uplift);
-  const double layers = FractalNoise(x_km / 2.3, y_km / 2.3, 4, 30);
+  const double layers = OverForeland(y_km, seed, [&](std::uint32_t of) {
+    return FractalNoise(x_km / 2.3, y_km / 2.3, 4, of + 30);
+  });
   return std::clamp(0.44 + 0.4 * fresh + 0.4 * layers, 0.35, 1.3);
 }
 
 double BaseHeight(double x_km, double y_km) { return 450.0 * RimFade(x_km, y_km, 10.0); }
 
-double Alpine(double x_km, double y_km) {
-  return South(Warped(x_km, y_km)) * RimFade(x_km, y_km, 9.0);
+double Alpine(double x_km, double y_km, std::uint32_t seed) {
+  return RimFade(x_km, y_km, 9.0) *
+         OverForeland(y_km, seed, [&](std::uint32_t of) { return South(Warped(x_km, y_km, of)); });
+}
+
+double CrestUnderView(double x_km, double y_km) {
+  constexpr double kWhole_km = 0.3, kEnd_km = 6.0;
+  const double away_km = std::hypot(x_km - kRangeViewEast_km, y_km - kRangeViewNorth_km);
+  return SmoothStep((kEnd_km - away_km) / (kEnd_km - kWhole_km));
 }
 
 }  // namespace alpenglow

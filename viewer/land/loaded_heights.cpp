@@ -12,23 +12,6 @@ namespace {
 
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
-// Height on the triangle over a place in a cell, x east and y south of its north-west corner.
-std::optional<double> OnTriangles(const CellHeights& around, double x, double y) {
-  const double nw = around[5], ne = around[6], sw = around[9], se = around[10];
-  const bool void_off_falling = std::isnan(ne) || std::isnan(sw);
-  const bool void_off_rising = std::isnan(nw) || std::isnan(se);
-  const bool falling = void_off_falling || (!void_off_rising && FallingDiagonalFits(around));
-  double height = 0.0;
-  if (falling) {
-    height = x > y ? nw + x * (ne - nw) + y * (se - ne) : nw + y * (sw - nw) + x * (se - sw);
-  } else {
-    height = x + y < 1.0 ? nw + x * (ne - nw) + y * (sw - nw)
-                         : se + (1.0 - x) * (sw - se) + (1.0 - y) * (ne - se);
-  }
-  if (std::isnan(height)) return std::nullopt;
-  return height;
-}
-
 }  // namespace
 
 SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad) {
@@ -82,7 +65,8 @@ std::optional<double> LoadedHeights::HeightUnder(double latitude_rad, double lon
   const HeightBlock block = Block(0, i - 1, j - 1, 4, 4);
   CellHeights around{};
   std::copy(block.height_m.begin(), block.height_m.end(), around.begin());
-  return OnTriangles(around, std::clamp(at.column - i, 0.0, 1.0), std::clamp(at.row - j, 0.0, 1.0));
+  return HeightOnTriangles(around, std::clamp(at.column - i, 0.0, 1.0),
+                           std::clamp(at.row - j, 0.0, 1.0));
 }
 
 std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& place,

@@ -517,6 +517,20 @@ TEST(SceneOptions, TheRangeComesToThePlaceThatIsTyped) {
   }
 }
 
+TEST(SceneOptions, APlaceHasMountainsOfItsOwnAndAlwaysTheSame) {
+  const auto seed_at = [](double latitude, double longitude) {
+    return SceneTypedAt(latitude, longitude).terrain.range_seed;
+  };
+  const std::uint32_t tromso = seed_at(69.65, 18.96);
+  EXPECT_NE(tromso, 0U);
+  EXPECT_NE(tromso, seed_at(35.36, 138.73));
+  EXPECT_EQ(tromso, seed_at(69.65, 18.96 - 1e-12)) << "as a computation of the place may have it";
+  EXPECT_EQ(tromso, seed_at(69.65 + 1e-12, 18.96));
+  EXPECT_EQ(seed_at(69.65, 181.0), seed_at(69.65, -179.0)) << "one place";
+  EXPECT_EQ(SceneFromOptions({}).terrain.range_seed, 0U);
+  EXPECT_EQ(seed_at(46.58, 8.01), 0U) << "on the range at home";
+}
+
 TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {
   SceneOptions options;
   options.dem = "N35E138.hgt";
