@@ -26,15 +26,26 @@ bool IsTrack(const std::filesystem::path& file) {
   return HasExtension(file, ".gpx") || HasExtension(file, ".kml");
 }
 
-/// Without a scene and without a place, a track says where.
+/// Where a path is: at its middle, which has most of it in sight. A flight over the built-in range
+/// begins at the view of the range.
+GeodeticPosition PlaceOfPath(const SkyseriesOptions& options) {
+  if (IsTrack(*options.path)) {
+    const std::vector<TrackPoint> points = ReadTrack(*options.path).points;
+    return points[points.size() / 2].place;
+  }
+  const std::vector<CameraPathPoint> points = ReadCameraPath(*options.path).points();
+  return points[options.scene.dem ? points.size() / 2 : 0].pose.place;
+}
+
+/// Without a scene and without a place, a path says where; but over the built-in range at home that
+/// stays where it is.
 SceneOptions OptionsOfScene(const SkyseriesOptions& options) {
   SceneOptions scene = options.scene;
-  if (options.path && IsTrack(*options.path) && !scene.latitude && !scene.longitude) {
-    const std::vector<TrackPoint> points = ReadTrack(*options.path).points;
-    const GeodeticPosition middle = points[points.size() / 2].place;
-    scene.latitude = middle.latitude_rad / kRadiansPerDegree;
-    scene.longitude = middle.longitude_rad / kRadiansPerDegree;
-  }
+  if (!options.path || scene.latitude || scene.longitude) return scene;
+  const GeodeticPosition place = PlaceOfPath(options);
+  if (!IsTrack(*options.path) && !scene.dem && IsOnRangeAtHome(place)) return scene;
+  scene.latitude = place.latitude_rad / kRadiansPerDegree;
+  scene.longitude = place.longitude_rad / kRadiansPerDegree;
   return scene;
 }
 

@@ -87,7 +87,7 @@ inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
                "Metres above the ground, 0 to 1e9 (default: 2, or the range's view)");
   without_file("--dem", scene.dem,
                "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM (default: a "
-               "built-in mountain range, which the place has the view of)");
+               "built-in mountain range, of its own for each place, which has the view of it)");
   without_file("--atmosphere", scene.atmosphere,
                "Atmosphere file (TOML) or preset: earth, hazy, "
                "clear-mountain, mars, bruneton2017");
@@ -115,7 +115,7 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
       "or "
       "a CSV with a header of t_s, latitude, longitude, height_m (over the "
       "ellipsoid) and, if wanted, heading, pitch, roll, fov and utc; skyview --record writes one. "
-      "Its frames begin at its first point");
+      "Its frames begin at its first point. Without a scene and a place it says where");
   CLI::Option* fps =
       app.add_option(
              "--fps", options.frames_per_second,
