@@ -182,7 +182,7 @@ void FlightDeck::Try(const Work& work) {
 void FlightDeck::Age(double seconds) {
   for (Message& message : messages_) message.age_s += seconds;
   while (!messages_.empty() && messages_.front().age_s > kMessage_s) messages_.pop_front();
-  for (const std::string& note : flight_.painter().land().TakeNotes()) Say(note);
+  for (const std::string& note : flight_.TakeNotes()) Say(note);
   constexpr double kMemory = 0.1;
   frame_ms_ += kMemory * (1e3 * seconds - frame_ms_);
 }
@@ -426,6 +426,7 @@ void FlightDeck::Serve(const HudRequest& asked) {
           {asked.place->latitude_deg, asked.place->longitude_deg, asked.place->height_m, {}, {}});
     }
     if (asked.named_place) flight_.GoTo(*asked.named_place);
+    if (asked.place || asked.named_place) flight_.AwaitGround();
     ServeTime(asked.time);
     ServeAir(asked.air);
     if (asked.lamp) SetLandingLight(asked.lamp->is_on);

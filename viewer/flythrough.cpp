@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/file_extension.h"
 #include "lut/program/program.h"
+#include "renderer/scene/scene_options.h"
 #include "renderer/series/provenance.h"
+#include "renderer/terrain/built_in_range.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/texture_side.h"
@@ -82,6 +85,8 @@ void RequirePictureName(const std::filesystem::path& file) {
 Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
                        const FlythroughSettings& settings)
     : scene_(Drawable(scene)),
+      first_terrain_(scene.terrain),
+      has_range_(settings.land.files.empty() && settings.land.range_centre),
       has_one_model_(settings.land.files.empty() ||
                      (settings.land.files.size() == 1 &&
                       !std::filesystem::is_directory(settings.land.files.front()))),
@@ -101,25 +106,51 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
     SetExposure(settings.exposure.ev100);
     rule_of_exposure_ = {};  // once it is no longer locked
   }
-  if (scene.camera.height.above_ground) AwaitGround(scene.camera.height.value_m);
+  if (first_terrain_.kind == TerrainSource::Kind::kBuiltInRange && !first_terrain_.centre)
+    first_terrain_.centre = scene.place;
+  scene_.terrain = first_terrain_;
+  if (scene.camera.height.above_ground) ForgetGround(scene.camera.height.value_m);
+}
+
+bool Flythrough::IsRangeExpectedAt(const GeodeticPosition& place) const {
+  constexpr double kNear_m = 100.0;
+  if (!has_range_ || painter_.land().KnowsGround(place)) return false;
+  GeodeticPosition view = BuiltInRangeViewAboveGround(*scene_.terrain.centre).eye;
+  view.height_m = place.height_m;
+  return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
 }
 
 GroundHeight Flythrough::Ground() const {
   return [this](const GeodeticPosition& place) {
+    if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
     return painter_.land().GroundUnder(place).value_or(0.0);
   };
 }
 
-void Flythrough::AwaitGround(std::optional<double> above_ground_m) {
+void Flythrough::ForgetGround(std::optional<double> above_ground_m) {
   knows_ground_ = false;
   waits_above_ground_m_ = above_ground_m;
+  put_at_ = std::nullopt;
+}
+
+void Flythrough::AwaitGround() {
+  if (knows_ground_ || !waits_above_ground_m_) return;
+  if (!IsRangeExpectedAt(eye().place)) {
+    painter_.land().AwaitGround(eye().place);
+    return StandOnGround();
+  }
+  Eye stands = eye();
+  stands.place.height_m = kRangeViewGround_m + *waits_above_ground_m_;
+  cockpit_.pilot().PutAt(stands, Ground());
+  put_at_ = eye();
 }
 
 void Flythrough::StandOnGround() {
   if (knows_ground_ || !painter_.land().KnowsGround(eye().place)) return;
   knows_ground_ = true;
   const std::optional<double> above_m = std::exchange(waits_above_ground_m_, std::nullopt);
-  if (!above_m) return cockpit_.pilot().KeepAbove(Ground());
+  const bool has_left = put_at_ && *put_at_ != eye();
+  if (!above_m || has_left) return cockpit_.pilot().KeepAbove(Ground());
   Eye stands = eye();
   stands.place.height_m = painter_.land().HighestGround(stands.place).value_or(0.0) + *above_m;
   cockpit_.pilot().PutAt(stands, Ground());
@@ -129,37 +160,68 @@ void Flythrough::Place(const EyePlacement& placement) {
   const double above_m =
       waits_above_ground_m_.value_or(eye().place.height_m - Ground()(eye().place));
   Eye placed = Placed(eye(), placement);
-  if (placement.height_m) {
-    AwaitGround();
-  } else if (placement.latitude_deg || placement.longitude_deg) {
-    AwaitGround(std::max(above_m, 0.0));
-  }
+  const bool moves = placement.latitude_deg || placement.longitude_deg;
+  if (moves) BringLandTo(placed.place, "this place");
+  if (moves && !placement.height_m)
+    placed.place.height_m = Ground()(placed.place) + std::max(above_m, 0.0);
   cockpit_.pilot().PutAt(placed, Ground());
+  if (placement.height_m) {
+    ForgetGround();
+  } else if (moves) {
+    ForgetGround(std::max(above_m, 0.0));
+  }
 }
 
 void Flythrough::GoTo(const std::string& name) {
-  AwaitGround();
-  cockpit_.GoTo(PlaceNamed(name), Ground());
+  const NamedPlace& there = PlaceNamed(name);
+  BringLandTo(there.place, there.name);
+  cockpit_.GoTo(there, Ground());
+  ForgetGround(eye().place.height_m - Ground()(eye().place));
+}
+
+void Flythrough::BringRangeTo(const GeodeticPosition& place) {
+  const auto reaches = [&](const TerrainSource& range) {
+    return BuiltInRangeExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
+  };
+  if (!has_range_ || reaches(scene_.terrain)) return;
+  scene_.terrain = reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place);
+  painter_.Replace(LandSourceOf(scene_));
+  reference_.reset();
+  reference_scene_.reset();
+}
+
+void Flythrough::BringLandTo(const GeodeticPosition& place, const std::string& name) {
+  BringRangeTo(place);
+  const Landscape& land = painter_.land();
+  if (land.tiles().source().IsEmpty() || land.Reaches(place)) return;
+  notes_.push_back(
+      fmt::format("there is no terrain at {}: --dem loads an elevation model of it", name));
+}
+
+std::vector<std::string> Flythrough::TakeNotes() {
+  std::vector<std::string> notes = std::exchange(notes_, {});
+  for (std::string& note : painter_.land().TakeNotes()) notes.push_back(std::move(note));
+  return notes;
 }
 
 void Flythrough::Follow(const CameraPath& path) {
-  AwaitGround();
+  ForgetGround();
   cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
   static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEventAfterwards));
 }
 
 void Flythrough::Replay(const CameraPath& flight) {
-  AwaitGround();
+  ForgetGround();
   cockpit_.Replay(std::make_shared<const CameraPath>(flight), Ground());
 }
 
 void Flythrough::FlyAgain(const CameraPath& flown) {
-  AwaitGround();
+  ForgetGround();
   cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown), Ground());
 }
 
 void Flythrough::Show(const ReplayFrame& frame) {
-  AwaitGround();
+  ForgetGround();
   const CameraPathPoint shown{frame.path_s, PoseOf(Zoomed(frame.eye, 1.0)), frame.now};
   cockpit_.Replay(std::make_shared<const CameraPath>(std::vector{shown}), Ground());
 }
@@ -267,8 +329,6 @@ Scene Flythrough::SceneSeen() const {
   Scene seen = scene_;
   seen.place = eye().place;
   seen.place.height_m = 0.0;
-  if (seen.terrain.kind == TerrainSource::Kind::kBuiltInRange && !seen.terrain.centre)
-    seen.terrain.centre = scene_.place;
   if (!has_one_model_) seen.terrain.kind = TerrainSource::Kind::kNone;
   seen.time = now();
   seen.camera.height = {eye().place.height_m, false};

@@ -69,10 +69,17 @@ class Flythrough {
   Flythrough(const Scene& scene, const UtcInstant& start, const FlythroughSettings& settings);
 
   /// Puts the eye there. Without a height it keeps the one it had over the ground; it never comes
-  /// to stand in the ground.
+  /// to stand in the ground. The built-in range comes along to a place off it; of a place that no
+  /// other land reaches there is a note.
   void Place(const EyePlacement& placement);
-  /// Puts the eye at a place of the list, by name.
+  /// Puts the eye at a place of the list, by name. Land as in Place.
   void GoTo(const std::string& name);
+  /// The built-in range of a place, where the one that is there does not reach it: that of the
+  /// scene where it does, else RangeSeenFrom the place. Read beside drawing. No other land moves.
+  void BringRangeTo(const GeodeticPosition& place);
+  /// Puts an eye that counts its height from the ground at the height at which it will stay: waits
+  /// for the land there, but not for a range, whose ground under the view is known.
+  void AwaitGround();
   /// Flies along a path from its beginning.
   void Follow(const CameraPath& path);
   /// Shows a flight as it was, and what was flown so far: see Cockpit.
@@ -148,7 +155,10 @@ class Flythrough {
   [[nodiscard]] const Look& look() const { return look_; }
   /// Temperature of the light that is shown as white [K]; nothing before the first picture.
   [[nodiscard]] std::optional<double> white_k() const;
-  /// Height of the ground under a place; of the bare planet where there is no land.
+  /// What land and places give occasion to tell, each once.
+  [[nodiscard]] std::vector<std::string> TakeNotes();
+  /// Height of the ground under a place; of the bare planet where there is no land, of the built-in
+  /// range about its view before it is made.
   [[nodiscard]] GroundHeight Ground() const;
   /// Whether the eye stands where it was put: over the ground there, or where there is none. Until
   /// the land under a place is loaded it may be inside; from then on it never is.
@@ -171,15 +181,19 @@ class Flythrough {
   /// Of a picture without a frame before it: as frames are, or as it is metered.
   [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
   [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples);
-  void AwaitGround(std::optional<double> above_ground_m = std::nullopt);
+  void ForgetGround(std::optional<double> above_ground_m = std::nullopt);
+  [[nodiscard]] bool IsRangeExpectedAt(const GeodeticPosition& place) const;
+  void BringLandTo(const GeodeticPosition& place, const std::string& name);
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
   /// The land that is loaded around the eye, for the renderer.
   [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround() const;
   Scene scene_;
-  bool has_one_model_;  // not several elevation models, nor a folder of them
-  Medium medium_;       // of the preset or file, unchanged
+  TerrainSource first_terrain_;  // of the scene as it was read
+  bool has_range_;               // and no other land
+  bool has_one_model_;           // not several elevation models, nor a folder of them
+  Medium medium_;                // of the preset or file, unchanged
   AirChoice air_;
   QualityRule rule_;
   AutoQuality auto_;
@@ -200,6 +214,8 @@ class Flythrough {
   bool landing_light_ = false;
   bool knows_ground_ = false;                   // under the eye, since it was put there
   std::optional<double> waits_above_ground_m_;  // until then: how high it will stand over it
+  std::optional<Eye> put_at_;                   // over ground that is expected, by AwaitGround
+  std::vector<std::string> notes_;
   std::unique_ptr<ReferencePicture> reference_;
   std::shared_ptr<const ReferenceScene> reference_scene_;
   std::optional<Eye> still_eye_;

@@ -36,13 +36,13 @@ LandSource LandOf(const SkyviewOptions& options, const Scene& scene) {
 
 /// Where one begins without a word about it: over the middle of the land that was named.
 void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
-  if (options.dem.empty() || (options.latitude && options.longitude)) return;
+  if (options.dem.empty() || (typed.latitude && typed.longitude)) return;
   LandSource land;
   for (const std::string& file : options.dem) land.files.emplace_back(file);
   const LandTiles tiles(land);
   const GeodeticPosition middle = tiles.Middle();
-  typed.latitude = options.latitude.value_or(middle.latitude_rad / kRadiansPerDegree);
-  typed.longitude = options.longitude.value_or(middle.longitude_rad / kRadiansPerDegree);
+  if (!typed.latitude) typed.latitude = middle.latitude_rad / kRadiansPerDegree;
+  if (!typed.longitude) typed.longitude = middle.longitude_rad / kRadiansPerDegree;
   if (!options.altitude) typed.above_ground_m = 300.0;
 }
 
@@ -80,7 +80,8 @@ EyePlacement PlacementOf(const SkyviewOptions& options) {
 
 UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
-  GeodeticPosition place = Placed({scene.place}, PlacementOf(options)).place;
+  GeodeticPosition place = options.place ? PlaceNamed(*options.place).place
+                                         : Placed({scene.place}, PlacementOf(options)).place;
   place.height_m = 0.0;  // events are those of the place at sea level, as in skyseries
   const EventDay day{place, scene.zone, scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
   return InstantFromText(options.time.value_or("noon"), day);
@@ -117,6 +118,7 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
                   {scale,
                    options.hud != "off",
                    {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
+  flight.AwaitGround();
   bool looks = false;
   for (Clock::time_point before = Clock::now(); !deck.quit();) {
     ThrowIfInterrupted();
@@ -216,8 +218,7 @@ void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
 
 /// What the land has to tell.
 void SayNotes(Flythrough& flight) {
-  for (const std::string& note : flight.painter().land().TakeNotes())
-    Say(fmt::format("skyview: {}\n", note));
+  for (const std::string& note : flight.TakeNotes()) Say(fmt::format("skyview: {}\n", note));
 }
 
 /// Whether nothing but linear pictures is asked for, which are put together of parts.
@@ -255,8 +256,10 @@ int Run(const SkyviewOptions& options) {
     const Track track = ReadTrack(*options.track);
     if (!track.note.empty())
       Say(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
+    flight.BringRangeTo(track.points[track.points.size() / 2].place);
     flight.Follow(PathAlong(track, {}, flight.Ground()));
   }
+  if (path) flight.BringRangeTo(path->PoseAt(path->begin_s()).place);
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
   if (window) window->AtLostDisplay([&recorder] { recorder.Finish(); });
   if (options.explain) {

@@ -2,15 +2,23 @@
 // Pictures of a flight, without hands.
 #include "viewer/flythrough.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "renderer/scene/scene_options.h"
+#include "renderer/terrain/built_in_range.h"
 #include "tests/viewer/land/headless_land.h"
+#include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
 
 namespace alpenglow {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class FlightsOverLand : public tests::HeadlessTile {
  protected:
@@ -63,6 +71,47 @@ TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
     EXPECT_TRUE(flight.KnowsGround()) << latitude_deg;
     EXPECT_EQ(flight.eye().place.height_m, 300.0) << "over the ellipsoid";
   }
+}
+
+TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
+  Flythrough flight = SmallFlight(SceneAt({300.0, true}));
+  static_cast<void>(flight.TakeNotes());
+  flight.GoTo("LSZS");
+  EXPECT_THAT(flight.TakeNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
+  EXPECT_NEAR(flight.eye().place.height_m, 2.0, 1e-9) << "on the plain, not 1707 m over it";
+  flight.Place({46.65, 8.05, {}, {}, {}});
+  EXPECT_THAT(flight.TakeNotes(), IsEmpty()) << "on the tile";
+}
+
+/// Over the built-in range. It is made when it is first settled or painted.
+class FlightsOverTheRange : public tests::HeadlessLand {
+ protected:
+  [[nodiscard]] static Scene RangeScene() {
+    Scene scene = SceneFromOptions({});
+    scene.medium = MediumPreset("bruneton2017");
+    return scene;
+  }
+  [[nodiscard]] static Flythrough FlightOver(const Scene& scene) {
+    FlythroughSettings settings;
+    settings.land = LandSourceOf(scene);
+    settings.quality = {Quality::kLow};
+    settings.size = {32, 18};
+    return {scene, ParseInstant("2026-06-21T11:00:00Z"), settings};
+  }
+};
+
+TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
+  Flythrough flight = FlightOver(RangeScene());
+  flight.GoTo("Tromso");
+  const GeodeticPosition tromso = PlaceNamed("Tromso").place;
+  EXPECT_EQ(flight.scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
+  EXPECT_TRUE(flight.painter().land().Reaches(tromso));
+  EXPECT_FALSE(flight.KnowsGround()) << "it is made beside drawing";
+  EXPECT_NEAR(flight.eye().place.height_m, kRangeViewGround_m + 600.0, 1e-6)
+      << "its ground is known before";
+  flight.Place({46.58, 8.01, {}, {}, {}});
+  EXPECT_EQ(flight.scene().terrain.range_seed, 0U) << "on the range that the flight began over";
+  EXPECT_EQ(flight.scene().terrain.centre, RangeScene().terrain.centre);
 }
 
 // Land that has grown since, or that of another model.

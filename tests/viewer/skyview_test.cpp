@@ -402,6 +402,26 @@ TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedT
   EXPECT_EQ(outcome.status, 0) << "no point lies in the ground: " << outcome.error;
 }
 
+TEST_F(SkyviewLand, WithAModelAndAPlaceItBeginsAtNoonOfThePlaceAndSaysWhatIsMissing) {
+  const Outcome outcome = Shot("--dem west.tif --place RJTT");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(ReadPngMetadata(folder_ / "a.png").at("alpenglow.time").substr(0, 15),
+            "2026-06-21T02:4")
+      << "139.8 degrees before Greenwich, and the equation of time of two minutes";
+  EXPECT_THAT(outcome.error, HasSubstr("no terrain at"));
+  EXPECT_THAT(outcome.error, HasSubstr("--dem"));
+}
+
+TEST_F(SkyviewLand, SkyseriesTakesThePlaceFromAFlightOverAModel) {
+  WriteText(folder_ / "p.csv",
+            "t_s,latitude,longitude,height_m,heading,utc\n0,46.65,8.05,4000,350,"
+            "2026-06-21T10:00:00Z\n2,46.651,8.05,4000,350,2026-06-21T10:00:02Z\n");
+  const Outcome outcome =
+      RunCommand(std::string("'") + tests::kSkyseries +
+                 "' --dem west.tif --path p.csv --count 1 --size 8x4 --effects sky --out f.exr");
+  EXPECT_EQ(outcome.status, 0) << "the place without a path is off this model: " << outcome.error;
+}
+
 TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
   const Outcome outcome =
       RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +

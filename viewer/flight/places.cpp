@@ -209,15 +209,12 @@ const NamedPlace& PlaceNamed(std::string_view text) {
 }
 
 Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground) {
-  constexpr double kNoTerrain_m = 500.0;
   const double above_m = there.kind == PlaceKind::kAirport ? 2.0
                          : there.kind == PlaceKind::kPeak  ? 100.0
                                                            : 600.0;
-  const double terrain_m = ground(there.place);
-  const bool has_terrain = there.place.height_m - terrain_m < kNoTerrain_m;
   Eye eye = before;
   eye.place = there.place;
-  eye.place.height_m = (has_terrain ? terrain_m : there.place.height_m) + above_m;
+  eye.place.height_m = ground(there.place) + above_m;
   eye.pitch_rad = eye.roll_rad = 0.0;
   if (there.kind == PlaceKind::kAirport) {
     eye.heading_rad = std::remainder(there.heading_rad, 2.0 * kPi);

@@ -43,8 +43,7 @@ struct NamedPlace {
 [[nodiscard]] const NamedPlace& PlaceNamed(std::string_view text);
 
 /// An eye there: at the runway's middle, looking along it, 2 m over the ground; 100 m over a peak;
-/// 600 m over a city or a pole. The ground is the terrain's, or the published height where that is
-/// higher by more than 500 m (there is no terrain there).
+/// 600 m over a city or a pole, whatever height is published.
 [[nodiscard]] Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground);
 
 /// The zone of clocks at a place: the scene's within 300 km of the scene, that of the nearest place

@@ -97,6 +97,7 @@ class GroundFollower::Maker {
     const View& view = request.view;
     Made made;
     made.casts = view.casts;
+    made.land = request.land;
     made.sea_mirrors[IndexOf(view.casts)] = MirrorFor(request, view.by);
     if (view.other)
       made.sea_mirrors[IndexOf(OtherThan(view.casts))] = MirrorFor(request, *view.other);
@@ -193,6 +194,14 @@ GroundFollower::GroundFollower(const GroundCover& cover, std::shared_ptr<const C
       maker_([maker = std::make_shared<Maker>(cover, std::move(drape), extent)](
                  const Request& request) { return maker->Make(request); }) {}
 
+void GroundFollower::ForgetLand() {
+  ++land_;
+  ground_ = nullptr;
+  asked_.reset();
+  made_ = {};
+  rests_until_ = {};
+}
+
 void GroundFollower::SetGround(GroundSampler sampler) {
   ground_ = std::make_shared<const GroundSampler>(std::move(sampler));
 }
@@ -211,7 +220,7 @@ bool GroundFollower::Suits(const Request& asked, const Request& wanted) const {
 
 bool GroundFollower::Take() {
   std::optional<Made> made = maker_.Take();
-  if (!made) return false;
+  if (!made || made->land != land_) return false;
   made_ = std::move(*made);
   constexpr double kRest = 4.0;
   rests_until_ = std::chrono::steady_clock::now() +
@@ -230,14 +239,14 @@ bool GroundFollower::Ask(const Request& wanted) {
 bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view) {
   const bool is_new = Take();
   const bool rests = made_.lit && std::chrono::steady_clock::now() < rests_until_;
-  if (!maker_.Busy() && !rests) Ask({air, ground_, view});
+  if (!maker_.Busy() && !rests) Ask({air, ground_, view, land_});
   return is_new;
 }
 
 bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const View& view) {
   maker_.Wait();
   bool is_new = Take();
-  if (Ask({air, ground_, view})) maker_.Wait();
+  if (Ask({air, ground_, view, land_})) maker_.Wait();
   is_new = Take() || is_new;
   return is_new;
 }

@@ -38,6 +38,8 @@ class GroundFollower {
   GroundFollower(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
                  const GroundExtent& extent);
 
+  /// The land is gone, and its light.
+  void ForgetLand();
   /// Other land, or more of it, as ShadeFollower has it. An empty function: none.
   void SetGround(GroundSampler sampler);
 
@@ -76,6 +78,7 @@ class GroundFollower {
     std::shared_ptr<const SolvedAir> air;
     std::shared_ptr<const GroundSampler> ground;
     View view;
+    int land;  // counts up when land is gone
   };
   struct Made {
     LightSource casts = LightSource::kSun;
@@ -85,6 +88,7 @@ class GroundFollower {
     std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
     double open_altitude_m = 0.0;
     double making_s = 0.0;
+    int land = 0;
   };
   class Maker;
   [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
@@ -93,6 +97,7 @@ class GroundFollower {
 
   GroundExtent extent_;
   std::shared_ptr<const GroundSampler> ground_;
+  int land_ = 0;
   std::optional<Request> asked_;
   Made made_;
   std::chrono::steady_clock::time_point rests_until_{};

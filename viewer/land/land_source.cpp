@@ -271,6 +271,7 @@ LandSource LandSourceOf(const Scene& scene) {
     source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
   if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange)
     source.range_centre = scene.terrain.centre.value_or(scene.place);
+  source.range_seed = scene.terrain.range_seed;
   return source;
 }
 
@@ -278,7 +279,7 @@ ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
   const LandTile& wanted = tiles.tiles()[static_cast<std::size_t>(tile)];
   ElevationModel model;
   if (wanted.file.empty()) {
-    model.grid = BuiltInRange(*tiles.source().range_centre);
+    model.grid = BuiltInRange(*tiles.source().range_centre, tiles.source().range_seed);
   } else {
     model = wanted.part ? ReadElevation(wanted.file, tiles.source().voids, *wanted.part)
                         : ReadElevation(wanted.file, tiles.source().voids);

@@ -22,6 +22,7 @@ struct LandSource {
   VoidPolicy voids = VoidPolicy::kFill;
   /// Without files: the built-in range around this place; without either there is no land.
   std::optional<GeodeticPosition> range_centre;
+  std::uint32_t range_seed = 0;
   /// Instead of all that: a mesh (ReadObj) in metres east, north and up of a place on the
   /// ellipsoid.
   struct Mesh {

@@ -130,6 +130,23 @@ void Landscape::ChooseDrawn() {
   if (over_ground_ && eye_.above_m < kHigh_m) drawn_ = WithoutHidden(drawn_, eye);
 }
 
+void Landscape::BeginReading(const GeodeticPosition& place) {
+  if (!tiles_->tiles().empty() && cache_.Update(EyeAt(place), detail_)) ++heights_version_;
+}
+
+void Landscape::AwaitGround(const GeodeticPosition& place) {
+  if (mesh_) {
+    mesh_->Wait();
+    mesh_->Update(0.0);
+  }
+  while (!KnowsGround(place)) {
+    ThrowIfInterrupted();
+    BeginReading(place);
+    cache_.Wait();
+    BeginReading(place);
+  }
+}
+
 void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
   Advance(eye, view, seconds);
   ChooseDrawn();

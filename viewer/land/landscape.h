@@ -70,6 +70,10 @@ class Landscape {
   void Update(const GeodeticPosition& eye, const LandView& view, double seconds);
   /// Waits until all that is wanted for this eye is there and as it will stay.
   void Settle(const GeodeticPosition& eye, const LandView& view);
+  /// Begins to read what lies around a place, before the first Update.
+  void BeginReading(const GeodeticPosition& place);
+  /// Waits until KnowsGround of a place.
+  void AwaitGround(const GeodeticPosition& place);
   /// Draws what the last Update chose into the bound SurfaceMap, over what is in it. The uniform
   /// block View must be bound to `view_binding`.
   void Draw(GLuint view_binding);
@@ -95,6 +99,12 @@ class Landscape {
   [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
   /// Whether GroundUnder has said its last word: all land that a place has is loaded.
   [[nodiscard]] bool KnowsGround(const GeodeticPosition& place) const;
+  /// Whether any land reaches a place, loaded or not. A mesh reaches every place.
+  [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
+    return mesh_ || cache_.Reaches(place);
+  }
+  /// Whether threads beside drawing are at work, for which the destructor would wait.
+  [[nodiscard]] bool IsWorking() const { return cache_.IsReading() || worker_.Busy(); }
   /// LoadedHeights::SampledGrid or GridOverMesh of what is loaded now, for any thread.
   [[nodiscard]] GroundSampler Sampler() const;
   /// Another range of the finest level, see LandSize.

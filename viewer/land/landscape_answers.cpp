@@ -41,6 +41,8 @@ LandProgress Landscape::Progress() const {
   const double chunks = static_cast<double>(there) /
                         static_cast<double>(std::max<std::size_t>(demand_.wanted.size(), 1));
   const double share = 0.5 * (tiles + chunks);
+  if (!cache_.reading().empty() && tiles_->source().files.empty())
+    return {share, "terrain: making the mountains of this place"};
   if (!cache_.reading().empty())
     return {share, fmt::format("terrain: reading {} ({} of {})", cache_.reading(),
                                cache_.there() + 1, cache_.wanted())};

@@ -165,13 +165,17 @@ bool TileCache::CanMake(const ChunkKey& key) const {
   });
 }
 
-bool TileCache::HasRead(const GeodeticPosition& place) const {
-  if (tiles_->tiles().empty()) return true;  // a lattice without steps
+std::vector<int> TileCache::TilesAround(const GeodeticPosition& place) const {
+  if (tiles_->tiles().empty()) return {};  // a lattice without steps
   const LatticePlace at = tiles_->lattice().At(place.latitude_rad, place.longitude_rad);
   const int column = static_cast<int>(std::floor(at.column));
   const int row = static_cast<int>(std::floor(at.row));
   // The samples that LoadedHeights::HeightUnder reads.
-  const std::vector<int> around = tiles_->Touching({column - 1, row - 1, column + 2, row + 2});
+  return tiles_->Touching({column - 1, row - 1, column + 2, row + 2});
+}
+
+bool TileCache::HasRead(const GeodeticPosition& place) const {
+  const std::vector<int> around = TilesAround(place);
   return std::all_of(around.begin(), around.end(), [&](int index) {
     const auto tile = static_cast<std::size_t>(index);
     return heights_[tile] || has_failed_[tile] != 0;

@@ -30,6 +30,10 @@ class TileCache {
   /// Whether all tiles that a chunk reads are there as fine as it needs them, or never will be.
   [[nodiscard]] bool CanMake(const ChunkKey& key) const;
 
+  /// Whether a tile reaches a place.
+  [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
+    return !TilesAround(place).empty();
+  }
   /// Whether all tiles around a place have been read, however fine, or cannot be.
   [[nodiscard]] bool HasRead(const GeodeticPosition& place) const;
 
@@ -41,6 +45,7 @@ class TileCache {
   [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
   /// Of heights that are kept.
   [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] bool IsReading() const { return reader_.Busy(); }
   /// Waits until nothing is being read.
   void Wait() { reader_.Wait(); }
 
@@ -56,6 +61,7 @@ class TileCache {
   };
   static constexpr int kNotWanted = 64;
 
+  [[nodiscard]] std::vector<int> TilesAround(const GeodeticPosition& place) const;
   [[nodiscard]] double Distance(const LandTile& tile, const LandEye& eye) const;
   [[nodiscard]] int LevelWanted(const LandTile& tile, const LandEye& eye) const;
   void Want(const LandEye& eye);

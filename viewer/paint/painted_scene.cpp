@@ -64,7 +64,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       sun_view_(AirViewOf(first.eye,
                           ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
       air_(SolveAir(MediumAt(scene)), sizes.air, sun_view_),
-      land_(land, LandSizeOf(sizes), ellipsoid_),
+      land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
       ground_(scene.ground, drape_.colours, {}),
       ground_textures_(air_.air()->diffuse),
       shade_(ellipsoid_) {
@@ -83,22 +83,31 @@ void PaintedScene::Use(const PaintSizes& sizes) {
   if (moon_fog_) moon_fog_->SetSize(sizes.fog);
   air_.SetQuality(sizes.air);
   shade_.SetSize(sizes.shade.size);
-  land_.SetDetail(sizes.land_detail, sizes.land_growth);
+  land_->SetDetail(sizes.land_detail, sizes.land_growth);
+}
+
+void PaintedScene::Replace(const LandSource& land) {
+  auto other = std::make_unique<Landscape>(land, LandSizeOf(sizes_), ellipsoid_);
+  leaving_.push_back(std::exchange(land_, std::move(other)));
+  heights_version_ = -1;
+  edges_ = std::nullopt;
+  ground_.ForgetLand();
+  shade_.SetGround({});
 }
 
 void PaintedScene::TakeHeights() {
-  if (heights_version_ == land_.heights_version()) return;
-  heights_version_ = land_.heights_version();
-  const GroundSampler sampler = land_.Sampler();
+  if (heights_version_ == land_->heights_version()) return;
+  heights_version_ = land_->heights_version();
+  const GroundSampler sampler = land_->Sampler();
   ground_.SetGround(sampler);
   shade_.SetGround(sampler);
 }
 
 void PaintedScene::TakeLight() {
   if (const std::shared_ptr<const LitGround>& lit = ground_.lit())
-    land_.Use(TerrainHorizon{{lit->site().horizons(), &lit->site().horizons()->map()},
+    land_->Use(TerrainHorizon{{lit->site().horizons(), &lit->site().horizons()->map()},
                              lit->site().ground().frame});
-  if (std::optional<LightOfVertices> light = ground_.Light()) land_.Relight(std::move(*light));
+  if (std::optional<LightOfVertices> light = ground_.Light()) land_->Relight(std::move(*light));
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
     if (ground_.sea_mirror(source).empty()) continue;
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
@@ -149,12 +158,12 @@ std::optional<Vector<Ecef>> PaintedScene::CastsOnVertices() const {
 void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds) {
   constexpr double kBehind_rad = 1.5 * kRadiansPerDegree, kFades_s = 0.3;
   if (std::exchange(casts_, key.source()) != key.source()) edges_ = std::nullopt;
-  if (!land_.IsRelighting()) edges_ = CastsOnVertices();
+  if (!land_->IsRelighting()) edges_ = CastsOnVertices();
   const Vector<Ecef> to_light =
       LocalFrame(ellipsoid_, view.eye.place).EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
   const bool is_behind = !edges_ || glm::dot(edges_->xyz, to_light.xyz) < std::cos(kBehind_rad);
   momentary_edges_ = is_behind ? 1.0 : std::max(momentary_edges_ - seconds / kFades_s, 0.0);
-  land_.Use(MomentaryEdges{momentary_edges_, to_light});
+  land_->Use(MomentaryEdges{momentary_edges_, to_light});
 }
 
 void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
@@ -168,9 +177,10 @@ void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights,
 }
 
 void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
+  std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
   const SunPosition& casting = lights.key.disk;
   KeepUpAir(view, lights, Pace::kFollow);
-  land_.Update(view.eye.place, LandViewOf(view), seconds);
+  land_->Update(view.eye.place, LandViewOf(view), seconds);
   TakeHeights();
   KeepUpEdges(view, lights.key, seconds);
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights))) TakeLight();
@@ -181,11 +191,11 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
 
 void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, int samples) {
   KeepUpAir(view, lights, Pace::kSettle);
-  land_.Settle(view.eye.place, LandViewOf(view, samples));
+  land_->Settle(view.eye.place, LandViewOf(view, samples));
   TakeHeights();
   if (ground_.Settle(air_.air(), GroundViewOf(view, lights))) {
     TakeLight();
-    land_.Settle(view.eye.place, LandViewOf(view, samples));
+    land_->Settle(view.eye.place, LandViewOf(view, samples));
   }
   KeepUpOpenSkies(lights);
   KeepUpEdges(view, lights.key, kLong_s);

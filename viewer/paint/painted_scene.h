@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/sun.h"
@@ -37,6 +39,9 @@ class PaintedScene {
   /// Other air; shown when it is solved.
   void Replace(const Medium& medium) { air_.Replace(medium); }
 
+  /// Other land of the same kind: what there was is gone at once, and its light and shade.
+  void Replace(const LandSource& land);
+
   /// Takes over what has become ready and asks for what is missing. Never waits, but for the first
   /// fog in other air or under a moon.
   /// @param lights   seen from the eye.
@@ -59,8 +64,8 @@ class PaintedScene {
   [[nodiscard]] const AirTextures& air_textures(LightSource source) const {
     return source == LightSource::kMoon && moon_air_ ? moon_air_->textures() : air_.textures();
   }
-  [[nodiscard]] const Landscape& land() const { return land_; }
-  [[nodiscard]] Landscape& land() { return land_; }
+  [[nodiscard]] const Landscape& land() const { return *land_; }
+  [[nodiscard]] Landscape& land() { return *land_; }
   /// Whether there is any, somewhere.
   [[nodiscard]] LandKind land_kind() const { return {has_land_, scene_.terrain.HasFineRelief()}; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
@@ -77,7 +82,7 @@ class PaintedScene {
   }
   /// Whether the edges of terrain that land is painted with are all those before this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
-    return source == casts_ && (momentary_edges_ == 1.0 ? land_.HasHorizon() : edges_.has_value());
+    return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : edges_.has_value());
   }
   /// As a source lights it. Null: none.
   [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
@@ -112,7 +117,8 @@ class PaintedScene {
   std::array<std::optional<SkyTilt>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once it counts
   std::shared_ptr<const SolvedAir> moon_air_of_;  // that it was made for
-  Landscape land_;
+  std::unique_ptr<Landscape> land_;
+  std::vector<std::unique_ptr<Landscape>> leaving_;  // until their threads have ended
   GroundFollower ground_;
   GroundTextures ground_textures_;
   ShadeFollower shade_;

@@ -44,6 +44,9 @@ class SkyPainter {
   /// Other air; shown when it is solved.
   void Replace(const Medium& medium) { scene_.Replace(medium); }
 
+  /// Other land of the same kind.
+  void Replace(const LandSource& land) { scene_.Replace(land); }
+
   /// A lamp that moves with the eye; nothing: none.
   void SetLandingLight(const std::optional<LandingLight>& light) { lamps_.SetLandingLight(light); }
 
