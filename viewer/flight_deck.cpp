@@ -13,10 +13,12 @@
 #include "atmosphere/text/file_extension.h"
 #include "lut/picture/picture_text.h"
 #include "lut/program/atomic_file.h"
+#include "lut/program/messages.h"
 #include "lut/sky/sky_view_map.h"
 #include "viewer/capture/numbered_name.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
+#include "viewer/paint/picture_units.h"
 #include "viewer/window_controls.h"
 
 namespace alpenglow {
@@ -152,14 +154,63 @@ std::vector<HudRow> TablesOf(const Flythrough& flight) {
            mb(land.tile_bytes + land.chunk_bytes + land.card_bytes)}};
 }
 
+HudSettings SettingsOf(const Hud& hud) {
+  return {.scale = hud.scale(), .theme = hud.theme_choice()};
+}
+
+// Of another Hud than that of the window, whose panels stay where they are and out of the picture.
+void DrawInstruments(const RenderTarget& screen, const HudModel& model,
+                     const HudSettings& settings) {
+  Hud instruments(settings);
+  HudInput input;
+  input.width = screen.width();
+  input.height = screen.height();
+  static_cast<void>(instruments.Update(model, {}, nullptr, input));
+  instruments.Paint(screen.framebuffer());
+}
+
+void RequireInstruments(const std::filesystem::path& file, const ImageSize& size) {
+  if (!HasExtension(file, ".png"))
+    throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
+  RequireDrawable(size.width, size.height);
+}
+
+HudProgress ProgressOf(const PictureUnderWay& picture) {
+  const std::string name = picture.file.filename().string();
+  if (picture.waiting == 0) return {fmt::format("Picture {}:", name), picture.share};
+  return {fmt::format("Picture {} ({} more to come):", name, picture.waiting), picture.share};
+}
+
+std::string TextOf(const PictureOutcome& outcome) {
+  const std::string name = outcome.file.filename().string();
+  if (outcome.fault.empty()) return fmt::format("{} is written", name);
+  return fmt::format("{} is not written: {}", name, outcome.fault);
+}
+
 }  // namespace
 
 FlightDeck::FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings)
     : flight_(flight),
       recorder_(recorder),
       hud_({.scale = settings.hud_scale}),
-      controls_(settings.controls) {
+      controls_(settings.controls),
+      pictures_(flight.first_scene(), flight.settings()) {
   if (!settings.shows_hud) hud_.ToggleVisible();
+}
+
+FlightDeck::~FlightDeck() {
+  pictures_.Finish();
+  SayOutcomes();
+}
+
+void FlightDeck::FinishWithoutWindow() {
+  pictures_.FinishWithoutWindow();
+  SayOutcomes();
+}
+
+void FlightDeck::SayOutcomes() {
+  for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
+    alpenglow::Say(fmt::format("skyview: {}\n", TextOf(outcome)));
 }
 
 void FlightDeck::Say(const std::string& text, bool is_warning) {
@@ -203,6 +254,7 @@ HudModel FlightDeck::Model() const {
     model.messages.push_back({message.text, message.is_warning});
   const LandProgress progress = flight_.painter().land().Progress();
   if (progress.share < 1.0) model.progress = HudProgress{progress.text, progress.share};
+  if (const auto picture = pictures_.UnderWay()) model.progress = ProgressOf(*picture);
   model.recording = recorder_.file().has_value();
   model.units = units_;
   return model;
@@ -236,6 +288,7 @@ void FlightDeck::WantStrip() {
 
 void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, double seconds) {
   Age(seconds);
+  TellOfPictures();
   WantStrip();
   for (const KeyEvent& key : events.keys) keys_.Note(key.key, key.change != 0);
   if (!events.focused) keys_.Release();
@@ -285,10 +338,10 @@ void FlightDeck::Do(Action action, const ImageSize& size) {
         full_screen_ = !full_screen_;
         break;
       case Action::kScreenshot:
-        Screenshot(".png", size);
+        AskForPicture({HudPictureKind::kPng, size.width, size.height, false});
         break;
       case Action::kScreenshotExr:
-        Screenshot(".exr", size);
+        AskForPicture({HudPictureKind::kExr, size.width, size.height, false});
         break;
       case Action::kLandingLight:
         SetLandingLight(!landing_light_);
@@ -312,21 +365,35 @@ void FlightDeck::Do(Action action, const ImageSize& size) {
   });
 }
 
-void FlightDeck::Screenshot(const char* extension, const ImageSize& size) {
-  std::filesystem::path file = NextScreenshot(".");
-  file += extension;
-  flight_.WritePicture(file, size);
-  Say(fmt::format("{} is written", file.filename().string()));
+void FlightDeck::AskForPicture(const HudCaptureRequest& asked) {
+  const bool is_exr = asked.kind == HudPictureKind::kExr;
+  const ImageSize size{asked.width, asked.height};
+  std::filesystem::path file = NextScreenshot(".", pictures_.Files());
+  file += is_exr ? ".exr" : ".png";
+  RequireWritable(file);
+  if (!asked.with_hud) return pictures_.Ask({flight_.Moment(), file, size});
+  RequireInstruments(file, size);
+  pictures_.Ask({flight_.Moment(), file, size,
+                 [model = Model(), settings = SettingsOf(hud_)](const Image& developed) {
+                   const RenderTarget screen(developed.width, developed.height,
+                                             RenderTarget::Depth::kNone);
+                   glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+                   screen.Write(developed);
+                   DrawInstruments(screen, model, settings);
+                   return screen.ReadBytes();
+                 }});
 }
 
-void FlightDeck::Capture(const HudCaptureRequest& asked) {
-  const char* const extension = asked.kind == HudPictureKind::kExr ? ".exr" : ".png";
-  const ImageSize size{asked.width, asked.height};
-  if (!asked.with_hud) return Screenshot(extension, size);
-  std::filesystem::path file = NextScreenshot(".");
-  file += extension;
-  WritePicture(file, size);
-  Say(fmt::format("{} is written", file.filename().string()));
+void FlightDeck::TellOfPictures() {
+  pictures_.NextFrame();
+  for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
+    Say(TextOf(outcome), !outcome.fault.empty());
+}
+
+void FlightDeck::Leave() {
+  if (leaves_) return pictures_.Drop();
+  leaves_ = true;
+  if (pictures_.UnderWay()) Say("leaving when the pictures are written; leave again to drop them");
 }
 
 void FlightDeck::Record(bool records) {
@@ -437,26 +504,18 @@ void FlightDeck::Serve(const HudRequest& asked) {
     if (asked.quality) flight_.Use(QualityRuleFromText(*asked.quality));
     ServeFlight(asked);
     if (asked.units) units_ = *asked.units;
-    if (asked.capture) Capture(*asked.capture);
+    if (asked.capture) AskForPicture(*asked.capture);
     if (asked.record) Record(*asked.record);
-    quit_ = quit_ || asked.quit;
+    if (asked.quit) Leave();
   });
 }
 
 void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
-  if (!HasExtension(file, ".png"))
-    throw InputError(fmt::format("\"{}\": only a PNG has instruments (--hud on)", file.string()));
-  RequireDrawable(size.width, size.height);
+  RequireInstruments(file, size);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
   const Development development =
       flight_.PaintStill({screen.framebuffer(), size.width, size.height});
-  // Another one than that of the window, whose panels stay where they are and out of the picture.
-  Hud instruments({.scale = hud_.scale(), .theme = hud_.theme_choice()});
-  HudInput input;
-  input.width = size.width;
-  input.height = size.height;
-  static_cast<void>(instruments.Update(Model(), {}, nullptr, input));
-  instruments.Paint(screen.framebuffer());
+  DrawInstruments(screen, Model(), SettingsOf(hud_));
   Metadata header = flight_.PictureHeader(size);
   header.merge(flight_.ExposureHeader(development));
   WritePng(file, screen.ReadBytes(), header);

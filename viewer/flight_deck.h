@@ -13,6 +13,7 @@
 #include "viewer/hud/hud.h"
 #include "viewer/hud/hud_keys.h"
 #include "viewer/input/controls.h"
+#include "viewer/picture_queue.h"
 #include "viewer/window_events.h"
 
 namespace alpenglow {
@@ -27,21 +28,32 @@ class FlightDeck {
   /// Refers to the flight, and to the recorder, which panels begin and end: it outlives the deck, so
   /// that a flight is whole however the deck ends.
   FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings);
+  /// Finishes the pictures that were asked for, and says on standard error what nobody saw of them.
+  ~FlightDeck();
+  FlightDeck(const FlightDeck&) = delete;
+  FlightDeck& operator=(const FlightDeck&) = delete;
 
-  /// What hands and panels ask for, and the seconds that have passed. Once a frame.
+  /// What hands and panels ask for, and the seconds that have passed. Once a frame, seen or not.
   void Advance(const WindowEvents& events, const ImageSize& size, double seconds);
   /// Does what panels asked for; what cannot be done is said on the screen.
   void Serve(const HudRequest& asked);
   /// Paints the flight, and instruments over it.
   void Paint(const Developer::Screen& screen, double seconds);
 
-  /// A developed picture with instruments, as the screen would show it. Throws OutputError.
+  /// A developed picture with instruments, as the screen would show it, at once. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
+
+  /// The pilot leaves: at once, or when the pictures that were asked for are written; asked for
+  /// again, without those that are not painted yet.
+  void Leave();
+  /// Waits for the pictures after the window's display has gone, and says what came of them.
+  void FinishWithoutWindow();
 
   /// Something to be said on the screen.
   void Say(const std::string& text, bool is_warning = false);
 
-  [[nodiscard]] bool quit() const { return quit_; }
+  /// Whether the pilot has left and all pictures are written.
+  [[nodiscard]] bool quit() const { return leaves_ && !pictures_.UnderWay(); }
   [[nodiscard]] MouseMode mouse_mode() const { return controls_.mouse_mode(); }
   /// Whether the other of window and full screen was asked for since the last call.
   [[nodiscard]] bool TakeFullScreen() { return std::exchange(full_screen_, false); }
@@ -59,8 +71,9 @@ class FlightDeck {
   void ServeAir(const HudAirRequest& asked);
   void ServeLook(const HudRequest& asked);
   void ServeFlight(const HudRequest& asked);
-  void Capture(const HudCaptureRequest& asked);
-  void Screenshot(const char* extension, const ImageSize& size);
+  void AskForPicture(const HudCaptureRequest& asked);
+  void TellOfPictures();
+  void SayOutcomes();
   void Record(bool records);
   void SaveFlight();
   void FlyAgain();
@@ -84,8 +97,9 @@ class FlightDeck {
   std::deque<Message> messages_;
   std::optional<double> cursor_cd_per_m2_;
   double frame_ms_ = 16.0;
-  bool quit_ = false, full_screen_ = false, landing_light_ = false;
+  bool leaves_ = false, full_screen_ = false, landing_light_ = false;
   HudUnits units_ = HudUnits::kMetric;
+  PictureQueue pictures_;
 };
 
 }  // namespace alpenglow

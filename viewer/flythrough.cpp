@@ -10,13 +10,9 @@
 
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
-#include "lut/program/program.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/series/provenance.h"
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/flight/places.h"
-#include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/texture_side.h"
 #include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
@@ -24,9 +20,6 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kPictureSamples = 4;
-// Of a part of a picture, where the driver does not hold it whole: 0.7 GB.
-constexpr int kLargestPart = 4096;
 // The renderer's picture is begun when the eye has stood for so long.
 constexpr double kStandsStill_s = 0.3;
 
@@ -76,15 +69,11 @@ WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metere
   return {metered.kind, 1.0 / AdaptedEv100(1.0 / *before.kelvin, 1.0 / *metered.kelvin, seconds)};
 }
 
-void RequirePictureName(const std::filesystem::path& file) {
-  if (HasExtension(file, ".png") || HasExtension(file, ".exr")) return;
-  throw InputError(
-      fmt::format("\"{}\" is no picture's name; it must end in .png or .exr", file.string()));
-}
-
 Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
                        const FlythroughSettings& settings)
-    : scene_(Drawable(scene)),
+    : first_scene_(Drawable(scene)),
+      settings_(settings),
+      scene_(scene),
       first_terrain_(scene.terrain),
       has_range_(settings.land.files.empty() && settings.land.range_centre),
       has_one_model_(settings.land.files.empty() ||
@@ -94,7 +83,6 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       rule_(settings.quality),
       auto_(1.0 / settings.frame_rate),
       used_(Painted()),
-      largest_part_(settings.largest_part),
       cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
@@ -184,7 +172,11 @@ void Flythrough::BringRangeTo(const GeodeticPosition& place) {
     return BuiltInRangeExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
   };
   if (!has_range_ || reaches(scene_.terrain)) return;
-  scene_.terrain = reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place);
+  UseRange(reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place));
+}
+
+void Flythrough::UseRange(const TerrainSource& range) {
+  scene_.terrain = range;
   painter_.Replace(LandSourceOf(scene_));
   reference_.reset();
   reference_scene_.reset();
@@ -287,7 +279,8 @@ void Flythrough::Use(const AirChoice& choice) {
   air_ = choice;
   scene_.medium = changed;
   reference_scene_.reset();
-  painter_.Replace(OnOsculatingSphere(changed, eye().place.latitude_rad));
+  sky_air_ = OnOsculatingSphere(changed, eye().place.latitude_rad);
+  painter_.Replace(*sky_air_);
 }
 
 void Flythrough::UsePlanet(const std::string& preset) {
@@ -323,20 +316,6 @@ std::string Flythrough::zone() const { return ZoneNear(eye().place, scene_.zone,
 
 PaintedView Flythrough::ViewOf(const ImageSize& size) const {
   return {eye(), now(), size.width, size.height};
-}
-
-Scene Flythrough::SceneSeen() const {
-  Scene seen = scene_;
-  seen.place = eye().place;
-  seen.place.height_m = 0.0;
-  if (!has_one_model_) seen.terrain.kind = TerrainSource::Kind::kNone;
-  seen.time = now();
-  seen.camera.height = {eye().place.height_m, false};
-  seen.camera.heading_rad = eye().heading_rad;
-  seen.camera.pitch_rad = eye().pitch_rad;
-  seen.camera.roll_rad = eye().roll_rad;
-  seen.camera.fov_rad = eye().fov_rad;
-  return seen;
 }
 
 ReferenceScene Flythrough::SceneForRenderer() const {
@@ -423,44 +402,6 @@ void Flythrough::Settle(const ImageSize& size, int samples) {
   painter_.Settle(ViewOf(size), samples);
 }
 
-Image Flythrough::Picture(const ImageSize& size, int samples) {
-  const Quality quality = rule_.fixed.value_or(Quality::kHigh);
-  painter_.Use(SizesOf(quality));
-  Settle(size, samples);
-  AimLandingLight();
-  Image image = PaintedInParts(ViewOf(size), samples);
-  painter_.Use(SizesOf(used_));
-  return image;
-}
-
-Image Flythrough::PaintedInParts(const PaintedView& whole, int samples) {
-  const int largest = IsDrawable(whole.width, whole.height)
-                          ? std::max(whole.width, whole.height)
-                          : std::min(LargestSquareOfDriver(), kLargestPart);
-  TiledPicture picture(whole.width, whole.height, largest_part_.value_or(largest));
-  for (const TiledPicture::Tile& tile : picture.tiles()) {
-    ThrowIfInterrupted();
-    painter_.Paint(
-        {whole.eye, whole.now, tile.painted.width, tile.painted.height, picture.ViewOf(tile)},
-        samples);
-    picture.Put(tile, painter_.picture().Read());
-  }
-  return picture.Take();
-}
-
-Metadata Flythrough::PictureHeader(const ImageSize& size) const {
-  RenderSettings settings;
-  settings.width = size.width;
-  settings.height = size.height;
-  settings.samples_per_pixel = kPictureSamples;
-  settings.filter = PixelFilter::Kind::kBox;
-  Metadata metadata = PictureMetadata(SceneSeen(), settings);
-  metadata["alpenglow.time"] = FormatUtc(now(), 3);
-  metadata["alpenglow.painter"] = "skyview";
-  metadata["alpenglow.quality"] = NameOf(rule_.fixed.value_or(Quality::kHigh));
-  return metadata;
-}
-
 void Flythrough::Use(const Look& look) {
   if (look.white != look_.white) {
     white_.reset();  // nothing adapts from one rule to another
@@ -492,77 +433,6 @@ void Flythrough::Expose(const MeterReading& metered, double seconds) {
   Look shown = look_;
   shown.white = *white_;
   darkroom_.developer().Use(shown);
-}
-
-Development Flythrough::DevelopmentOf(const Image& picture) const {
-  Look look = look_;
-  if (white_ && exposure_.ev100) {
-    look.white = *white_;
-    return {look, *exposure_.ev100};
-  }
-  const MeterReading reading = ReadingOf(picture, look_);
-  look.white = reading.white;
-  const double metered = Ev100By(rule_of_exposure_, reading.ev100, look_);
-  return {look, exposure_.ev100.value_or(metered - exposure_.compensation_ev)};
-}
-
-Metadata Flythrough::ExposureHeader(const Development& development) const {
-  const ExposureRule rule = exposure_.locked
-                                ? ExposureRule{ExposureRule::Kind::kFixed, development.ev100}
-                                : rule_of_exposure_;
-  return {{"alpenglow.ev100", fmt::format("{:.4f}", development.ev100)},
-          {"alpenglow.exposure", NameOf(rule.kind)},
-          {"alpenglow.exposure_rule", RuleInWords(rule)},
-          {"alpenglow.exposure_compensation_ev",
-           fmt::format("{}", exposure_.locked ? 0.0 : exposure_.compensation_ev)},
-          {"alpenglow.tone_curve", NameOf(development.look)},
-          {"alpenglow.white_balance", NameOf(development.look.white)}};
-}
-
-Development Flythrough::PaintStill(const Developer::Screen& screen) {
-  const ImageSize size{screen.width, screen.height};
-  const Image image = Picture(size, kPictureSamples);
-  const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
-  picture.Write(image);
-  Development development = DevelopmentOf(image);
-  exposure_.ev100 = development.ev100;
-  darkroom_.developer().Use(development.look);
-  darkroom_.developer().Develop(picture, development.ev100, screen);
-  return development;
-}
-
-void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
-  RequirePictureName(file);
-  Image image = Picture(size, kPictureSamples);
-  const auto [look, ev100] = DevelopmentOf(image);
-  Metadata metadata = PictureHeader(size);
-  metadata.merge(ExposureHeader({look, ev100}));
-  if (HasExtension(file, ".exr")) {
-    WriteExr(file, image, metadata);
-  } else {
-    WritePng(file, Develop(Balanced(std::move(image), look.white), ev100, look), metadata);
-  }
-}
-
-void Flythrough::WriteReplay(const CameraPath& path,
-                             const std::vector<std::filesystem::path>& files, const ImageSize& size,
-                             FlightRecorder& recorder) {
-  const double steps = std::max(static_cast<double>(files.size()) - 1.0, 1.0);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    ThrowIfInterrupted();
-    const double along_s = (path.end_s() - path.begin_s()) * static_cast<double>(i) / steps;
-    Show(ReplayAt(path, path.begin_s() + along_s));
-    WritePicture(files[i], size);
-    recorder.Note(along_s, eye(), now());  // the ground there is loaded by now
-  }
-}
-
-DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
-  Show(frame);
-  Image image = Picture(size, kPictureSamples);
-  Expose(ReadingOf(image, look_), seconds);
-  const Look& look = darkroom_.developer().look();
-  return Develop(Balanced(std::move(image), look.white), *exposure_.ev100, look);
 }
 
 }  // namespace alpenglow

@@ -61,6 +61,29 @@ struct Development {
   double ev100;
 };
 
+/// All that a picture of a flight depends on, besides the scene and settings that it began with: a
+/// copy, so that the flight may go on while the picture is made.
+struct FlightMoment {
+  Eye eye;
+  UtcInstant now;
+  bool knows_ground = false;                   // else the eye is yet to be put over it
+  std::optional<double> waits_above_ground_m;  // as high, once it is known
+  TerrainSource terrain;          // the range that is there, where there is no other land
+  Medium planet;                  // without changes
+  AirChoice air;                  // changes of it
+  std::optional<Medium> sky_air;  // the changed one under the eye; nothing: that of the scene
+  QualityRule quality;
+  Look look;                          // not settled
+  std::optional<WhiteBalance> white;  // as shown; nothing before the first picture
+  ExposureRule exposure_rule;
+  FlightExposure exposure;
+  bool landing_light = false;
+};
+
+/// Told between the parts of a picture that is being made, of the graphics card's work none longer
+/// than one ray a pixel: the share that is done [0, 1]. What it throws ends the picture.
+using PictureProgress = std::function<void(double share)>;
+
 class Flythrough {
  public:
   /// Solves the air and begins to read the land: an OpenGL context must be current, now and in all
@@ -124,15 +147,21 @@ class Flythrough {
   /// The linear picture of where the eye is, with all that belongs into it there. Of any size: what
   /// OpenGL cannot draw in one piece is painted in parts. Throws OptionError when memory does not
   /// hold it.
-  [[nodiscard]] Image Picture(const ImageSize& size, int samples);
+  [[nodiscard]] Image Picture(const ImageSize& size, int samples,
+                              const PictureProgress& progress = {});
   /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
   /// both with what made them in their headers. Throws OutputError.
-  void WritePicture(const std::filesystem::path& file, const ImageSize& size);
+  void WritePicture(const std::filesystem::path& file, const ImageSize& size,
+                    const PictureProgress& progress = {});
   /// What the renderer would render: the scene from the eye, now, and where a scene cannot say what
   /// the land is, of several elevation models, the land that is loaded around the eye.
   [[nodiscard]] ReferenceScene SceneForRenderer() const;
+  /// What another flight of the same scene and settings needs in order to make the same pictures.
+  [[nodiscard]] FlightMoment Moment() const;
+  /// Pictures are those of that moment from here on.
+  void TakeUp(const FlightMoment& moment);
   /// The picture of WritePicture, developed onto a screen. @return how.
-  Development PaintStill(const Developer::Screen& screen);
+  Development PaintStill(const Developer::Screen& screen, const PictureProgress& progress = {});
   /// What made a picture of this size, but its exposure.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
   /// How it was exposed and developed.
@@ -148,6 +177,9 @@ class Flythrough {
   [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
   [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
   [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// With which another flight of this scene begins.
+  [[nodiscard]] const Scene& first_scene() const { return first_scene_; }
+  [[nodiscard]] const FlythroughSettings& settings() const { return settings_; }
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const AirChoice& air_choice() const { return air_; }
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
@@ -180,25 +212,29 @@ class Flythrough {
   void Expose(const MeterReading& metered, double seconds);
   /// Of a picture without a frame before it: as frames are, or as it is metered.
   [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
-  [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples);
+  [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples,
+                                     const PictureProgress& progress);
   void ForgetGround(std::optional<double> above_ground_m = std::nullopt);
   [[nodiscard]] bool IsRangeExpectedAt(const GeodeticPosition& place) const;
+  void UseRange(const TerrainSource& range);
   void BringLandTo(const GeodeticPosition& place, const std::string& name);
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
   /// The land that is loaded around the eye, for the renderer.
   [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround() const;
+  Scene first_scene_;  // as it was given
+  FlythroughSettings settings_;
   Scene scene_;
   TerrainSource first_terrain_;  // of the scene as it was read
   bool has_range_;               // and no other land
   bool has_one_model_;           // not several elevation models, nor a folder of them
   Medium medium_;                // of the preset or file, unchanged
   AirChoice air_;
+  std::optional<Medium> sky_air_;  // changed, on the sphere under the eye that it had then
   QualityRule rule_;
   AutoQuality auto_;
   PaintedQuality used_;
-  std::optional<int> largest_part_;
   Cockpit cockpit_;
   SkyPainter painter_;
   ExposureRule rule_of_exposure_;

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
 #include "lut/program/growing_file.h"
 #include "lut/program/output_name.h"
 #include "renderer/camera/track.h"
@@ -109,6 +110,31 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
 /// The whole picture of a window.
 Developer::Screen ScreenOf(const Window& window) { return {0, window.width(), window.height()}; }
 
+/// While it is there, a display that goes lets flight and pictures come into their files.
+class LossOfDisplay {
+ public:
+  LossOfDisplay(Window& window, FlightRecorder& recorder, FlightDeck& deck)
+      : window_(window), recorder_(recorder) {
+    window.AtLostDisplay([&recorder, &deck] {
+      try {
+        recorder.Finish();
+      } catch (const OutputError& fault) {
+        Say(fmt::format("skyview: {}\n", fault.what()));
+      }
+      deck.FinishWithoutWindow();
+    });
+  }
+  ~LossOfDisplay() {
+    window_.AtLostDisplay([&recorder = recorder_] { recorder.Finish(); });
+  }
+  LossOfDisplay(const LossOfDisplay&) = delete;
+  LossOfDisplay& operator=(const LossOfDisplay&) = delete;
+
+ private:
+  Window& window_;
+  FlightRecorder& recorder_;
+};
+
 void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
          FlightRecorder& recorder) {
   using Clock = std::chrono::steady_clock;
@@ -119,11 +145,13 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
                    options.hud != "off",
                    {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
   flight.AwaitGround();
+  const LossOfDisplay loss(window, recorder, deck);
   bool looks = false;
-  for (Clock::time_point before = Clock::now(); !deck.quit();) {
+  for (Clock::time_point before = Clock::now();;) {
     ThrowIfInterrupted();
     const WindowEvents events = window.Poll();
-    if (events.close) return;
+    if (events.close) deck.Leave();
+    if (deck.quit()) return;
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - before).count();
     before = now;

@@ -287,6 +287,7 @@ WindowEvents Window::Poll() {
   events.gamepad = FirstGamepad();
   events.minimised = events.minimised || !state_->HasPicture();
   events.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
+  glfwSetWindowShouldClose(state_->window, GLFW_FALSE);  // told once each time that it is asked for
   return events;
 }
 

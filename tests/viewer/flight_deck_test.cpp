@@ -72,6 +72,13 @@ class FlightDeckTest : public tests::Headless {
     deck_->Paint({screen_->framebuffer(), kSize.width, kSize.height}, kFrame_s);
     return screen_->ReadBytes();
   }
+  /// Flies on until the pictures that were asked for are written, or not; counts frames.
+  int FlyUntilPicturesEnd() {
+    int frames = 0;
+    for (; deck_->Model().progress; ++frames) static_cast<void>(Shown());
+    static_cast<void>(Fly(1));
+    return frames;
+  }
   [[nodiscard]] std::vector<HudMessage> Messages() const { return deck_->Model().messages; }
 
   static constexpr double kFrame_s = 1.0 / 60.0;
@@ -122,12 +129,48 @@ class FlightDeckFiles : public FlightDeckTest {
 TEST_F(FlightDeckFiles, F3WritesAPictureIntoTheCurrentFolder) {
   static_cast<void>(Shown());
   Press(kF3);
+  Press(kF3);
+  ASSERT_TRUE(deck_->Model().progress);
+  EXPECT_EQ(deck_->Model().progress->text, "Picture skyview-0001.png (1 more to come):");
+  EXPECT_GE(FlyUntilPicturesEnd(), 4) << "a frame for each ray of a pixel at least";
   EXPECT_EQ(ReadPng("skyview-0001.png").width, kSize.width);
   ASSERT_FALSE(Messages().empty());
-  EXPECT_THAT(Messages().back().text, HasSubstr("skyview-0001.png"));
+  EXPECT_EQ(Messages().front().text, "skyview-0001.png is written");
+  EXPECT_EQ(Messages().back().text, "skyview-0002.png is written") << "none is written over";
   EXPECT_FALSE(Messages().back().is_warning);
+  EXPECT_TRUE(std::filesystem::exists("skyview-0002.png"));
+}
+
+TEST_F(FlightDeckFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
+  static_cast<void>(Shown());
   Press(kF3);
-  EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "no picture is written over";
+  deck_->Leave();
+  EXPECT_FALSE(deck_->quit());
+  EXPECT_THAT(Messages().back().text, HasSubstr("leaving when the pictures are written"));
+  static_cast<void>(FlyUntilPicturesEnd());
+  EXPECT_TRUE(deck_->quit());
+  EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
+}
+
+TEST_F(FlightDeckFiles, WhoLeavesTwiceGivesUpThePicture) {
+  static_cast<void>(Shown());
+  Press(kF3);
+  deck_->Leave();
+  deck_->Leave();
+  static_cast<void>(FlyUntilPicturesEnd());
+  EXPECT_TRUE(deck_->quit());
+  EXPECT_TRUE(std::filesystem::is_empty(".")) << "nor is there a part of it";
+}
+
+TEST_F(FlightDeckFiles, ADeckThatGoesHasWrittenItsPictures) {
+  static_cast<void>(Shown());
+  Press(kF3);
+  HudRequest request;
+  request.capture = HudCaptureRequest{HudPictureKind::kPng, 320, 240, true};
+  deck_->Serve(request);
+  deck_.reset();
+  EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
+  EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "with its instruments";
 }
 
 TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
@@ -138,6 +181,7 @@ TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   deck_->Serve(request);
   request.capture->with_hud = false;
   deck_->Serve(request);
+  static_cast<void>(FlyUntilPicturesEnd());
   const DisplayImage with = ReadPng("skyview-0001.png"), without = ReadPng("skyview-0002.png");
   ASSERT_EQ(with.width, 480);
   EXPECT_GT(Changed(with, without), 2000) << "instruments";
@@ -145,6 +189,7 @@ TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   request.capture = HudCaptureRequest{HudPictureKind::kExr, 480, 360, true};
   deck_->Serve(request);
   EXPECT_TRUE(Messages().back().is_warning) << "instruments are no light";
+  EXPECT_FALSE(deck_->Model().progress);
   EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
 }
 

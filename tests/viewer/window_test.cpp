@@ -176,6 +176,21 @@ TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
 }
 
+TEST_F(SkyviewWindow, AWindowThatIsClosedLeavesThePictureOfF3) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36'", "");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_EQ(ReadPng(folder_ / "skyview-0001.png").width, 64);
+}
+
+TEST_F(SkyviewWindow, OfADisplayThatGoesThePictureOfF3IsWritten) {
+  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36 gone 64x36'", "");
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.error, HasSubstr("skyview-0001.png is written"));
+  EXPECT_EQ(ReadPng(folder_ / "skyview-0001.png").width, 64);
+}
+
 TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {
   if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9 key:299,1 16x9 key:299,1 16x9'", "");

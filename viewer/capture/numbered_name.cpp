@@ -16,12 +16,14 @@ namespace fs = std::filesystem;
 
 /// The first numbered name that has no file with any of the extensions.
 fs::path NextFree(const fs::path& folder, const char* stem,
-                  std::initializer_list<const char*> extensions) {
+                  std::initializer_list<const char*> extensions,
+                  const std::vector<fs::path>& promised = {}) {
   for (int number = 1;; ++number) {
     const fs::path free = folder / fmt::format("{}-{:04d}", stem, number);
     const auto is_taken = [&](const char* extension) {
       const fs::path file = free.string() + extension;
-      return fs::exists(file) || fs::exists(GrowingFile::PartOf(file));
+      const bool is_promised = std::find(promised.begin(), promised.end(), file) != promised.end();
+      return is_promised || fs::exists(file) || fs::exists(GrowingFile::PartOf(file));
     };
     if (std::none_of(extensions.begin(), extensions.end(), is_taken)) return free;
   }
@@ -29,8 +31,8 @@ fs::path NextFree(const fs::path& folder, const char* stem,
 
 }  // namespace
 
-fs::path NextScreenshot(const fs::path& folder) {
-  return NextFree(folder, "skyview", {".png", ".exr"});
+fs::path NextScreenshot(const fs::path& folder, const std::vector<fs::path>& promised) {
+  return NextFree(folder, "skyview", {".png", ".exr"}, promised);
 }
 
 fs::path NextFlight(const fs::path& folder) {

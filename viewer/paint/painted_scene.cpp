@@ -106,7 +106,7 @@ void PaintedScene::TakeHeights() {
 void PaintedScene::TakeLight() {
   if (const std::shared_ptr<const LitGround>& lit = ground_.lit())
     land_->Use(TerrainHorizon{{lit->site().horizons(), &lit->site().horizons()->map()},
-                             lit->site().ground().frame});
+                              lit->site().ground().frame});
   if (std::optional<LightOfVertices> light = ground_.Light()) land_->Relight(std::move(*light));
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
     if (ground_.sea_mirror(source).empty()) continue;

@@ -324,7 +324,8 @@ SkyPainter::SkyDisks SkyPainter::DisksOf(const PaintedView& view) {
   return disks;
 }
 
-void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies) {
+void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
+                       const std::function<void(int)>& after_sample) {
   const SkyDisks disks = DisksOf(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
@@ -336,6 +337,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies) {
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
   for (int sample = 0; sample < samples; ++sample) {
     PaintSample(view, bodies, {sample, samples});
+    if (after_sample) after_sample(sample + 1);
   }
   PaintLampsOver(view);
   if (bodies != Bodies::kNone) PaintStars(view, disks.moon);

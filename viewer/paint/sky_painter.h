@@ -8,6 +8,7 @@
 // view.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -61,7 +62,9 @@ class SkyPainter {
   enum class Bodies { kAll, kStars, kNone };
   /// Paints the linear picture of the view that was updated or settled last.
   /// @param samples  rays a pixel, spread over it.
-  void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll);
+  /// @param after_sample  called after each of them with their number so far; empty: nothing is.
+  void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll,
+             const std::function<void(int)>& after_sample = {});
   /// Shows another picture of the view instead: linear, of any size.
   void Show(const Image& image);
 
