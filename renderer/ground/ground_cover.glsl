@@ -34,24 +34,24 @@ SHARED Number OctaveShare(Length wavelength, Length footprint) {
   return min(max(wavelength / (Number(2.0) * footprint) - Number(1.0), Number(0.0)), Number(1.0));
 }
 
-// What a ray of a width covers of ground that it meets at a cosine with the normal: the geometric
-// mean of its width and depth there.
+// What a ray of a width covers of water that it meets at a cosine with the normal: the geometric mean
+// of its width and depth there.
 SHARED Length SeenFootprint(Length across, Number cosine) {
   return across / sqrt(max(cosine, Number(0.04)));
+}
+
+// Extent of the land that such a ray averages: the depth of its width on the ground, and the ground
+// that plants and stones of 0.7 m hide behind them from a slanting ray. Without the second a flat
+// pattern would be smeared into streaks where it is seen from the side.
+SHARED Length LandFootprint(Length across, Number cosine) {
+  Number mu = min(max(cosine, Number(0.1)), Number(1.0));
+  return (across + Length(0.7) * sqrt(Number(1.0) - mu * mu)) / mu;
 }
 
 // 0 up to `low`, 1 from `high` on, smooth between.
 SHARED Number SmoothRise(Number low, Number high, Number x) {
   Number t = min(max((x - low) / (high - low), Number(0.0)), Number(1.0));
   return t * t * (Number(3.0) - Number(2.0) * t);
-}
-
-// Extent of the land that such a ray averages: the depth of its width on the ground, and behind every
-// plant and stone the ground that its height hides from a slanting ray. A flat pattern without the
-// second would be smeared into streaks where it is seen from the side.
-SHARED Length LandFootprint(Length across, Number cosine) {
-  Number mu = min(max(cosine, Number(0.1)), Number(1.0));
-  return (across + Length(0.7) * sqrt(Number(1.0) - mu * mu)) / mu;
 }
 
 // Altitude as the lines between materials take it.
