@@ -17,7 +17,8 @@
 namespace alpenglow {
 namespace {
 
-constexpr int kBinsPerStop = 16;
+// Rows of a sky share a bin and leave it together: 0.3 % of light.
+constexpr int kBinsPerStop = 256;
 constexpr int kLowestStop = -24;  // log2 cd/m^2; less than this is no light to meter
 constexpr int kHighestStop = 40;
 constexpr std::size_t kBins = (kHighestStop - kLowestStop) * kBinsPerStop;
@@ -78,11 +79,11 @@ double MeanStop(const Histogram& histogram, double pixels, double low_share, dou
   double weight = 0.0;
   double sum = 0.0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
-    const double inside =
-        std::max(0.0, std::min(seen + histogram[bin], high) - std::max(seen, low));
+    const double inside = std::min(seen + histogram[bin], high) - std::max(seen, low);
+    seen += histogram[bin];
+    if (!(inside > 0.0)) continue;
     sum += inside * std::exp2(kLowestStop + (static_cast<double>(bin) + 0.5) / kBinsPerStop);
     weight += inside;
-    seen += histogram[bin];
   }
   return std::log2(sum / weight);
 }
@@ -144,10 +145,11 @@ std::array<double, 3> MeteredColour(const Image& image, double ignore_above_cd_p
   double weights = 0.0;
   VisitLight(image, ignore_above_cd_per_m2, projection,
              [&](const std::array<float, 3>& pixel, double y, double weight) {
-               // Half a bin at either end fades, so that no bin comes or goes at once.
+               // A sixteenth of a stop at either end fades, so that no pixels come or go at once.
+               constexpr double kFade_bins = kBinsPerStop / 16.0;
                const double bin = BinOf(y);
-               const double counts = weight * std::clamp(bin - low + 0.5, 0.0, 1.0) *
-                                     std::clamp(high - bin + 0.5, 0.0, 1.0);
+               const double counts = weight * std::clamp((bin - low) / kFade_bins + 0.5, 0.0, 1.0) *
+                                     std::clamp((high - bin) / kFade_bins + 0.5, 0.0, 1.0);
                for (std::size_t c = 0; c < 3; ++c)
                  sum[c] += counts * static_cast<double>(pixel[c]) / y;
                weights += counts;

@@ -140,6 +140,24 @@ TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
   }
 }
 
+// All pixels of a row of sky are as bright: they come into a class of the meter's together.
+TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
+  constexpr double kStep_ev = 0.13;  // of a minute of dusk
+  Image dusk(48, 27);
+  for (int y = 0; y < dusk.height; ++y) {
+    const auto glow = static_cast<float>(std::exp2(-0.35 * y));
+    for (int x = 0; x < dusk.width; ++x) dusk.at(x, y) = {glow, glow, glow};
+  }
+  double before = MeterEv100(dusk, kSunDiskLuminance_cd_per_m2);
+  for (int minute = 1; minute <= 20; ++minute) {
+    for (auto& rgb : dusk.rgb)
+      for (float& channel : rgb) channel *= static_cast<float>(std::exp2(-kStep_ev));
+    const double now = MeterEv100(dusk, kSunDiskLuminance_cd_per_m2);
+    EXPECT_NEAR(before - now, kStep_ev, 0.01) << "0.7 % of light: two classes of 1/256 EV";
+    before = now;
+  }
+}
+
 TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
   // Beyond 30 degrees of latitude lies half of the sphere, on two thirds of the rows.
   Image panorama(8, 96), half(8, 96);
