@@ -116,7 +116,7 @@ TEST_F(SkyviewWindow, AFlightThatEndsBeforeItsLandIsThereLeavesNoRecordAndSaysSo
   WriteText(folder_ / "s.toml",
             "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nrange = true\n"
             "[atmosphere]\npreset = \"bruneton2017\"\n");
-  const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9'", "--record f.csv");
+  const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9'", "--record f.csv --altitude 2500");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.error, HasSubstr("f.csv is not written: nothing was flown"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
