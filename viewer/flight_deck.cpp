@@ -253,7 +253,11 @@ HudModel FlightDeck::Model() const {
   for (const Message& message : messages_)
     model.messages.push_back({message.text, message.is_warning});
   const LandProgress progress = flight_.painter().land().Progress();
-  if (progress.share < 1.0) model.progress = HudProgress{progress.text, progress.share};
+  if (progress.share < 1.0) {
+    model.progress = HudProgress{progress.text, progress.share};
+  } else if (flight_.painter().AwaitsLand()) {
+    model.progress = HudProgress{"terrain: light on the land", 1.0};
+  }
   if (const auto picture = pictures_.UnderWay()) model.progress = ProgressOf(*picture);
   model.recording = recorder_.file().has_value();
   model.units = units_;

@@ -84,12 +84,12 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       auto_(1.0 / settings.frame_rate),
       used_(Painted()),
       cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
+      darkroom_(InDaylight(settings.look)),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
                SizesOf(used_.quality)),
       rule_of_exposure_(settings.exposure),
-      look_(settings.look),
-      darkroom_(InDaylight(settings.look)) {
+      look_(settings.look) {
   if (settings.exposure.kind == ExposureRule::Kind::kFixed) {
     SetExposure(settings.exposure.ev100);
     rule_of_exposure_ = {};  // once it is no longer locked
@@ -185,7 +185,11 @@ void Flythrough::UseRange(const TerrainSource& range) {
 void Flythrough::BringLandTo(const GeodeticPosition& place, const std::string& name) {
   BringRangeTo(place);
   const Landscape& land = painter_.land();
-  if (land.tiles().source().IsEmpty() || land.Reaches(place)) return;
+  if (land.tiles().source().IsEmpty()) return;
+  if (land.Reaches(place)) {
+    if (!land.KnowsGround(place)) painter_.AwaitLand();
+    return;
+  }
   notes_.push_back(
       fmt::format("there is no terrain at {}: --dem loads an elevation model of it", name));
 }
@@ -380,7 +384,9 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   const ImageSize size{scaled(screen.width), scaled(screen.height)};
   AimLandingLight();
   const PaintedView view = ViewOf(size);
+  const bool awaited_land = painter_.AwaitsLand();
   painter_.Update(view, seconds);
+  const bool land_has_come = awaited_land && !painter_.AwaitsLand();
   const bool has_reference = reference_ && reference_->samples() > 0 && still_s_ > 0.0;
   if (!has_reference) {
     painter_.Paint(
@@ -390,9 +396,16 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   ShowReference({screen.width, screen.height});
   if (const std::optional<MeterReading> metered = meter_.Take(look_)) metered_ = metered;
   meter_.LookAt(painter_.picture());
-  if (!metered_) metered_ = meter_.Read(painter_.picture(), look_);
+  if (!metered_ || land_has_come) metered_ = meter_.Read(painter_.picture(), look_);
+  if (land_has_come) ForgetAdaptation();
   Expose(*metered_, seconds);
   darkroom_.Print(painter_, view, *exposure_.ev100, screen);
+}
+
+// Another picture, to which no eye has to adapt from the one before.
+void Flythrough::ForgetAdaptation() {
+  if (!exposure_.locked) exposure_.ev100 = std::nullopt;
+  white_ = std::nullopt;
 }
 
 void Flythrough::Settle(const ImageSize& size, int samples) {

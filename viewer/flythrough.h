@@ -210,6 +210,7 @@ class Flythrough {
   /// The EV that the rule of exposure has it for, by the eye as it has adapted.
   [[nodiscard]] double AdaptedTo(double metered_ev100, double seconds);
   void Expose(const MeterReading& metered, double seconds);
+  void ForgetAdaptation();
   /// Of a picture without a frame before it: as frames are, or as it is metered.
   [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
   [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples,
@@ -236,10 +237,10 @@ class Flythrough {
   AutoQuality auto_;
   PaintedQuality used_;
   Cockpit cockpit_;
+  Darkroom darkroom_;  // before the painter: both take their time to make, side by side
   SkyPainter painter_;
   ExposureRule rule_of_exposure_;
   Look look_;  // as asked for: its white balance is not settled
-  Darkroom darkroom_{Look{}};
   ExposureMeter meter_;
   SpotMeter spot_;
   FlightExposure exposure_;

@@ -142,8 +142,8 @@ Land Finished(Land land, std::uint32_t seed) {
 
 // Height on the triangles under the view.
 double GroundUnderView(const Land& land) {
-  const double row = 0.5 * (land.size - 1) - 1e3 * kRangeViewNorth_km / land.spacing_m;
-  const double column = 0.5 * (land.size - 1) + 1e3 * kRangeViewEast_km / land.spacing_m;
+  const double row = 0.5 * (land.size - 1) - kRangeViewNorth_m / land.spacing_m;
+  const double column = 0.5 * (land.size - 1) + kRangeViewEast_m / land.spacing_m;
   const int first_row = static_cast<int>(row), first_column = static_cast<int>(column);
   CellHeights around;
   for (int i = 0; i < 16; ++i) {
@@ -352,12 +352,8 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   return grid;
 }
 
-// Where the view of the range stands, from its centre.
-constexpr double kViewEast_m = 1e3 * kRangeViewEast_km;
-constexpr double kViewNorth_m = 1e3 * kRangeViewNorth_km;
-
 ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
-  const double most = 0.5 * kPi + kViewNorth_m / MeridianRadius(0.5 * kPi);
+  const double most = 0.5 * kPi + kRangeViewNorth_m / MeridianRadius(0.5 * kPi);
   RequireInRange(centre.latitude_rad, -most, most, "latitude_rad");
   GeodeticPosition wrapped = centre;
   wrapped.longitude_rad = WrappedLongitude(centre.longitude_rad);
@@ -381,19 +377,21 @@ BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {
   BuiltInView view{{}, 161.0, 0.5, 50.0};
   if (IsPolar(centre)) {
     const PolarMap map(centre);
-    view.eye = map.At(kViewEast_m, kViewNorth_m);
+    view.eye = map.At(kRangeViewEast_m, kRangeViewNorth_m);
     const double heading = view.heading_deg - map.Convergence(view.eye) / kRadiansPerDegree;
     view.heading_deg = heading - 360.0 * std::floor(heading / 360.0);
   } else {
-    view.eye = BoxMap(centre).At(kViewEast_m, kViewNorth_m);
+    view.eye = BoxMap(centre).At(kRangeViewEast_m, kRangeViewNorth_m);
   }
   view.eye.height_m = kAboveGround_m;
   return view;
 }
 
 GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place) {
-  const GeodeticPosition centre = BoxMap::CentreSeenFrom(place, kViewEast_m, kViewNorth_m);
-  return IsPolar(centre) ? PolarMap::CentreSeenFrom(place, kViewEast_m, kViewNorth_m) : centre;
+  const GeodeticPosition centre =
+      BoxMap::CentreSeenFrom(place, kRangeViewEast_m, kRangeViewNorth_m);
+  return IsPolar(centre) ? PolarMap::CentreSeenFrom(place, kRangeViewEast_m, kRangeViewNorth_m)
+                         : centre;
 }
 
 BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {

@@ -112,7 +112,7 @@ double South(const StrikeFrame& place) { return SmoothStep((place.across_km + 26
 // south of it on.
 double ForelandShare(double y_km) {
   constexpr double kAlike_km = 2.0, kOther_km = 9.0;
-  return SmoothStep((y_km - kRangeViewNorth_km + kOther_km) / (kOther_km - kAlike_km));
+  return SmoothStep((y_km - 1e-3 * kRangeViewNorth_m + kOther_km) / (kOther_km - kAlike_km));
 }
 
 // The value of a range, and that of the first one in the north.
@@ -162,7 +162,8 @@ double Alpine(double x_km, double y_km, std::uint32_t seed) {
 
 double CrestUnderView(double x_km, double y_km) {
   constexpr double kWhole_km = 0.3, kEnd_km = 6.0;
-  const double away_km = std::hypot(x_km - kRangeViewEast_km, y_km - kRangeViewNorth_km);
+  const double away_km =
+      std::hypot(x_km - 1e-3 * kRangeViewEast_m, y_km - 1e-3 * kRangeViewNorth_m);
   return SmoothStep((kEnd_km - away_km) / (kEnd_km - kWhole_km));
 }
 

@@ -14,7 +14,7 @@ inline constexpr int kRangeSize = 1024;
 inline constexpr double kRangeHalfWidth_km = 0.5 * kRangeSpacing_km * (kRangeSize - 1);
 
 /// Where the view of the range stands.
-inline constexpr double kRangeViewEast_km = 2.0, kRangeViewNorth_km = 16.56;
+inline constexpr double kRangeViewEast_m = 2000.0, kRangeViewNorth_m = 16560.0;
 
 /// Uplift relative to that of a main chain, about 0 to 3: five parallel chains, foothills in the
 /// north, one summit above all.

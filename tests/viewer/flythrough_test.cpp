@@ -12,6 +12,7 @@
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
+#include "viewer/gl/render_target.h"
 
 namespace alpenglow {
 namespace {
@@ -83,6 +84,61 @@ TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
   EXPECT_THAT(flight.TakeNotes(), IsEmpty()) << "on the tile";
 }
 
+/// What a window shows of a flight, frame by frame.
+class ShownFrames {
+ public:
+  explicit ShownFrames(Flythrough& flight)
+      : flight_(flight), screen_(64, 36, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone) {
+    flight_.AwaitGround();
+  }
+  /// The next frame, as it was painted: its fourth component is the nearness of land.
+  [[nodiscard]] Image Next() {
+    constexpr double kFrame_s = 0.05;
+    flight_.Advance({}, kFrame_s);
+    flight_.Paint({screen_.framebuffer(), screen_.width(), screen_.height()}, kFrame_s);
+    return flight_.painter().picture().Read();
+  }
+
+ private:
+  Flythrough& flight_;
+  RenderTarget screen_;
+};
+
+/// Green over blue of the greenest pixel: sky at noon has little more of one than of the other, even
+/// at the horizon (1.1), and ground has twice as much.
+double Greenest(const Image& image) {
+  double most = 0.0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x)
+      most = std::max(most, static_cast<double>(image.at(x, y)[1] / image.at(x, y)[2]));
+  }
+  return most;
+}
+
+TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
+  constexpr double kSky = 1.35;
+  const Scene scene = SceneAt({300.0, true});
+  FlythroughSettings settings;
+  settings.land = LandSourceOf(scene);
+  settings.quality = {Quality::kLow};
+  settings.size = kSmall;
+  Flythrough flight(scene, ParseInstant("2026-06-21T11:30:00Z"), settings);
+  ShownFrames window(flight);
+  EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6) << "before the first picture";
+  const GeodeticPosition start = flight.eye().place;
+  EXPECT_LT(Greenest(window.Next()), kSky) << "no plain where land is to come";
+  // As many frames as the threads beside drawing need.
+  for (bool has_come = false; !has_come;) {
+    const Image shown = window.Next();
+    has_come = flight.painter().land().HasCome();
+    ASSERT_EQ(flight.eye().place, start);
+    if (!has_come) {
+      ASSERT_LT(Greenest(shown), kSky);
+    }
+  }
+  EXPECT_GT(Greenest(window.Next()), kSky) << "land";
+}
+
 /// Over the built-in range. It is made when it is first settled or painted.
 class FlightsOverTheRange : public tests::HeadlessLand {
  protected:
@@ -112,6 +168,17 @@ TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
   flight.Place({46.58, 8.01, {}, {}, {}});
   EXPECT_EQ(flight.scene().terrain.range_seed, 0U) << "on the range that the flight began over";
   EXPECT_EQ(flight.scene().terrain.centre, RangeScene().terrain.centre);
+}
+
+TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
+  Flythrough flight = FlightOver(RangeScene());
+  flight.AwaitGround();
+  EXPECT_FALSE(flight.KnowsGround()) << "nothing was waited for";
+  const double height_m = flight.eye().place.height_m;
+  EXPECT_NEAR(height_m, kRangeViewGround_m + RangeScene().camera.height.value_m, 1e-6);
+  EXPECT_NEAR(OverTheGround_m(flight), RangeScene().camera.height.value_m, 1e-6);
+  flight.Settle({32, 18});
+  EXPECT_NEAR(flight.eye().place.height_m, height_m, 0.01) << "a centimetre is not seen";
 }
 
 // Land that has grown since, or that of another model.

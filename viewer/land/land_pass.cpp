@@ -62,10 +62,17 @@ LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light) {
   return block;
 }
 
-LandPass::LandPass()
-    : reversed_depth_(CanReverseDepth()),
-      surface_(LandProgram("viewer/shaders/land.frag.glsl")),
-      outline_(LandProgram("viewer/shaders/land_outline.frag.glsl")) {}
+LandPass::LandPass() : reversed_depth_(CanReverseDepth()) {}
+
+const ShaderProgram& LandPass::ProgramOf(LandDrawn drawn) const {
+  const bool is_surface = drawn == LandDrawn::kSurface;
+  std::optional<ShaderProgram>& program = is_surface ? surface_ : outline_;
+  if (!program) {
+    program.emplace(LandProgram(is_surface ? "viewer/shaders/land.frag.glsl"
+                                           : "viewer/shaders/land_outline.frag.glsl"));
+  }
+  return *program;
+}
 
 std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
   std::vector<ShaderPiece> texts =
@@ -99,7 +106,7 @@ void LandPass::BindEdges(const ShaderProgram& program) {
 
 void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
                    bool one_side, const std::function<void()>& draw) {
-  const ShaderProgram& program = drawn == LandDrawn::kSurface ? surface_ : outline_;
+  const ShaderProgram& program = ProgramOf(drawn);
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
   program.Use();
   if (drawn == LandDrawn::kSurface && edges_.share > 0.0 && horizon_.HasAny()) {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/sun/geodesy.h"
@@ -98,13 +99,14 @@ class LandPass {
   [[nodiscard]] static ShaderPiece DepthText();
 
  private:
+  [[nodiscard]] const ShaderProgram& ProgramOf(LandDrawn drawn) const;
   void BindEdges(const ShaderProgram& program);
 
   HorizonTexture horizon_;
   MomentaryEdges edges_;
   bool reversed_depth_;
   GlBuffer block_;
-  ShaderProgram surface_, outline_;
+  mutable std::optional<ShaderProgram> surface_, outline_;  // made when they are first drawn with
 };
 
 /// What land.frag.glsl and land_outline.frag.glsl are put together with.

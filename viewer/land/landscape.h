@@ -105,6 +105,9 @@ class Landscape {
   }
   /// Whether threads beside drawing are at work, for which the destructor would wait.
   [[nodiscard]] bool IsWorking() const { return cache_.IsReading() || worker_.Busy(); }
+  /// Whether the land about the eye of the last Update is there as fine as it will be, and lit; or
+  /// the eye is beside all land.
+  [[nodiscard]] bool HasCome() const;
   /// LoadedHeights::SampledGrid or GridOverMesh of what is loaded now, for any thread.
   [[nodiscard]] GroundSampler Sampler() const;
   /// Another range of the finest level, see LandSize.

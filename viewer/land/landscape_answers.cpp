@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "viewer/land/landscape.h"
 
@@ -19,6 +20,25 @@ std::optional<double> Landscape::HighestGround(const GeodeticPosition& place) co
 
 bool Landscape::KnowsGround(const GeodeticPosition& place) const {
   return mesh_ ? mesh_->IsRead() : cache_.HasRead(place);
+}
+
+bool Landscape::HasCome() const {
+  constexpr double kAbout_m = 3000.0;
+  if (mesh_) return mesh_->IsRead();
+  if (tiles_->tiles().empty()) return true;
+  if (!set_ || !KnowsGround(eye_place_)) return false;
+  if (!GroundUnder(eye_place_)) return true;
+  if (!fade_.HasShown()) return false;
+  const std::vector<ChunkKey> roots = tree_.Roots(eye_);
+  const bool has_roots = std::all_of(roots.begin(), roots.end(), [&](const ChunkKey& root) {
+    return set_->Has(root) || ChunkTree::Distance(root, eye_) > kAbout_m;
+  });
+  double full_m = detail_ * std::sqrt(eye_.size.column_m * eye_.size.row_m);
+  for (const double reach_m : reach_m_) {
+    if (reach_m < std::min(0.99 * full_m, kAbout_m)) return false;
+    full_m *= 2.0;
+  }
+  return has_roots;
 }
 
 GroundSampler Landscape::Sampler() const {

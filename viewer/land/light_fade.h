@@ -10,11 +10,14 @@
 
 namespace alpenglow {
 
-/// One light after another: the next begins when the one before is all there and shown.
+/// One light after another: the next begins when the one before is all there and shown. The first is
+/// shown at once.
 class LightFade {
  public:
   /// To follow; asked again meanwhile, the newest follows.
   void Ask(LightOfVertices light) { asked_ = std::move(light); }
+  /// Whether any light has been all there.
+  [[nodiscard]] bool HasShown() const { return has_shown_; }
   [[nodiscard]] bool IsChanging() const { return asked_ || is_filling_ || share_ < 1.0; }
 
   /// The light of vertices that are made now, and its number; empty before the first.
@@ -34,7 +37,9 @@ class LightFade {
     if (is_filling_ && is_complete && share_ == 1.0) {
       is_filling_ = false;
       from_ = Other(from_);
-      share_ = 0.0;
+      // Nothing fades into the first one.
+      share_ = has_shown_ ? 0.0 : 1.0;
+      has_shown_ = true;
     }
     // The side that is faded from must stay as it is until the fading ends.
     if (!is_filling_ && asked_ && share_ == 1.0) Begin();
@@ -51,6 +56,7 @@ class LightFade {
   std::optional<LightOfVertices> light_, asked_;
   int number_ = 0;
   bool is_filling_ = false;
+  bool has_shown_ = false;
   LightSide from_ = LightSide::kSecond;
   double share_ = 1.0;        // of the way to the other side
   double filled_in_s_ = 0.0;  // the last one

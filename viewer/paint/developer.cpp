@@ -26,8 +26,7 @@ ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   return program;
 }
 
-void UploadTable(AgxLook look) {
-  const ToneTable table(look);
+void Upload(const ToneTable& table) {
   glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, ToneTable::kSide, ToneTable::kSide, ToneTable::kSide,
                0, GL_RGB, GL_FLOAT, table.codes().data());
   ClampAndFilter(GL_TEXTURE_3D, true);
@@ -46,13 +45,19 @@ Developer::Developer(const Look& look)
     : look_(look),
       program_(ProgramOf(look.curve, true)),
       small_program_(ProgramOf(look.curve, false)) {
-  FillTable();
+  MakeTable();
 }
 
-void Developer::FillTable() {
+void Developer::MakeTable() {
+  coming_ = std::async(std::launch::async, [look = look_.agx] { return ToneTable(look); });
+}
+
+void Developer::TakeTable() const {
+  if (!coming_.valid()) return;
+  const ToneTable table = coming_.get();
   glActiveTexture(GL_TEXTURE0 + kTable);
   glBindTexture(GL_TEXTURE_3D, table_.id());
-  UploadTable(look_.agx);
+  Upload(table);
   CheckGl("Developer");
 }
 
@@ -62,11 +67,12 @@ void Developer::Use(const Look& look) {
     program_ = ProgramOf(look.curve, true);
     small_program_ = ProgramOf(look.curve, false);
   }
-  if (look.agx != before.agx) FillTable();
+  if (look.agx != before.agx) MakeTable();
 }
 
 void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
                      const Screen& screen, const PassArea& area) const {
+  TakeTable();
   glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer);
   glViewport(0, 0, screen.width, screen.height);
   picture.BindTexture(kPicture);

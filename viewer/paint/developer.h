@@ -2,6 +2,8 @@
 // Linear pictures made to look at, on the graphics card.
 #pragma once
 
+#include <future>
+
 #include <vector>
 
 #include "lut/picture/look.h"
@@ -9,6 +11,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/paint/dither_texture.h"
+#include "viewer/paint/tone_table.h"
 #include "viewer/shaders/full_screen.h"
 
 namespace alpenglow {
@@ -17,6 +20,7 @@ namespace alpenglow {
 /// exposure and night vision are left out.
 class Developer {
  public:
+  /// The table of the look is made beside; the first picture waits for it.
   /// @param look  settled (look.h), here and below.
   explicit Developer(const Look& look);
 
@@ -41,7 +45,8 @@ class Developer {
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
  private:
-  void FillTable();
+  void MakeTable();
+  void TakeTable() const;
   void Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
             const Screen& screen, const PassArea& area) const;
 
@@ -49,6 +54,7 @@ class Developer {
   ShaderProgram program_, small_program_;
   PassArea whole_;
   GlTexture table_;
+  mutable std::future<ToneTable> coming_;  // the table, until it is first used
   DitherTexture dither_;
 };
 

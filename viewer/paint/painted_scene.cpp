@@ -67,7 +67,9 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
       ground_(scene.ground, drape_.colours, {}),
       ground_textures_(air_.air()->diffuse),
-      shade_(ellipsoid_) {
+      shade_(ellipsoid_),
+      awaits_land_(has_land_) {
+  if (!land.range_centre) land_->BeginReading(first.eye.place);
   if (scene.fog) {
     for (std::optional<SceneFog>* fog : {&fog_, &moon_fog_})
       fog->emplace(LocalMedia(scene, lamp_ground_, MediumAt(scene)).Only(false, true), sizes.fog,
@@ -91,6 +93,7 @@ void PaintedScene::Replace(const LandSource& land) {
   leaving_.push_back(std::exchange(land_, std::move(other)));
   heights_version_ = -1;
   edges_ = std::nullopt;
+  awaits_land_ = has_land_;
   ground_.ForgetLand();
   shade_.SetGround({});
 }
@@ -181,6 +184,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   const SunPosition& casting = lights.key.disk;
   KeepUpAir(view, lights, Pace::kFollow);
   land_->Update(view.eye.place, LandViewOf(view), seconds);
+  awaits_land_ = awaits_land_ && !land_->HasCome();
   TakeHeights();
   KeepUpEdges(view, lights.key, seconds);
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights))) TakeLight();
@@ -201,6 +205,7 @@ void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, in
   KeepUpEdges(view, lights.key, kLong_s);
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);
   KeepUpFog(view, lights, Pace::kSettle);
+  awaits_land_ = false;
 }
 
 std::optional<PhaseKind> PaintedScene::fog_phase() const {

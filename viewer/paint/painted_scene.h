@@ -42,6 +42,12 @@ class PaintedScene {
   /// Other land of the same kind: what there was is gone at once, and its light and shade.
   void Replace(const LandSource& land);
 
+  /// Shows no land until what is about the eye has come.
+  void AwaitLand() { awaits_land_ = true; }
+  /// Whether land is still to come, at the start and after a change of place: then there is nothing
+  /// but sky.
+  [[nodiscard]] bool AwaitsLand() const { return awaits_land_; }
+
   /// Takes over what has become ready and asks for what is missing. Never waits, but for the first
   /// fog in other air or under a moon.
   /// @param lights   seen from the eye.
@@ -78,7 +84,8 @@ class PaintedScene {
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
   /// Whether terrain keeps light of the key from the air, and that is painted.
   [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
-    return sizes_.has_shafts && shade_.shade().Shades() && shade_.IsOf(view.eye.place, key.disk);
+    return !awaits_land_ && sizes_.has_shafts && shade_.shade().Shades() &&
+           shade_.IsOf(view.eye.place, key.disk);
   }
   /// Whether the edges of terrain that land is painted with are all those before this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
@@ -129,6 +136,7 @@ class PaintedScene {
   std::optional<Vector<Ecef>> edges_;
   double momentary_edges_ = 0.0;  // MomentaryEdges::share
   int heights_version_ = -1;
+  bool awaits_land_;
 };
 
 }  // namespace alpenglow

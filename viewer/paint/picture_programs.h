@@ -29,6 +29,9 @@ class PicturePrograms {
   /// Draws with a stage that Paint was not called for yet. Whether that was to be done.
   bool MakeReady(const PictureStage& stage);
 
+  /// Whether any stage has been drawn with.
+  [[nodiscard]] bool HasPainted() const { return !ready_.empty(); }
+
   /// For uniforms of the stage's own.
   [[nodiscard]] const ShaderProgram& Of(const PictureStage& stage);
 

@@ -117,13 +117,18 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   Begin("land");
   Fit(surface_, view.width, view.height);
   surface_->Bind();
-  scene_.land().Draw(kViewBinding);
+  if (scene_.AwaitsLand()) {
+    LandPass::Clear(LandDrawn::kSurface);
+  } else {
+    scene_.land().Draw(kViewBinding);
+  }
   surface_->BindTexture(kSurfaceUnit, SurfaceMap::kSurface);
 }
 
 void SkyPainter::PaintOutline(const LandOutline& outline) {
   Begin("outline");
   outline.Bind();
+  if (scene_.AwaitsLand()) return LandPass::Clear(LandDrawn::kOutline);
   scene_.land().DrawOutline(kViewBinding);
 }
 
@@ -136,7 +141,7 @@ void SkyPainter::PaintShafts(const PaintedView& view) {
 }
 
 void SkyPainter::PaintLamps(const PaintedView& view) {
-  if (lamp_painter_.IsDark()) return;
+  if (!HasLamps()) return;
   Begin("lamps");
   lamp_painter_.PaintGlow(view.width, view.height);
 }
@@ -168,10 +173,16 @@ void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_
   stars_.MakeReady(view, scene_.fog(), scene_.fog_phase());
 }
 
+// Rows that hold the planet's ground. Before land has come there is sky in its place.
+int SkyPainter::RowsOfGround(const PaintedView& view) const {
+  if (scene_.AwaitsLand()) return 0;
+  return RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
+}
+
 // Software drivers work out the planet of every pixel that a program has it for.
 void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
   using enum PictureStage::Pass;
-  const int rows = RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
+  const int rows = RowsOfGround(view);
   if (rows > 0) {
     const Scissor below({0, 0, view.width, rows});
     programs_.Paint({kSky, lit.has_shade, lit.has_lamps}, lit.source);
@@ -183,7 +194,8 @@ void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
 }
 
 void SkyPainter::PaintLandAndSky(const PaintedView& view, const Lit& lit) {
-  programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps}, lit.source);
+  if (!scene_.AwaitsLand())
+    programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps}, lit.source);
   PaintSky(view, lit);
 }
 
@@ -210,9 +222,12 @@ void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   const KeyLight sun = SunAsKey(LightsOf(view).sun, scene_.air().air()->medium);
   blocks_.UploadView(scene_, view, sun, ray);
   const double share = 1.0 / ray.of;
+  const std::vector<PixelBox> boxes = DisksSeen(view);
+  if (boxes.empty()) return;
+  DescribeMoon(DisksOf(view).moon);
   const BesideLand beside;
   const Adding adding(share);
-  for (const PixelBox& box : DisksSeen(view)) {
+  for (const PixelBox& box : boxes) {
     const Scissor within(box);
     programs_.Paint({PictureStage::Pass::kDisks});
   }
@@ -252,8 +267,8 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
-  const Lit lit{key.source(), scene_.HasShade(view, key), !lamp_painter_.IsDark()};
-  if (share == 1.0) MakeOneReady(view, lit.has_shade, lit.has_lamps);
+  const Lit lit{key.source(), scene_.HasShade(view, key), HasLamps()};
+  if (share == 1.0 && programs_.HasPainted()) MakeOneReady(view, lit.has_shade, lit.has_lamps);
   PaintLandAndSky(view, lit);
 }
 
@@ -276,7 +291,7 @@ void SkyPainter::PaintOtherLight(const PaintedView& view, const PixelRay& ray) {
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
-  if (lamp_painter_.IsDark()) return;
+  if (!HasLamps()) return;
   Begin("lamps over");
   lamp_painter_.PaintOver(PixelAngle(view));
 }
@@ -287,11 +302,16 @@ bool SkyPainter::HasNightFloor() const {
   return stars_.sky_lux() > 0.0 && stars_.sky_lux() < (has_towns_ ? kMostOverTowns_lux : kMost_lux);
 }
 
-void SkyPainter::PaintNightFloor(double share) {
+void SkyPainter::PaintNightFloor(const PaintedView& view, double share) {
   Begin("night sky");
   const BesideLand any_depth;
   const Adding adding(share);
   const PictureStage stage{PictureStage::Pass::kNight};
+  std::optional<Scissor> above;
+  if (scene_.AwaitsLand()) {
+    const int rows = RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
+    above.emplace(PixelBox{0, rows, view.width, view.height - rows});
+  }
   night_floor_.Bind(programs_.Of(stage), kNightUnit);
   programs_.Paint(stage);
 }
@@ -310,7 +330,7 @@ void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const Pixel
   PaintLamps(view);
   PaintPicture(view, 1.0 / ray.of);
   PaintOtherLight(view, ray);
-  if (HasNightFloor() && night_floor_.HasAny()) PaintNightFloor(1.0 / ray.of);
+  if (HasNightFloor() && night_floor_.HasAny()) PaintNightFloor(view, 1.0 / ray.of);
   if (bodies == Bodies::kAll) PaintDisks(view, ray);
 }
 
@@ -330,7 +350,6 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
   blocks_.UploadGround(scene_, view);
-  DescribeMoon(disks.moon);
   PrepareLamps(view);
   picture_->Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);

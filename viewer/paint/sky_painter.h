@@ -45,6 +45,9 @@ class SkyPainter {
   /// Other air; shown when it is solved.
   void Replace(const Medium& medium) { scene_.Replace(medium); }
 
+  /// See PaintedScene.
+  void AwaitLand() { scene_.AwaitLand(); }
+  [[nodiscard]] bool AwaitsLand() const { return scene_.AwaitsLand(); }
   /// Other land of the same kind.
   void Replace(const LandSource& land) { scene_.Replace(land); }
 
@@ -126,11 +129,13 @@ class SkyPainter {
   void PaintOtherLight(const PaintedView& view, const PixelRay& ray);
   void MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintSky(const PaintedView& view, const Lit& lit);
+  [[nodiscard]] bool HasLamps() const { return !scene_.AwaitsLand() && !lamp_painter_.IsDark(); }
+  [[nodiscard]] int RowsOfGround(const PaintedView& view) const;
   void PaintLandAndSky(const PaintedView& view, const Lit& lit);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   [[nodiscard]] bool HasNightFloor() const;
-  void PaintNightFloor(double share);
+  void PaintNightFloor(const PaintedView& view, double share);
   void PaintStars(const PaintedView& view, const MoonDisk& moon);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);

@@ -129,8 +129,21 @@ vec4 PlanetUnderLamps(vec3 direction) {
 }
 #endif
 
+#if PASS == OPEN_SKY_PASS
+// The same as the horizon under it: what is seen there before land has come.
+vec3 NotUnderHorizon(vec3 direction) {
+  float horizon = HorizonCosine(EYE_ALTITUDE, RADIUS);
+  float level = length(direction.xy);
+  vec3 raised = vec3(direction.xy * (sqrt(1.0 - horizon * horizon) / max(level, 1e-6)), horizon);
+  return direction.z < horizon ? raised : direction;
+}
+#endif
+
 void main() {
   vec3 direction = ViewDirection(screen);
+#if PASS == OPEN_SKY_PASS
+  direction = NotUnderHorizon(direction);
+#endif
   vec4 clear = SkyRadiance(direction);
   vec4 radiance = clear;
 #if HAS_FOG
