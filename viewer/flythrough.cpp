@@ -145,10 +145,11 @@ void Flythrough::StandOnGround() {
 }
 
 void Flythrough::Place(const EyePlacement& placement) {
+  const bool moves = placement.latitude_deg || placement.longitude_deg;
+  if (!moves && !placement.height_m && !placement.heading_deg && !placement.pitch_deg) return;
   const double above_m =
       waits_above_ground_m_.value_or(eye().place.height_m - Ground()(eye().place));
   Eye placed = Placed(eye(), placement);
-  const bool moves = placement.latitude_deg || placement.longitude_deg;
   if (moves) BringLandTo(placed.place, "this place");
   if (moves && !placement.height_m)
     placed.place.height_m = Ground()(placed.place) + std::max(above_m, 0.0);

@@ -17,7 +17,7 @@ class LightFade {
   /// To follow; asked again meanwhile, the newest follows.
   void Ask(LightOfVertices light) { asked_ = std::move(light); }
   /// Whether any light has been all there.
-  [[nodiscard]] bool HasShown() const { return has_shown_; }
+  [[nodiscard]] bool HasShown() const { return lights_shown_ > 0; }
   [[nodiscard]] bool IsChanging() const { return asked_ || is_filling_ || share_ < 1.0; }
 
   /// The light of vertices that are made now, and its number; empty before the first.
@@ -28,7 +28,7 @@ class LightFade {
 
   /// What is shown goes from `from` to the other side by a share; `from` is the one to be filled.
   [[nodiscard]] LightSide from() const { return from_; }
-  [[nodiscard]] double share() const { return share_; }
+  [[nodiscard]] double share() const { return lights_shown_ > 1 ? share_ : 1.0; }
 
   /// @param is_complete  whether all vertices have the light.
   void Advance(double seconds, bool is_complete) {
@@ -37,9 +37,8 @@ class LightFade {
     if (is_filling_ && is_complete && share_ == 1.0) {
       is_filling_ = false;
       from_ = Other(from_);
-      // Nothing fades into the first one.
-      share_ = has_shown_ ? 0.0 : 1.0;
-      has_shown_ = true;
+      share_ = 0.0;
+      ++lights_shown_;
     }
     // The side that is faded from must stay as it is until the fading ends.
     if (!is_filling_ && asked_ && share_ == 1.0) Begin();
@@ -56,7 +55,7 @@ class LightFade {
   std::optional<LightOfVertices> light_, asked_;
   int number_ = 0;
   bool is_filling_ = false;
-  bool has_shown_ = false;
+  int lights_shown_ = 0;
   LightSide from_ = LightSide::kSecond;
   double share_ = 1.0;        // of the way to the other side
   double filled_in_s_ = 0.0;  // the last one
