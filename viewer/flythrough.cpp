@@ -87,7 +87,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       darkroom_(InDaylight(settings.look)),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
-               SizesOf(used_.quality)),
+               SizesOf(used_.quality), settings.first_air),
       rule_of_exposure_(settings.exposure),
       look_(settings.look) {
   if (settings.exposure.kind == ExposureRule::Kind::kFixed) {

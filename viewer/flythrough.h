@@ -44,8 +44,9 @@ struct FlythroughSettings {
   /// Pictures are painted in parts of at most so many pixels a side; nothing: in one piece as far as
   /// OpenGL draws them.
   std::optional<int> largest_part = {};
-  ExposureRule exposure = {};  // metered, eye or fixed
-  Look look = {};              // without local exposure and night vision
+  ExposureRule exposure = {};                  // metered, eye or fixed
+  Look look = {};                              // without local exposure and night vision
+  AirSolution first_air = AirSolution::kFull;  // a draft: the first frame is sooner there
 };
 
 /// Where the exposure comes from.

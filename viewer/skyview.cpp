@@ -277,7 +277,8 @@ int Run(const SkyviewOptions& options) {
   Flythrough flight(
       scene, start,
       {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size,
-       std::nullopt, FlightExposureFromText(options.exposure), LookOf(options)});
+       std::nullopt, FlightExposureFromText(options.exposure), LookOf(options),
+       options.headless ? AirSolution::kFull : AirSolution::kDraft});
   flight.Place(PlacementOf(options));
   if (options.place) flight.GoTo(*options.place);
   if (options.track) {

@@ -64,7 +64,7 @@ night_2_half_moon --at 2026-06-21T21:00:00Z
 night_3_full_moon --at 2026-01-03T23:00:00Z
 night_4_milky_way --at 2026-07-14T23:30:00Z --heading 190 --pitch 20 --bortle 1
 night_5_town --at 2026-12-09T21:00:00Z --heading 200 --bortle 7
-night_6_eclipse --at 2026-08-12T18:28:30Z --latitude 42.3439 --longitude -3.6969 --heading 284 --pitch 8
+night_6_eclipse --at 2026-08-12T18:28:30Z --latitude 42.3439 --longitude -3.6969 --height 4000 --heading 284 --pitch 4
 LINES
 }
 

@@ -43,9 +43,10 @@ AirFollower::Made AirFollower::Make(const Request& request) {
 }
 
 AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality,
-                         const AirView& first)
+                         const AirView& first, Drafts drafts)
     : air_(std::move(air)),
       quality_(quality),
+      drafts_(drafts),
       eye_(EyeOf(first)),
       last_view_(first),
       solver_([](const Solve& solve) { return SolveAir(solve.medium, solve.solution); }),
@@ -85,7 +86,7 @@ void AirFollower::TakeFinished() {
 // Not at once: who moves a slider asks for other air in the next frame.
 void AirFollower::RefineDraft() {
   constexpr auto kPause = std::chrono::milliseconds(200);
-  if (air_->solution == AirSolution::kFull || solver_.Busy()) return;
+  if (drafts_ == Drafts::kKept || air_->solution == AirSolution::kFull || solver_.Busy()) return;
   if (Clock::now() > replaced_at_ + kPause) solver_.Ask({air_->medium, AirSolution::kFull});
 }
 

@@ -30,8 +30,11 @@ struct AirView {
 /// To be used on the thread of the context that is current when it is made.
 class AirFollower {
  public:
+  /// Whether it solves anew what it was given as a draft, or another follower does.
+  enum class Drafts { kRefined, kKept };
   /// Makes small tables for the first frame before it returns, some milliseconds later.
-  AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first);
+  AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first,
+              Drafts drafts = Drafts::kRefined);
 
   /// Another medium, solved beside drawing; shown when it is ready: a draft first, and what it
   /// lacks when no other medium has been asked for meanwhile. Throws InputError at once for
@@ -84,6 +87,7 @@ class AirFollower {
   std::shared_ptr<const SolvedAir> air_;  // to be shown next
   std::shared_ptr<const SolvedAir> shown_;
   AirQuality quality_;
+  Drafts drafts_;
   AirTextures textures_;
   AirEye eye_;
   std::optional<Request> asked_;  // last

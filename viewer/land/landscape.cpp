@@ -65,7 +65,8 @@ void Landscape::FollowView(double seconds) {
   const double first_m = size_.detail * std::sqrt(eye_.size.column_m * eye_.size.row_m);
   const double by_height =
       std::clamp(1.0 + 0.35 * std::log2(std::max(eye_.above_m, 1.0) / first_m), 1.0, 3.0);
-  double wanted = size_.detail * std::min(by_lens * by_height, size_.most_growth) * std::sqrt(view_.rays);
+  double wanted =
+      size_.detail * std::min(by_lens * by_height, size_.most_growth) * std::sqrt(view_.rays);
   while (wanted > LandSize::kLeastDetail && ExpectedChunks(wanted) > size_.most_chunks)
     wanted = std::max(0.95 * wanted, LandSize::kLeastDetail);
   detail_ = wanted + (detail_ - wanted) * std::exp(-seconds / kTime_s);

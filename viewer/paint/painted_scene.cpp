@@ -53,7 +53,7 @@ AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
 }  // namespace
 
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
-                           const PaintSizes& sizes)
+                           const PaintSizes& sizes, AirSolution first_air)
     : scene_(scene),
       ellipsoid_(EllipsoidOf(scene.medium)),
       sizes_(sizes),
@@ -63,7 +63,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
       sun_view_(AirViewOf(first.eye,
                           ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
-      air_(SolveAir(MediumAt(scene)), sizes.air, sun_view_),
+      air_(SolveAir(MediumAt(scene), first_air), sizes.air, sun_view_),
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
       ground_(scene.ground, drape_.colours, {}),
       ground_textures_(air_.air()->diffuse),
@@ -135,7 +135,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   if (moon == nullptr) return;
   const AirView seen = AirViewOf(view.eye, moon->disk);
   if (!moon_air_ || moon_air_of_ != air_.air()) {
-    moon_air_.emplace(air_.air(), sizes_.air, seen);
+    moon_air_.emplace(air_.air(), sizes_.air, seen, AirFollower::Drafts::kKept);
     moon_air_of_ = air_.air();
   }
   moon_air_->SetQuality(sizes_.air);

@@ -30,10 +30,10 @@ namespace alpenglow {
 /// To be used on the thread of the context that is current when it is made.
 class PaintedScene {
  public:
-  /// The air is solved here; land is read beside drawing. Throws InputError for a medium of more
-  /// than four wavelengths and for land that is named and cannot be read.
+  /// The air is solved here, a draft of it beside drawing anew; land is read beside drawing. Throws
+  /// InputError for a medium of more than four wavelengths and for land that is named and cannot be read.
   PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
-               const PaintSizes& sizes);
+               const PaintSizes& sizes, AirSolution first_air);
 
   void Use(const PaintSizes& sizes);
   /// Other air; shown when it is solved.
