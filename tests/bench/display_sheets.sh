@@ -20,6 +20,7 @@ skyseries=$(realpath "$build/renderer/skyseries")
 skyview=$(realpath "$build/viewer/skyview")
 mkdir -p "$out"
 cd "$out"
+display=:97
 
 keogram() {  # exposure
   "$skyseries" --date 2026-06-21 --from noon --to noon+24h --every 10m --size 64x72 --samples 4 --png \
@@ -70,10 +71,10 @@ LINES
 
 # Window and file of the same moment, without instruments, at one exposure.
 dusk() {
-  local display=:97 moment n=0
+  local moment n=0
   Xvfb "$display" -ac -screen 0 640x360x24 >/dev/null 2>&1 &
-  local xvfb=$!
-  trap 'kill "$xvfb"' EXIT
+  server=$!
+  trap 'kill "$server"' EXIT
   for moment in 19:10 19:20 19:30 19:40 19:50 20:00 20:20 20:50; do  # sunset is at 19:22
     n=$((n + 1))
     "$skyview" --time "2026-06-21T$moment:00Z" --headless --hud off --size 640x360 --quiet \
