@@ -39,11 +39,11 @@ void Upload(const GlTexture& texture, std::size_t columns, std::size_t rows,
 GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
                                     double pixel_angle_rad) {
   const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
-  return {GpuBandsOf(tilt.level),
-          GpuBandsOf(tilt.up),
-          GpuBandsOf(tilt.sunward),
-          {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0},
-          {pixel_angle_rad, 1.0, 0.0, 0.0}};
+  GroundLightBlock block{
+      {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0}, {pixel_angle_rad, 1.0, 0.0, 0.0}, {}};
+  for (std::size_t i = 0; i < tilt.nodes.size(); ++i)
+    block.open_sky[i] = {tilt.nodes[i][0], tilt.nodes[i][1], tilt.nodes[i][2], tilt.nodes[i][3]};
+  return block;
 }
 
 GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
@@ -87,13 +87,14 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
                        "#define HAS_FINE_RELIEF {}\n"
                        "#define LEVEL_SKY_LOWEST {:.9f}\n"
                        "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
-                       "#define SEA_MIRROR_SIDE {}.0\n",
+                       "#define SEA_MIRROR_SIDE {}.0\n"
+                       "#define OPEN_SKY_COLUMNS {}\n#define OPEN_SKY_ROWS {}\n",
                        static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
                        material.drape() != nullptr ? 1 : 0,
                        material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
                        planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
                        LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
-                       SeaMirror::kSide)},
+                       SeaMirror::kSide, SkyTilt::kColumns, SkyTilt::kRows)},
           ViewerPiece("viewer/ground/sky_tilt.glsl"),
           ViewerPiece("viewer/shaders/ground.glsl"),
           ViewerPiece("viewer/shaders/ground_surface.glsl"),

@@ -20,11 +20,12 @@ namespace alpenglow {
 
 /// `block GroundLight` of ground_light.glsl.
 struct GroundLightBlock {
-  glm::vec4 sky_level, sky_up, sky_sunward, sky_towards;
+  glm::vec4 sky_towards;
   glm::vec4 ground_view;
+  std::array<glm::vec4, SkyTilt::kColumns * SkyTilt::kRows> open_sky;
 };
-static_assert(sizeof(GroundLightBlock) == 5 * sizeof(glm::vec4));
-static_assert(offsetof(GroundLightBlock, ground_view) == 4 * sizeof(glm::vec4));
+static_assert(sizeof(GroundLightBlock) == 47 * sizeof(glm::vec4));
+static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 
 /// @param to_sun  unit, in the frame of the eye.
 /// @param pixel_angle_rad  between neighbouring pixels; larger: coarser detail.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "atmosphere/number/constants.h"
@@ -12,107 +14,93 @@
 namespace alpenglow {
 namespace {
 
-// A coarse table of the sky: the fit takes means over it.
+// A coarse table of the sky: what is taken from it are means over half of it.
 constexpr SkyViewSize kCoarseSky{.sky_rows = 20, .ground_rows = 5, .azimuths = 9, .ray_nodes = 8};
-constexpr std::size_t kSkyRows = 64;     // even in the sine of the elevation
-constexpr std::size_t kSkyColumns = 36;  // of half a turn from the sun's azimuth
-constexpr int kFitTilts = 6, kFitAzimuths = 36;
+constexpr std::size_t kSkyRows = 48;     // even in the sine of the elevation
+constexpr std::size_t kSkyColumns = 24;  // of half a turn from the sun's azimuth
 
-double FitTilt(int step) { return 10.0 * kRadiansPerDegree * step; }
-
-/// Means over the azimuths of the surfaces, summed over their tilts.
-struct FitSums {
-  double one = 0.0, up = 0.0, sunward = 0.0;
+/// A part of the sky on one side of the sun, and its mirror image.
+struct SkyPart {
+  glm::vec3 towards, mirrored;  // unit: towards the sun, aside, upwards
+  std::array<float, 4> light;   // radiance times solid angle
 };
 
-// For light of radiance 1 from the azimuth 0: of E, of E n.up and of E n.x.
-FitSums SumsUnder(double sine) {
-  const double cosine = std::sqrt(1.0 - sine * sine);
-  FitSums sums;
-  for (int tilt = 0; tilt < kFitTilts; ++tilt) {
-    const double z = std::cos(FitTilt(tilt)), flat = std::sin(FitTilt(tilt));
-    for (int k = 0; k < kFitAzimuths; ++k) {
-      const double x = flat * std::cos(2.0 * kPi * (k + 0.5) / kFitAzimuths);
-      const double falls = std::max(x * cosine + z * sine, 0.0) / kFitAzimuths;
-      sums.one += falls;
-      sums.up += falls * z;
-      sums.sunward += falls * x;
-    }
-  }
-  return sums;
-}
-
-double SineOfSkyRow(std::size_t row) { return (static_cast<double>(row) + 0.5) / kSkyRows; }
-
-const std::array<FitSums, kSkyRows>& SumsOfRows() {
-  static const std::array<FitSums, kSkyRows> sums = [] {
-    std::array<FitSums, kSkyRows> of_rows;
-    for (std::size_t row = 0; row < kSkyRows; ++row) of_rows[row] = SumsUnder(SineOfSkyRow(row));
-    return of_rows;
-  }();
-  return sums;
-}
-
-std::vector<double> AzimuthsOfColumns() {
+std::vector<SkyPart> PartsOf(const SkyView& sky) {
+  constexpr auto kSolidAngle = static_cast<float>(kPi / (kSkyRows * kSkyColumns));
   std::vector<double> azimuths;
   for (std::size_t i = 0; i < kSkyColumns; ++i)
     azimuths.push_back(kPi * (static_cast<double>(i) + 0.5) / kSkyColumns);
-  return azimuths;
-}
-
-// Of the whole sky, band by band. Both halves of it are alike.
-std::array<FitSums, 4> SumsOfSky(const SkyView& sky) {
-  constexpr double kSolidAngle = 2.0 * kPi / (kSkyRows * kSkyColumns);
-  const std::vector<double> azimuths = AzimuthsOfColumns();
   const SkyAzimuths columns(sky, azimuths);
   std::vector<float> radiance(kSkyColumns * sky.stride());
-  std::array<FitSums, 4> sums{};
+  std::vector<SkyPart> parts;
   for (std::size_t row = 0; row < kSkyRows; ++row) {
-    sky.FillRow(std::acos(SineOfSkyRow(row)), columns, radiance);
-    const FitSums& weight = SumsOfRows()[row];
+    const double z = (static_cast<double>(row) + 0.5) / kSkyRows, flat = std::sqrt(1.0 - z * z);
+    sky.FillRow(std::acos(z), columns, radiance);
     for (std::size_t column = 0; column < kSkyColumns; ++column) {
-      const double towards_sun = std::cos(azimuths[column]);
-      for (std::size_t band = 0; band < sky.bands(); ++band) {
-        const double light =
-            kSolidAngle * static_cast<double>(radiance[column * sky.stride() + band]);
-        sums[band].one += light * weight.one;
-        sums[band].up += light * weight.up;
-        sums[band].sunward += light * weight.sunward * towards_sun;
-      }
+      const double x = flat * std::cos(azimuths[column]), y = flat * std::sin(azimuths[column]);
+      SkyPart part{{x, y, z}, {x, -y, z}, {}};
+      for (std::size_t band = 0; band < sky.bands(); ++band)
+        part.light[band] = kSolidAngle * radiance[column * sky.stride() + band];
+      parts.push_back(part);
     }
   }
-  return sums;
+  return parts;
+}
+
+std::array<float, 4> IrradianceOn(const std::vector<SkyPart>& parts, const glm::vec3& normal) {
+  std::array<float, 4> sum{};
+  for (const SkyPart& part : parts) {
+    const float falls = std::max(glm::dot(normal, part.towards), 0.0F) +
+                        std::max(glm::dot(normal, part.mirrored), 0.0F);
+    for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += falls * part.light[band];
+  }
+  return sum;
+}
+
+// On the slope of these components; beyond all slopes as the light runs towards the rim.
+std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, float up) {
+  const float radius = std::hypot(sunward, up);
+  const auto at = [&](float share) {
+    const float x = share * sunward, z = share * up;
+    return IrradianceOn(parts, {x, std::sqrt(std::max(1.0F - x * x - z * z, 0.0F)), z});
+  };
+  if (radius <= 1.0F) return at(1.0F);
+  constexpr float kInside = 0.9F, kLeast = 0.1F;
+  const std::array<float, 4> rim = at(1.0F / radius), inside = at(kInside / radius);
+  std::array<float, 4> beyond{};
+  for (std::size_t band = 0; band < beyond.size(); ++band)
+    beyond[band] =
+        std::max(rim[band] + (radius - 1.0F) / (1.0F - kInside) * (rim[band] - inside[band]),
+                 kLeast * rim[band]);
+  return beyond;
 }
 
 }  // namespace
 
-// Least squares. Over even azimuths n.s is orthogonal to what depends on n.up alone.
 SkyTilt::SkyTilt(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
-                 double mu_s)
-    : level(air.bands()), up(air.bands()), sunward(air.bands()) {
+                 double mu_s) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
-  double ups = 0.0, ups2 = 0.0, sunwards2 = 0.0;
-  for (int tilt = 0; tilt < kFitTilts; ++tilt) {
-    ups += std::cos(FitTilt(tilt));
-    ups2 += std::pow(std::cos(FitTilt(tilt)), 2);
-    sunwards2 += 0.5 * std::pow(std::sin(FitTilt(tilt)), 2);
-  }
-  const std::array<FitSums, 4> sums =
-      SumsOfSky(SkyView(air, diffuse, altitude_m, mu_s, kCoarseSky));
-  for (std::size_t band = 0; band < air.bands(); ++band) {
-    const double slope =
-        (kFitTilts * sums[band].up - ups * sums[band].one) / (kFitTilts * ups2 - ups * ups);
-    up[band] = static_cast<float>(slope);
-    level[band] = static_cast<float>((sums[band].one - slope * ups) / kFitTilts);
-    sunward[band] = static_cast<float>(sums[band].sunward / sunwards2);
+  const std::vector<SkyPart> parts = PartsOf(SkyView(air, diffuse, altitude_m, mu_s, kCoarseSky));
+  for (std::size_t row = 0; row < kRows; ++row) {
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const float sunward = static_cast<float>(column) / 4.0F - 1.0F;
+      nodes[row * kColumns + column] = NodeAt(parts, sunward, static_cast<float>(row) / 4.0F);
+    }
   }
 }
 
 std::array<float, 4> SkyTilt::On(double n_up, double n_sunward) const {
+  const auto u = static_cast<float>(shared::OpenSkyColumn(n_sunward));
+  const auto v = static_cast<float>(shared::OpenSkyRow(n_up));
+  const auto column = std::min(static_cast<std::size_t>(u), kColumns - 2);
+  const auto row = std::min(static_cast<std::size_t>(v), kRows - 2);
+  const float right = u - static_cast<float>(column), above = v - static_cast<float>(row);
+  const auto* low = &nodes[row * kColumns + column];
+  const auto* high = low + kColumns;
   std::array<float, 4> light{};
-  for (std::size_t band = 0; band < level.count; ++band)
-    light[band] = shared::OpenSkyOn(level[band], up[band], sunward[band], static_cast<float>(n_up),
-                                    static_cast<float>(n_sunward));
+  for (std::size_t band = 0; band < light.size(); ++band)
+    light[band] = std::lerp(std::lerp(low[0][band], low[1][band], right),
+                            std::lerp(high[0][band], high[1][band], right), above);
   return light;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of the open sky on a surface, fitted for surfaces up to 50 degrees steep:
-//
-//   E(n) = level + up n.up + sunward n.s,     s the horizontal direction towards the sun
-//
-// Steeper surfaces that face away from the sun get at least a tenth of `level`.
-SHARED Number OpenSkyOn(Number level, Number up, Number sunward, Number n_up, Number n_sunward) {
-  return max(level + up * n_up + sunward * n_sunward, Number(0.1) * level);
+// Where a slope lies in the table of the open sky's irradiance (sky_tilt.h): even steps of its unit
+// normal's components towards the sun, -1 to 1, and upwards, 0 to 1. Both halves of the sky beside the sun
+// are alike, so that these two say all, and the irradiance is smooth in them.
+SHARED Number OpenSkyColumn(Number n_sunward) {
+  return Number(4.0) * (min(max(n_sunward, Number(-1.0)), Number(1.0)) + Number(1.0));
+}
+SHARED Number OpenSkyRow(Number n_up) {
+  return Number(4.0) * min(max(n_up, Number(0.0)), Number(1.0));
 }

@@ -5,11 +5,9 @@
 
 // The open sky's light on surfaces of any tilt: GroundLightBlock of ground_block.h.
 layout(std140) uniform GroundLight {
-  vec4 sky_level;  // irradiance of an open place by band: the terms of OpenSkyOn
-  vec4 sky_up;
-  vec4 sky_sunward;
   vec4 sky_towards;  // horizontal direction towards the sun
   vec4 ground_view;  // angle of a pixel [rad]; 1: edges of terrain are those before this sun, else 0
+  vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyTilt, by band
 };
 
 // A place of the ground as its light and material see it.
@@ -55,11 +53,12 @@ vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 
 // The light of the open sky on a surface, at half the height of the land.
 vec4 OpenSkyOnSlope(vec3 normal, vec3 up) {
-  float n_up = dot(normal, up), n_sunward = dot(normal, sky_towards.xyz);
-  return vec4(OpenSkyOn(sky_level.x, sky_up.x, sky_sunward.x, n_up, n_sunward),
-              OpenSkyOn(sky_level.y, sky_up.y, sky_sunward.y, n_up, n_sunward),
-              OpenSkyOn(sky_level.z, sky_up.z, sky_sunward.z, n_up, n_sunward),
-              OpenSkyOn(sky_level.w, sky_up.w, sky_sunward.w, n_up, n_sunward));
+  float u = OpenSkyColumn(dot(normal, sky_towards.xyz)), v = OpenSkyRow(dot(normal, up));
+  int column = min(int(u), OPEN_SKY_COLUMNS - 2), row = min(int(v), OPEN_SKY_ROWS - 2);
+  int low = row * OPEN_SKY_COLUMNS + column, high = low + OPEN_SKY_COLUMNS;
+  float right = u - float(column);
+  return mix(mix(open_sky[low], open_sky[low + 1], right),
+             mix(open_sky[high], open_sky[high + 1], right), v - float(row));
 }
 
 // The light of the sky on a surface that is tilted against that of the mesh: in an open place's

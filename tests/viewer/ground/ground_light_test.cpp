@@ -228,10 +228,10 @@ GLint OffsetOf(const ShaderProgram& program, const char* member) {
 TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
   const auto site = tests::RoughSite();
   std::vector<ShaderPiece> pieces = Texts(site->material());
-  pieces.push_back({"main", "void main() { gl_Position = sky_level + cover_albedo; }\n"});
+  pieces.push_back({"main", "void main() { gl_Position = open_sky[7] + cover_albedo; }\n"});
   const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
   int member = 0;
-  for (const char* name : {"sky_level", "sky_up", "sky_sunward", "sky_towards", "ground_view"})
+  for (const char* name : {"sky_towards", "ground_view", "open_sky[0]"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :
