@@ -211,6 +211,8 @@ class Flythrough {
   /// The EV that the rule of exposure has it for, by the eye as it has adapted.
   [[nodiscard]] double AdaptedTo(double metered_ev100, double seconds);
   void Expose(const MeterReading& metered, double seconds);
+  /// Whether the clock has, since the last frame.
+  [[nodiscard]] bool HasJumped();
   void ForgetAdaptation();
   /// Of a picture without a frame before it: as frames are, or as it is metered.
   [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
@@ -248,7 +250,8 @@ class Flythrough {
   std::optional<MeterReading> metered_;
   EyeAdaptation adaptation_;              // of the rule eye
   std::optional<UtcInstant> adapted_at_;  // the moment that it followed last
-  std::optional<WhiteBalance> white_;     // as shown; nothing before the first picture
+  std::optional<UtcInstant> painted_at_;
+  std::optional<WhiteBalance> white_;  // as shown; nothing before the first picture
   bool landing_light_ = false;
   bool knows_ground_ = false;                   // under the eye, since it was put there
   std::optional<double> waits_above_ground_m_;  // until then: how high it will stand over it

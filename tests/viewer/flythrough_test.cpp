@@ -139,6 +139,26 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   EXPECT_GT(Greenest(window.Next()), kSky) << "land";
 }
 
+TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
+  Flythrough flight = SmallFlight(SceneAt({300.0, true}));
+  flight.Settle(kSmall);
+  ShownFrames window(flight);
+  for (int frame = 0; frame < 3; ++frame)
+    static_cast<void>(window.Next());  // one copy is on its way
+  const double day_ev100 = flight.exposure().ev100.value();
+  flight.cockpit().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
+  std::vector<double> shown;
+  for (int frame = 0; frame < 4; ++frame) {
+    static_cast<void>(window.Next());
+    shown.push_back(flight.exposure().ev100.value());
+  }
+  EXPECT_GT(day_ev100 - shown.front(), 4.0) << "dusk";
+  flight.Settle(kSmall);
+  for (int frame = 0; frame < 60; ++frame) static_cast<void>(window.Next());
+  for (const double ev100 : shown)
+    EXPECT_NEAR(ev100, flight.exposure().ev100.value(), 0.3) << "land and air of small tables";
+}
+
 /// Over the built-in range. It is made when it is first settled or painted.
 class FlightsOverTheRange : public tests::HeadlessLand {
  protected:

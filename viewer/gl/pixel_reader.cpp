@@ -14,8 +14,10 @@ GLsizeiptr BytesOf(std::size_t pixels) {
 
 }  // namespace
 
-PixelReader::~PixelReader() {
-  if (arrives_ != nullptr) glDeleteSync(arrives_);
+PixelReader::~PixelReader() { Forget(); }
+
+void PixelReader::Forget() {
+  if (arrives_ != nullptr) glDeleteSync(std::exchange(arrives_, nullptr));
 }
 
 void PixelReader::Begin(const RenderTarget& picture, const Rectangle& part) {

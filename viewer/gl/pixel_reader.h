@@ -26,6 +26,8 @@ class PixelReader {
 
   /// Begins to read red, green and blue of the first output; nothing while Busy().
   void Begin(const RenderTarget& picture, const Rectangle& part);
+  /// Gives up what was begun.
+  void Forget();
   /// Whether what was begun is not taken yet.
   [[nodiscard]] bool Busy() const { return arrives_ != nullptr; }
   /// What was begun, once it has arrived: most often a frame or two later.

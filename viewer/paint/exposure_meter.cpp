@@ -42,6 +42,7 @@ std::optional<MeterReading> ExposureMeter::Take(const Look& look) {
 }
 
 MeterReading ExposureMeter::Read(const RenderTarget& picture, const Look& look) {
+  reader_.Forget();
   Copy(picture);
   return ReadingOf(small_->Read(), look);
 }

@@ -26,7 +26,7 @@ class ExposureMeter {
   void LookAt(const RenderTarget& picture);
   /// The reading of the copy, once it has arrived.
   [[nodiscard]] std::optional<MeterReading> Take(const Look& look);
-  /// The same at once, waiting for the graphics card.
+  /// Of a picture at once, waiting for the graphics card. Copies of earlier ones are not read any more.
   [[nodiscard]] MeterReading Read(const RenderTarget& picture, const Look& look);
 
   static constexpr int kLongSide = 160;
