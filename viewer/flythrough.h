@@ -211,7 +211,7 @@ class Flythrough {
   /// The EV that the rule of exposure has it for, by the eye as it has adapted.
   [[nodiscard]] double AdaptedTo(double metered_ev100, double seconds);
   void Expose(const MeterReading& metered, double seconds);
-  /// Whether the clock has, since the last frame.
+  /// The clock has jumped by over a quarter of an hour since the last frame.
   [[nodiscard]] bool HasJumped();
   void ForgetAdaptation();
   /// Of a picture without a frame before it: as frames are, or as it is metered.

@@ -34,7 +34,7 @@ SHARED Number OctaveShare(Length wavelength, Length footprint) {
   return min(max(wavelength / (Number(2.0) * footprint) - Number(1.0), Number(0.0)), Number(1.0));
 }
 
-// What a ray of a width covers of water that it meets at a cosine with the normal: the geometric mean
+// A ray of a width covers this much of water that it meets at a cosine with the normal: the geometric mean
 // of its width and depth there.
 SHARED Length SeenFootprint(Length across, Number cosine) {
   return across / sqrt(max(cosine, Number(0.04)));
@@ -59,7 +59,7 @@ SHARED Length WaveringAltitude(Length altitude, Number broad, Number fine) {
   return altitude + Length(260.0) * broad + Length(60.0) * fine;
 }
 
-// As the snow line takes it, which is smoother: snow fades in by height and not in spots.
+// The altitude is smoother for the snow line: snow fades in by height and not in spots.
 SHARED Length SnowAltitude(Length altitude, Number broad) {
   return altitude + Length(260.0) * broad;
 }
@@ -158,7 +158,7 @@ SHARED Number CanopyGap(Number leafless, Number broad, Number fine, Number grain
   return gap * min(max(Number(1.0) + thinner, Number(0.5)), Number(1.5));
 }
 
-// What is seen of the snow on the ground: trees hide it as layers do, by a power of their share
+// This share of the snow on the ground is seen: trees hide it as layers do, by a power of their share
 // (Monsi, Saeki 1953, Jap. J. Bot. 14, 22), so that a thin wood is nearly as dark as a dense one.
 SHARED Number SnowSeen(Number snow_share, Number forest, Number rock_share, Number gap) {
   return snow_share * exp(log(gap) * forest * (Number(1.0) - rock_share));

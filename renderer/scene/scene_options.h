@@ -29,7 +29,7 @@ struct SceneOptions {
 /// hundredth of a degree, and each time.
 [[nodiscard]] TerrainSource RangeSeenFrom(const GeodeticPosition& place);
 
-/// Whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
+/// A place lies on the built-in range around kHomeLatitude and kHomeLongitude, or does not.
 [[nodiscard]] bool IsOnRangeAtHome(const GeodeticPosition& place);
 
 /// The eye stands at latitude and longitude, whatever the ground is. With `dem` it stands 2 m above

@@ -84,7 +84,7 @@ TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
   EXPECT_THAT(flight.TakeNotes(), IsEmpty()) << "on the tile";
 }
 
-/// What a window shows of a flight, frame by frame.
+/// The frames that a window shows of a flight, one after another.
 class ShownFrames {
  public:
   explicit ShownFrames(Flythrough& flight)
@@ -127,7 +127,7 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6) << "before the first picture";
   const GeodeticPosition start = flight.eye().place;
   EXPECT_LT(Greenest(window.Next()), kSky) << "no plain where land is to come";
-  // As many frames as the threads beside drawing need.
+  // The threads beside drawing need some frames.
   for (bool has_come = false; !has_come;) {
     const Image shown = window.Next();
     has_come = flight.painter().land().HasCome();

@@ -30,7 +30,7 @@ struct AirView {
 /// To be used on the thread of the context that is current when it is made.
 class AirFollower {
  public:
-  /// Whether it solves anew what it was given as a draft, or another follower does.
+  /// A draft of the air is solved anew by this follower, or kept because another one solves it.
   enum class Drafts { kRefined, kKept };
   /// Makes small tables for the first frame before it returns, some milliseconds later.
   AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first,

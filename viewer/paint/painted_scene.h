@@ -78,7 +78,7 @@ class PaintedScene {
   /// How the open sky of a source that counts lights slopes, at the moment that was updated or settled
   /// last.
   [[nodiscard]] const SkyTilt& OpenSky(LightSource source) const {
-    return open_skies_[IndexOf(source)].value();
+    return open_skies_[IndexOf(source)].value().light;
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
@@ -103,7 +103,13 @@ class PaintedScene {
   /// Followers keep up (Update) or wait until they have (Settle).
   enum class Pace { kFollow, kSettle };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace);
-  void KeepUpOpenSkies(const LightsOfSky& lights);
+  /// The open sky's light on slopes, and what it was made for.
+  struct OpenSkyOf {
+    std::shared_ptr<const SolvedAir> air;
+    double altitude_m, elevation_rad;
+    SkyTilt light;
+  };
+  void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
   [[nodiscard]] std::optional<Vector<Ecef>> CastsOnVertices() const;
   void KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds);
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
@@ -121,7 +127,7 @@ class PaintedScene {
   AirFollower air_;                                 // of that
   std::shared_ptr<const SolvedAir> known_air_;      // that ground_textures_ have
   std::optional<AirIntegrator<float>> integrator_;  // of that
-  std::array<std::optional<SkyTilt>, kLightSources> open_skies_;
+  std::array<std::optional<OpenSkyOf>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once it counts
   std::shared_ptr<const SolvedAir> moon_air_of_;  // that it was made for
   std::unique_ptr<Landscape> land_;

@@ -25,7 +25,7 @@ struct ShadeQuality {
 };
 
 inline constexpr ShadeQuality kLowShade{{30e3, 512, 2, 768}, {6, {2, 6}}};
-/// The pass of kLowShade's map in half the time.
+/// A pass over kLowShade's map that looks at it 0.47 times as often: fewer rays and steps.
 inline constexpr ShaftDetail kCoarseShafts{8, {2, 5}};
 inline constexpr ShadeQuality kMediumShade{{30e3, 1024, 2, 1024}, {5, {3, 6}}};
 inline constexpr ShadeQuality kHighShade{{30e3, 1500, 3, 2048}, {2, {6, 8}}};
