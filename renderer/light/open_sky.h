@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
@@ -70,12 +71,23 @@ class OpenSky {
 
   [[nodiscard]] std::size_t bands() const { return bands_; }
 
- private:
   static constexpr std::size_t kNodes = 97;  // over the sine, from kLowest to 1
   static constexpr std::size_t kLevels = 16;
-
   static constexpr std::size_t kSuns = 9;
 
+  /// The tables that Irradiance reads, for other programs that read them. The floats live as long as the sky.
+  struct Tables {
+    std::size_t stride;                       // of bands
+    double lowest_m, highest_m;               // altitudes of the first level and the last
+    double first_mu_s, mu_s_step;             // of the suns
+    std::span<const float> level_irradiance;  // [level][sun][band]
+    std::span<const float> integral;  // [level][azimuth][node][A, B][band], relative to that
+  };
+  [[nodiscard]] Tables tables() const {
+    return {stride_, lowest_m_, highest_m_, first_mu_s_, mu_s_step_, level_irradiance_, integral_};
+  }
+
+ private:
   [[nodiscard]] std::vector<float> TableAt(const AirIntegrator<float>& air,
                                            const DiffuseLight& diffuse, double altitude_m,
                                            const glm::dvec3& to_sun) const;

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "renderer/ground/band_light.h"
@@ -91,6 +92,11 @@ class SlopeLight {
   ///     that ground.
   [[nodiscard]] BandLight Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
                                    double horizon, const BandLight& beyond) const;
+
+  [[nodiscard]] const SlopeViews& views() const { return views_; }
+  /// SlopeViews::Weight times radiance: [node][azimuth][band], bands in steps of stride().
+  [[nodiscard]] std::span<const float> light() const { return light_; }
+  [[nodiscard]] std::size_t stride() const { return stride_; }
 
  private:
   struct Neighbours;

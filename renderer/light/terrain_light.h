@@ -73,6 +73,8 @@ class TerrainLight {
 
   [[nodiscard]] const OpenSky& sky() const { return sky_; }
   [[nodiscard]] const TerrainHorizons* horizons() const { return horizons_.get(); }
+  /// Null before AddSlopes.
+  [[nodiscard]] const SlopeLight* slopes() const { return slopes_ ? &*slopes_ : nullptr; }
 
   /// Adds what slopes send to each other. Needs horizons.
   void AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing, double mu_s);

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "renderer/terrain/height_raster.h"
@@ -56,6 +57,9 @@ class HorizonMap {
   [[nodiscard]] HeightRaster Towards(double azimuth_rad) const;
   /// The nodes, without heights.
   [[nodiscard]] const HeightRaster& grid() const { return grid_; }
+
+  /// Sines from kLowest, 0, to 1, 65535: kHorizonAzimuths a node.
+  [[nodiscard]] std::span<const std::uint16_t> packed() const { return sine_; }
 
   [[nodiscard]] std::size_t bytes() const { return sine_.size() * sizeof(std::uint16_t); }
 

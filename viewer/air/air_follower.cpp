@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
 
@@ -109,14 +110,28 @@ bool AirFollower::Asks(const Request& wanted) const {
 void AirFollower::Follow(const AirView& view) {
   TakeFinished();
   RefineDraft();
-  const Request wanted = Wanted(view);
+  const Request wanted = Wanted(Ahead(view));
   if (Asks(wanted)) {
     asked_ = wanted;
     maker_.Ask(wanted);
   }
   last_view_ = view;
+  last_follow_ = Clock::now();
   if (AirChange(eye_, EyeOf(view)) > kJump) ShowSmall(view);
   textures_.SetView(view.altitude_m, view.sun);
+}
+
+// Where a sun that runs will stand in the middle of the time for which tables that are asked for now are shown.
+AirView AirFollower::Ahead(const AirView& view) const {
+  constexpr double kLongestFrame_s = 0.2, kShown = 1.2;
+  const double frame_s = std::chrono::duration<double>(Clock::now() - last_follow_).count();
+  if (view.sun == last_view_.sun || frame_s > kLongestFrame_s ||
+      AirChange(EyeOf(last_view_), EyeOf(view)) > kJump)
+    return view;
+  AirView ahead = view;
+  const double frames = kShown * (making_s_ + frame_s) / frame_s;
+  ahead.sun = glm::normalize(view.sun + frames * (view.sun - last_view_.sun));
+  return ahead;
 }
 
 void AirFollower::ShowSmall(const AirView& view) {

@@ -79,6 +79,7 @@ class AirFollower {
   [[nodiscard]] static Made Make(const Request& request);
   void Show(const Made& made);
   void ShowSmall(const AirView& view);
+  [[nodiscard]] AirView Ahead(const AirView& view) const;
   void TakeFinished();
   void RefineDraft();
   [[nodiscard]] Request Wanted(const AirView& view) const;
@@ -92,6 +93,7 @@ class AirFollower {
   AirEye eye_;
   std::optional<Request> asked_;  // last
   AirView last_view_;
+  Clock::time_point last_follow_{};
   double making_s_ = 0.0;
   Clock::time_point rests_until_{}, replaced_at_{};
   LatestJob<Solve, std::shared_ptr<const SolvedAir>> solver_;

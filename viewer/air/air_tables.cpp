@@ -140,7 +140,10 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
     case AirQuality::kHigh:
       break;
   }
-  return with(192, 1.5, 33, 65, 24);
+  AirTablesSize high = with(192, 1.5, 33, 65, 24);
+  // In deep dusk light falls by half within a pixel's height over the horizon.
+  high.sky_rows = 288;
+  return high;
 }
 
 AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,

@@ -251,6 +251,13 @@ bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const V
   return is_new;
 }
 
+std::optional<GroundFollower::SkyOfSource> GroundFollower::SkyOf(LightSource source) const {
+  if (!made_.lit) return std::nullopt;
+  if (source == made_.casts) return SkyOfSource{{made_.lit, &made_.lit->sky()}, made_.open.value()};
+  if (!made_.other) return std::nullopt;
+  return SkyOfSource{made_.other, made_.other_open.value()};
+}
+
 std::optional<LightOfVertices> GroundFollower::Light() const {
   if (!made_.lit) return std::nullopt;
   return [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {

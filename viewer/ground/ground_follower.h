@@ -61,6 +61,13 @@ class GroundFollower {
   [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return made_.lit; }
   /// What throws the shadows of that.
   [[nodiscard]] LightSource casts() const { return made_.casts; }
+  /// The sky of a source over that land, and the open sky's light that belongs to it; nothing without lit(), or
+  /// of a source that did not count.
+  struct SkyOfSource {
+    std::shared_ptr<const GroundSky> sky;
+    SkyTilt open;
+  };
+  [[nodiscard]] std::optional<SkyOfSource> SkyOf(LightSource source) const;
   /// The light of vertices in the frame of any anchor; empty without lit().
   [[nodiscard]] std::optional<LightOfVertices> Light() const;
   /// What waves show of the sky of a source over it (SeaMirror); empty where nothing mirrors and for one

@@ -8,29 +8,32 @@
 
 namespace alpenglow {
 
-void HorizonTexture::Use(const TerrainHorizon& horizon) {
-  if (horizon_ && horizon_->map == horizon.map) return;
-  horizon_ = horizon;
-  azimuth_rad_ = std::nullopt;
-}
-
 // Nodes are the middles of texels.
-HorizonTexture::Place HorizonTexture::PlaceIn(const LocalFrame& anchor) const {
-  if (!horizon_) return {};
-  const HeightRaster& grid = horizon_->map->grid();
-  const LocalFrame& frame = horizon_->frame;
+PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
+                          const LocalFrame& of_places) {
   const auto turned = [&](const glm::dvec3& axis) {
-    return frame.EnuFromEcef(anchor.EcefFromEnu(Vector<Enu>{axis})).xyz;
+    return of_grid.EnuFromEcef(of_places.EcefFromEnu(Vector<Enu>{axis})).xyz;
   };
   const glm::dvec3 x = turned({1.0, 0.0, 0.0}), y = turned({0.0, 1.0, 0.0}),
                    z = turned({0.0, 0.0, 1.0});
-  const glm::dvec3 origin = frame.EnuFromGeodetic(anchor.origin()).xyz;
+  const glm::dvec3 origin = of_grid.EnuFromGeodetic(of_places.origin()).xyz;
   const auto row = [&](glm::length_t axis, double first_m, int nodes) {
     const double scale = 1.0 / (grid.cell_m * nodes);
     return glm::vec4(
         glm::dvec4(x[axis], y[axis], z[axis], origin[axis] - first_m + 0.5 * grid.cell_m) * scale);
   };
   return {row(0, grid.first_x_m, grid.columns), row(1, grid.first_y_m, grid.rows)};
+}
+
+void HorizonTexture::Use(const TerrainHorizon& horizon) {
+  if (horizon_ && horizon_->map == horizon.map) return;
+  horizon_ = horizon;
+  azimuth_rad_ = std::nullopt;
+}
+
+PlaceOnGrid HorizonTexture::PlaceIn(const LocalFrame& anchor) const {
+  if (!horizon_) return {};
+  return PlaceOnGridOf(horizon_->map->grid(), horizon_->frame, anchor);
 }
 
 void HorizonTexture::Upload(double azimuth_rad) {

@@ -21,17 +21,22 @@ struct TerrainHorizon {
   LocalFrame frame;
 };
 
+/// Where a place of a frame lies in a texture whose texels are the nodes of a grid: u and v are the products
+/// of these rows and (x, y, z, 1) [m].
+struct PlaceOnGrid {
+  glm::vec4 u{0.0F}, v{0.0F};
+};
+/// @param grid  in the first frame; places are those of the second.
+[[nodiscard]] PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
+                                        const LocalFrame& of_places);
+
 class HorizonTexture {
  public:
   void Use(const TerrainHorizon& horizon);
   [[nodiscard]] bool HasAny() const { return horizon_.has_value(); }
 
-  /// Where a place of an anchor's frame lies in the texture: u and v are the products of these rows and
-  /// (x, y, z, 1) [m].
-  struct Place {
-    glm::vec4 u{0.0F}, v{0.0F};
-  };
-  [[nodiscard]] Place PlaceIn(const LocalFrame& anchor) const;
+  /// Where a place of an anchor's frame lies in the texture.
+  [[nodiscard]] PlaceOnGrid PlaceIn(const LocalFrame& anchor) const;
 
   /// Binds the sines of the horizon towards a direction to a texture unit.
   void Bind(int unit, const Vector<Ecef>& to_sun);

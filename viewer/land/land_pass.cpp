@@ -110,7 +110,7 @@ void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, G
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
   program.Use();
   if (drawn == LandDrawn::kSurface && edges_.share > 0.0 && horizon_.HasAny()) {
-    const HorizonTexture::Place place = horizon_.PlaceIn(anchor);
+    const PlaceOnGrid place = horizon_.PlaceIn(anchor);
     block.horizon_u = place.u;
     block.horizon_v = place.v;
     block.eye_above.w = static_cast<float>(edges_.share);

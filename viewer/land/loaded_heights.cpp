@@ -92,10 +92,15 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   const auto last = [&](double to, int last_sample) {
     return std::min(static_cast<int>(std::floor(to / step)), last_sample >> level);
   };
-  const int i0 = first(at.column - half_columns), j0 = first(at.row - half_rows);
-  const int i1 = last(at.column + half_columns, lattice.last_column);
-  const int j1 = last(at.row + half_rows, lattice.last_row);
+  int i0 = first(at.column - half_columns), j0 = first(at.row - half_rows);
+  int i1 = last(at.column + half_columns, lattice.last_column);
+  int j1 = last(at.row + half_rows, lattice.last_row);
   if (i1 <= i0 || j1 <= j0) return std::nullopt;
+  if (std::max(lattice.last_column, lattice.last_row) < most_samples) {
+    i0 = j0 = 0;
+    i1 = lattice.last_column;
+    j1 = lattice.last_row;
+  }
   const GeodeticPosition corner = lattice.PlaceOf(i0 << level, j0 << level, 0.0);
   ElevationGrid grid;
   grid.west_rad = corner.longitude_rad;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<const char*, 4> kNames{"low", "medium", "high", "reference"};
 
-/// A way to paint, and about what it costs beside the first.
+/// A way to paint, and about what it costs beside the others.
 struct Step {
   PaintedQuality painted;
   double cost;
@@ -21,7 +21,7 @@ struct Step {
 
 // By frames with llvmpipe on one thread over the built-in range at 1280x720 in the morning, where shafts
 // are few, lamps none and the view is wide: there what is left out first saves little.
-constexpr std::array<Step, 12> kSteps{{{{Quality::kHigh, 1.0}, 1.0},
+constexpr std::array<Step, 12> kSteps{{{{Quality::kHigh, 1.0}, 1.7},
                                        {{Quality::kMedium, 1.0}, 0.53},
                                        {{Quality::kMedium, 0.8}, 0.46},
                                        {{Quality::kMedium, 0.65}, 0.38},

@@ -35,6 +35,7 @@ PaintSizes SizesOf(Quality quality) {
       sizes.shade = kHighShade;
       sizes.lamps = kHighLamps;
       sizes.fog = kFineFog;
+      sizes.sky_by_pixel = true;
       break;
   }
   return sizes;

@@ -21,7 +21,8 @@ struct PaintSizes {
   LampQuality lamps = kMediumLamps;
   std::size_t most_lamps = kMostGpuLamps;
   FogMapSize fog;
-  int dropped_octaves = 0;  // of the ground's detail
+  int dropped_octaves = 0;    // of the ground's detail
+  bool sky_by_pixel = false;  // SkyByPixel instead of light of vertices, once it is there
 };
 
 /// kReference is drawn as kHigh until the renderer's picture is there.

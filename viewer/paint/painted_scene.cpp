@@ -118,6 +118,18 @@ void PaintedScene::TakeLight() {
   }
 }
 
+void PaintedScene::TakeSkyByPixel() {
+  if (!sizes_.sky_by_pixel) return;
+  glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
+    if (const auto sky = ground_.SkyOf(source)) {
+      sky_by_pixel_.Use(source, *sky);
+    } else {
+      sky_by_pixel_.Forget(source);
+    }
+  }
+}
+
 void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
   const auto keep_up = [&](AirFollower& air, const AirView& seen) {
     pace == Pace::kFollow ? air.Follow(seen) : air.Settle(seen);
@@ -199,6 +211,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   TakeHeights();
   KeepUpEdges(view, lights.key, seconds);
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights))) TakeLight();
+  TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);
   KeepUpFog(view, lights, Pace::kFollow);
@@ -212,6 +225,7 @@ void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, in
     TakeLight();
     land_->Settle(view.eye.place, LandViewOf(view, samples));
   }
+  TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kSettle);
   KeepUpEdges(view, lights.key, kLong_s);
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);

@@ -17,6 +17,7 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/ground/scene_drape.h"
+#include "viewer/ground/sky_by_pixel.h"
 #include "viewer/ground/sky_tilt.h"
 #include "viewer/lamps/scene_fog.h"
 #include "viewer/land/landscape.h"
@@ -81,6 +82,10 @@ class PaintedScene {
     return open_skies_[IndexOf(source)].value().light;
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
+  /// Null: vertices have the sky's light of this source, by the quality or until the tables are there.
+  [[nodiscard]] const SkyByPixel* sky_by_pixel(LightSource source) const {
+    return sizes_.sky_by_pixel && sky_by_pixel_.Has(source) ? &sky_by_pixel_ : nullptr;
+  }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
   /// Whether terrain keeps light of the key from the air, and that is painted.
   [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
@@ -115,6 +120,7 @@ class PaintedScene {
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void TakeHeights();
   void TakeLight();
+  void TakeSkyByPixel();
 
   Scene scene_;
   Ellipsoid ellipsoid_;
@@ -134,6 +140,7 @@ class PaintedScene {
   std::vector<std::unique_ptr<Landscape>> leaving_;  // until their threads have ended
   GroundFollower ground_;
   GroundTextures ground_textures_;
+  SkyByPixel sky_by_pixel_;
   ShadeFollower shade_;
   std::optional<SceneFog> fog_, moon_fog_;
   LightSource casts_ = LightSource::kSun;  // what throws shadows

@@ -101,6 +101,16 @@ void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedVi
   Upload(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
 }
 
+void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
+                                     const KeyLight& light) const {
+  const SkyByPixel* sky = scene.sky_by_pixel(light.source());
+  if (sky == nullptr) return;
+  const LocalFrame eye(scene.ellipsoid(), view.eye.place);
+  Upload(
+      sky_by_pixel_, kSkyByPixelBinding,
+      sky->BlockOf(light.source(), eye, DirectionToSun(light.disk), scene.OpenSky(light.source())));
+}
+
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {
   Upload(ground_, kGroundBinding, GroundAround(scene, view));
   Upload(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));

@@ -26,9 +26,12 @@ class PictureBlocks {
   void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
   void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
                          const KeyLight& light) const;
+  /// Nothing where vertices have the sky's light.
+  void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
+                        const KeyLight& light) const;
 
  private:
-  GlBuffer air_, view_, ground_, ground_light_, ground_surface_;
+  GlBuffer air_, view_, ground_, ground_light_, ground_surface_, sky_by_pixel_;
   // Of the air that was drawn last: colours of its bands take milliseconds.
   std::shared_ptr<const SolvedAir> known_air_;
   AirBlock air_block_{};

@@ -23,6 +23,7 @@ void ConnectBlocks(const ShaderProgram& program) {
   program.BindBlock("Ground", kGroundBinding);
   program.BindBlock("GroundLight", kGroundLightBinding);
   program.BindBlock("GroundSurface", kGroundSurfaceBinding);
+  program.BindBlock("SkyByPixel", kSkyByPixelBinding);
 }
 
 void ConnectMaps(const ShaderProgram& program) {
@@ -59,6 +60,7 @@ const ShaderProgram& PicturePrograms::Of(const PictureStage& stage) {
 void PicturePrograms::Paint(const PictureStage& stage, LightSource source) {
   const ShaderProgram& program = Of(stage);
   scene_.ground_textures().Bind(program, kGroundUnit, source);
+  if (stage.sky_by_pixel) scene_.sky_by_pixel(source)->Bind(program, kSkyByPixelUnit, source);
   if (stage.has_shade) shafts_.Bind(program, kShaftUnit);
   program.Use();
   glDepthFunc(DepthTestOf(stage.pass));

@@ -7,6 +7,7 @@
 
 #include "viewer/air/air_textures.h"
 #include "viewer/ground/ground_block.h"
+#include "viewer/ground/sky_by_pixel.h"
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/shade/shaft_pass.h"
 #include "viewer/shaders/viewer_texts.h"
@@ -15,12 +16,13 @@ namespace alpenglow {
 namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
-  return {"stage", fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
-                               "#define OPEN_SKY_PASS 3\n#define NIGHT_PASS 4\n"
-                               "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
-                               "#define HAS_FOG {}\n",
-                               static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
-                               stage.has_lamps ? 1 : 0, kind.fog ? 1 : 0)};
+  return {"stage",
+          fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
+                      "#define OPEN_SKY_PASS 3\n#define NIGHT_PASS 4\n"
+                      "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
+                      "#define HAS_FOG {}\n#define SKY_BY_PIXEL {}\n",
+                      static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
+                      stage.has_lamps ? 1 : 0, kind.fog ? 1 : 0, stage.sky_by_pixel ? 1 : 0)};
 }
 
 }  // namespace
@@ -48,6 +50,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
                             "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));
   add(GroundTexts(kind.material, kind.land));
+  if (stage.sky_by_pixel) add(SkyByPixelTexts());
   add(ShaftTexts());
   add(stage.has_lamps ? kind.lamps.texts() : NoLampTexts());
   return texts;

@@ -19,6 +19,7 @@ struct PictureStage {
   enum class Pass { kLand, kSky, kDisks, kOpenSky, kNight };
   Pass pass;
   bool has_shade = false, has_lamps = false;
+  bool sky_by_pixel = false;  // SkyByPixel, of land alone
 
   auto operator<=>(const PictureStage&) const = default;
 };

@@ -16,6 +16,7 @@ enum PictureBinding : GLuint {
   kGroundBinding,
   kGroundLightBinding,
   kGroundSurfaceBinding,
+  kSkyByPixelBinding,
   kTablesBinding,
   kLampsBinding,
   kFogBinding
@@ -34,6 +35,7 @@ enum PictureUnit {
   kLampUnit = kGroundUnit + 3,
   kFogUnit = kLampUnit + 6,
   kNightUnit = kFogUnit + 2,
+  kSkyByPixelUnit = kNightUnit + 1,
 };
 
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};

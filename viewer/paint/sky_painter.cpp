@@ -195,7 +195,9 @@ void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
 
 void SkyPainter::PaintLandAndSky(const PaintedView& view, const Lit& lit) {
   if (!scene_.AwaitsLand())
-    programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps}, lit.source);
+    programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps,
+                     scene_.sky_by_pixel(lit.source) != nullptr},
+                    lit.source);
   PaintSky(view, lit);
 }
 
@@ -250,6 +252,7 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const LandOutline& 
 void SkyPainter::BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray) {
   blocks_.UploadView(scene_, view, light, ray);
   blocks_.UploadGroundLight(scene_, view, light);
+  blocks_.UploadSkyByPixel(scene_, view, light);
   scene_.air_textures(light.source()).Bind(kAirUnit, kTablesBinding);
 }
 

@@ -61,12 +61,6 @@ vec4 OpenSkyOnSlope(vec3 normal, vec3 up) {
              mix(open_sky[high], open_sky[high + 1], right), v - float(row));
 }
 
-// The light of the sky on a surface that is tilted against that of the mesh: in an open place's
-// ratio.
-vec4 SkyOn(vec3 normal, vec3 mesh_normal, vec3 up, vec4 sky_irradiance) {
-  return sky_irradiance * OpenSkyOnSlope(normal, up) / max(OpenSkyOnSlope(mesh_normal, up), 1e-30);
-}
-
 // Ground that a ray ends on, land or the planet beyond it, as all its light sees it.
 struct SeenGround {
   GroundPlace at;
@@ -117,17 +111,22 @@ SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
 #endif
 }
 
-// The light of sun and sky that ground sends. @param sun_x, sky_irradiance  see LitVertex (lit_ground.h).
+// The light of the sky on what is seen, where terrain leaves this share of the open sky's: VertexLight (land_chunk.h).
+vec4 SkyByShare(SeenGround seen, vec4 share) {
+  return share * OpenSkyOnSlope(seen.normal, seen.at.up);
+}
+
+// The light of sun and sky that ground sends.
+// @param sun_x  see LitVertex (lit_ground.h); sky_irradiance: on seen.normal.
 vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
   GroundPlace at = seen.at;
 #if MAY_BE_WATER
   if (seen.is_water)
     return WaterRadiance(at.up, at.offset, at.footprint, dot(seen.mesh_normal, to_eye),
-                         SunAcross(at, at.up, sun_x),
-                         SkyOn(at.up, seen.mesh_normal, at.up, sky_irradiance), to_eye);
+                         SunAcross(at, at.up, sun_x), sky_irradiance, to_eye);
 #endif
   return CoverRadiance(seen.albedo, seen.normal, SunAcross(at, seen.mesh_normal, sun_x),
-                       SkyOn(seen.normal, seen.mesh_normal, at.up, sky_irradiance), to_eye);
+                       sky_irradiance, to_eye);
 }
 
 // The light that the ground's body sends of an irradiance without direction: of lamps, and at night.
@@ -144,8 +143,9 @@ const float kNoEdge = 1e9;  // sun_x where no terrain stands before the sun
 
 vec4 SkyOnPlanet(SeenGround seen) { return LevelSky(dot(seen.at.up, sun.xyz)); }
 
-vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
-  return SentOn(LandSeen(point_m, mesh_normal, to_eye), sun_x, sky_irradiance, to_eye);
+vec4 GroundRadiance(vec3 point_m, vec3 mesh_normal, float sun_x, vec4 sky_share, vec3 to_eye) {
+  SeenGround seen = LandSeen(point_m, mesh_normal, to_eye);
+  return SentOn(seen, sun_x, SkyByShare(seen, sky_share), to_eye);
 }
 
 vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {

@@ -7,6 +7,7 @@
 //             sky where no planet is; DISK_PASS: what the disks of sun and moon add;
 //             NIGHT_PASS: what the night's own sky adds to land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
+//   SKY_BY_PIXEL  the sky's light on land is worked out here (sky_by_pixel.glsl), not by vertices
 in vec2 screen;
 out vec4 picture;
 
@@ -59,7 +60,7 @@ SeenGround LandOf(vec4 surface, vec3 direction) {
   return LandSeen(surface.w * direction, UnitFromOctahedral(surface.xy), -direction);
 }
 
-// The light of ground under sun and sky, through the fog over it.
+// The light of ground under sun and sky, through the fog over it. @param sky  irradiance on seen.normal.
 vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 #if HAS_FOG
   float altitude = seen.at.altitude;
@@ -92,7 +93,11 @@ void main() {
   float distance_km = 1e-3 * surface.w;
   AirTo air = AirToPoint(direction, distance_km);
   SeenGround seen = LandOf(surface, direction);
-  vec4 sky = OpenSkyOnSlope(seen.mesh_normal, seen.at.up) * texelFetch(sky_on_surface, pixel, 0);
+#if SKY_BY_PIXEL
+  vec4 sky = SkyAtPixel(seen.at, surface.w * direction, seen.normal);
+#else
+  vec4 sky = SkyByShare(seen, texelFetch(sky_on_surface, pixel, 0));
+#endif
   float over_edge = ground_view.y > 0.0 ? OverSmoothEdge(surface) : kNoEdge;
   vec4 ground = air.transmittance * SunlitGround(seen, over_edge, sky, -direction);
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground) -

@@ -18,6 +18,7 @@
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
+#include "viewer/ground/sky_by_pixel.h"
 #include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
@@ -35,6 +36,7 @@ std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
                       "viewer/shaders/sun_light.glsl"});
   pieces.push_back(tests::SunInClosedForm());
   for (ShaderPiece& piece : GroundTexts(material, {true, true})) pieces.push_back(std::move(piece));
+  for (ShaderPiece& piece : SkyByPixelTexts()) pieces.push_back(std::move(piece));
   return pieces;
 }
 
@@ -50,6 +52,11 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
   glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
   program.BindBlock(name, binding);
+}
+
+SkyTilt OpenSkyOver(const LitGround& lit) {
+  const SiteAir& air = lit.site().air();
+  return {*air.integrator, *air.diffuse, 1000.0, lit.lighting().to_sun.z};
 }
 
 /// What the shaders read for an eye over the origin of the site.
@@ -79,11 +86,23 @@ class Blocks {
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
     Bind(program, "Ground", 2, ground_, ground);
     Bind(program, "GroundLight", 3, light_,
-         GroundLightBlockOf({*site.air().integrator, *site.air().diffuse, 1000.0, light.to_sun.z},
-                            light.to_sun, kPixel_rad));
+         GroundLightBlockOf(OpenSkyOver(lit_), light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
          Draped(GroundSurfaceBlockOf(site.material()), Picture(), 0.0, 0.0));
     textures_.Bind(program, 0, LightSource::kSun);
+  }
+
+  /// The tables of the sky's light on slopes, for programs that read them.
+  void UploadSkyByPixel(const ShaderProgram& program) {
+    constexpr int kUnit = 3;
+    const SkyTilt open = OpenSkyOver(lit_);
+    sky_.Use(LightSource::kSun, {{std::shared_ptr<void>(), &lit_.sky()}, open});
+    GeodeticPosition eye = lit_.site().ground().frame.origin();
+    eye.height_m += eye_m_;
+    const LocalFrame here(lit_.site().ground().frame.ellipsoid(), eye);
+    Bind(program, "SkyByPixel", 5, sky_block_,
+         sky_.BlockOf(LightSource::kSun, here, lit_.lighting().to_sun, open));
+    sky_.Bind(program, kUnit, LightSource::kSun);
   }
 
  private:
@@ -94,7 +113,8 @@ class Blocks {
   const LitGround& lit_;
   double eye_m_;
   GroundTextures textures_;
-  GlBuffer air_, view_, ground_, light_, surface_;
+  SkyByPixel sky_;
+  GlBuffer air_, view_, ground_, light_, surface_, sky_block_;
 };
 
 struct Case {
@@ -153,6 +173,7 @@ std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
 /// How a shader is asked for the light of a place.
 struct Question {
   std::string radiance;
+  bool asks_sky_by_pixel;
   std::function<tests::Arguments<float>(const Case&)> arguments;
 };
 
@@ -170,12 +191,15 @@ const std::string kNormal = "vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * a[
 /// Ascending relative differences of the sum of two bands: of light, arguments hold no more.
 std::vector<double> Differences(const LitGround& lit, const Lighting& light, double eye_m,
                                 const std::vector<Case>& cases, const Question& question) {
-  const Blocks blocks(lit, light, eye_m);
+  Blocks blocks(lit, light, eye_m);
   std::vector<tests::Arguments<float>> points;
   for (const Case& c : cases) points.push_back(question.arguments(c));
   const std::vector<float> gpu = tests::EvaluateOnGpu(
       Texts(lit.site().material()), "dot(" + question.radiance + ", vec4(1.0, 0.0, 1.0, 0.0))",
-      points, [&](const ShaderProgram& program) { blocks.Upload(program); });
+      points, [&](const ShaderProgram& program) {
+        blocks.Upload(program);
+        if (question.asks_sky_by_pixel) blocks.UploadSkyByPixel(program);
+      });
   std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const GroundLight& ground = lit.site().light();
@@ -193,11 +217,28 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
 }
 
 std::vector<double> LandDifferences(const LitGround& lit) {
+  const SkyTilt open = OpenSkyOver(lit);
+  const glm::dvec3& to_sun = lit.lighting().to_sun;
+  const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
+  const auto shares = [open, sunward, &lit](const Case& c) {
+    const glm::dvec3& normal = c.hit.mesh_normal;
+    const std::array<float, 4> of = open.On(
+        glm::dot(normal, lit.site().geometry().UpAt(c.hit.point)), glm::dot(normal, sunward));
+    return std::array<float, 3>{c.light.sun_x, c.light.sky[0] / of[0], c.light.sky[2] / of[2]};
+  };
   return Differences(lit, lit.lighting(), kEye_m, LandCases(lit),
                      {"GroundRadiance(" + kPoint + ", " + kNormal +
                           ", a[5], vec4(a[6], 0.0, a[7], 0.0), " + kToEye + ")",
-                      [](const Case& c) {
-                        return PlaceOf(c, kEye_m, {c.light.sun_x, c.light.sky[0], c.light.sky[2]});
+                      false, [&](const Case& c) { return PlaceOf(c, kEye_m, shares(c)); }});
+}
+
+std::vector<double> DifferencesByPixel(const LitGround& lit) {
+  const std::string seen = "LandSeen(" + kPoint + ", " + kNormal + ", " + kToEye + ")";
+  return Differences(lit, lit.lighting(), kEye_m, LandCases(lit),
+                     {"SentOn(" + seen + ", a[5], SkyAtPixel(GroundPlaceAt(" + kPoint + "), " +
+                          kPoint + ", " + seen + ".normal), " + kToEye + ")",
+                      true, [](const Case& c) {
+                        return PlaceOf(c, kEye_m, {c.light.sun_x, 0.0F, 0.0F});
                       }});
 }
 
@@ -208,7 +249,7 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   light.on_terrain =
       std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
   return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
-                     {"PlanetRadiance(" + kPoint + ", " + kToEye + ")",
+                     {"PlanetRadiance(" + kPoint + ", " + kToEye + ")", false,
                       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});
 }
 
@@ -228,10 +269,15 @@ GLint OffsetOf(const ShaderProgram& program, const char* member) {
 TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
   const auto site = tests::RoughSite();
   std::vector<ShaderPiece> pieces = Texts(site->material());
-  pieces.push_back({"main", "void main() { gl_Position = open_sky[7] + cover_albedo; }\n"});
+  pieces.push_back(
+      {"main", "void main() { gl_Position = open_sky[7] + cover_albedo + sky_moment; }\n"});
   const ShaderProgram program = ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
   int member = 0;
   for (const char* name : {"sky_towards", "ground_view", "open_sky[0]"})
+    EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
+  member = 0;
+  for (const char* name :
+       {"horizon_u", "horizon_v", "slope_u", "slope_v", "sky_moment", "sky_place"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :
@@ -248,6 +294,16 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
     EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
     EXPECT_LT(LightQuantile(differences, 0.9), 0.03)
         << "the sky's light on relief is corrected by that of an open place";
+  }
+}
+
+TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
+  const auto site = tests::RoughSite();
+  for (const double elevation_deg : {50.0, 12.0, -3.0, -8.0}) {
+    const std::vector<double> differences =
+        DifferencesByPixel(LitGround(site, tests::RoughSun(*site, elevation_deg)));
+    EXPECT_LT(LightQuantile(differences, 0.5), 1e-3) << elevation_deg;
+    EXPECT_LT(LightQuantile(differences, 0.9), 5e-3) << elevation_deg;
   }
 }
 

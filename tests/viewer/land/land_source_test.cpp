@@ -294,6 +294,9 @@ TEST_F(LandSourceFiles, ASampledGridIsTheLandAroundAPlace) {
   ASSERT_TRUE(whole);
   EXPECT_EQ(whole->columns, heights.tiles().lattice().last_column + 1)
       << "where the land ends before, its samples count";
+  const auto small = heights.SampledGrid(place, 1000.0, 512);
+  ASSERT_TRUE(small);
+  EXPECT_EQ(small->columns, whole->columns) << "land of so few samples comes whole";
   EXPECT_FALSE(heights.SampledGrid({0.0, 0.0, 0.0}, 30e3, 64));
 }
 
