@@ -46,7 +46,7 @@ struct FlythroughSettings {
   std::optional<int> largest_part = {};
   ExposureRule exposure = {};                  // metered, eye or fixed
   Look look = {};                              // without local exposure and night vision
-  AirSolution first_air = AirSolution::kFull;  // a draft: the first frame is sooner there
+  FirstAir first_air = {};  // solved beside the making of a window, the first frame is sooner there
 };
 
 /// Where the exposure comes from.

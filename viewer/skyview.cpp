@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <future>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
@@ -264,6 +265,8 @@ int Run(const SkyviewOptions& options) {
   std::optional<CameraPath> path;
   if (options.replay) path = ReadFlight(*options.replay);
   RequireOutputs(options, scene);
+  std::future<FirstAir> first_air;  // made beside the window
+  if (!options.headless) first_air = std::async(std::launch::async, DraftOfAir, std::cref(scene));
   // The context outlives what was made in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
   const auto window =
@@ -278,7 +281,7 @@ int Run(const SkyviewOptions& options) {
       scene, start,
       {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size,
        std::nullopt, FlightExposureFromText(options.exposure), LookOf(options),
-       options.headless ? AirSolution::kFull : AirSolution::kDraft});
+       first_air.valid() ? first_air.get() : FirstAir()});
   flight.Place(PlacementOf(options));
   if (options.place) flight.GoTo(*options.place);
   if (options.track) {

@@ -52,8 +52,12 @@ AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
 
 }  // namespace
 
+FirstAir DraftOfAir(const Scene& scene) {
+  return SolveAir(MediumAt(scene), AirSolution::kDraft);
+}
+
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
-                           const PaintSizes& sizes, AirSolution first_air)
+                           const PaintSizes& sizes, FirstAir first_air)
     : scene_(scene),
       ellipsoid_(EllipsoidOf(scene.medium)),
       sizes_(sizes),
@@ -63,7 +67,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
       sun_view_(AirViewOf(first.eye,
                           ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
-      air_(SolveAir(MediumAt(scene), first_air), sizes.air, sun_view_),
+      air_(first_air ? std::move(first_air) : SolveAir(MediumAt(scene)), sizes.air, sun_view_),
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
       ground_(scene.ground, drape_.colours, {}),
       ground_textures_(air_.air()->diffuse),

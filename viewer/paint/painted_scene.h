@@ -29,12 +29,17 @@
 namespace alpenglow {
 
 /// To be used on the thread of the context that is current when it is made.
+/// The air of a scene, as it is solved before there is a scene. Null: it is solved with it, in full.
+using FirstAir = std::shared_ptr<const SolvedAir>;
+/// A draft. Throws what PaintedScene does for a medium.
+[[nodiscard]] FirstAir DraftOfAir(const Scene& scene);
+
 class PaintedScene {
  public:
-  /// The air is solved here, a draft of it beside drawing anew; land is read beside drawing. Throws
+  /// A draft of the air is solved anew beside drawing; land is read beside drawing. Throws
   /// InputError for a medium of more than four wavelengths and for land that is named and cannot be read.
   PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
-               const PaintSizes& sizes, AirSolution first_air);
+               const PaintSizes& sizes, FirstAir first_air);
 
   void Use(const PaintSizes& sizes);
   /// Other air; shown when it is solved.

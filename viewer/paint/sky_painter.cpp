@@ -58,8 +58,8 @@ class Adding {
 }  // namespace
 
 SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
-                       const PaintSizes& sizes, AirSolution first_air)
-    : scene_(scene, land, first, sizes, first_air),
+                       const PaintSizes& sizes, FirstAir first_air)
+    : scene_(scene, land, first, sizes, std::move(first_air)),
       lamps_(scene, scene_.lamp_ground(),
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),

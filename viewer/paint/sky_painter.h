@@ -38,9 +38,8 @@ class SkyPainter {
  public:
   /// An OpenGL context must be current, now and in all calls. Throws what PaintedScene does, and
   /// what SceneLamps does.
-  /// @param first_air  a draft: the first frame is sooner there.
   SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
-             const PaintSizes& sizes, AirSolution first_air = AirSolution::kFull);
+             const PaintSizes& sizes, FirstAir first_air = {});
 
   void Use(const PaintSizes& sizes) { scene_.Use(sizes); }
   /// Other air; shown when it is solved.
