@@ -14,8 +14,6 @@
 namespace alpenglow {
 namespace {
 
-double Kilometres(double metres) { return metres / kMetresPerKilometre; }
-
 /// Distances at which a ray is cut, in any order.
 class PanelEnds {
  public:

@@ -10,10 +10,13 @@
 #include <cstddef>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_kernel.h"
 
 namespace alpenglow {
+
+[[nodiscard]] inline double Kilometres(double metres) { return metres / kMetresPerKilometre; }
 
 /// A stretch of the ray on which the altitude is monotone [km from the entry].
 struct RayPanel {

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// C++ reading of direct_columns.glsl: columns with one division, and the map of a panel.
+#pragma once
+
+#include "atmosphere/ray/shell.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/ray/direct_columns.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared

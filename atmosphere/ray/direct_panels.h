@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Set-up of direct integration (direct_scattering.h): the panels of a ray and the lanes they take.
+//
+// A ray is cut at its perigee and at the edges of the planet's shadow. Each panel has a map of
+// direct_columns.glsl with the slope
+//
+//   s = min(kappa half / L, 1)
+//
+// at its low end, where `half` is the distance to 10 km above that end (12 km behind the edge of a
+// shadow), or 14 optical depths if less, and kappa = 2, or 3 where sunbeams graze the low end. A
+// panel takes 7 nodes; a hard one, with more than 4 optical depths in `half`, takes 14.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "atmosphere/ray/direct_air.h"
+#include "atmosphere/ray/ray.h"
+
+namespace alpenglow {
+
+/// A fast ray takes 7 nodes a panel, 14 in hard ones; a normal ray takes 14 in all.
+enum class DirectMode { kFast, kNormal };
+
+/// A stretch of a ray on which the altitude is monotone, as its low end sees it [km].
+struct DirectPanel {
+  float altitude, radius;
+  float inverse_radius;
+  float from_perigee;  // distance of the low end from the perigee of the line
+  float length;
+  float mu_s;       // at the low end
+  float nu;         // cosine between the sun and the direction upwards along the panel
+  float slope;      // s of the map
+  float entry;      // position of the ray's entry, upwards along the panel from the low end
+  float perigee;    // position of the ray's perigee, likewise
+  float begin;      // distance of the low end from the entry
+  float direction;  // 1: the panel rises; -1: it falls
+  float lit;        // 1 in sunlight, 0 in the shadow of the planet
+  bool hard;
+};
+
+/// Nodes in lanes: two panels of 7 in lanes 0 to 6 and 8 to 14, or one panel of 14 in both. Lane 7 is
+/// a weightless node at the entry, lane 15 one at the perigee.
+struct DirectGroup {
+  std::size_t first, second;  // panels
+};
+
+struct DirectRay {
+  static constexpr std::size_t kMostPanels = 4;
+  std::array<DirectPanel, kMostPanels> panel;
+  std::array<DirectGroup, kMostPanels> group;
+  std::size_t panels = 0;
+  std::size_t groups = 0;
+  bool narrow = false;  // one panel of 7 nodes: lanes 0 to 7 only
+  bool falls = false;   // the ray has a perigee behind its entry
+  RayExtent extent;
+};
+
+/// @param dark  keeps the panels in the planet's shadow too.
+[[nodiscard]] DirectRay DirectRayOf(const DirectAir& air, const ViewRay& ray, DirectMode mode,
+                                    bool dark);
+
+}  // namespace alpenglow
