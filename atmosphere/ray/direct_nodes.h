@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// For direct_kernel.cpp only: places, densities and columns at the nodes of a vector of lanes
+// (formulas in direct_columns.glsl and direct_air.h). Lengths are in km.
+#pragma once
+
+#include "atmosphere/ray/direct_kernel.h"
+#include "atmosphere/ray/direct_lanes.h"
+
+namespace alpenglow {
+namespace {
+
+namespace shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/ray/direct_columns.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace shared
+
+constexpr std::size_t kHalf = kDirectLanes / 2;
+
+// Lanes that belong to the second panel of a group.
+alignas(64) constexpr float kSecond[kDirectLanes] = {0, 0, 0, 0, 0, 0, 0, 0,
+                                                     1, 1, 1, 1, 1, 1, 1, 1};
+alignas(64) constexpr float kEntryLane[kDirectLanes] = {0, 0, 0, 0, 0, 0, 0, 1};
+alignas(64) constexpr float kPerigeeLane[kDirectLanes] = {0, 0, 0, 0, 0, 0, 0, 0,
+                                                          0, 0, 0, 0, 0, 0, 0, 1};
+
+/// The panels of a group, one for each half of its lanes.
+struct TwoPanels {
+  const DirectPanel& first;
+  const DirectPanel& second;
+};
+
+/// The numbers of two panels in the lanes from `first` on.
+template <typename T>
+struct PanelLanes {
+  const TwoPanels& panels;
+  std::size_t first;
+
+  T operator()(float DirectPanel::*number) const {
+    return Spread(panels.first.*number, panels.second.*number);
+  }
+  T Spread(float a, float b) const {
+    using namespace shared;
+    if constexpr (kLanesOf<T> <= kHalf) {
+      return T(first < kHalf ? a : b);
+    } else {
+      return select(LoadLanes<T>(kSecond + first) > T(0.5F), T(b), T(a));
+    }
+  }
+};
+
+/// Where the nodes of a vector are.
+template <typename T>
+struct NodePlaces {
+  T position;  // upwards along the panel from its low end [km]
+  T weight;    // Gauss weight times derivative of the map [km]
+  T altitude, radius;
+  T mu, mu_s;  // mu >= 0, upwards along the panel
+};
+
+template <typename T>
+T Position(const PanelLanes<T>& panel, const T& v, const T& slope, const T& length) {
+  using namespace shared;
+  const T position = length * DirectDistance<T>(v, slope);
+  const auto is_entry = LoadLanes<T>(kEntryLane + panel.first) > T(0.5F);
+  const auto is_perigee = LoadLanes<T>(kPerigeeLane + panel.first) > T(0.5F);
+  return select(is_perigee, panel(&DirectPanel::perigee),
+                select(is_entry, panel(&DirectPanel::entry), position));
+}
+
+template <typename T>
+NodePlaces<T> PlacesOf(const DirectAir& air, const DirectRule& rule, const PanelLanes<T>& panel) {
+  using namespace shared;
+  const T v = LoadLanes<T>(rule.node.data() + panel.first);
+  const T slope = panel(&DirectPanel::slope), length = panel(&DirectPanel::length);
+  NodePlaces<T> at;
+  at.weight = LoadLanes<T>(rule.weight.data() + panel.first) * length * DirectSlope<T>(v, slope);
+  at.position = Position(panel, v, slope, length);
+  const T from_perigee = panel(&DirectPanel::from_perigee), r = panel(&DirectPanel::radius);
+  const T inverse = panel(&DirectPanel::inverse_radius);
+  const T x = at.position * (at.position + T(2.0F) * from_perigee) * (T(0.5F) * inverse * inverse);
+  at.altitude = max(panel(&DirectPanel::altitude) + r * x * ClimbSeries<T>(x), T(0.0F));
+  at.radius = at.altitude + T(static_cast<float>(air.radius));
+  const T per_radius = T(1.0F) / at.radius;
+  at.mu = abs(at.position + from_perigee) * per_radius;
+  at.mu_s = (r * panel(&DirectPanel::mu_s) + at.position * panel(&DirectPanel::nu)) * per_radius;
+  return at;
+}
+
+/// Columns from points upwards along the ray (mu >= 0) and towards the height of the sun.
+template <typename T>
+struct TwoColumns {
+  T view, sun;
+};
+
+/// A layer at some altitudes: its density relative to the ground, and its column upwards over the
+/// shape of direct_columns.glsl.
+template <typename T>
+struct LayerAt {
+  const DirectLayer& layer;
+  T density, scale;
+
+  LayerAt(const DirectLayer& of_layer, const T& altitude, const T& root_radius)
+      : layer(of_layer),
+        density(PowerOfTwo<T>(altitude * T(of_layer.per_height))),
+        scale(density * root_radius * T(of_layer.up_scale)) {}
+
+  /// Columns upwards, from mu sqrt(R + h) of two directions. They share a division.
+  [[nodiscard]] TwoColumns<T> Up(const T& view_root, const T& sun_root) const {
+    using namespace shared;
+    const T delta(layer.delta), view = T(1.0F) + view_root * T(layer.root),
+                                sun = T(1.0F) + sun_root * T(layer.root);
+    const T below_view = DirectDenominator<T>(view, delta);
+    const T below_sun = DirectDenominator<T>(sun, delta);
+    const T inverse = scale / (below_view * below_sun);
+    return {DirectNumerator<T>(view) * (inverse * below_sun),
+            DirectNumerator<T>(sun) * (inverse * below_view)};
+  }
+};
+
+template <typename T>
+T ColumnBeyondTop(const DirectLayer& layer, const T& mu_top) {
+  return T(layer.beyond_scale) *
+         shared::DirectColumnShape<T>(mu_top * T(layer.beyond_root), T(layer.delta));
+}
+
+template <typename T>
+T PerigeeColumn(const DirectLayer& layer, const T& altitude, const T& root_radius) {
+  return PowerOfTwo<T>(altitude * T(layer.per_height)) * root_radius * T(layer.perigee_scale);
+}
+
+template <typename T, std::size_t count>
+T Polynomial(const std::array<float, count>& coefficients, const T& x) {
+  T sum(coefficients[count - 1]);
+  for (std::size_t i = count - 1; i-- > 0;) sum = T(coefficients[i]) + x * sum;
+  return sum;
+}
+
+/// The polynomials in U of smooth ozone at some altitudes.
+template <typename T>
+struct SmoothOzoneHere {
+  T in_cosine[kOzoneCosines];
+
+  SmoothOzoneHere(const DirectAir& air, const T& altitude) {
+    const T y = Height(air, altitude);
+    for (std::size_t q = 0; q < kOzoneCosines; ++q)
+      in_cosine[q] = Polynomial<T>(air.ozone_fit.up[q], y);
+  }
+  static T Height(const DirectAir& air, const T& altitude) {
+    using namespace shared;
+    const T within = min(max(altitude, T(0.0F)), T(air.ozone_top));
+    return within * T(2.0F / air.ozone_top) - T(1.0F);
+  }
+  [[nodiscard]] TwoColumns<T> Up(const T& view_mu, const T& sun_mu) const {
+    const T k(kOzoneCosine), inverse = T(1.0F) / ((view_mu + k) * (sun_mu + k));
+    return {Along(view_mu, inverse * (sun_mu + k)), Along(sun_mu, inverse * (view_mu + k))};
+  }
+  // @param inverse  1 / (mu + k).
+  [[nodiscard]] T Along(const T& mu, const T& inverse) const {
+    using namespace shared;
+    const T u = mu * inverse * T(2.0F * (1.0F + kOzoneCosine)) - T(1.0F);
+    T sum = in_cosine[kOzoneCosines - 1];
+    for (std::size_t q = kOzoneCosines - 1; q-- > 0;) sum = in_cosine[q] + u * sum;
+    return max(sum * inverse, T(0.0F));
+  }
+};
+
+template <typename T>
+T TentUp(const DirectAir& air, const T& altitude, const T& mu) {
+  return shared::TentColumnUp<T>(altitude, mu, T(air.ozone_bottom), T(air.ozone_peak),
+                                 T(air.ozone_top), T(static_cast<float>(air.radius)));
+}
+
+template <typename T>
+TwoColumns<T> OzoneUp(const DirectAir& air, const NodePlaces<T>& at, const T& sun_mu) {
+  if (!air.has_ozone) return {T(0.0F), T(0.0F)};
+  if (!air.smooth_ozone)
+    return {TentUp<T>(air, at.altitude, at.mu), TentUp<T>(air, at.altitude, sun_mu)};
+  return SmoothOzoneHere<T>(air, at.altitude).Up(at.mu, sun_mu);
+}
+
+template <typename T>
+T OzoneAtPerigee(const DirectAir& air, const T& altitude) {
+  using namespace shared;
+  if (!air.has_ozone) return T(0.0F);
+  if (!air.smooth_ozone) return TentUp<T>(air, max(altitude, T(0.0F)), T(0.0F));
+  const T y = SmoothOzoneHere<T>::Height(air, altitude);
+  return max(Polynomial<T>(air.ozone_fit.perigee, y), T(0.0F));
+}
+
+/// What light at the nodes of a vector depends on.
+template <typename T>
+struct NodeAir {
+  T rayleigh_density, mie_density;
+  ColumnSet<T> view, sun;  // view: upwards along the panel, to space
+};
+
+template <typename T>
+NodeAir<T> AirUpwards(const DirectAir& air, const NodePlaces<T>& at) {
+  using namespace shared;
+  const T root = sqrt(at.radius), sun_mu = abs(at.mu_s);
+  const T view_root = at.mu * root, sun_root = sun_mu * root;
+  const LayerAt<T> gas(air.rayleigh, at.altitude, root), aerosol(air.mie, at.altitude, root);
+  const TwoColumns<T> rayleigh = gas.Up(view_root, sun_root), mie = aerosol.Up(view_root, sun_root),
+                      ozone = OzoneUp<T>(air, at, sun_mu);
+  NodeAir<T> node{gas.density,
+                  aerosol.density,
+                  {rayleigh.view, mie.view, ozone.view},
+                  {rayleigh.sun, mie.sun, ozone.sun}};
+  if (!air.has_deficit) return node;
+  const LayerAt<T> deficit(air.deficit, at.altitude, root);
+  const TwoColumns<T> missing = deficit.Up(view_root, sun_root);
+  node.rayleigh_density += T(air.deficit_share) * (gas.density - deficit.density);
+  node.view.rayleigh -= missing.view;
+  node.sun.rayleigh -= missing.sun;
+  return node;
+}
+
+// Sunbeams from below the horizontal pass their perigee. Those of points in the planet's shadow have
+// it below the ground: their columns only have to be finite.
+template <typename T>
+ColumnSet<T> ColumnsAtSunPerigee(const DirectAir& air, const NodePlaces<T>& at) {
+  using namespace shared;
+  const T radius(static_cast<float>(air.radius));
+  const T altitude =
+      max(PerigeeAltitude<T>(at.altitude, min(abs(at.mu_s), T(1.0F)), radius), T(-1.0F));
+  const T root = sqrt(altitude + radius);
+  T rayleigh = PerigeeColumn<T>(air.rayleigh, altitude, root);
+  if (air.has_deficit) rayleigh -= PerigeeColumn<T>(air.deficit, altitude, root);
+  return {rayleigh, PerigeeColumn<T>(air.mie, altitude, root), OzoneAtPerigee<T>(air, altitude)};
+}
+
+template <typename T>
+void PassPerigees(const DirectAir& air, const NodePlaces<T>& at, ColumnSet<T>& sun) {
+  using namespace shared;
+  if (!AnyLane(at.mu_s < T(0.0F))) return;
+  const ColumnSet<T> low = ColumnsAtSunPerigee(air, at);
+  sun = {ColumnToSun<T>(at.mu_s, sun.rayleigh, low.rayleigh),
+         ColumnToSun<T>(at.mu_s, sun.mie, low.mie), ColumnToSun<T>(at.mu_s, sun.ozone, low.ozone)};
+}
+
+// Takes from columns to space what they have above the top.
+template <typename T>
+void CutAtTop(const DirectAir& air, const NodePlaces<T>& at, ColumnSet<T>& sun) {
+  using namespace shared;
+  const T top(static_cast<float>(air.top)), radius(static_cast<float>(air.radius));
+  const T along = at.radius * at.mu_s;
+  const T climb = max((top - at.altitude) * (at.altitude + top + T(2.0F) * radius), T(0.0F));
+  const T mu_top = min(sqrt(along * along + climb) / (top + radius), T(1.0F));
+  sun.rayleigh = max(sun.rayleigh - ColumnBeyondTop<T>(air.rayleigh, mu_top), T(0.0F));
+  sun.mie = max(sun.mie - ColumnBeyondTop<T>(air.mie, mu_top), T(0.0F));
+}
+
+template <typename T>
+NodeAir<T> AirAt(const DirectAir& air, const NodePlaces<T>& at) {
+  NodeAir<T> node = AirUpwards<T>(air, at);
+  PassPerigees<T>(air, at, node.sun);
+  if (air.reaches_top) CutAtTop<T>(air, at, node.sun);
+  return node;
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/ray/direct_scattering.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/number/quadrature.h"
+#include "atmosphere/ray/direct_kernel.h"
+
+namespace alpenglow {
+namespace {
+
+// P_degree(x), by the three-term recurrence.
+double Legendre(std::size_t degree, double x) {
+  double before = 0.0, now = 1.0;
+  for (std::size_t n = 0; n < degree; ++n) {
+    const auto k = static_cast<double>(n);
+    const double next = ((2.0 * k + 1.0) * x * now - k * before) / (k + 1.0);
+    before = std::exchange(now, next);
+  }
+  return now;
+}
+
+void SetLane(const GaussRule& gauss, std::size_t node, std::size_t lane, DirectRule& rule) {
+  rule.node[lane] = static_cast<float>(gauss.node[node]);
+  rule.weight[lane] = static_cast<float>(gauss.weight[node]);
+  rule.last_polynomial[lane] =
+      static_cast<float>(Legendre(gauss.node.size() - 1, 2.0 * gauss.node[node] - 1.0));
+}
+
+DirectRules MakeRules() {
+  constexpr std::size_t kNodes = 7, kHalf = kDirectLanes / 2;
+  DirectRules rules{};
+  for (std::size_t i = 0; i < 2 * kNodes; ++i) {
+    const std::size_t lane = i % kNodes + i / kNodes * kHalf;
+    SetLane(GaussLegendre(7), i % kNodes, lane, rules.seven);
+    SetLane(GaussLegendre(14), i, lane, rules.fourteen);
+  }
+  return rules;
+}
+
+const DirectRules& Rules() {
+  static const DirectRules rules = MakeRules();
+  return rules;
+}
+
+ScatteredOnce<float> LightOf(std::size_t bands) {
+  ScatteredOnce<float> light;
+  light.rayleigh.count = light.mie.count = bands;
+  return light;
+}
+
+// r of the header.
+double LastShare(const ScatteredOnce<float>& light, const ScatteredOnce<float>& last) {
+  float largest = 0.0F;
+  for (std::size_t band = 0; band < light.rayleigh.count; ++band) {
+    const float all = light.rayleigh[band] + light.mie[band];
+    if (all > 0.0F)
+      largest = std::max(largest, (std::abs(last.rayleigh[band]) + std::abs(last.mie[band])) / all);
+  }
+  return static_cast<double>(largest);
+}
+
+constexpr double kLeastError = 5e-4;
+
+double ErrorOf(DirectMode mode, double last_share) {
+  const bool fast = mode == DirectMode::kFast;
+  const double slope = fast ? 1.0 : 2.0, bend = fast ? 25.0 : 100.0;
+  return kLeastError + slope * last_share / (1.0 + bend * last_share);
+}
+
+// Whether set-up can place nodes on a ray without further checks; NaN is not.
+bool IsValid(const ViewRay& ray, double planet_radius_m) {
+  return std::abs(ray.mu) <= 1.0 && std::abs(ray.mu_s) <= 1.0 && std::abs(ray.nu) <= 1.0 &&
+         ray.length_m >= 0.0 && ray.altitude_m >= -0.5 * planet_radius_m && ray.altitude_m <= 1e12;
+}
+
+}  // namespace
+
+DirectScattering::DirectScattering(const Medium& medium)
+    : reference_(medium), air_(DirectAirOf(medium)) {}
+
+DirectRay DirectScattering::Place(const ViewRay& ray, const DirectSampling& sampling) const {
+  const Medium& medium = reference_.medium();
+  if (!IsValid(ray, medium.planet_radius_m))
+    static_cast<void>(ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m));
+  return DirectRayOf(air_, ray, sampling.mode, sampling.dark_samples);
+}
+
+ScatteredOnce<float> DirectScattering::Scatter(const ViewRay& ray, DirectMode mode) const {
+  ScatteredOnce<float> scattered = LightOf(air_.bands);
+  Kernel<DirectKernel>().scatter(air_, Rules(), Place(ray, {.mode = mode}), scattered, nullptr);
+  return scattered;
+}
+
+EstimatedLight DirectScattering::Estimate(const ViewRay& ray, DirectMode mode) const {
+  EstimatedLight light{LightOf(air_.bands)};
+  ScatteredOnce<float> last = LightOf(air_.bands);
+  Kernel<DirectKernel>().scatter(air_, Rules(), Place(ray, {.mode = mode}), light.scattered, &last);
+  light.error = ErrorOf(mode, LastShare(light.scattered, last));
+  return light;
+}
+
+EstimatedLight DirectScattering::ScatterWithin(const ViewRay& ray, double max_error) const {
+  const Sampling fine = SamplingForError(max_error);
+  if (max_error >= kLeastError) {
+    for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal}) {
+      EstimatedLight light = Estimate(ray, mode);
+      if (light.error <= max_error) return light;
+    }
+  }
+  return {reference_.Scatter(reference_.Sample(ray, fine)), max_error};
+}
+
+RaySamples<float> DirectScattering::Sample(const ViewRay& ray,
+                                           const DirectSampling& sampling) const {
+  RaySamples<float> samples;
+  const DirectRay placed = Place(ray, sampling);
+  samples.extent = placed.extent;
+  Kernel<DirectKernel>().sample(air_, Rules(), placed, samples);
+  return samples;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: MIT
+// Direct integration (atmosphere/ray/direct_scattering.h) against AirIntegrator.
+#include "atmosphere/ray/direct_scattering.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/ray/direct_columns.h"
+#include "atmosphere/ray/optical_depth.h"
+#include "atmosphere/text/error.h"
+#include "tests/fixtures/direct_regimes.h"
+
+namespace alpenglow {
+namespace {
+
+using tests::DirectRegime;
+using tests::DirectRegimes;
+using tests::ErrorsOf;
+using tests::ErrorSummary;
+using tests::JudgedRays;
+using tests::JudgedRaysOf;
+
+constexpr int kFirst = 20001, kRays = 150;
+constexpr std::array kModes{DirectMode::kFast, DirectMode::kNormal};
+
+ErrorSummary ErrorOf(const Medium& medium, const DirectRegime& regime, DirectMode mode) {
+  const DirectScattering direct(medium);
+  return ErrorsOf(JudgedRaysOf(regime, medium, kFirst, kRays), direct.reference(),
+                  [&](const ViewRay& ray) { return direct.Scatter(ray, mode); });
+}
+
+TEST(DirectScattering, FastKeepsFourTenthsOfAPercentOnEarth) {
+  for (const DirectRegime& regime : DirectRegimes()) {
+    const ErrorSummary error = ErrorOf(MediumPreset("earth"), regime, DirectMode::kFast);
+    EXPECT_LT(error.rms, 3.9e-3) << regime.name;
+    EXPECT_LT(error.percentile99, 1.4e-2) << regime.name;
+  }
+}
+
+TEST(DirectScattering, FastKeepsSevenTenthsOfAPercentInEveryPreset) {
+  for (const std::string& preset : MediumPresetNames()) {
+    for (const DirectRegime& regime : DirectRegimes()) {
+      const ErrorSummary error = ErrorOf(MediumPreset(preset), regime, DirectMode::kFast);
+      EXPECT_LT(error.rms, 7e-3) << preset << ", " << regime.name;
+    }
+  }
+}
+
+TEST(DirectScattering, NormalKeepsSevenHundredthsOfAPercent) {
+  for (const std::string& preset : MediumPresetNames()) {
+    for (const DirectRegime& regime : DirectRegimes()) {
+      const ErrorSummary error = ErrorOf(MediumPreset(preset), regime, DirectMode::kNormal);
+      EXPECT_LT(error.rms, 7e-4) << preset << ", " << regime.name;
+      EXPECT_LT(error.percentile99, 3.5e-3) << preset << ", " << regime.name;
+    }
+  }
+}
+
+// A worst band of a ray, relative.
+double ErrorOfRay(const DirectScattering& direct, const ScatteredOnce<float>& scattered,
+                  const ViewRay& ray, const Bands<double>& truth) {
+  std::vector<double> errors;
+  tests::AddErrors(direct.reference().Inscatter(scattered, ray.nu), truth, errors);
+  double largest = 0.0;
+  for (const double error : errors) largest = std::max(largest, error);
+  return largest;
+}
+
+struct Coverage {
+  int held = 0, rays = 0;
+  [[nodiscard]] double Share() const { return static_cast<double>(held) / rays; }
+};
+
+Coverage CoverageOf(const Medium& medium, DirectMode mode) {
+  const DirectScattering direct(medium);
+  Coverage coverage;
+  for (const DirectRegime& regime : DirectRegimes()) {
+    const JudgedRays judged = JudgedRaysOf(regime, medium, 50001, 100);
+    for (std::size_t i = 0; i < judged.rays.size(); ++i) {
+      const EstimatedLight light = direct.Estimate(judged.rays[i], mode);
+      const double error = ErrorOfRay(direct, light.scattered, judged.rays[i], judged.light[i]);
+      coverage.held += error <= light.error ? 1 : 0;
+      ++coverage.rays;
+    }
+  }
+  return coverage;
+}
+
+TEST(DirectScattering, EstimateHoldsForNineteenOfTwentyRays) {
+  for (const std::string& preset : MediumPresetNames()) {
+    for (const DirectMode mode : kModes) {
+      EXPECT_GE(CoverageOf(MediumPreset(preset), mode).Share(), 0.95)
+          << preset << ", mode " << static_cast<int>(mode);
+    }
+  }
+}
+
+TEST(DirectScattering, ScatterWithinKeepsTheErrorOfNineteenOfTwentyRays) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  for (const double stated : {1e-2, 2e-3, 6e-4, 1e-4}) {
+    Coverage coverage;
+    for (const DirectRegime& regime : DirectRegimes()) {
+      const JudgedRays judged = JudgedRaysOf(regime, medium, 70001, 60);
+      for (std::size_t i = 0; i < judged.rays.size(); ++i) {
+        const EstimatedLight light = direct.ScatterWithin(judged.rays[i], stated);
+        EXPECT_LE(light.error, stated);
+        const double error = ErrorOfRay(direct, light.scattered, judged.rays[i], judged.light[i]);
+        coverage.held += error <= stated ? 1 : 0;
+        ++coverage.rays;
+      }
+    }
+    EXPECT_GE(coverage.Share(), 0.95) << stated;
+  }
+}
+
+// Rays along edges of geometry: straight up and down, level, near the horizon, towards the sun and
+// away from it, from the ground, the top and space, whole and cut.
+ViewRay EdgeRay(int i) {
+  const auto cosine = [i](int base) {
+    const double choice = Halton(i, base), value = 2.0 * Halton(i, base + 6) - 1.0;
+    if (choice < 0.15) return choice < 0.05 ? 0.0 : choice < 0.1 ? 1.0 : -1.0;
+    return (choice < 0.3 ? 5e-4 : choice < 0.6 ? 0.15 : 1.0) * value;
+  };
+  ViewRay ray{.mu = cosine(5), .mu_s = cosine(7)};
+  const double u = Halton(i, 2), v = Halton(i, 3);
+  ray.altitude_m = u < 0.1 ? 0.0 : u < 0.2 ? 120e3 : u < 0.3 ? 1e6 * v : 120e3 * v * v;
+  const double sines = std::sqrt((1.0 - ray.mu * ray.mu) * (1.0 - ray.mu_s * ray.mu_s));
+  const double turn = i % 5 == 0 ? (i % 2 == 0 ? 1.0 : -1.0) : std::cos(kPi * Halton(i, 17));
+  ray.nu = std::clamp(ray.mu * ray.mu_s + sines * turn, -1.0, 1.0);
+  if (i % 3 == 0) ray.length_m = std::pow(10.0, 6.5 * Halton(i, 19));
+  return ray;
+}
+
+TEST(DirectScattering, EdgeRaysAreFiniteAndNotNegative) {
+  for (const std::string& preset : MediumPresetNames()) {
+    const DirectScattering direct(MediumPreset(preset));
+    for (int i = 1; i <= 6000; ++i) {
+      for (const DirectMode mode : kModes) {
+        const ScatteredOnce<float> light = direct.Scatter(EdgeRay(i), mode);
+        for (std::size_t band = 0; band < light.rayleigh.count; ++band) {
+          ASSERT_TRUE(std::isfinite(light.rayleigh[band]) && light.rayleigh[band] >= 0.0F) << i;
+          ASSERT_TRUE(std::isfinite(light.mie[band]) && light.mie[band] >= 0.0F) << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(DirectScattering, EdgeRaysAreWithinTenPercent) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  const AirIntegrator<double> fine(medium);
+  for (int i = 1; i <= 3000; ++i) {
+    const ViewRay ray = EdgeRay(i);
+    const auto truth = fine.Inscatter(fine.Scatter(fine.Sample(ray, {.nodes = 24})), ray.nu);
+    for (const DirectMode mode : kModes)
+      EXPECT_LT(ErrorOfRay(direct, direct.Scatter(ray, mode), ray, truth), 0.1) << i;
+  }
+}
+
+TEST(DirectScattering, SegmentOfLengthZeroIsExactlyNothing) {
+  const DirectScattering direct(MediumPreset("earth"));
+  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
+  const ScatteredOnce<float> light = direct.Scatter(ray, DirectMode::kNormal);
+  EXPECT_EQ(light.rayleigh, Bands<float>(light.rayleigh.count));
+  EXPECT_EQ(light.mie, Bands<float>(light.mie.count));
+  EXPECT_EQ(direct.Sample(ray, {}).count, 0U);
+}
+
+TEST(DirectScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  const AirIntegrator<double> fine(medium);
+  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
+  const auto truth = fine.Scatter(fine.Sample(ray, {}));
+  const auto light = direct.Scatter(ray, DirectMode::kFast);
+  for (std::size_t band = 0; band < truth.rayleigh.count; ++band)
+    EXPECT_NEAR(static_cast<double>(light.rayleigh[band]) / truth.rayleigh[band], 1.0, 2e-4);
+}
+
+TEST(DirectScattering, SamplesScatterTheSameLight) {
+  const DirectScattering direct(MediumPreset("earth"));
+  for (const DirectRegime& regime : DirectRegimes()) {
+    for (int i = 1; i <= 30; ++i) {
+      const ViewRay ray = regime.ray(i, direct.reference().medium());
+      for (const DirectMode mode : kModes) {
+        const auto light = direct.Scatter(ray, mode);
+        const auto same = direct.reference().Scatter(direct.Sample(ray, {.mode = mode}));
+        for (std::size_t band = 0; band < light.rayleigh.count; ++band)
+          EXPECT_NEAR(same.rayleigh[band], light.rayleigh[band],
+                      2e-4F * light.rayleigh[band] + 1e-13F)
+              << regime.name << ' ' << i;
+      }
+    }
+  }
+}
+
+// Columns differ by a thousandth, by what single precision leaves of a difference, and by the fit of
+// ozone, up to three times (0.6 km of it are 1e-3 of an optical depth).
+void ExpectColumns(const ColumnSet<float>& found, const ColumnSet<double>& truth) {
+  EXPECT_NEAR(static_cast<double>(found.rayleigh), truth.rayleigh, 1e-3 * truth.rayleigh + 3e-3);
+  EXPECT_NEAR(static_cast<double>(found.mie), truth.mie, 1e-3 * truth.mie + 3e-3);
+  EXPECT_NEAR(static_cast<double>(found.ozone), truth.ozone, 1e-3 * truth.ozone + 0.6);
+}
+
+// Whether positions, weights and columns of samples are those of AirIntegrator at the same places.
+void ExpectSamplesOf(const AirIntegrator<double>& fine, const ViewRay& ray,
+                     const RaySamples<float>& samples) {
+  if (samples.count == 0) return;  // the ray meets no air
+  std::vector<RayNode> nodes;
+  double length_km = 0.0;
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    nodes.push_back({1000.0 * static_cast<double>(samples.distance[i]) + samples.extent.begin_m,
+                     1000.0 * static_cast<double>(samples.weight[i])});
+    length_km += static_cast<double>(samples.weight[i]);
+  }
+  EXPECT_NEAR(1000.0 * length_km / (samples.extent.end_m - samples.extent.begin_m), 1.0, 1e-5);
+  const RaySamples<double> truth = fine.SampleAt(ray, nodes);
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    if (samples.weight[i] == 0.0F) continue;
+    EXPECT_NEAR(static_cast<double>(samples.altitude[i]), truth.altitude[i], 2e-3);
+    EXPECT_NEAR(static_cast<double>(samples.mu[i]), truth.mu[i], 2e-6);
+    EXPECT_NEAR(static_cast<double>(samples.mu_s[i]), truth.mu_s[i], 2e-6);
+    EXPECT_NEAR(static_cast<double>(samples.rayleigh_density[i]), truth.rayleigh_density[i],
+                4e-4 * truth.rayleigh_density[i] + 1e-12);
+    ExpectColumns({samples.view_rayleigh[i], samples.view_mie[i], samples.view_ozone[i]},
+                  {truth.view_rayleigh[i], truth.view_mie[i], truth.view_ozone[i]});
+    if (samples.lit[i] == 0.0F) continue;
+    ExpectColumns({samples.sun_rayleigh[i], samples.sun_mie[i], samples.sun_ozone[i]},
+                  {truth.sun_rayleigh[i], truth.sun_mie[i], truth.sun_ozone[i]});
+  }
+}
+
+TEST(DirectScattering, SamplesStandWhereTheySayAndCoverTheRay) {
+  for (const char* preset : {"earth", "bruneton2017"}) {
+    const Medium medium = MediumPreset(preset);
+    const DirectScattering direct(medium);
+    const AirIntegrator<double> fine(medium);
+    for (const DirectRegime& regime : DirectRegimes()) {
+      SCOPED_TRACE(std::string(preset) + ", " + regime.name);
+      for (int i = 1; i <= 20; ++i) {
+        const ViewRay ray = regime.ray(i, medium);
+        ExpectSamplesOf(fine, ray,
+                        direct.Sample(ray, {.mode = kModes[static_cast<std::size_t>(i % 2)],
+                                            .dark_samples = true}));
+      }
+    }
+  }
+}
+
+TEST(DirectScattering, EndsOfRaysAreThoseOfExtentOf) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  for (int i = 1; i <= 2000; ++i) {
+    const ViewRay ray = EdgeRay(i);
+    const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+    const RaySamples<float> samples = direct.Sample(ray, {});
+    EXPECT_NEAR(samples.extent.begin_m, extent.begin_m, 0.01) << i;
+    EXPECT_NEAR(samples.extent.end_m, extent.end_m, 0.01) << i;
+  }
+}
+
+TEST(DirectScattering, EveryBandIsThatOfAMediumOfThatBandAlone) {
+  std::vector<double> wavelengths_nm;
+  for (int i = 0; i < 40; ++i) wavelengths_nm.push_back(380.0 + 10.0 * i);
+  const DirectScattering all(MediumPreset("earth", wavelengths_nm));
+  for (const std::size_t band : {0U, 17U, 39U}) {
+    const DirectScattering one(MediumPreset("earth", {wavelengths_nm[band]}));
+    const ViewRay ray = RayFromAngles(1000.0, 80.0, 30.0, 70.0);
+    for (const DirectMode mode : kModes) {
+      EXPECT_NEAR(one.Scatter(ray, mode).rayleigh[0] / all.Scatter(ray, mode).rayleigh[band], 1.0F,
+                  3e-4F)
+          << "one band may be called hard where another is not";
+    }
+  }
+}
+
+TEST(DirectScattering, InstructionSetsAgree) {
+  const DirectScattering direct(MediumPreset("earth"));
+  for (const DirectRegime& regime : DirectRegimes()) {
+    for (int i = 1; i <= 20; ++i) {
+      const ViewRay ray = regime.ray(i, direct.reference().medium());
+      std::vector<float> light;
+      for (const InstructionSet set : AvailableInstructionSets()) {
+        const InstructionSetScope scope(set);
+        light.push_back(direct.Scatter(ray, kModes[static_cast<std::size_t>(i % 2)]).rayleigh[0]);
+      }
+      for (const float other : light)
+        EXPECT_NEAR(other, light[0], 1e-4F * light[0] + 1e-12F) << regime.name << ' ' << i;
+    }
+  }
+}
+
+TEST(DirectScattering, RaysThatAreNoRaysAreRefused) {
+  const DirectScattering direct(MediumPreset("earth"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const ViewRay& ray :
+       {ViewRay{nan, 0.5, 0.5, 0.5}, ViewRay{0.0, 1.1, 0.5, 0.5}, ViewRay{0.0, 0.5, nan, 0.5},
+        ViewRay{0.0, 0.5, 0.5, -2.0}, ViewRay{0.0, 0.5, 0.5, 0.5, -1.0}}) {
+    EXPECT_THROW(static_cast<void>(direct.Scatter(ray, DirectMode::kFast)), InputError);
+  }
+}
+
+TEST(DirectColumns, AgreeWithTheColumnsOfTwoTermsToOnePartInTenThousand) {
+  const double radius = 6371.0;
+  for (const double height : {1.2, 2.857, 6.8, 8.0}) {
+    for (const double altitude : {0.0, 1.0, 10.0, 60.0}) {
+      for (const double mu : {0.0, 0.003, 0.03, 0.1, 0.3, 1.0}) {
+        const double root = std::sqrt((radius + altitude) / (2.0 * height));
+        const double column = height * std::exp(-altitude / height) * root *
+                              (1.0 + height / radius) *
+                              shared::DirectColumnShape<double>(mu * root, 0.625 * height / radius);
+        const double truth =
+            shared::ExponentialColumnToInfinity<double>(altitude, mu, height, radius);
+        EXPECT_NEAR(column / truth, 1.0, 1e-4) << height << ' ' << altitude << ' ' << mu;
+      }
+    }
+  }
+}
+
+// The polynomials of direct_air.h at an altitude [km].
+double FittedOzone(const DirectAir& air, double altitude, double mu) {
+  constexpr double k = static_cast<double>(kOzoneCosine);
+  const double y = 2.0 * altitude / static_cast<double>(air.ozone_top) - 1.0;
+  const double u = 2.0 * (1.0 + k) * mu / (mu + k) - 1.0;
+  double sum = 0.0;
+  for (std::size_t q = kOzoneCosines; q-- > 0;) {
+    double of_height = 0.0;
+    for (std::size_t a = kOzoneHeights; a-- > 0;)
+      of_height = of_height * y + static_cast<double>(air.ozone_fit.up[q][a]);
+    sum = sum * u + of_height;
+  }
+  return sum / (mu + k);
+}
+
+TEST(DirectAir, PolynomialsOfOzoneKeepThreeTenThousandthsOfAnOpticalDepth) {
+  const Medium medium = MediumPreset("earth");
+  const DirectAir air = DirectAirOf(medium);
+  double largest_per_km = 0.0;
+  for (const double per_m : medium.ozone_absorption_per_m)
+    largest_per_km = std::max(largest_per_km, 1000.0 * per_m);
+  const double top = static_cast<double>(air.ozone_top);
+  for (int i = 0; i <= 100; ++i) {
+    for (int j = 0; j <= 100; ++j) {
+      const double altitude = 0.01 * i * top, mu = 1e-4 * j * j;
+      const double truth = shared::SmoothOzoneColumnUp<double>(altitude, mu, top, air.radius);
+      EXPECT_NEAR(largest_per_km * FittedOzone(air, altitude, mu), largest_per_km * truth, 3e-4);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow
