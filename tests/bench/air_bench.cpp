@@ -10,6 +10,7 @@
 
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/judge/judge.h"
+#include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 
@@ -74,6 +75,44 @@ BENCHMARK(SingleScatteringOfOneRay)
     ->ArgsProduct({{0, 1, 2, 3}, {8, 12}, {60, 91}})
     ->ArgNames({"set", "nodes", "sun_zenith"});
 
+// The same rays by direct integration; range 1: 0 fast, 1 normal.
+void DirectScatteringOfOneRay(benchmark::State& state) {
+  const InstructionSetScope scope(SetOf(state));
+  const DirectScattering direct(MediumPreset("earth"));
+  const DirectMode mode = state.range(1) == 0 ? DirectMode::kFast : DirectMode::kNormal;
+  const std::vector<ViewRay> rays = Rays(static_cast<int>(state.range(2)));
+  std::size_t i = 0;
+  for (auto unused : state) benchmark::DoNotOptimize(direct.Scatter(rays[++i % rays.size()], mode));
+}
+BENCHMARK(DirectScatteringOfOneRay)
+    ->ArgsProduct({{0, 1, 2, 3}, {0, 1}, {60, 91}})
+    ->ArgNames({"set", "normal", "sun_zenith"});
+
+// 20 km of air in front of a mountain; argument: 0 AirIntegrator with 8 nodes, 1 fast, 2 normal.
+void AirInFrontOfAMountain(benchmark::State& state) {
+  const DirectScattering direct(MediumPreset("earth"));
+  const AirIntegrator<float>& air = direct.reference();
+  const DirectMode mode = state.range(0) == 1 ? DirectMode::kFast : DirectMode::kNormal;
+  std::vector<ViewRay> rays = Rays(60);
+  for (ViewRay& ray : rays) {
+    ray.mu *= 0.1;
+    ray.length_m = 20e3;
+  }
+  std::size_t i = 0;
+  for (auto unused : state) {
+    const ViewRay& ray = rays[++i % rays.size()];
+    benchmark::DoNotOptimize(state.range(0) == 0 ? air.Scatter(air.Sample(ray, {.nodes = 8}))
+                                                 : direct.Scatter(ray, mode));
+  }
+}
+BENCHMARK(AirInFrontOfAMountain)->DenseRange(0, 2)->ArgName("method");
+
+void PreparationOfDirectScattering(benchmark::State& state) {
+  const Medium medium = MediumPreset("earth");
+  for (auto unused : state) benchmark::DoNotOptimize(DirectAirOf(medium));
+}
+BENCHMARK(PreparationOfDirectScattering)->Unit(benchmark::kMicrosecond);
+
 void SingleScatteringByTheJudge(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
   int i = 0;
@@ -96,6 +135,26 @@ void DiffuseLightOfOneRay(benchmark::State& state) {
   }
 }
 BENCHMARK(DiffuseLightOfOneRay)->Arg(0)->Arg(1)->ArgName("polarised");
+
+// Light of all orders from a direction of the sky; argument: 0 AirIntegrator with 12 nodes, 1 fast,
+// 2 normal.
+void AllOrdersOfOneRay(benchmark::State& state) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  const AirIntegrator<float>& air = direct.reference();
+  const DiffuseLight light(medium);
+  const DirectMode mode = state.range(0) == 1 ? DirectMode::kFast : DirectMode::kNormal;
+  int i = 0;
+  for (auto unused : state) {
+    const ViewRay ray = RayNumber(++i);
+    const RaySamples<float> samples =
+        state.range(0) == 0 ? air.Sample(ray, {.nodes = 12, .dark_samples = true})
+                            : direct.Sample(ray, {.mode = mode, .dark_samples = true});
+    benchmark::DoNotOptimize(air.Inscatter(air.Scatter(samples), ray.nu));
+    benchmark::DoNotOptimize(light.InscatterAlong(samples, ray.nu));
+  }
+}
+BENCHMARK(AllOrdersOfOneRay)->DenseRange(0, 2)->ArgName("method");
 
 void BuildOfDiffuseLight(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");

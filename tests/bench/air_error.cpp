@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Error of single scattering in float by height of the sun, kind of ray and number of samples: root
-// mean square, 99th percentile and maximum of the relative error. Run by hand; results are in
-// README.md.
+// Error of single scattering in float: root mean square, 99th percentile and maximum of the relative
+// error. Two tables: by height of the sun, kind of ray and number of nodes; and by regime for direct
+// integration and 8 nodes. Run by hand; results are in README.md.
 #include <fmt/format.h>
 
+#include "tests/fixtures/direct_regimes.h"
 #include "tests/fixtures/ray_regimes.h"
 
-int main() {
-  using namespace alpenglow;
+namespace alpenglow {
+namespace {
+
+void PrintNodes() {
   fmt::print("| air | sun | ray | nodes | rms | 99 % | max |\n|---|---|---|---|---|---|---|\n");
   for (const char* name : {"earth", "hazy"}) {
     const Medium medium = MediumPreset(name);
@@ -20,5 +23,32 @@ int main() {
         }
       }
     }
+  }
+}
+
+void PrintDirect(const Medium& medium, const tests::DirectRegime& regime) {
+  const DirectScattering direct(medium);
+  const AirIntegrator<float>& air = direct.reference();
+  const tests::JudgedRays judged = tests::JudgedRaysOf(regime, medium, 20001, 1500);
+  const auto print = [&](const char* method, const auto& scatter) {
+    const auto error = tests::ErrorsOf(judged, air, scatter);
+    fmt::print("| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} |\n", medium.name, regime.name, method,
+               error.rms, error.percentile99, error.largest);
+  };
+  print("fast", [&](const ViewRay& ray) { return direct.Scatter(ray, DirectMode::kFast); });
+  print("normal", [&](const ViewRay& ray) { return direct.Scatter(ray, DirectMode::kNormal); });
+  print("8 nodes", [&](const ViewRay& ray) { return air.Scatter(air.Sample(ray, {.nodes = 8})); });
+}
+
+}  // namespace
+}  // namespace alpenglow
+
+int main() {
+  using namespace alpenglow;
+  PrintNodes();
+  fmt::print("\n| air | regime | method | rms | 99 % | max |\n|---|---|---|---|---|---|\n");
+  for (const std::string& preset : MediumPresetNames()) {
+    for (const tests::DirectRegime& regime : tests::DirectRegimes())
+      PrintDirect(MediumPreset(preset), regime);
   }
 }
