@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "atmosphere/ray/direct_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
@@ -21,7 +22,8 @@ enum OrdersStyle {
   kScalar = 3,
   kForwardPeak = 4,
   kNothing = 5,
-  kDegree6 = 6
+  kDegree6 = 6,
+  kDirectNodes = 7
 };
 
 int StyleOf(const DiffuseLightOptions& options) {
@@ -36,21 +38,47 @@ class OrdersTopic : public TopicWork {
  public:
   OrdersTopic(const Medium& medium, const ReportEffort& effort)
       : TopicWork(medium, effort, TracedViews(medium, effort.traced_rays, effort.paths)),
-        air_(medium) {}
+        air_(medium),
+        direct_(medium) {}
 
   /// @param higher  function from samples and nu to light of orders two and up.
   template <typename Higher>
   void Add(ReportRow row, const Higher& higher) {
+    AddOnSamples(
+        std::move(row), [&](const ViewRay& ray) { return air_.Sample(ray, kSampling); }, higher);
+  }
+
+  /// The usual moments on the nodes of direct integration.
+  void AddDirect(DirectMode mode) {
+    const auto [light, seconds] = Built([&] { return DiffuseLight(medium_); });
+    const bool fast = mode == DirectMode::kFast;
+    AddOnSamples(
+        {.series = "moments on direct nodes",
+         .parameter = fast ? "fast" : "normal",
+         .style = kDirectNodes,
+         .in_summary = true,
+         .memory_bytes = light.values().size() * sizeof(float),
+         .build_s = seconds},
+        [this, mode](const ViewRay& ray) {
+          return direct_.Sample(ray, {.mode = mode, .dark_samples = true});
+        },
+        [&light = light](const RaySamples<float>& samples, double nu) {
+          return light.InscatterAlong(samples, nu);
+        });
+  }
+
+  template <typename SampleRay, typename Higher>
+  void AddOnSamples(ReportRow row, const SampleRay& sample, const Higher& higher) {
     AddRow(
         std::move(row),
         [&](const ViewRay& ray) {
-          const RaySamples<float> samples = air_.Sample(ray, kSampling);
+          const RaySamples<float> samples = sample(ray);
           Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);
           const Bands<float> more = higher(samples, ray.nu);
           for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
           return light;
         },
-        [&](const ViewRay& ray) { return air_.Sample(ray, kSampling).count; });
+        [&](const ViewRay& ray) { return sample(ray).count; });
   }
 
   void AddNothing() {
@@ -110,29 +138,31 @@ class OrdersTopic : public TopicWork {
   }
 
   AirIntegrator<float> air_;
+  DirectScattering direct_;
 };
 
 ReportTopic WordsOfAllOrders() {
-  return {.key = "all_orders",
-          .title = "All orders: the light of the sky as a whole",
-          .what =
-              "The same views; the question is the radiance that the air on the way sends to "
-              "the eye after any number of scatterings and reflections by the ground. Every "
-              "method takes single scattering from the same 12 Gauss nodes; only light of "
-              "orders two and up differs.",
-          .error_unit = "parts of the whole radiance",
-          .notes =
-              "The isotropic table is the one of Hillaire (2020), its integrals taken as "
-              "published (64 directions, 20 steps) and with four times the directions. Moments "
-              "are this library's spherical-harmonic moments of the diffuse light over altitude "
-              "and sun; the "
-              "largest is the quality fine of skylut build, which also has more directions. "
-              "Where the medium's light is polarised, so is the judge's, and scalar light is "
-              "what neglects it: the same single scattering, and moments of scalar light. In "
-              "hazy air the forward peak of the aerosol is set apart and found in closed form "
-              "(delta-M); only then do more degrees pay, and skylut eval and build take it.",
-          .wanted = 0.02,
-          .cost = CostAxis::kTimeToBuild};
+  return {
+      .key = "all_orders",
+      .title = "All orders: the light of the sky as a whole",
+      .what =
+          "The same views; the question is the radiance that the air on the way sends to "
+          "the eye after any number of scatterings and reflections by the ground. Every "
+          "method but \"moments on direct nodes\" takes single scattering from the same 12 Gauss "
+          "nodes; only light of orders two and up differs.",
+      .error_unit = "parts of the whole radiance",
+      .notes =
+          "The isotropic table is the one of Hillaire (2020), its integrals taken as "
+          "published (64 directions, 20 steps) and with four times the directions. Moments "
+          "are this library's spherical-harmonic moments of the diffuse light over altitude "
+          "and sun; the "
+          "largest is the quality fine of skylut build, which also has more directions. "
+          "Where the medium's light is polarised, so is the judge's, and scalar light is "
+          "what neglects it: the same single scattering, and moments of scalar light. In "
+          "hazy air the forward peak of the aerosol is set apart and found in closed form "
+          "(delta-M); only then do more degrees pay, and skylut eval and build take it.",
+      .wanted = 0.02,
+      .cost = CostAxis::kTimeToBuild};
 }
 
 }  // namespace
@@ -143,6 +173,7 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   topic.AddIsotropic({}, true);
   if (!effort.quick) topic.AddIsotropic({.side = 32, .directions_side = 16, .steps = 20}, false);
   if (medium.polarised) topic.AddScalar({});
+  for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal}) topic.AddDirect(mode);
   for (const int degree : {2, 4, 6}) {
     DiffuseLightOptions options;
     const bool usual = degree == options.degree;

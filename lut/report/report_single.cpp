@@ -2,6 +2,7 @@
 // A topic of the report: light scattered once along a view.
 #include <fmt/format.h>
 
+#include "atmosphere/ray/direct_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "lut/store/table_folder.h"
@@ -17,13 +18,16 @@ enum SingleStyle {
   kTable = 3,
   kQuadratic = 4,
   kAzimuthTable = 2,
+  kDirectSingle = 5,
   kGaussSplit = 6
 };
 
 class SingleTopic : public TopicWork {
  public:
   SingleTopic(const Medium& medium, const ReportEffort& effort)
-      : TopicWork(medium, effort, JudgedViews(medium, effort.rays)), air_(medium) {}
+      : TopicWork(medium, effort, JudgedViews(medium, effort.rays)),
+        air_(medium),
+        direct_(medium) {}
 
   void AddGauss(int nodes, bool split_ozone, bool in_summary) {
     const Sampling sampling{.nodes = nodes, .split_ozone = split_ozone};
@@ -36,6 +40,19 @@ class SingleTopic : public TopicWork {
           return air_.Inscatter(air_.Scatter(air_.Sample(ray, sampling)), ray.nu);
         },
         [&](const ViewRay& ray) { return air_.Sample(ray, sampling).count; });
+  }
+
+  void AddDirect(DirectMode mode) {
+    const bool fast = mode == DirectMode::kFast;
+    AddRow(
+        {.series = "direct integration",
+         .parameter = fast ? "fast, 7 nodes a panel" : "normal, 14 nodes a panel",
+         .style = kDirectSingle,
+         .in_summary = true},
+        [this, mode](const ViewRay& ray) {
+          return air_.Inscatter(direct_.Scatter(ray, mode), ray.nu);
+        },
+        [this, mode](const ViewRay& ray) { return direct_.Sample(ray, {.mode = mode}).count; });
   }
 
   void AddMarch(MarchRule rule, int steps, bool in_summary) {
@@ -61,6 +78,7 @@ class SingleTopic : public TopicWork {
 
  private:
   AirIntegrator<float> air_;
+  DirectScattering direct_;
 };
 
 }  // namespace
@@ -69,6 +87,7 @@ ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& ef
   SingleTopic topic(medium, effort);
   for (const int nodes : {4, 6, 8, 12, 16, 20})
     topic.AddGauss(nodes, false, nodes == 8 || nodes == 12 || nodes == 20);
+  for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal}) topic.AddDirect(mode);
   if (medium.ozone.shape == OzoneShape::kTent) {
     for (const int nodes : {4, 6, 8, 12, 16, 20}) topic.AddGauss(nodes, true, nodes == 16);
   }
@@ -90,7 +109,8 @@ ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& ef
        .what = "Views to the sky and down to the ground from 2 m, 1.5 km and 10 km; the "
                "question is the radiance of sunlight that the air on the way scatters once.",
        .error_unit = "parts of the radiance",
-       .notes = "The marches are given this library's exact columns, its planet's shadow and "
+       .notes = "Direct integration is described in atmosphere/ray/direct_scattering.h. "
+                "The marches are given this library's exact columns, its planet's shadow and "
                 "its SIMD kernel: only where they look at the air differs, so they are better "
                 "and faster here than as published. The table on Bruneton's axes has his "
                 "(2017) size, 32 x 128 x 32 x 8 (altitude, view, sun, angle between view and "
