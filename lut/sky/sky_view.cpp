@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_fan.h"
 #include "lut/diffuse/diffuse_grid.h"
@@ -238,6 +239,7 @@ class SkyView::Builder {
   Builder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
           double mu_s, SkyView& view)
       : air_(air),
+        direct_(air.medium()),
         fan_(diffuse),
         altitude_m_(altitude_m),
         mu_s_(std::clamp(mu_s, -1.0, 1.0)),
@@ -308,8 +310,8 @@ class SkyView::Builder {
   void AddOnce(double mu, double sines, int row) {
     for (std::size_t k = 0; k < cosines_.size(); ++k) {
       const double nu = std::clamp(mu * mu_s_ + sines * cosines_[k], -1.0, 1.0);
-      const ScatteredOnce<float> once = air_.Scatter(air_.Sample(
-          {altitude_m_, mu, mu_s_, nu}, {.nodes = view_.size_.ray_nodes, .dark_samples = false}));
+      const ScatteredOnce<float> once =
+          direct_.Scatter({altitude_m_, mu, mu_s_, nu}, DirectMode::kNormal);
       for (std::size_t band = 0; band < view_.bands_; ++band) {
         float* node = Node(view_.blocks_[band / kViewLanes], row, static_cast<int>(k) + 1);
         const float round = 10.0F * RayleighChi2(air_.medium(), band);
@@ -353,6 +355,7 @@ class SkyView::Builder {
   }
 
   const AirIntegrator<float>& air_;
+  DirectScattering direct_;
   DiffuseFan fan_;
   double altitude_m_, mu_s_;
   SkyView& view_;

@@ -32,7 +32,7 @@ struct SkyViewSize {
   int sky_rows = 40;     // from the horizon to the zenith or the air's upper edge, >= 5
   int ground_rows = 24;  // from the horizon to the nadir, >= 5
   int azimuths = 17;     // from the sun's azimuth to the opposite one, both included, >= 3
-  int ray_nodes = 12;    // Gauss nodes on each smooth piece of a ray
+  int ray_nodes = 12;    // Gauss nodes on each smooth piece of a ray, for light of higher orders
 };
 
 /// What keeps the error that SkyView states: twilight
