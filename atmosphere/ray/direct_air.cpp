@@ -132,6 +132,13 @@ void SetBands(const Medium& medium, DirectAir& air) {
   }
 }
 
+// 5e-4 on the planets of the presets. Columns leave twice the square of H/R; what single precision
+// leaves grows with the radius in scale heights to the power 3/2 (fitted to 3e7 and 8e7 m).
+double LeastError(double highest, double lowest, double radius) {
+  const double flatness = highest / radius;
+  return std::max({5e-4, 2.0 * flatness * flatness, 6e-10 * std::pow(radius / lowest, 1.5)});
+}
+
 // Optical depth above the top that a horizontal ray there would have.
 double DepthAboveTop(const Medium& medium, const DirectAir& air) {
   constexpr double kLevel = 1.7724538509055159;  // sqrt(pi), of DirectColumnShape at y = 0
@@ -157,6 +164,9 @@ DirectAir DirectAirOf(const Medium& medium) {
   air.rayleigh = LayerOf(Kilometres(medium.rayleigh_scale_height_m), 1.0 + share, shell);
   air.deficit = LayerOf(Kilometres(medium.rayleigh_deficit.scale_height_m), share, shell);
   air.mie = LayerOf(Kilometres(medium.mie_scale_height_m), 1.0, shell);
+  const auto [lowest, highest] =
+      std::minmax({medium.rayleigh_scale_height_m, medium.mie_scale_height_m});
+  air.least_error = LeastError(highest, lowest, medium.planet_radius_m);
   SetBands(medium, air);
   SetOzone(medium.ozone, air);
   air.reaches_top = DepthAboveTop(medium, air) > 1e-5;

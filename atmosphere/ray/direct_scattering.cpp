@@ -62,12 +62,10 @@ double LastShare(const ScatteredOnce<float>& light, const ScatteredOnce<float>& 
   return static_cast<double>(largest);
 }
 
-constexpr double kLeastError = 5e-4;
-
-double ErrorOf(DirectMode mode, double last_share) {
+double ErrorOf(DirectMode mode, double least_error, double last_share) {
   const bool fast = mode == DirectMode::kFast;
   const double slope = fast ? 1.0 : 2.0, bend = fast ? 25.0 : 100.0;
-  return kLeastError + slope * last_share / (1.0 + bend * last_share);
+  return least_error + slope * last_share / (1.0 + bend * last_share);
 }
 
 // Whether set-up can place nodes on a ray without further checks; NaN is not.
@@ -98,13 +96,13 @@ EstimatedLight DirectScattering::Estimate(const ViewRay& ray, DirectMode mode) c
   EstimatedLight light{LightOf(air_.bands)};
   ScatteredOnce<float> last = LightOf(air_.bands);
   Kernel<DirectKernel>().scatter(air_, Rules(), Place(ray, {.mode = mode}), light.scattered, &last);
-  light.error = ErrorOf(mode, LastShare(light.scattered, last));
+  light.error = ErrorOf(mode, air_.least_error, LastShare(light.scattered, last));
   return light;
 }
 
 EstimatedLight DirectScattering::ScatterWithin(const ViewRay& ray, double max_error) const {
   const Sampling fine = SamplingForError(max_error);
-  if (max_error >= kLeastError) {
+  if (max_error >= air_.least_error) {
     for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal}) {
       EstimatedLight light = Estimate(ray, mode);
       if (light.error <= max_error) return light;

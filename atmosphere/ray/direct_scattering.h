@@ -16,9 +16,10 @@
 //
 // The error of one ray is estimated from the last Legendre coefficient that its nodes can tell:
 //
-//   error = 5e-4 + c r / (1 + k r),   r = largest over bands of |light with P_(n-1)| / light
+//   error = e + c r / (1 + k r),   r = largest over bands of |light with P_(n-1)| / light
 //
-// with c = 1, k = 25 for fast and c = 2, k = 100 for normal; it holds for 95 % of rays.
+// with c = 1, k = 25 for fast and c = 2, k = 100 for normal, and e = 5e-4, more on planets of few or
+// very many scale heights (DirectAir::least_error). It holds for 95 % of rays.
 #pragma once
 
 #include "atmosphere/air/medium.h"

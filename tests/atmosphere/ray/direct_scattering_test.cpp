@@ -78,26 +78,29 @@ struct Coverage {
   [[nodiscard]] double Share() const { return static_cast<double>(held) / rays; }
 };
 
-Coverage CoverageOf(const Medium& medium, DirectMode mode) {
-  const DirectScattering direct(medium);
+Coverage CoverageOf(const DirectScattering& direct, DirectMode mode, const DirectRegime& regime) {
   Coverage coverage;
-  for (const DirectRegime& regime : DirectRegimes()) {
-    const JudgedRays judged = JudgedRaysOf(regime, medium, 50001, 100);
-    for (std::size_t i = 0; i < judged.rays.size(); ++i) {
-      const EstimatedLight light = direct.Estimate(judged.rays[i], mode);
-      const double error = ErrorOfRay(direct, light.scattered, judged.rays[i], judged.light[i]);
-      coverage.held += error <= light.error ? 1 : 0;
-      ++coverage.rays;
-    }
+  const JudgedRays judged = JudgedRaysOf(regime, direct.reference().medium(), 50001, 100);
+  for (std::size_t i = 0; i < judged.rays.size(); ++i) {
+    const EstimatedLight light = direct.Estimate(judged.rays[i], mode);
+    const double error = ErrorOfRay(direct, light.scattered, judged.rays[i], judged.light[i]);
+    coverage.held += error <= light.error ? 1 : 0;
+    ++coverage.rays;
   }
   return coverage;
 }
 
 TEST(DirectScattering, EstimateHoldsForNineteenOfTwentyRays) {
   for (const std::string& preset : MediumPresetNames()) {
+    const DirectScattering direct(MediumPreset(preset));
     for (const DirectMode mode : kModes) {
-      EXPECT_GE(CoverageOf(MediumPreset(preset), mode).Share(), 0.95)
-          << preset << ", mode " << static_cast<int>(mode);
+      Coverage all;
+      for (const DirectRegime& regime : DirectRegimes()) {
+        const Coverage coverage = CoverageOf(direct, mode, regime);
+        all.held += coverage.held;
+        all.rays += coverage.rays;
+      }
+      EXPECT_GE(all.Share(), 0.95) << preset << ", mode " << static_cast<int>(mode);
     }
   }
 }
@@ -163,6 +166,26 @@ TEST(DirectScattering, EdgeRaysAreWithinTenPercent) {
     const auto truth = fine.Inscatter(fine.Scatter(fine.Sample(ray, {.nodes = 24})), ray.nu);
     for (const DirectMode mode : kModes)
       EXPECT_LT(ErrorOfRay(direct, direct.Scatter(ray, mode), ray, truth), 0.1) << i;
+  }
+}
+
+Medium OnPlanetOf(Medium medium, double radius_m) {
+  medium.planet_radius_m = radius_m;
+  return medium;
+}
+
+// The smallest planets that a medium may have, and one larger than Jupiter.
+TEST(DirectScattering, EstimateHoldsOnPlanetsOfAnySize) {
+  for (const Medium& medium :
+       {OnPlanetOf(MediumPreset("bruneton2017"), 200e3), OnPlanetOf(MediumPreset("earth"), 223e3),
+        OnPlanetOf(MediumPreset("mars"), 280e3), OnPlanetOf(MediumPreset("earth"), 8e7)}) {
+    const DirectScattering direct(medium);
+    const DirectRegime day{"day", [](int i, const Medium&) {
+                             return RayFromAngles(10e3 * Halton(i, 2), 89.0 * Halton(i, 3),
+                                                  180.0 * Halton(i, 5), 85.0 * Halton(i, 7));
+                           }};
+    EXPECT_GE(CoverageOf(direct, DirectMode::kNormal, day).Share(), 0.95)
+        << medium.name << ", " << medium.planet_radius_m;
   }
 }
 
