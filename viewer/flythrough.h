@@ -44,8 +44,8 @@ struct FlythroughSettings {
   /// Pictures are painted in parts of at most so many pixels a side; nothing: in one piece as far as
   /// OpenGL draws them.
   std::optional<int> largest_part = {};
-  ExposureRule exposure = {};                  // metered, eye or fixed
-  Look look = {};                              // without local exposure and night vision
+  ExposureRule exposure = {};  // metered, eye or fixed
+  Look look = {};              // without local exposure and night vision
   FirstAir first_air = {};  // solved beside the making of a window, the first frame is sooner there
 };
 

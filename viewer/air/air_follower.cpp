@@ -107,29 +107,26 @@ bool AirFollower::Asks(const Request& wanted) const {
   return wanted.view == last_view_ || change > kMostChange;
 }
 
-void AirFollower::Follow(const AirView& view) {
+void AirFollower::Follow(const AirView& view, double seconds) {
   TakeFinished();
   RefineDraft();
-  const Request wanted = Wanted(Ahead(view));
+  const Request wanted = Wanted(Ahead(view, seconds));
   if (Asks(wanted)) {
     asked_ = wanted;
     maker_.Ask(wanted);
   }
   last_view_ = view;
-  last_follow_ = Clock::now();
   if (AirChange(eye_, EyeOf(view)) > kJump) ShowSmall(view);
   textures_.SetView(view.altitude_m, view.sun);
 }
 
 // Where a sun that runs will stand in the middle of the time for which tables that are asked for now are shown.
-AirView AirFollower::Ahead(const AirView& view) const {
+AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   constexpr double kLongestFrame_s = 0.2, kShown = 1.2;
-  const double frame_s = std::chrono::duration<double>(Clock::now() - last_follow_).count();
-  if (view.sun == last_view_.sun || frame_s > kLongestFrame_s ||
-      AirChange(EyeOf(last_view_), EyeOf(view)) > kJump)
-    return view;
+  const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.sun != last_view_.sun;
+  if (!runs || AirChange(EyeOf(last_view_), EyeOf(view)) > kJump) return view;
   AirView ahead = view;
-  const double frames = kShown * (making_s_ + frame_s) / frame_s;
+  const double frames = kShown * (making_s_ + seconds) / seconds;
   ahead.sun = glm::normalize(view.sun + frames * (view.sun - last_view_.sun));
   return ahead;
 }

@@ -44,8 +44,9 @@ class AirFollower {
 
   /// Once a frame, before drawing: shows what is ready and asks for what is missing. Does not wait for
   /// that; after a jump in time or place, of which AirChange says over a tenth, it makes small tables in
-  /// some milliseconds.
-  void Follow(const AirView& view);
+  /// some milliseconds. While a sun runs, tables are made for where it will stand when they are shown.
+  /// @param seconds  since the last call; 0: nothing runs.
+  void Follow(const AirView& view, double seconds = 0.0);
   /// The same, but what Follow would show in the end is there when it returns: for pictures that
   /// are kept.
   void Settle(const AirView& view);
@@ -79,7 +80,7 @@ class AirFollower {
   [[nodiscard]] static Made Make(const Request& request);
   void Show(const Made& made);
   void ShowSmall(const AirView& view);
-  [[nodiscard]] AirView Ahead(const AirView& view) const;
+  [[nodiscard]] AirView Ahead(const AirView& view, double seconds) const;
   void TakeFinished();
   void RefineDraft();
   [[nodiscard]] Request Wanted(const AirView& view) const;
@@ -93,7 +94,6 @@ class AirFollower {
   AirEye eye_;
   std::optional<Request> asked_;  // last
   AirView last_view_;
-  Clock::time_point last_follow_{};
   double making_s_ = 0.0;
   Clock::time_point rests_until_{}, replaced_at_{};
   LatestJob<Solve, std::shared_ptr<const SolvedAir>> solver_;

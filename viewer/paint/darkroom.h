@@ -17,7 +17,9 @@ namespace alpenglow {
 
 class Darkroom {
  public:
-  explicit Darkroom(const Look& look) : developer_(look) {}
+  explicit Darkroom(const Look& look,
+                    Developer::FirstPictures first = Developer::FirstPictures::kWait)
+      : developer_(look, first) {}
 
   [[nodiscard]] Developer& developer() { return developer_; }
   [[nodiscard]] const Developer& developer() const { return developer_; }

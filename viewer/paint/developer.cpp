@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -26,10 +27,13 @@ ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   return program;
 }
 
-void Upload(const ToneTable& table) {
-  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, ToneTable::kSide, ToneTable::kSide, ToneTable::kSide,
-               0, GL_RGB, GL_FLOAT, table.codes().data());
+void Upload(const GlTexture& texture, const ToneTable& table) {
+  glActiveTexture(GL_TEXTURE0 + kTable);
+  glBindTexture(GL_TEXTURE_3D, texture.id());
+  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, table.side(), table.side(), table.side(), 0, GL_RGB,
+               GL_FLOAT, table.codes().data());
   ClampAndFilter(GL_TEXTURE_3D, true);
+  CheckGl("Developer");
 }
 
 }  // namespace
@@ -41,24 +45,35 @@ std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers) {
   return WithViewerPieces(std::move(texts), {"viewer/shaders/dither_tile.glsl"});
 }
 
-Developer::Developer(const Look& look)
+Developer::Developer(const Look& look, FirstPictures first)
     : look_(look),
       program_(ProgramOf(look.curve, true)),
-      small_program_(ProgramOf(look.curve, false)) {
-  MakeTable();
+      small_program_(ProgramOf(look.curve, false)),
+      first_(first) {
+  if (first_ == FirstPictures::kWait) MakeTable();
 }
 
-void Developer::MakeTable() {
+void Developer::MakeTable() const {
+  is_asked_ = true;
   coming_ = std::async(std::launch::async, [look = look_.agx] { return ToneTable(look); });
 }
 
+void Developer::UploadDraft() const {
+  constexpr int kSide = 24;
+  Upload(table_, ToneTable(look_.agx, kSide));
+}
+
+// The table takes half a second of both processors, which a first frame needs itself.
 void Developer::TakeTable() const {
+  if (!is_asked_) {
+    UploadDraft();
+    return MakeTable();
+  }
   if (!coming_.valid()) return;
-  const ToneTable table = coming_.get();
-  glActiveTexture(GL_TEXTURE0 + kTable);
-  glBindTexture(GL_TEXTURE_3D, table_.id());
-  Upload(table);
-  CheckGl("Developer");
+  if (first_ == FirstPictures::kDraft &&
+      coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  Upload(table_, coming_.get());
 }
 
 void Developer::Use(const Look& look) {
@@ -67,7 +82,9 @@ void Developer::Use(const Look& look) {
     program_ = ProgramOf(look.curve, true);
     small_program_ = ProgramOf(look.curve, false);
   }
-  if (look.agx != before.agx) MakeTable();
+  if (look.agx == before.agx) return;
+  is_asked_ = false;
+  if (first_ == FirstPictures::kWait) MakeTable();
 }
 
 void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,

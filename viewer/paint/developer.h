@@ -20,9 +20,12 @@ namespace alpenglow {
 /// exposure and night vision are left out.
 class Developer {
  public:
-  /// The table of the look is made beside; the first picture waits for it.
+  /// What is shown of a look whose table is still being made: nothing, so that every picture is exact, or a
+  /// picture by a coarse table at once, up to 9 codes off.
+  enum class FirstPictures { kWait, kDraft };
+  /// The table of the look is made beside drawing.
   /// @param look  settled (look.h), here and below.
-  explicit Developer(const Look& look);
+  explicit Developer(const Look& look, FirstPictures first = FirstPictures::kWait);
 
   /// Takes another look; what it has in common with the one in use costs nothing.
   void Use(const Look& look);
@@ -45,8 +48,9 @@ class Developer {
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
  private:
-  void MakeTable();
+  void MakeTable() const;
   void TakeTable() const;
+  void UploadDraft() const;
   void Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
             const Screen& screen, const PassArea& area) const;
 
@@ -54,6 +58,8 @@ class Developer {
   ShaderProgram program_, small_program_;
   PassArea whole_;
   GlTexture table_;
+  FirstPictures first_;
+  mutable bool is_asked_ = false;          // whether the table of the look is there or coming
   mutable std::future<ToneTable> coming_;  // the table, until it is first used
   DitherTexture dither_;
 };

@@ -52,9 +52,7 @@ AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
 
 }  // namespace
 
-FirstAir DraftOfAir(const Scene& scene) {
-  return SolveAir(MediumAt(scene), AirSolution::kDraft);
-}
+FirstAir DraftOfAir(const Scene& scene) { return SolveAir(MediumAt(scene), AirSolution::kDraft); }
 
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
                            const PaintSizes& sizes, FirstAir first_air)
@@ -134,9 +132,10 @@ void PaintedScene::TakeSkyByPixel() {
   }
 }
 
-void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
+void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace,
+                             double seconds) {
   const auto keep_up = [&](AirFollower& air, const AirView& seen) {
-    pace == Pace::kFollow ? air.Follow(seen) : air.Settle(seen);
+    pace == Pace::kFollow ? air.Follow(seen, seconds) : air.Settle(seen);
   };
   const KeyLight* moon = OfSource(lights, LightSource::kMoon);
   if (const KeyLight* sun = OfSource(lights, LightSource::kSun))
@@ -209,7 +208,7 @@ void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights,
 void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
   std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
   const SunPosition& casting = lights.key.disk;
-  KeepUpAir(view, lights, Pace::kFollow);
+  KeepUpAir(view, lights, Pace::kFollow, seconds);
   land_->Update(view.eye.place, LandViewOf(view), seconds);
   awaits_land_ = awaits_land_ && !land_->HasCome();
   TakeHeights();
@@ -222,7 +221,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
 }
 
 void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, int samples) {
-  KeepUpAir(view, lights, Pace::kSettle);
+  KeepUpAir(view, lights, Pace::kSettle, 0.0);
   land_->Settle(view.eye.place, LandViewOf(view, samples));
   TakeHeights();
   if (ground_.Settle(air_.air(), GroundViewOf(view, lights))) {

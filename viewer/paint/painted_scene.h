@@ -112,7 +112,7 @@ class PaintedScene {
  private:
   /// Followers keep up (Update) or wait until they have (Settle).
   enum class Pace { kFollow, kSettle };
-  void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace);
+  void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
   /// The open sky's light on slopes, and what it was made for.
   struct OpenSkyOf {
     std::shared_ptr<const SolvedAir> air;

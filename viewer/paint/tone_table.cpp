@@ -11,8 +11,8 @@
 namespace alpenglow {
 namespace {
 
-std::array<float, ToneTable::kSide> Nodes() {
-  std::array<float, ToneTable::kSide> nodes{};
+std::vector<float> Nodes(int side) {
+  std::vector<float> nodes(static_cast<std::size_t>(side));
   constexpr double kRange = ToneTable::kHighestStop - ToneTable::kLowestStop;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(nodes.size() - 1);
@@ -23,9 +23,9 @@ std::array<float, ToneTable::kSide> Nodes() {
 
 }  // namespace
 
-ToneTable::ToneTable(AgxLook look) {
-  const auto nodes = Nodes();
-  codes_.resize(std::size_t{kSide} * kSide * kSide);
+ToneTable::ToneTable(AgxLook look, int side) : side_(side) {
+  const std::vector<float> nodes = Nodes(side);
+  codes_.resize(nodes.size() * nodes.size() * nodes.size());
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t blue) {
     auto code = codes_.begin() + static_cast<std::ptrdiff_t>(blue * nodes.size() * nodes.size());
     for (const float green : nodes) {

@@ -24,12 +24,15 @@ class ToneTable {
   static constexpr double kLowestStop = -13.5;
   static constexpr double kHighestStop = 5.0;
 
-  explicit ToneTable(AgxLook look);
+  /// @param side  nodes a channel, >= 2; the stated errors are those of kSide.
+  explicit ToneTable(AgxLook look, int side = kSide);
 
-  /// kSide^3 codes in [0, 1], red fastest.
+  [[nodiscard]] int side() const { return side_; }
+  /// side()^3 codes in [0, 1], red fastest.
   [[nodiscard]] const std::vector<std::array<float, 3>>& codes() const { return codes_; }
 
  private:
+  int side_;
   std::vector<std::array<float, 3>> codes_;
 };
 

@@ -62,6 +62,19 @@ TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
   EXPECT_EQ(follower.eye().altitude_m, 1000.0);
 }
 
+TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 3.0));
+  follower.Settle(ViewAt(2.0, 3.0));
+  const AirView now = ViewAt(2.0, 2.95);
+  follower.Follow(now, 0.04);  // asks
+  const double made_mu_s = follower.eye().mu_s;
+  for (int i = 0; i < 2000 && follower.eye().mu_s == made_mu_s; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    follower.Follow(now, 0.04);
+  }
+  EXPECT_LT(follower.eye().mu_s, now.sun.z) << "lower, for the sun sinks";
+}
+
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
   follower.Follow(ViewAt(500.0, 20.0));

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <thread>
 
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/paint/exposure_meter.h"
@@ -58,6 +60,32 @@ TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
     EXPECT_LT(off_by_one, kFrameWidth * kFrameHeight * 3 / 10)
         << "a code falls to the other side as often as the tone table is off, by 0.06 of a code";
   }
+}
+
+TEST_F(DeveloperTest, ADraftIsAFewCodesOffAndThenExact) {
+  const Image image = Colours();
+  const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  const DisplayImage judge = Develop(image, ev100, ToneCurve::kAgx);
+  const Developer developer(Look{}, Developer::FirstPictures::kDraft);
+  const auto most_off = [&] {
+    developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    const Image codes = screen.Read();
+    int most = 0;
+    for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
+      const int code = static_cast<int>(std::lround(codes.rgb[i / 3][i % 3] * 255.0F));
+      most = std::max(most, std::abs(code - judge.rgb[i]));
+    }
+    return most;
+  };
+  const int draft = most_off();
+  EXPECT_LE(draft, 9);
+  EXPECT_GT(draft, 1) << "or no draft is needed";
+  for (int i = 0; i < 6000 && most_off() > 1; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_LE(most_off(), 1);
 }
 
 TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
