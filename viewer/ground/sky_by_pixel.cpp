@@ -34,10 +34,10 @@ void UploadIntegrals(const GlTexture& texture, const OpenSky::Tables& tables) {
                     &texels[((row * 2 + part) * kNodes + node) * kFour]);
     }
   }
-  glBindTexture(GL_TEXTURE_3D, texture.id());
-  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, static_cast<GLsizei>(kNodes), 2 * kAzimuths,
+  glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, static_cast<GLsizei>(kNodes), 2 * kAzimuths,
                static_cast<GLsizei>(OpenSky::kLevels), 0, GL_RGBA, GL_FLOAT, texels.data());
-  Clamp(GL_TEXTURE_3D);
+  Clamp(GL_TEXTURE_2D_ARRAY);
 }
 
 void UploadLevels(const GlTexture& texture, const OpenSky::Tables& tables) {
@@ -48,22 +48,34 @@ void UploadLevels(const GlTexture& texture, const OpenSky::Tables& tables) {
   ClampAndFilter(GL_TEXTURE_2D, true);
 }
 
+// The largest light of a slope, by band: half floats keep what is some ten thousand times less.
+glm::vec4 UnitOf(const SlopeLight& slopes) {
+  glm::vec4 most(1e-30F);
+  for (std::size_t i = 0; i < slopes.light().size(); ++i) {
+    float& of_band = most[static_cast<glm::length_t>(i % kFour)];
+    of_band = std::max(of_band, slopes.light()[i]);
+  }
+  return most;
+}
+
 // Layers of azimuths, and after them those of the weights.
-void UploadSlopes(const GlTexture& texture, const SlopeLight& slopes) {
+void UploadSlopes(const GlTexture& texture, const SlopeLight& slopes, const glm::vec4& unit) {
   const SlopeViews& views = slopes.views();
   const std::size_t nodes = views.places().size();
   std::vector<float> texels(nodes * (kHorizonAzimuths + kWeightLayers) * kFour);
   for (std::size_t node = 0; node < nodes; ++node) {
     for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
-      std::copy_n(&slopes.light()[(node * kHorizonAzimuths + azimuth) * kFour], kFour,
-                  &texels[(azimuth * nodes + node) * kFour]);
+      for (std::size_t band = 0; band < kFour; ++band)
+        texels[(azimuth * nodes + node) * kFour + band] =
+            slopes.light()[(node * kHorizonAzimuths + azimuth) * kFour + band] /
+            unit[static_cast<glm::length_t>(band)];
       texels[((kHorizonAzimuths + azimuth / kFour) * nodes + node) * kFour + azimuth % kFour] =
           views.Weight(node, azimuth);
     }
   }
   const HeightRaster& grid = views.heights();
   glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, grid.columns, grid.rows,
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, grid.columns, grid.rows,
                static_cast<GLsizei>(kHorizonAzimuths + kWeightLayers), 0, GL_RGBA, GL_FLOAT,
                texels.data());
   Clamp(GL_TEXTURE_2D_ARRAY);
@@ -90,7 +102,7 @@ void SkyByPixel::UploadHorizons(const TerrainHorizons& horizons) {
 void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky) {
   std::optional<OfSource>& of = of_source_[IndexOf(source)];
   if (of && of->sky.sky == sky.sky) return;
-  of = OfSource{sky, {}, {}, {}};
+  of = OfSource{sky, {}, {}, {}, {}};
   const TerrainLight& light = *sky.sky->lighting().on_terrain;
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   if (const auto horizons = sky.sky->site().horizons(); horizons_ != horizons) {
@@ -99,7 +111,8 @@ void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky)
   }
   UploadIntegrals(of->integrals, light.sky().tables());
   UploadLevels(of->level_irradiance, light.sky().tables());
-  UploadSlopes(of->slopes, *light.slopes());
+  of->slope_unit = UnitOf(*light.slopes());
+  UploadSlopes(of->slopes, *light.slopes(), of->slope_unit);
 }
 
 SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
@@ -110,7 +123,7 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
   const PlaceOnGrid horizon = PlaceOnGridOf(horizons_->map().grid(), site, eye);
   const PlaceOnGrid slope = PlaceOnGridOf(horizons_->views().heights(), site, eye);
   const std::array<float, 4> light_now = now.On(1.0, 0.0), light_then = of.sky.open.On(1.0, 0.0);
-  SkyByPixelBlock block{horizon.u, horizon.v, slope.u, slope.v, glm::vec4(0.0F), glm::vec4(0.0F)};
+  SkyByPixelBlock block{horizon.u, horizon.v, slope.u, slope.v, {}, {}, of.slope_unit};
   for (glm::length_t band = 0; band < 4; ++band) {
     const auto i = static_cast<std::size_t>(band);
     block.sky_moment[band] = light_then[i] > 0.0F ? light_now[i] / light_then[i] : 0.0F;
@@ -134,7 +147,7 @@ void SkyByPixel::Bind(const ShaderProgram& program, int first_unit, LightSource 
   };
   int unit = first_unit;
   for (const Slot& slot : {Slot{"horizons_around", GL_TEXTURE_2D_ARRAY, &horizon_texture_},
-                           Slot{"sky_integrals", GL_TEXTURE_3D, &of.integrals},
+                           Slot{"sky_integrals", GL_TEXTURE_2D_ARRAY, &of.integrals},
                            Slot{"level_irradiance", GL_TEXTURE_2D, &of.level_irradiance},
                            Slot{"light_of_slopes", GL_TEXTURE_2D_ARRAY, &of.slopes}}) {
     program.BindSampler(slot.sampler, unit);

@@ -3,7 +3,7 @@
 // graphics card, where shaders/sky_by_pixel.glsl works that light out for every pixel. Light that vertices have
 // and triangles interpolate is up to 10 % off at dusk, where a horizon hides the glow (tests/bench/README.md).
 //
-// A pixel reads 56 texels a source: this is for the high quality alone.
+// A pixel reads 56 texels a source, of half floats: this is for the high quality alone.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ namespace alpenglow {
 
 /// `block SkyByPixel` of sky_by_pixel.glsl.
 struct SkyByPixelBlock {
-  glm::vec4 horizon_u, horizon_v, slope_u, slope_v, sky_moment, sky_place;
+  glm::vec4 horizon_u, horizon_v, slope_u, slope_v, sky_moment, sky_place, slope_unit;
 };
-static_assert(sizeof(SkyByPixelBlock) == 6 * sizeof(glm::vec4));
+static_assert(sizeof(SkyByPixelBlock) == 7 * sizeof(glm::vec4));
 
 class SkyByPixel {
  public:
@@ -48,6 +48,7 @@ class SkyByPixel {
   struct OfSource {
     GroundFollower::SkyOfSource sky;
     GlTexture integrals, level_irradiance, slopes;
+    glm::vec4 slope_unit{1.0F};
   };
   void UploadHorizons(const TerrainHorizons& horizons);
 

@@ -11,10 +11,11 @@ layout(std140) uniform SkyByPixel {
   vec4 sky_moment;  // the open sky's light of this moment over that of the tables, by band
   vec4 sky_place;   // altitude [km] to the tables' levels and zenith cosine of the sun to their suns: what is
                     // added before the one and the other are multiplied, in turn
+  vec4 slope_unit;  // what the light of slopes is stored in
 };
 
 uniform sampler2DArray horizons_around;  // four azimuths a layer: SKY_LOWEST, 0, to 1, 1
-uniform sampler3D sky_integrals;         // node; A and B of an azimuth; level
+uniform sampler2DArray sky_integrals;    // node; A and B of an azimuth; level
 uniform sampler2D level_irradiance;      // sun; level
 uniform sampler2DArray light_of_slopes;  // an azimuth each; then what it is weighed with, four a layer
 
@@ -57,7 +58,8 @@ vec4 SkyAtPixel(GroundPlace at, vec3 point, vec3 normal) {
   vec4 place = vec4(point, 1.0);
   vec2 horizon_place = vec2(dot(horizon_u, place), dot(horizon_v, place));
   vec2 slope_place = vec2(dot(slope_u, place), dot(slope_v, place));
-  float level = AmongNodes((at.altitude + sky_place.x) * sky_place.y, SKY_LEVELS);
+  float altitude = clamp((at.altitude + sky_place.x) * sky_place.y, 0.0, 1.0);
+  float nearest_level = floor(altitude * (SKY_LEVELS - 1.0) + 0.5);
   float sun_node = AmongNodes((dot(at.up, sun.xyz) + sky_place.z) * sky_place.w, SKY_SUNS);
   float up = dot(normal, at.up);
   vec2 aside = normal.xy - up * at.up.xy;
@@ -71,11 +73,11 @@ vec4 SkyAtPixel(GroundPlace at, vec3 point, vec3 normal) {
     vec4 weights =
         textureLod(light_of_slopes, vec3(slope_place, float(SKY_AZIMUTHS + layer)), 0.0);
     for (int i = 0; i < 4; ++i) {
-      AddAzimuth(sum, 4 * layer + i, up, dot(towards, aside), sines[i], level, slope_place,
+      AddAzimuth(sum, 4 * layer + i, up, dot(towards, aside), sines[i], nearest_level, slope_place,
                  weights[i]);
       towards = turn * towards;
     }
   }
-  vec4 open = textureLod(level_irradiance, vec2(sun_node, level), 0.0);
-  return sector * sky_moment * (open * max(sum.sky, vec4(0.0)) + sum.slopes);
+  vec4 open = textureLod(level_irradiance, vec2(sun_node, AmongNodes(altitude, SKY_LEVELS)), 0.0);
+  return sector * sky_moment * (open * max(sum.sky, vec4(0.0)) + slope_unit * sum.slopes);
 }

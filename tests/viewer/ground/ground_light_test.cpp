@@ -277,7 +277,7 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :
-       {"horizon_u", "horizon_v", "slope_u", "slope_v", "sky_moment", "sky_place"})
+       {"horizon_u", "horizon_v", "slope_u", "slope_v", "sky_moment", "sky_place", "slope_unit"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
   for (const char* name :
