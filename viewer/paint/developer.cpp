@@ -63,12 +63,11 @@ void Developer::UploadDraft() const {
   Upload(table_, ToneTable(look_.agx, kSide));
 }
 
-// The table takes half a second of both processors, which a first frame needs itself.
+// The table takes half a second of both processors, which a first frame needs itself: it is asked for in the
+// second.
 void Developer::TakeTable() const {
-  if (!is_asked_) {
-    UploadDraft();
-    return MakeTable();
-  }
+  if (!is_asked_ && !std::exchange(has_draft_, true)) return UploadDraft();
+  if (!is_asked_) return MakeTable();
   if (!coming_.valid()) return;
   if (first_ == FirstPictures::kDraft &&
       coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
@@ -83,7 +82,7 @@ void Developer::Use(const Look& look) {
     small_program_ = ProgramOf(look.curve, false);
   }
   if (look.agx == before.agx) return;
-  is_asked_ = false;
+  is_asked_ = has_draft_ = false;
   if (first_ == FirstPictures::kWait) MakeTable();
 }
 

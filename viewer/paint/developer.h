@@ -59,7 +59,8 @@ class Developer {
   PassArea whole_;
   GlTexture table_;
   FirstPictures first_;
-  mutable bool is_asked_ = false;          // whether the table of the look is there or coming
+  mutable bool has_draft_ = false;         // of the look
+  mutable bool is_asked_ = false;          // whether its table is there or coming
   mutable std::future<ToneTable> coming_;  // the table, until it is first used
   DitherTexture dither_;
 };
