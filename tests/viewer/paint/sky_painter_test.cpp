@@ -147,9 +147,7 @@ TEST_F(SkyPainterTest, WhereSunAndMoonBothCountTheRangeIsLitByBoth) {
   const ParityView first = ViewNamed("dusk, moon, -6.8");
   BothPrograms both(first.scene, first.instant);
   const char* why =
-      "noise of thirty-two rays a pixel on rough ground under a moon 13 degrees up; in small "
-      "pictures "
-      "there are fewer of them";
+      "noise of thirty-two rays a pixel, fewer in small pictures, on moonlit rough ground";
   std::vector<std::pair<const char*, Bounds>> views{{"dusk, moon, -10", {0.0019, 0.029}},
                                                     {"dusk, moon, -8.4", {0.0017, 0.015}},
                                                     {"dusk, moon, -6.8", {0.0015, 0.014}}};
