@@ -120,7 +120,8 @@ void AirFollower::Follow(const AirView& view, double seconds) {
   textures_.SetView(view.altitude_m, view.sun);
 }
 
-// Where a sun that runs will stand in the middle of the time for which tables that are asked for now are shown.
+// The view under the sun of the moment in the middle of the time for which tables that are asked for now will be
+// shown.
 AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   constexpr double kLongestFrame_s = 0.2, kShown = 1.2;
   const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.sun != last_view_.sun;

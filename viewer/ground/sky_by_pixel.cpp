@@ -58,7 +58,7 @@ glm::vec4 UnitOf(const SlopeLight& slopes) {
   return most;
 }
 
-// Layers of azimuths, and after them those of the weights.
+// The layers of azimuths come first, those of the weights after them.
 void UploadSlopes(const GlTexture& texture, const SlopeLight& slopes, const glm::vec4& unit) {
   const SlopeViews& views = slopes.views();
   const std::size_t nodes = views.places().size();

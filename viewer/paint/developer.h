@@ -20,8 +20,8 @@ namespace alpenglow {
 /// exposure and night vision are left out.
 class Developer {
  public:
-  /// What is shown of a look whose table is still being made: nothing, so that every picture is exact, or a
-  /// picture by a coarse table at once, up to 9 codes off.
+  /// A picture that is developed before the table of its look is ready waits for it (kWait), so that it is exact, or
+  /// is shown by a coarse table at once, up to 9 codes off (kDraft).
   enum class FirstPictures { kWait, kDraft };
   /// The table of the look is made beside drawing.
   /// @param look  settled (look.h), here and below.

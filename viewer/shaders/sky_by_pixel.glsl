@@ -26,12 +26,12 @@ float DiskAreaBetween(float low, float high) {
   return 0.5 * (high - low) * (sqrt(max(1.0 - a * a, 0.0)) + sqrt(max(1.0 - b * b, 0.0)));
 }
 
-// Coordinate of the texels' middles, from 0, the first, to 1, the last of n.
+// The texture coordinate of a place among n nodes: 0 is the middle of the first texel, 1 of the last.
 float AmongNodes(float share, float n) {
   return (0.5 + clamp(share, 0.0, 1.0) * (n - 1.0)) / n;
 }
 
-// A surface, and the light that has been summed up for it.
+// The light that has been summed up for a surface.
 struct SkySum {
   vec4 sky, slopes;
 };
