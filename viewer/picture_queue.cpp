@@ -27,6 +27,12 @@ void GiveWayToTheWindow() {
 #endif
 }
 
+// Pictures that are kept have all of the air and exact tables from the first on.
+FlythroughSettings WithoutDrafts(FlythroughSettings settings) {
+  settings.first_air = {};
+  return settings;
+}
+
 }  // namespace
 
 /// A flight to be painted, in a context of its own.
@@ -37,7 +43,7 @@ struct PictureQueue::SecondFlight {
 
 PictureQueue::PictureQueue(const Scene& scene, const FlythroughSettings& settings)
     : scene_(scene),
-      settings_(settings),
+      settings_(WithoutDrafts(settings)),
       thread_([this](const std::stop_token& stop) { Run(stop); }) {}
 
 PictureQueue::~PictureQueue() {

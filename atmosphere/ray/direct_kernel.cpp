@@ -68,7 +68,7 @@ void FillLanes(const DirectAir& air, const DirectRule& rule, const TwoPanels& pa
 template <typename T, std::size_t rows>
 using LightLanes = std::array<std::array<std::array<T, kFour>, rows>, kMaxBands / kFour>;
 
-/// What the light of a group is summed from.
+/// The factors that the light of a group is summed from.
 template <std::size_t count, std::size_t rows>
 struct LitLanes {
   using T = LaneVector<count>;

@@ -190,7 +190,7 @@ T OzoneAtPerigee(const DirectAir& air, const T& altitude) {
   return max(Polynomial<T>(air.ozone_fit.perigee, y), T(0.0F));
 }
 
-/// What light at the nodes of a vector depends on.
+/// The columns and densities that light at the nodes of a vector depends on.
 template <typename T>
 struct NodeAir {
   T rayleigh_density, mie_density;

@@ -54,7 +54,7 @@ void FindEnd(const DirectAir& air, double length_m, Entry& entry) {
   entry.end = RayEnd::kLength;
 }
 
-// The same formulas as PlanetShadow, in double precision.
+// The formulas are those of PlanetShadow, here in double precision.
 Dark DarkOf(const DirectAir& air, const Entry& entry) {
   const double height = (air.radius + entry.altitude) * entry.mu_s;
   if (height > 0.0 && height + entry.length * entry.nu > 0.0) return {};

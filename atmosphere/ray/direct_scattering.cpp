@@ -68,7 +68,7 @@ double ErrorOf(DirectMode mode, double least_error, double last_share) {
   return least_error + slope * last_share / (1.0 + bend * last_share);
 }
 
-// Whether set-up can place nodes on a ray without further checks; NaN is not.
+// Set-up can place nodes on a valid ray without further checks. A ray with NaN is not valid.
 bool IsValid(const ViewRay& ray, double planet_radius_m) {
   return std::abs(ray.mu) <= 1.0 && std::abs(ray.mu_s) <= 1.0 && std::abs(ray.nu) <= 1.0 &&
          ray.length_m >= 0.0 && ray.altitude_m >= -0.5 * planet_radius_m && ray.altitude_m <= 1e12;

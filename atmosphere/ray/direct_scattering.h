@@ -53,7 +53,7 @@ class DirectScattering {
   /// Direct sunlight scattered once along the ray.
   [[nodiscard]] ScatteredOnce<float> Scatter(const ViewRay& ray, DirectMode mode) const;
 
-  /// The same with an estimate of its error, for a seventh more time.
+  /// That light with an estimate of its error. The estimate takes a seventh more time.
   [[nodiscard]] EstimatedLight Estimate(const ViewRay& ray, DirectMode mode) const;
 
   /// The light of the first of fast, normal and reference() that keeps a relative error.

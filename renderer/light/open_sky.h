@@ -75,16 +75,16 @@ class OpenSky {
   static constexpr std::size_t kLevels = 16;
   static constexpr std::size_t kSuns = 9;
 
-  /// The tables that Irradiance reads, for other programs that read them. The floats live as long as the sky.
+  /// The tables that Irradiance reads, for other programs that read them. The floats live as long as
+  /// the sky; the number of bands is rounded up to a multiple of 4.
   struct Tables {
-    std::size_t stride;                       // of bands
     double lowest_m, highest_m;               // altitudes of the first level and the last
     double first_mu_s, mu_s_step;             // of the suns
     std::span<const float> level_irradiance;  // [level][sun][band]
     std::span<const float> integral;  // [level][azimuth][node][A, B][band], relative to that
   };
   [[nodiscard]] Tables tables() const {
-    return {stride_, lowest_m_, highest_m_, first_mu_s_, mu_s_step_, level_irradiance_, integral_};
+    return {lowest_m_, highest_m_, first_mu_s_, mu_s_step_, level_irradiance_, integral_};
   }
 
  private:

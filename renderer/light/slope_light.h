@@ -94,9 +94,9 @@ class SlopeLight {
                                    double horizon, const BandLight& beyond) const;
 
   [[nodiscard]] const SlopeViews& views() const { return views_; }
-  /// SlopeViews::Weight times radiance: [node][azimuth][band], bands in steps of stride().
+  /// SlopeViews::Weight times radiance: [node][azimuth][band], the number of bands rounded up to a
+  /// multiple of 4.
   [[nodiscard]] std::span<const float> light() const { return light_; }
-  [[nodiscard]] std::size_t stride() const { return stride_; }
 
  private:
   struct Neighbours;

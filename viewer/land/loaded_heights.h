@@ -43,7 +43,8 @@ class LoadedHeights {
   [[nodiscard]] std::optional<double> HeightUnder(double latitude_rad, double longitude_rad) const;
 
   /// What lies within `half_width_m` of a place, at most `most_samples` a side: every 2^k-th sample
-  /// of the lattice, binomial means; all of a lattice that has no more. NaN where nothing is loaded; nothing when no land is near.
+  /// of the lattice, binomial means; all of a lattice that has no more. NaN where nothing is loaded;
+  /// nothing when no land is near.
   [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
                                                          double half_width_m,
                                                          int most_samples) const;

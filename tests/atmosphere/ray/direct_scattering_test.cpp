@@ -234,7 +234,7 @@ void ExpectColumns(const ColumnSet<float>& found, const ColumnSet<double>& truth
   EXPECT_NEAR(static_cast<double>(found.ozone), truth.ozone, 1e-3 * truth.ozone + 0.6);
 }
 
-// Whether positions, weights and columns of samples are those of AirIntegrator at the same places.
+// True when positions, weights and columns of samples are those of AirIntegrator at the same places.
 void ExpectSamplesOf(const AirIntegrator<double>& fine, const ViewRay& ray,
                      const RaySamples<float>& samples) {
   if (samples.count == 0) return;  // the ray meets no air
