@@ -18,6 +18,12 @@ constexpr double kNearMiddle = 0.4;
 // moves by 5 m over level ground.
 constexpr double kSunMoves = 0.2;
 
+// Drawing has the processor for this many times as long as light took to make.
+constexpr double kRest = 4.0;
+// Light is there after the time that it takes to make, and is shown until other light is there: by what
+// then stands in the middle it is made.
+constexpr double kShown = 1.0 + 0.5 * (1.0 + kRest);
+
 // What was made higher up is kept until the eye is that much lower.
 constexpr double kLower = 1.25;
 
@@ -38,10 +44,25 @@ glm::dvec3 Direction(const SunPosition& sun) {
   return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
 }
 
+double AngleBetween(const SunPosition& a, const SunPosition& b) {
+  return std::acos(std::clamp(glm::dot(Direction(a), Direction(b)), -1.0, 1.0));
+}
+
 bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
-  const double turned =
-      std::acos(std::clamp(glm::dot(Direction(asked), Direction(wanted)), -1.0, 1.0));
-  return turned < kSunMoves * wanted.angular_radius_rad;
+  return AngleBetween(asked, wanted) < kSunMoves * wanted.angular_radius_rad;
+}
+
+// Whether time jumped: in a frame the sun moves by a tenth of this where time runs a thousand times as fast.
+bool IsAJump(const GroundFollower::View& before, const GroundFollower::View& now) {
+  constexpr double kLargestStep_rad = 1.0 * kRadiansPerDegree;
+  return before.casts != now.casts || AngleBetween(before.by, now.by) > kLargestStep_rad;
+}
+
+SunPosition After(double steps, const SunPosition& before, const SunPosition& now) {
+  SunPosition after = now;
+  after.elevation_rad += steps * (now.elevation_rad - before.elevation_rad);
+  after.azimuth_rad += steps * std::remainder(now.azimuth_rad - before.azimuth_rad, 2.0 * kPi);
+  return after;
 }
 
 double OpenAltitude_m(const GroundSite& site) {
@@ -93,6 +114,7 @@ class GroundFollower::Maker {
       : cover_(std::move(cover)), drape_(std::move(drape)), extent_(extent) {}
 
   Made Make(const Request& request) {
+    const std::shared_ptr<const GroundSite> site = SiteFor(request);
     const auto begin = std::chrono::steady_clock::now();
     const View& view = request.view;
     Made made;
@@ -101,7 +123,7 @@ class GroundFollower::Maker {
     made.sea_mirrors[IndexOf(view.casts)] = MirrorFor(request, view.by);
     if (view.other)
       made.sea_mirrors[IndexOf(OtherThan(view.casts))] = MirrorFor(request, *view.other);
-    if (const std::shared_ptr<const GroundSite> site = SiteFor(request)) {
+    if (site) {
       made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
       made.open_altitude_m = OpenAltitude_m(*site);
       made.open = OpenSkyUnder(*site, view.by);
@@ -222,7 +244,6 @@ bool GroundFollower::Take() {
   std::optional<Made> made = maker_.Take();
   if (!made || made->land != land_) return false;
   made_ = std::move(*made);
-  constexpr double kRest = 4.0;
   rests_until_ = std::chrono::steady_clock::now() +
                  std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                      std::chrono::duration<double>(kRest * made_.making_s));
@@ -236,10 +257,31 @@ bool GroundFollower::Ask(const Request& wanted) {
   return true;
 }
 
-bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view) {
+GroundFollower::View Ahead(const GroundFollower::View& before, const GroundFollower::View& now,
+                           double steps) {
+  constexpr double kFarthest_rad = 10.0 * kRadiansPerDegree;
+  const double step_rad = AngleBetween(before.by, now.by);
+  if (step_rad == 0.0 || IsAJump(before, now)) return now;
+  const double taken = std::min(steps, kFarthest_rad / step_rad);
+  GroundFollower::View ahead = now;
+  ahead.by = After(taken, before.by, now.by);
+  if (now.other && before.other) ahead.other = After(taken, *before.other, *now.other);
+  return ahead;
+}
+
+GroundFollower::View GroundFollower::WhenShown(const View& view, double seconds) const {
+  constexpr double kLongestFrame_s = 0.2;
+  const bool runs = last_view_ && seconds > 0.0 && seconds < kLongestFrame_s;
+  return runs ? Ahead(*last_view_, view, kShown * made_.making_s / seconds) : view;
+}
+
+bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view,
+                            double seconds) {
   const bool is_new = Take();
+  if (last_view_ && IsAJump(*last_view_, view)) rests_until_ = {};
   const bool rests = made_.lit && std::chrono::steady_clock::now() < rests_until_;
-  if (!maker_.Busy() && !rests) Ask({air, ground_, view, land_});
+  if (!maker_.Busy() && !rests) Ask({air, ground_, WhenShown(view, seconds), land_});
+  last_view_ = view;
   return is_new;
 }
 
@@ -260,7 +302,9 @@ std::optional<GroundFollower::SkyOfSource> GroundFollower::SkyOf(LightSource sou
 
 std::optional<LightOfVertices> GroundFollower::Light() const {
   if (!made_.lit) return std::nullopt;
-  return [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
+  const Vector<Ecef> to_disk =
+      made_.lit->site().ground().frame.EcefFromEnu(Vector<Enu>{made_.lit->lighting().to_sun});
+  const auto at = [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());
     for (const GroundVertex& vertex : VerticesIn(made.lit->site(), anchor, vertices)) {
@@ -274,6 +318,7 @@ std::optional<LightOfVertices> GroundFollower::Light() const {
     }
     return light;
   };
+  return LightOfVertices{at, to_disk};
 }
 
 }  // namespace alpenglow

@@ -51,9 +51,11 @@ class GroundFollower {
     std::optional<SunPosition> other = std::nullopt;  // the other source, where it counts
   };
   /// Once a frame: asks for what is missing, but leaves the processor to the drawing four times as
-  /// long as light takes to make: under a sun that runs, light is behind by that and fades from one
-  /// to the next. True when new light is there.
-  bool Follow(const std::shared_ptr<const SolvedAir>& air, const View& view);
+  /// long as light takes to make. Under a sun that runs, light is made for where the sun will stand in
+  /// the middle of the time for which it is shown, and fades from one to the next. True when new light
+  /// is there.
+  /// @param seconds  since the last call.
+  bool Follow(const std::shared_ptr<const SolvedAir>& air, const View& view, double seconds);
   /// The same, but what Follow would have in the end is there when it returns.
   bool Settle(const std::shared_ptr<const SolvedAir>& air, const View& view);
 
@@ -77,7 +79,7 @@ class GroundFollower {
   }
   /// Altitude of the open sky that the light of vertices is a share of: half the height of the land.
   [[nodiscard]] double open_altitude_m() const { return made_.open_altitude_m; }
-  /// Time that the light took to make; 0 before the first.
+  /// Time that the light took to make, without the land's horizons; 0 before the first.
   [[nodiscard]] double making_s() const { return made_.making_s; }
 
  private:
@@ -99,6 +101,7 @@ class GroundFollower {
   };
   class Maker;
   [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
+  [[nodiscard]] View WhenShown(const View& view, double seconds) const;
   bool Ask(const Request& wanted);
   bool Take();
 
@@ -106,9 +109,15 @@ class GroundFollower {
   std::shared_ptr<const GroundSampler> ground_;
   int land_ = 0;
   std::optional<Request> asked_;
+  std::optional<View> last_view_;
   Made made_;
   std::chrono::steady_clock::time_point rests_until_{};
   LatestJob<Request, Made> maker_;
 };
+
+/// Where the sources of light will stand after as many steps more as the one from `before` to `now`, but at
+/// most 10 degrees further on; those of `now` after a jump of time.
+[[nodiscard]] GroundFollower::View Ahead(const GroundFollower::View& before,
+                                         const GroundFollower::View& now, double steps);
 
 }  // namespace alpenglow

@@ -330,7 +330,7 @@ VertexLight Mean(const VertexLight& a, const VertexLight& b) {
 std::vector<VertexLight> LightOf(const std::vector<LandVertex>& vertices, const LocalFrame& frame,
                                  const std::optional<LightOfVertices>& light) {
   if (!light) return std::vector<VertexLight>(vertices.size());
-  std::vector<VertexLight> lit = (*light)(frame, vertices);
+  std::vector<VertexLight> lit = light->at(frame, vertices);
   ALPENGLOW_ENSURE(lit.size(), ==, vertices.size());
   return lit;
 }

@@ -65,9 +65,12 @@ struct VertexLight {
   float disk_x = 4.0F;
 };
 
-/// The light of vertices in the frame of an anchor; called on another thread.
-using LightOfVertices =
-    std::function<std::vector<VertexLight>(const LocalFrame&, std::span<const LandVertex>)>;
+struct LightOfVertices {
+  /// The light of vertices in the frame of an anchor; called on another thread.
+  std::function<std::vector<VertexLight>(const LocalFrame&, std::span<const LandVertex>)> at;
+  /// Towards what throws the shadows in it; nothing: nothing moves.
+  std::optional<Vector<Ecef>> to_disk = std::nullopt;
+};
 
 /// Geometry of a vertex as land.vert.glsl reads it.
 struct ChunkVertex {

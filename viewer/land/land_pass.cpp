@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/land/land_pass.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -104,11 +106,26 @@ void LandPass::BindEdges(const ShaderProgram& program) {
   program.BindSampler("horizon_sines", kUnit);
 }
 
+// The disk stands higher now than when vertices got their edges of shade by this many of its radii, for the
+// old light and the new, seen from the anchor.
+glm::vec4 LandPass::RisenSinceMade(const LocalFrame& anchor) const {
+  const auto elevation = [&](const Vector<Ecef>& direction) {
+    return std::asin(std::clamp(anchor.EnuFromEcef(direction).xyz.z, -1.0, 1.0));
+  };
+  const auto risen = [&](const std::optional<Vector<Ecef>>& then) {
+    if (!then || !(edges_.sun_radius_rad > 0.0)) return 0.0;
+    return (elevation(edges_.to_sun) - elevation(*then)) / edges_.sun_radius_rad;
+  };
+  return glm::vec4(
+      glm::dvec4(risen(edges_of_vertices_.from), risen(edges_of_vertices_.to), 0.0, 0.0));
+}
+
 void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
                    bool one_side, const std::function<void()>& draw) {
   const ShaderProgram& program = ProgramOf(drawn);
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
   program.Use();
+  block.risen = RisenSinceMade(anchor);
   if (drawn == LandDrawn::kSurface && edges_.share > 0.0 && horizon_.HasAny()) {
     const PlaceOnGrid place = horizon_.PlaceIn(anchor);
     block.horizon_u = place.u;

@@ -14,6 +14,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/land/horizon_texture.h"
+#include "viewer/land/light_fade.h"
 
 namespace alpenglow {
 
@@ -32,9 +33,10 @@ struct LandBlock {
   glm::vec4 east, north, up;
   glm::vec4 eye_sample, eye_above, pixel;
   glm::vec4 horizon_u, horizon_v;
+  glm::vec4 risen;
   std::array<glm::vec4, kMostLevels> turning;
 };
-static_assert(sizeof(LandBlock) == (10 + LandBlock::kMostLevels) * sizeof(glm::vec4));
+static_assert(sizeof(LandBlock) == (11 + LandBlock::kMostLevels) * sizeof(glm::vec4));
 
 /// An eye and its axes in the frame of an anchor.
 struct EyeInAnchor {
@@ -60,6 +62,7 @@ struct EyeInAnchor {
 struct MomentaryEdges {
   double share = 0.0;  // 0: those of the vertices alone
   Vector<Ecef> to_sun{};
+  double sun_radius_rad = 0.0;
 };
 
 /// What is drawn of land: all that SurfaceMap holds, or its depth alone, into a LandOutline.
@@ -86,6 +89,7 @@ class LandPass {
   static void Clear(LandDrawn drawn);
   void Use(const TerrainHorizon& horizon) { horizon_.Use(horizon); }
   void Use(const MomentaryEdges& edges) { edges_ = edges; }
+  void Use(const EdgesOfVertices& edges) { edges_of_vertices_ = edges; }
   [[nodiscard]] bool HasHorizon() const { return horizon_.HasAny(); }
 
   /// Sets program and state and calls `draw`. The uniform block View must be bound to
@@ -101,9 +105,11 @@ class LandPass {
  private:
   [[nodiscard]] const ShaderProgram& ProgramOf(LandDrawn drawn) const;
   void BindEdges(const ShaderProgram& program);
+  [[nodiscard]] glm::vec4 RisenSinceMade(const LocalFrame& anchor) const;
 
   HorizonTexture horizon_;
   MomentaryEdges edges_;
+  EdgesOfVertices edges_of_vertices_;
   bool reversed_depth_;
   GlBuffer block_;
   mutable std::optional<ShaderProgram> surface_, outline_;  // made when they are first drawn with

@@ -94,6 +94,8 @@ void Landscape::Relight(LightOfVertices light) {
   fade_.Ask(std::move(light));
 }
 
+EdgesOfVertices Landscape::edges() const { return mesh_ ? mesh_->edges() : fade_.edges(); }
+
 bool Landscape::IsRelighting() const { return mesh_ ? mesh_->IsRelighting() : fade_.IsChanging(); }
 
 // The ground about the eye is as high as any chunk near it, less its distance.
@@ -234,6 +236,7 @@ void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
   LandPass::Clear(what);
   if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_binding);
   if (!set_ || drawn_.empty()) return;
+  pass_.Use(fade_.edges());
   // Over the ground no slope that faces away is seen before one that faces the eye.
   pass_.Run(what, Block(), set_->anchor().frame, view_binding, over_ground_,
             [&] { set_->Draw(drawn_, fade_.from()); });

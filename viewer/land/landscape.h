@@ -90,6 +90,7 @@ class Landscape {
   void Use(const TerrainHorizon& horizon) { pass_.Use(horizon); }
   void Use(const MomentaryEdges& edges) { pass_.Use(edges); }
   [[nodiscard]] bool HasHorizon() const { return pass_.HasHorizon(); }
+  [[nodiscard]] EdgesOfVertices edges() const;
 
   /// Height of the ground [m] that an eye at a place is over, the same as is drawn near the eye;
   /// nothing where there is none or it is not loaded. Of a mesh with roofs it is the highest surface

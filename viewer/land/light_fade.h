@@ -3,12 +3,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
 #include "viewer/land/chunk_buffers.h"
 
 namespace alpenglow {
+
+/// Directions towards the disks before which vertices have their edges of shade, of the light that fades and
+/// of the one that is shown; nothing without such light.
+struct EdgesOfVertices {
+  std::optional<Vector<Ecef>> from, to;
+};
 
 /// One light after another: the next begins when the one before is all there and shown. The first is
 /// shown at once.
@@ -29,6 +36,9 @@ class LightFade {
   /// What is shown goes from `from` to the other side by a share; `from` is the one to be filled.
   [[nodiscard]] LightSide from() const { return from_; }
   [[nodiscard]] double share() const { return lights_shown_ > 1 ? share_ : 1.0; }
+  [[nodiscard]] EdgesOfVertices edges() const {
+    return {share() < 1.0 ? to_disk_[Index(from_)] : std::nullopt, to_disk_[Index(Other(from_))]};
+  }
 
   /// @param is_complete  whether all vertices have the light.
   void Advance(double seconds, bool is_complete) {
@@ -45,14 +55,19 @@ class LightFade {
   }
 
  private:
+  [[nodiscard]] static constexpr std::size_t Index(LightSide side) {
+    return static_cast<std::size_t>(side);
+  }
   void Begin() {
     light_ = std::exchange(asked_, std::nullopt);
     ++number_;
     is_filling_ = true;
     filled_in_s_ = 0.0;
+    to_disk_[Index(from_)] = light_->to_disk;
   }
 
   std::optional<LightOfVertices> light_, asked_;
+  std::array<std::optional<Vector<Ecef>>, 2> to_disk_;  // of the sides
   int number_ = 0;
   bool is_filling_ = false;
   int lights_shown_ = 0;

@@ -47,7 +47,7 @@ std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& 
   }
   std::vector<ChunkLight> packed;
   packed.reserve(vertices.size());
-  for (const VertexLight& lit : light(frame, vertices)) packed.push_back(PackedLight(lit));
+  for (const VertexLight& lit : light.at(frame, vertices)) packed.push_back(PackedLight(lit));
   return packed;
 }
 
@@ -115,6 +115,7 @@ void MeshLand::Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
   DescribeLight(LightOn(fade_.from()), LandPass::kOldLight);
   DescribeLight(LightOn(Other(fade_.from())), LandPass::kNewLight);
   const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), fade_.share());
+  pass.Use(fade_.edges());
   pass.Run(what, block, frame_, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),
                    GL_UNSIGNED_INT, nullptr);

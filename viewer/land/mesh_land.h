@@ -33,6 +33,7 @@ class MeshLand {
   void Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye, GLuint view_binding);
 
   void Relight(LightOfVertices light) { fade_.Ask(std::move(light)); }
+  [[nodiscard]] EdgesOfVertices edges() const { return fade_.edges(); }
   [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
 

@@ -94,7 +94,7 @@ void PaintedScene::Replace(const LandSource& land) {
   auto other = std::make_unique<Landscape>(land, LandSizeOf(sizes_), ellipsoid_);
   leaving_.push_back(std::exchange(land_, std::move(other)));
   heights_version_ = -1;
-  edges_ = std::nullopt;
+  has_edges_ = false;
   awaits_land_ = has_land_;
   ground_.ForgetLand();
   shade_.SetGround({});
@@ -177,22 +177,25 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   }
 }
 
-std::optional<Vector<Ecef>> PaintedScene::CastsOnVertices() const {
-  if (!ground_.lit() || ground_.casts() != casts_) return std::nullopt;
-  const LitGround& lit = *ground_.lit();
-  return lit.site().ground().frame.EcefFromEnu(Vector<Enu>{lit.lighting().to_sun});
+// Edges of shade that vertices have move with the height of the disk, but not with its azimuth. Behind by
+// 6 degrees they are worse than those of the map, whose azimuths are 22.5 degrees apart.
+bool PaintedScene::HasEdgesNear(const Vector<Ecef>& to_light) const {
+  constexpr double kNear_rad = 6.0 * kRadiansPerDegree;
+  const EdgesOfVertices edges = land_->edges();
+  const auto is_near = [&](const Vector<Ecef>& then) {
+    return glm::dot(then.xyz, to_light.xyz) > std::cos(kNear_rad);
+  };
+  return edges.to && is_near(*edges.to) && (!edges.from || is_near(*edges.from));
 }
 
-// While time runs a thousand times as fast, light of vertices is a few degrees behind.
 void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds) {
-  constexpr double kBehind_rad = 1.5 * kRadiansPerDegree, kFades_s = 0.3;
-  if (std::exchange(casts_, key.source()) != key.source()) edges_ = std::nullopt;
-  if (!land_->IsRelighting()) edges_ = CastsOnVertices();
+  constexpr double kFades_s = 0.3;
+  casts_ = key.source();
   const Vector<Ecef> to_light =
       LocalFrame(ellipsoid_, view.eye.place).EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
-  const bool is_behind = !edges_ || glm::dot(edges_->xyz, to_light.xyz) < std::cos(kBehind_rad);
-  momentary_edges_ = is_behind ? 1.0 : std::max(momentary_edges_ - seconds / kFades_s, 0.0);
-  land_->Use(MomentaryEdges{momentary_edges_, to_light});
+  has_edges_ = HasEdgesNear(to_light);
+  momentary_edges_ = has_edges_ ? std::max(momentary_edges_ - seconds / kFades_s, 0.0) : 1.0;
+  land_->Use(MomentaryEdges{momentary_edges_, to_light, key.disk.angular_radius_rad});
 }
 
 void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
@@ -213,7 +216,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   awaits_land_ = awaits_land_ && !land_->HasCome();
   TakeHeights();
   KeepUpEdges(view, lights.key, seconds);
-  if (ground_.Follow(air_.air(), GroundViewOf(view, lights))) TakeLight();
+  if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) TakeLight();
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);

@@ -99,7 +99,7 @@ class PaintedScene {
   }
   /// Whether the edges of terrain that land is painted with are all those before this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
-    return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : edges_.has_value());
+    return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : has_edges_);
   }
   /// As a source lights it. Null: none.
   [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
@@ -120,7 +120,7 @@ class PaintedScene {
     SkyTilt light;
   };
   void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
-  [[nodiscard]] std::optional<Vector<Ecef>> CastsOnVertices() const;
+  [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
   void KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds);
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void TakeHeights();
@@ -149,10 +149,8 @@ class PaintedScene {
   ShadeFollower shade_;
   std::optional<SceneFog> fog_, moon_fog_;
   LightSource casts_ = LightSource::kSun;  // what throws shadows
-  /// Towards where that stood when all edges of shade were made that vertices have; nothing: some are
-  /// those before the other source, or there are none.
-  std::optional<Vector<Ecef>> edges_;
-  double momentary_edges_ = 0.0;  // MomentaryEdges::share
+  bool has_edges_ = false;                 // whether vertices have their edges of shade before it
+  double momentary_edges_ = 0.0;           // MomentaryEdges::share
   int heights_version_ = -1;
   bool awaits_land_;
 };

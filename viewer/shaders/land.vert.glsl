@@ -57,8 +57,9 @@ void main() {
   sky_light = mix(mix(sky, coarse_sky, turned), mix(new_sky, new_coarse_sky, turned), eye_above.y);
   moon_sky_light = mix(mix(moon_sky, coarse_moon_sky, turned),
                        mix(new_moon_sky, new_coarse_moon_sky, turned), eye_above.y);
-  disk_height = mix(mix(disk_over_edge.x, disk_over_edge.y, turned),
-                    mix(new_disk_over_edge.x, new_disk_over_edge.y, turned), eye_above.y);
+  disk_height = mix(mix(disk_over_edge.x, disk_over_edge.y, turned) + risen.x,
+                    mix(new_disk_over_edge.x, new_disk_over_edge.y, turned) + risen.y,
+                    eye_above.y);
   if (eye_above.w > 0.0)
     disk_height = mix(disk_height, DiskOverHorizonHere(at, from_eye), eye_above.w);
   sunk = SunkBehindPlanet(from_eye);

@@ -14,5 +14,6 @@ layout(std140) uniform Land {
   vec4 pixel;       // its width and height, of a picture from (-1, -1) to (1, 1)
   vec4 horizon_u;   // from (x, y, z, 1) in the anchor's frame to a place of horizon_sines
   vec4 horizon_v;
+  vec4 risen;       // of the disk since edges of shade were made, old and new light's [its radii]
   vec4 turning[32];  // a level: distance where it begins to turn [m], one over how far it takes
 };

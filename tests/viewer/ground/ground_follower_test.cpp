@@ -86,7 +86,7 @@ TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   vertex.normal = {0.0F, 0.0F, 1.0F};
   vertex.position_m = {0.0F, 0.0F,
                        static_cast<float>(RangeAround(kFollowedPlace, 100.0, 3)->height_m[4])};
-  const std::vector<VertexLight> lit = (*light)(LocalFrame(kWgs84, foot), {&vertex, 1});
+  const std::vector<VertexLight> lit = light->at(LocalFrame(kWgs84, foot), {&vertex, 1});
   ASSERT_EQ(lit.size(), 1U);
   EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
 }
@@ -121,6 +121,20 @@ TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
   EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 20.0)));
   EXPECT_NE(follower.lit(), first);
   EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
+}
+
+TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
+  GroundFollower::View before = ViewFrom(kFollowedPlace, 5.0), now = ViewFrom(kFollowedPlace, 4.9);
+  before.by.azimuth_rad = 6.2831;
+  now.by.azimuth_rad = 1e-5;
+  const SunPosition ahead = Ahead(before, now, 20.0).by;
+  EXPECT_NEAR(ahead.elevation_rad / kRadiansPerDegree, 2.9, 1e-9);
+  const double step_rad = 2.0 * kPi + 1e-5 - 6.2831;
+  EXPECT_NEAR(ahead.azimuth_rad, 1e-5 + 20.0 * step_rad, 1e-9) << "over the north";
+  EXPECT_NEAR(Ahead(before, now, 1e4).by.elevation_rad / kRadiansPerDegree, -5.1, 0.1)
+      << "no further than ten degrees";
+  EXPECT_EQ(Ahead(ViewFrom(kFollowedPlace, 40.0), now, 20.0).by.elevation_rad, now.by.elevation_rad)
+      << "time has jumped";
 }
 
 }  // namespace

@@ -200,14 +200,15 @@ TEST_F(LandChunks, CoarseSidesHaveOnlyVerticesOfTheNextLevelAndCoverTheSameGroun
 
 TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
   const LandChunk chunk = Chunk(1, 2, 2);
-  const auto light = LightOfChunk(chunk, anchor_.frame, [](const LocalFrame&, auto vertices) {
-    std::vector<VertexLight> lit;
-    for (const LandVertex& vertex : vertices)
-      lit.push_back({{1e-3F * vertex.position_m.x, 0.25F, 0.5F, 1.0F},
-                     {0.75F, 2e-3F * vertex.position_m.y, 0.5F, 1.0F},
-                     2.0F * vertex.normal.z});
-    return lit;
-  });
+  const auto light =
+      LightOfChunk(chunk, anchor_.frame, LightOfVertices{[](const LocalFrame&, auto vertices) {
+                     std::vector<VertexLight> lit;
+                     for (const LandVertex& vertex : vertices)
+                       lit.push_back({{1e-3F * vertex.position_m.x, 0.25F, 0.5F, 1.0F},
+                                      {0.75F, 2e-3F * vertex.position_m.y, 0.5F, 1.0F},
+                                      2.0F * vertex.normal.z});
+                     return lit;
+                   }});
   for (std::size_t v = 0; v < light.size(); ++v) {
     const float x = 1e-3F * chunk.vertices[v].coarse_position_m[0];
     EXPECT_NEAR(glm::unpackHalf1x16(light[v].coarse_sky[0]), x, 1e-3F + 1e-3F * std::abs(x))

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/sun/sun.h"
 #include "renderer/terrain/obj_file.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/headless_land.h"
@@ -347,9 +348,9 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   Landscape land(Folder(), {64.0}, kWgs84);
   const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
   const auto light = [](float sun_x) {
-    return [sun_x](const LocalFrame&, std::span<const LandVertex> vertices) {
+    return LightOfVertices{[sun_x](const LocalFrame&, std::span<const LandVertex> vertices) {
       return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, {}, sun_x});
-    };
+    }};
   };
   const auto middle = [&] { return PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11); };
   land.Settle(eye.place, eye.View());
@@ -364,6 +365,26 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   const glm::vec4 sky = PixelAt(map_->ReadValues(SurfaceMap::kSky), kWidth / 2, kHeight - 11);
   EXPECT_NEAR(sky.x, 0.1F, 2e-4F);
   EXPECT_NEAR(sky.w, 0.4F, 4e-4F);
+}
+
+TEST_F(LandscapePictures, EdgesOfShadeRiseAndSinkWithTheSun) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  Landscape land(Folder(), {64.0}, kWgs84);
+  const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
+  constexpr double kRadius_rad = 0.0047;
+  const auto towards = [&](double elevation_rad) {
+    return LocalFrame(kWgs84, eye.place).EcefFromEnu(DirectionFromAngles(elevation_rad, 2.0));
+  };
+  const auto shaded = [](const LocalFrame&, std::span<const LandVertex> vertices) {
+    return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, {}, -2.0F});
+  };
+  land.Relight({shaded, towards(0.1)});
+  land.Settle(eye.place, eye.View());
+  for (const double radii : {0.0, 3.0, -1.0}) {
+    land.Use(MomentaryEdges{0.0, towards(0.1 + radii * kRadius_rad), kRadius_rad});
+    EXPECT_NEAR(PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11).z, radii - 2.0, 0.02)
+        << "the anchor of the land is some kilometres off";
+  }
 }
 
 // 190 km apart: farther than one anchor reaches.
@@ -435,9 +456,9 @@ TEST_F(LandscapePictures, ThePlanetHidesWhatIsBeyondTheHorizonButNotWhatRisesOve
 
 TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
   Landscape land({}, {96.0}, kWgs84);
-  land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
+  land.Relight({[](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size());
-  });
+  }});
   const LookOut eye{{0.8, 0.1, 1000.0}, 0.0, 0.0};
   const auto picture = Settled(land, eye);
   EXPECT_TRUE(std::all_of(picture.begin(), picture.end(),
@@ -469,9 +490,9 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   const auto grid = land.Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
   EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);
-  land.Relight([](const LocalFrame&, std::span<const LandVertex> vertices) {
+  land.Relight({[](const LocalFrame&, std::span<const LandVertex> vertices) {
     return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, {}, -1.0F});
-  });
+  }});
   EXPECT_NEAR(PixelAt(Settled(land, eye), kWidth / 2, kHeight - 1).z, -1.0F, 1e-5F);
 }
 

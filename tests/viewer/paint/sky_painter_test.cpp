@@ -206,7 +206,7 @@ class RangeInTime : public SkyPainterTest {
                          const std::string& when) {
     EXPECT_NEAR(shown.all / settled.all, 1.0, 0.1) << when;
     EXPECT_NEAR(shown.sky / settled.sky, 1.0, 0.1) << when << ", sky";
-    EXPECT_NEAR(shown.land / settled.land, 1.0, 0.15)
+    EXPECT_NEAR(shown.land / settled.land, 1.0, 0.1)
         << when << ", land: what slopes see of each other and of the sky is the old sun's";
   }
 
