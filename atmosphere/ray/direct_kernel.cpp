@@ -76,13 +76,16 @@ struct LitLanes {
   ColumnSet<T> columns[kVectors];  // from the sun to the eye
   T weight[kVectors][rows];
 
-  LitLanes(const DirectRule& rule, const Lanes<count>& lanes) {
+  // @param sunlight  of the lanes; null: 1.
+  LitLanes(const DirectRule& rule, const float* sunlight, const Lanes<count>& lanes) {
     for (std::size_t i = 0; i < kVectors; ++i) {
       const NodeAir<T>& node = lanes.air[i];
       columns[i] = {node.view.rayleigh + node.sun.rayleigh, node.view.mie + node.sun.mie,
                     node.view.ozone + node.sun.ozone};
-      weight[i][0] = lanes.place[i].weight * node.rayleigh_density;
-      weight[i][1] = lanes.place[i].weight * node.mie_density;
+      T lit = lanes.place[i].weight;
+      if (sunlight != nullptr) lit *= LoadLanes<T>(sunlight + i * kLanesOf<T>);
+      weight[i][0] = lit * node.rayleigh_density;
+      weight[i][1] = lit * node.mie_density;
       if constexpr (rows == 4) {
         const T last = LoadLanes<T>(rule.last_polynomial.data() + i * kLanesOf<T>);
         weight[i][2] = last * weight[i][0];
@@ -125,31 +128,31 @@ void StoreLight(const DirectAir& air, const LightLanes<T, rows>& light, std::siz
   }
 }
 
-const DirectRule& RuleOf(const DirectRules& rules, const DirectGroup& group, bool narrow) {
-  return group.first != group.second || narrow ? rules.seven : rules.fourteen;
+const DirectRule& RuleOf(const DirectWork& work, std::size_t i) {
+  const std::size_t nodes = work.ray.NodesOf(work.ray.group[i]);
+  return nodes == kManyNodes ? work.rules.fourteen : work.rules.few[nodes];
 }
 
-template <std::size_t count>
-void FillGroup(const DirectAir& air, const DirectRules& rules, const DirectRay& ray, std::size_t i,
-               Lanes<count>& lanes) {
-  const DirectGroup& group = ray.group[i];
-  FillLanes<count>(air, RuleOf(rules, group, ray.narrow),
-                   {ray.panel[group.first], ray.panel[group.second]}, ray.falls, lanes);
+const float* SunlightOf(const DirectWork& work, std::size_t i) {
+  return work.sunlight == nullptr ? nullptr : &work.sunlight->factor[i * kDirectLanes];
+}
+
+TwoPanels PanelsOf(const DirectRay& ray, std::size_t i) {
+  return {ray.panel[ray.group[i].first], ray.panel[ray.group[i].second]};
 }
 
 template <std::size_t count, std::size_t rows>
-[[gnu::flatten]] void ScatterLanes(const DirectAir& air, const DirectRules& rules,
-                                   const DirectRay& ray, ScatteredOnce<float>& scattered,
+[[gnu::flatten]] void ScatterLanes(const DirectWork& work, ScatteredOnce<float>& scattered,
                                    ScatteredOnce<float>* last) {
   LightLanes<LaneVector<count>, rows> light;
-  for (std::size_t i = 0; i < ray.groups; ++i) {
+  for (std::size_t i = 0; i < work.ray.groups; ++i) {
     Lanes<count> lanes;
-    FillGroup<count>(air, rules, ray, i, lanes);
-    const LitLanes<count, rows> lit(RuleOf(rules, ray.group[i], ray.narrow), lanes);
-    AddLight<count, rows>(air, lit, i == 0, light);
+    FillLanes<count>(work.air, RuleOf(work, i), PanelsOf(work.ray, i), work.ray.falls, lanes);
+    const LitLanes<count, rows> lit(RuleOf(work, i), SunlightOf(work, i), lanes);
+    AddLight<count, rows>(work.air, lit, i == 0, light);
   }
-  StoreLight<LaneVector<count>, rows>(air, light, 0, scattered);
-  if constexpr (rows == 4) StoreLight<LaneVector<count>, rows>(air, light, 2, *last);
+  StoreLight<LaneVector<count>, rows>(work.air, light, 0, scattered);
+  if constexpr (rows == 4) StoreLight<LaneVector<count>, rows>(work.air, light, 2, *last);
 }
 
 void SetDark(const DirectAir& air, ScatteredOnce<float>& scattered) {
@@ -158,29 +161,29 @@ void SetDark(const DirectAir& air, ScatteredOnce<float>& scattered) {
 }
 
 template <std::size_t rows>
-void ScatterRows(const DirectAir& air, const DirectRules& rules, const DirectRay& ray,
-                 ScatteredOnce<float>& scattered, ScatteredOnce<float>* last) {
-  if (ray.groups == 0) {
-    SetDark(air, scattered);
-    if (last != nullptr) SetDark(air, *last);
-  } else if (ray.narrow) {
-    ScatterLanes<kHalf, rows>(air, rules, ray, scattered, last);
+void ScatterRows(const DirectWork& work, ScatteredOnce<float>& scattered,
+                 ScatteredOnce<float>* last) {
+  if (work.ray.groups == 0) {
+    SetDark(work.air, scattered);
+    if (last != nullptr) SetDark(work.air, *last);
+  } else if (work.ray.narrow) {
+    ScatterLanes<kHalf, rows>(work, scattered, last);
   } else {
-    ScatterLanes<kDirectLanes, rows>(air, rules, ray, scattered, last);
+    ScatterLanes<kDirectLanes, rows>(work, scattered, last);
   }
 }
 
-void Scatter(const DirectAir& air, const DirectRules& rules, const DirectRay& ray,
-             ScatteredOnce<float>& scattered, ScatteredOnce<float>* last) {
+void Scatter(const DirectWork& work, ScatteredOnce<float>& scattered, ScatteredOnce<float>* last) {
   if (last == nullptr) {
-    ScatterRows<2>(air, rules, ray, scattered, last);
+    ScatterRows<2>(work, scattered, last);
   } else {
-    ScatterRows<4>(air, rules, ray, scattered, last);
+    ScatterRows<4>(work, scattered, last);
   }
 }
 
 template <std::size_t count>
-void StoreGroup(const TwoPanels& panels, const Lanes<count>& lanes, RaySamples<float>& samples) {
+void StoreGroup(const TwoPanels& panels, const float* sunlight, const Lanes<count>& lanes,
+                RaySamples<float>& samples) {
   using namespace shared;
   using T = LaneVector<count>;
   for (std::size_t i = 0; i < Lanes<count>::kVectors; ++i) {
@@ -192,7 +195,8 @@ void StoreGroup(const TwoPanels& panels, const Lanes<count>& lanes, RaySamples<f
     const T direction = panel(&DirectPanel::direction);
     put(samples.distance, panel(&DirectPanel::begin) + direction * place.position);
     put(samples.weight, place.weight);
-    put(samples.lit, panel(&DirectPanel::lit));
+    put(samples.lit,
+        sunlight == nullptr ? panel(&DirectPanel::lit) : LoadLanes<T>(sunlight + panel.first));
     put(samples.altitude, place.altitude);
     put(samples.mu, direction * min(place.mu, T(1.0F)));
     put(samples.mu_s, min(max(place.mu_s, T(-1.0F)), T(1.0F)));
@@ -209,40 +213,81 @@ void StoreGroup(const TwoPanels& panels, const Lanes<count>& lanes, RaySamples<f
 }
 
 // Weightless samples up to whole SIMD lanes.
-void Pad(RaySamples<float>& samples) {
+[[gnu::flatten]] void Pad(RaySamples<float>& samples) {
+  using T = LaneVector<kHalf>;
   constexpr std::size_t kLanes = BatchOf<float>::kLanes;
   samples.padded = (samples.count + kLanes - 1) / kLanes * kLanes;
+  if (samples.padded == samples.count) return;
   for (auto* row : {&samples.distance, &samples.weight, &samples.lit, &samples.altitude,
                     &samples.mu, &samples.mu_s, &samples.rayleigh_density, &samples.mie_density,
                     &samples.view_rayleigh, &samples.view_mie, &samples.view_ozone,
                     &samples.sun_rayleigh, &samples.sun_mie, &samples.sun_ozone}) {
-    for (std::size_t i = samples.count; i < samples.padded; ++i) (*row)[i] = 0.0F;
+    for (std::size_t i = samples.count; i < samples.padded; i += kLanesOf<T>)
+      StoreLanes(&(*row)[i], T(0.0F));
   }
 }
 
 template <std::size_t count>
-[[gnu::flatten]] void SampleLanes(const DirectAir& air, const DirectRules& rules,
-                                  const DirectRay& ray, RaySamples<float>& samples) {
-  for (std::size_t i = 0; i < ray.groups; ++i) {
+[[gnu::flatten]] void SampleLanes(const DirectWork& work, RaySamples<float>& samples,
+                                  ScatteredOnce<float>* scattered) {
+  LightLanes<LaneVector<count>, 2> light;
+  for (std::size_t i = 0; i < work.ray.groups; ++i) {
+    const DirectRule& rule = RuleOf(work, i);
+    const TwoPanels panels = PanelsOf(work.ray, i);
+    const float* sunlight = SunlightOf(work, i);
     Lanes<count> lanes;
-    FillGroup<count>(air, rules, ray, i, lanes);
-    const DirectGroup& group = ray.group[i];
-    StoreGroup<count>({ray.panel[group.first], ray.panel[group.second]}, lanes, samples);
+    FillLanes<count>(work.air, rule, panels, work.ray.falls, lanes);
+    StoreGroup<count>(panels, sunlight, lanes, samples);
+    if (scattered != nullptr)
+      AddLight<count, 2>(work.air, LitLanes<count, 2>(rule, sunlight, lanes), i == 0, light);
   }
+  if (scattered != nullptr) StoreLight<LaneVector<count>, 2>(work.air, light, 0, *scattered);
 }
 
-void Sample(const DirectAir& air, const DirectRules& rules, const DirectRay& ray,
-            RaySamples<float>& samples) {
+void Sample(const DirectWork& work, RaySamples<float>& samples, ScatteredOnce<float>* scattered) {
   samples.count = 0;
-  if (ray.narrow) {
-    SampleLanes<kHalf>(air, rules, ray, samples);
+  if (work.ray.groups == 0) {
+    if (scattered != nullptr) SetDark(work.air, *scattered);
+  } else if (work.ray.narrow) {
+    SampleLanes<kHalf>(work, samples, scattered);
   } else {
-    SampleLanes<kDirectLanes>(air, rules, ray, samples);
+    SampleLanes<kDirectLanes>(work, samples, scattered);
   }
   Pad(samples);
 }
 
-constexpr DirectKernel kDirectKernel{Scatter, Sample};
+// Columns along a panel by 8 Gauss nodes of equal measure: within 1e-7 while the density changes by
+// less than e^6.
+[[gnu::flatten]] ColumnSet<float> AlongPanel(const DirectAir& air, const DirectRule& eight,
+                                             const DirectPanel& panel) {
+  using namespace shared;
+  using T = LaneVector<kHalf>;
+  T sum[kFour] = {T(0.0F), T(0.0F), T(0.0F), T(0.0F)};
+  for (std::size_t i = 0; i < kHalf; i += kLanesOf<T>) {
+    const T position = LoadLanes<T>(eight.node.data() + i) * T(panel.length);
+    const T altitude = max(AltitudeOnPanel<T>(PanelLanes<T>{{panel, panel}, i}, position), T(0.0F));
+    const T weight = LoadLanes<T>(eight.weight.data() + i);
+    const NodeDensities<T> here = DensitiesAt<T>(air, altitude);
+    sum[0] += weight * here.rayleigh;
+    sum[1] += weight * here.mie;
+    sum[2] += weight * here.ozone;
+  }
+  const float factor[kFour] = {panel.length, panel.length, panel.length, 0.0F};
+  float column[kFour];
+  StoreSums(sum, factor, column);
+  return {column[0], column[1], column[2]};
+}
+
+ColumnSet<float> Along(const DirectAir& air, const DirectRules& rules, const DirectRay& ray) {
+  ColumnSet<float> sum{0.0F, 0.0F, 0.0F};
+  for (std::size_t i = 0; i < ray.panels; ++i) {
+    const ColumnSet<float> column = AlongPanel(air, rules.eight, ray.panel[i]);
+    sum = {sum.rayleigh + column.rayleigh, sum.mie + column.mie, sum.ozone + column.ozone};
+  }
+  return sum;
+}
+
+constexpr DirectKernel kDirectKernel{Scatter, Sample, Along};
 
 }  // namespace
 

@@ -71,6 +71,15 @@ T Position(const PanelLanes<T>& panel, const T& v, const T& slope, const T& leng
 }
 
 template <typename T>
+T AltitudeOnPanel(const PanelLanes<T>& panel, const T& position) {
+  using namespace shared;
+  const T inverse = panel(&DirectPanel::inverse_radius);
+  const T x = position * (position + T(2.0F) * panel(&DirectPanel::from_perigee)) *
+              (T(0.5F) * inverse * inverse);
+  return panel(&DirectPanel::altitude) + panel(&DirectPanel::radius) * x * ClimbSeries<T>(x);
+}
+
+template <typename T>
 NodePlaces<T> PlacesOf(const DirectAir& air, const DirectRule& rule, const PanelLanes<T>& panel) {
   using namespace shared;
   const T v = LoadLanes<T>(rule.node.data() + panel.first);
@@ -79,9 +88,7 @@ NodePlaces<T> PlacesOf(const DirectAir& air, const DirectRule& rule, const Panel
   at.weight = LoadLanes<T>(rule.weight.data() + panel.first) * length * DirectSlope<T>(v, slope);
   at.position = Position(panel, v, slope, length);
   const T from_perigee = panel(&DirectPanel::from_perigee), r = panel(&DirectPanel::radius);
-  const T inverse = panel(&DirectPanel::inverse_radius);
-  const T x = at.position * (at.position + T(2.0F) * from_perigee) * (T(0.5F) * inverse * inverse);
-  at.altitude = max(panel(&DirectPanel::altitude) + r * x * ClimbSeries<T>(x), T(0.0F));
+  at.altitude = max(AltitudeOnPanel<T>(panel, at.position), T(0.0F));
   at.radius = at.altitude + T(static_cast<float>(air.radius));
   const T per_radius = T(1.0F) / at.radius;
   at.mu = abs(at.position + from_perigee) * per_radius;
@@ -216,6 +223,30 @@ NodeAir<T> AirUpwards(const DirectAir& air, const NodePlaces<T>& at) {
   node.view.rayleigh -= missing.view;
   node.sun.rayleigh -= missing.sun;
   return node;
+}
+
+/// Densities relative to the ground; of ozone relative to its peak.
+template <typename T>
+struct NodeDensities {
+  T rayleigh, mie, ozone;
+};
+
+template <typename T>
+T OzoneDensity(const DirectAir& air, const T& altitude) {
+  using namespace shared;
+  if (!air.has_ozone) return T(0.0F);
+  if (air.smooth_ozone) return SmoothOzoneDensity<T>(altitude, T(air.ozone_top));
+  return TentDensity<T>(altitude, T(air.ozone_bottom), T(air.ozone_peak), T(air.ozone_top));
+}
+
+template <typename T>
+NodeDensities<T> DensitiesAt(const DirectAir& air, const T& altitude) {
+  const auto density = [&](const DirectLayer& layer) {
+    return PowerOfTwo<T>(altitude * T(layer.per_height));
+  };
+  T rayleigh = density(air.rayleigh);
+  if (air.has_deficit) rayleigh += T(air.deficit_share) * (rayleigh - density(air.deficit));
+  return {rayleigh, density(air.mie), OzoneDensity<T>(air, altitude)};
 }
 
 // Sunbeams from below the horizontal pass their perigee. Those of points in the planet's shadow have

@@ -143,7 +143,8 @@ class PanelPlacer {
     const float half =
         shared::DistanceUpTo<float>(panel.altitude, panel.from_perigee * panel.inverse_radius,
                                     panel.altitude + rise, static_cast<float>(air_.radius));
-    panel.hard = dense * half > 4.0F;
+    panel.dense = dense;
+    panel.hard = dense * std::min(half, panel.length) > 4.0F;
     const float kappa = at_shadow || panel.mu_s < 0.0F ? 3.0F : 2.0F;
     panel.slope = std::min(kappa * std::min(half, 14.0F / dense) / panel.length, 1.0F);
   }
@@ -165,6 +166,11 @@ void GroupPanels(DirectMode mode, DirectRay& ray) {
 }
 
 }  // namespace
+
+float DirectPanel::AltitudeAt(float position) const {
+  const float climb = position * (position + 2.0F * from_perigee) * inverse_radius;  // 2 r x
+  return altitude + climb / (1.0F + std::sqrt(1.0F + climb * inverse_radius));
+}
 
 DirectRay DirectRayOf(const DirectAir& air, const ViewRay& ray, DirectMode mode, bool dark) {
   DirectRay placed;

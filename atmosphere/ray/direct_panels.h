@@ -8,7 +8,7 @@
 //
 // at its low end, where `half` is the distance to 10 km above that end (12 km behind the edge of a
 // shadow), or 14 optical depths if less, and kappa = 2, or 3 where sunbeams graze the low end. A
-// panel takes 7 nodes; a hard one, with more than 4 optical depths in `half`, takes 14.
+// panel takes 7 nodes; a hard one, with more than 4 optical depths in `half` or in L, takes 14.
 #pragma once
 
 #include <array>
@@ -19,8 +19,13 @@
 
 namespace alpenglow {
 
-/// A fast ray takes 7 nodes a panel, 14 in hard ones; a normal ray takes 14 in all.
+/// A fast ray takes 7 nodes a panel, or fewer (DirectRay::few_nodes), 14 in hard ones; a normal ray
+/// takes 14 in all.
 enum class DirectMode { kFast, kNormal };
+
+inline constexpr std::size_t kMostFewNodes = 7;
+inline constexpr std::size_t kManyNodes = 14;
+inline constexpr std::size_t kDirectLanes = 16;
 
 /// A stretch of a ray on which the altitude is monotone, as its low end sees it [km].
 struct DirectPanel {
@@ -36,13 +41,19 @@ struct DirectPanel {
   float begin;      // distance of the low end from the entry
   float direction;  // 1: the panel rises; -1: it falls
   float lit;        // 1 in sunlight, 0 in the shadow of the planet
+  float dense;      // extinction at the low end, about, largest of any band [1/km]
   bool hard;
+
+  /// Altitude at a position, without cancellation [km].
+  [[nodiscard]] float AltitudeAt(float position) const;
 };
 
 /// Nodes in lanes: two panels of 7 in lanes 0 to 6 and 8 to 14, or one panel of 14 in both. Lane 7 is
 /// a weightless node at the entry, lane 15 one at the perigee.
 struct DirectGroup {
   std::size_t first, second;  // panels
+
+  [[nodiscard]] bool HasTwo() const { return first != second; }
 };
 
 struct DirectRay {
@@ -51,10 +62,41 @@ struct DirectRay {
   std::array<DirectGroup, kMostPanels> group;
   std::size_t panels = 0;
   std::size_t groups = 0;
-  bool narrow = false;  // one panel of 7 nodes: lanes 0 to 7 only
-  bool falls = false;   // the ray has a perigee behind its entry
+  std::size_t few_nodes = kMostFewNodes;  // of a panel that fills half of its group, in [1, 7]
+  bool narrow = false;                    // one panel of few nodes: lanes 0 to 7 only
+  bool falls = false;                     // the ray has a perigee behind its entry
   RayExtent extent;
+
+  [[nodiscard]] std::size_t NodesOf(const DirectGroup& of_group) const {
+    return narrow || of_group.HasTwo() ? few_nodes : kManyNodes;
+  }
 };
+
+/// A factor of the sunlight at every lane of a ray's groups.
+struct LaneLight {
+  alignas(64) std::array<float, DirectRay::kMostPanels * kDirectLanes> factor;
+};
+
+/// The nodes of a panel among the samples of its ray: node j in [0, count), in order from the low end
+/// up, is sample first + j, or one more from the eighth on.
+struct PanelNodes {
+  std::size_t panel, count, first;
+
+  [[nodiscard]] std::size_t SampleOf(std::size_t node) const {
+    return first + node + node / kMostFewNodes;
+  }
+};
+
+/// Calls visit(PanelNodes) for each panel.
+template <typename Visit>
+void VisitPanels(const DirectRay& ray, const Visit& visit) {
+  for (std::size_t i = 0; i < ray.groups; ++i) {
+    const DirectGroup& group = ray.group[i];
+    const std::size_t count = ray.NodesOf(group), first = i * kDirectLanes;
+    visit(PanelNodes{group.first, count, first});
+    if (group.HasTwo()) visit(PanelNodes{group.second, count, first + kDirectLanes / 2});
+  }
+}
 
 /// @param dark  keeps the panels in the planet's shadow too.
 [[nodiscard]] DirectRay DirectRayOf(const DirectAir& air, const ViewRay& ray, DirectMode mode,

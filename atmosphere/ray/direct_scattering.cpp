@@ -29,14 +29,22 @@ void SetLane(const GaussRule& gauss, std::size_t node, std::size_t lane, DirectR
       static_cast<float>(Legendre(gauss.node.size() - 1, 2.0 * gauss.node[node] - 1.0));
 }
 
-DirectRules MakeRules() {
-  constexpr std::size_t kNodes = 7, kHalf = kDirectLanes / 2;
-  DirectRules rules{};
-  for (std::size_t i = 0; i < 2 * kNodes; ++i) {
-    const std::size_t lane = i % kNodes + i / kNodes * kHalf;
-    SetLane(GaussLegendre(7), i % kNodes, lane, rules.seven);
-    SetLane(GaussLegendre(14), i, lane, rules.fourteen);
+DirectRule InBothHalves(std::size_t nodes) {
+  DirectRule rule{};
+  for (std::size_t i = 0; i < nodes; ++i) {
+    for (const std::size_t first : {std::size_t{0}, kDirectLanes / 2})
+      SetLane(GaussLegendre(static_cast<int>(nodes)), i, first + i, rule);
   }
+  return rule;
+}
+
+DirectRules MakeRules() {
+  DirectRules rules{};
+  for (std::size_t nodes = 1; nodes <= kMostFewNodes; ++nodes)
+    rules.few[nodes] = InBothHalves(nodes);
+  for (std::size_t i = 0; i < kManyNodes; ++i)
+    SetLane(GaussLegendre(kManyNodes), i, PanelNodes{0, kManyNodes, 0}.SampleOf(i), rules.fourteen);
+  rules.eight = InBothHalves(kDirectLanes / 2);
   return rules;
 }
 
@@ -88,14 +96,15 @@ DirectRay DirectScattering::Place(const ViewRay& ray, const DirectSampling& samp
 
 ScatteredOnce<float> DirectScattering::Scatter(const ViewRay& ray, DirectMode mode) const {
   ScatteredOnce<float> scattered = LightOf(air_.bands);
-  Kernel<DirectKernel>().scatter(air_, Rules(), Place(ray, {.mode = mode}), scattered, nullptr);
+  Kernel<DirectKernel>().scatter({air_, Rules(), Place(ray, {.mode = mode})}, scattered, nullptr);
   return scattered;
 }
 
 EstimatedLight DirectScattering::Estimate(const ViewRay& ray, DirectMode mode) const {
   EstimatedLight light{LightOf(air_.bands)};
   ScatteredOnce<float> last = LightOf(air_.bands);
-  Kernel<DirectKernel>().scatter(air_, Rules(), Place(ray, {.mode = mode}), light.scattered, &last);
+  Kernel<DirectKernel>().scatter({air_, Rules(), Place(ray, {.mode = mode})}, light.scattered,
+                                 &last);
   light.error = ErrorOf(mode, air_.least_error, LastShare(light.scattered, last));
   return light;
 }
@@ -116,8 +125,27 @@ RaySamples<float> DirectScattering::Sample(const ViewRay& ray,
   RaySamples<float> samples;
   const DirectRay placed = Place(ray, sampling);
   samples.extent = placed.extent;
-  Kernel<DirectKernel>().sample(air_, Rules(), placed, samples);
+  Kernel<DirectKernel>().sample({air_, Rules(), placed}, samples, nullptr);
   return samples;
+}
+
+ScatteredOnce<float> DirectScattering::Scatter(const DirectRay& placed,
+                                               const LaneLight* sunlight) const {
+  ScatteredOnce<float> scattered = LightOf(air_.bands);
+  Kernel<DirectKernel>().scatter({air_, Rules(), placed, sunlight}, scattered, nullptr);
+  return scattered;
+}
+
+SampledLight DirectScattering::Sample(const DirectRay& placed, const LaneLight* sunlight) const {
+  SampledLight light;
+  light.once = LightOf(air_.bands);
+  light.samples.extent = placed.extent;
+  Kernel<DirectKernel>().sample({air_, Rules(), placed, sunlight}, light.samples, &light.once);
+  return light;
+}
+
+ColumnSet<float> DirectScattering::ColumnsAlong(const DirectRay& placed) const {
+  return Kernel<DirectKernel>().along(air_, Rules(), placed);
 }
 
 }  // namespace alpenglow

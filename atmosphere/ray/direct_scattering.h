@@ -41,6 +41,12 @@ struct EstimatedLight {
   double error = 0.0;
 };
 
+/// Nodes of a ray and the light scattered once along them.
+struct SampledLight {
+  RaySamples<float> samples;
+  ScatteredOnce<float> once;
+};
+
 /// A medium made ready. Immutable, safe to share between threads. Rays are those of AirIntegrator:
 /// whole ones and finite segments. They throw InputError as ExtentOf does.
 class DirectScattering {
@@ -64,9 +70,20 @@ class DirectScattering {
   /// (AirIntegrator::Scatter of them is Scatter). Lanes without a node have weight 0.
   [[nodiscard]] RaySamples<float> Sample(const ViewRay& ray, const DirectSampling& sampling) const;
 
- private:
+  /// The panels of a ray, for those who choose DirectRay::few_nodes or weigh the nodes of panels.
   [[nodiscard]] DirectRay Place(const ViewRay& ray, const DirectSampling& sampling) const;
+  /// @param sunlight  at the lanes of `placed`; null: no panel is dark, and all light is let through.
+  [[nodiscard]] ScatteredOnce<float> Scatter(const DirectRay& placed,
+                                             const LaneLight* sunlight) const;
+  /// The same with the nodes; their RaySamples::lit is `sunlight`.
+  [[nodiscard]] SampledLight Sample(const DirectRay& placed, const LaneLight* sunlight) const;
 
+  /// Columns from end to end of a ray placed with dark samples [km], nothing subtracted, so that
+  /// short ways lose no digits: within 1e-6 where the altitude changes by less than six scale heights
+  /// on each panel, and a tent of ozone does not bend there.
+  [[nodiscard]] ColumnSet<float> ColumnsAlong(const DirectRay& placed) const;
+
+ private:
   AirIntegrator<float> reference_;
   DirectAir air_;
 };

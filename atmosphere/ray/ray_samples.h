@@ -78,6 +78,13 @@ struct alignas(64) RaySamples {
   std::size_t count = 0;                                // samples
   std::size_t padded = 0;  // count rounded up to whole SIMD lanes; the rest has weight 0
   RayExtent extent;
+
+  /// Samples that have a weight.
+  [[nodiscard]] std::size_t Nodes() const {
+    return static_cast<std::size_t>(
+        std::count_if(weight.begin(), weight.begin() + static_cast<std::ptrdiff_t>(count),
+                      [](Real w) { return w != Real(0); }));
+  }
 };
 
 /// Light scattered once, without phase functions: the factor of p_R(nu) and of p_M(nu), per unit

@@ -305,11 +305,16 @@ Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double 
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
+ColumnSet<Real> AirIntegrator<Real>::ColumnsAlong(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   const RayEntry entry = EntryOf(ray, extent, medium_);
-  const ColumnSet<Real> columns = SegmentColumns<Real>(
-      constants_, medium_, entry, (extent.end_m - extent.begin_m) / kMetresPerKilometre);
+  return SegmentColumns<Real>(constants_, medium_, entry,
+                              (extent.end_m - extent.begin_m) / kMetresPerKilometre);
+}
+
+template <typename Real>
+Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
+  const ColumnSet<Real> columns = ColumnsAlong(ray);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   Bands<Real> depth(bands());
   for (std::size_t band = 0; band < bands(); ++band) {

@@ -49,6 +49,9 @@ class AirIntegrator {
   /// Transmittance from a point to space along mu; 0 where the ground is in the way.
   [[nodiscard]] Bands<Real> TransmittanceToSpace(double altitude_m, double mu) const;
 
+  /// Columns between the observer and the end of the ray [km].
+  [[nodiscard]] ColumnSet<Real> ColumnsAlong(const ViewRay& ray) const;
+
   /// Optical depth between the observer and the end of the ray.
   [[nodiscard]] Bands<Real> OpticalDepthAlong(const ViewRay& ray) const;
 

@@ -21,6 +21,7 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
+#include "renderer/light/segment_air.h"
 #include "renderer/shadow/sunlit_path.h"
 
 namespace alpenglow {
@@ -55,20 +56,26 @@ class AerialPerspective {
   [[nodiscard]] AirAlongRay Along(const ViewRay& ray, const SunlitPath& sunlit,
                                   const Nodes& nodes) const;
 
-  /// The samples of a ray; the last one has no weight and lies at its end. RaySamples::lit is the
-  /// sunlight as above. `sunlit` may be null: unbroken.
-  [[nodiscard]] RaySamples<float> Sample(const ViewRay& ray, const SunlitPath* sunlit,
-                                         const Nodes& nodes) const;
+  /// Light scattered once, without phase functions. `sunlit` may be null: unbroken.
+  [[nodiscard]] ScatteredOnce<float> Once(const ViewRay& ray, const SunlitPath* sunlit,
+                                          const Nodes& nodes) const;
 
-  /// Nodes for a panel that ends in the air.
-  /// @param low_m, high_m  altitudes of its ends
-  [[nodiscard]] int NodesFor(double length_m, double low_m, double high_m, bool shafts) const;
+  /// The same with its samples; the last one has no weight and lies at the end of the ray.
+  /// RaySamples::lit is the sunlight as above.
+  [[nodiscard]] SampledLight Sample(const ViewRay& ray, const SunlitPath* sunlit,
+                                    const Nodes& nodes) const;
 
  private:
+  /// Of rays that end in space or at the planet's own ground; or that have no length.
+  [[nodiscard]] RaySamples<float> SampleWhole(const ViewRay& ray, const SunlitPath* sunlit,
+                                              int nodes) const;
   /// b of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.
   [[nodiscard]] double StretchOf(const ViewRay& ray, double length_m, double at_low_m,
                                  double low_m) const;
-  [[nodiscard]] AirAlongRay Sum(const RaySamples<float>& samples, const ViewRay& ray,
+  template <typename OfSegment, typename OfWhole>
+  [[nodiscard]] auto OfRay(const ViewRay& ray, const OfSegment& of_segment,
+                           const OfWhole& of_whole) const;
+  [[nodiscard]] AirAlongRay Sum(const SampledLight& light, const ViewRay& ray,
                                 const Nodes& nodes) const;
   [[nodiscard]] PolarisedLight Polarised(const RaySamples<float>& samples, const ViewRay& ray,
                                          const ScatteredOnce<float>& once,
@@ -76,6 +83,7 @@ class AerialPerspective {
 
   const AirIntegrator<float>& air_;
   const DiffuseLight& diffuse_;
+  SegmentAir segments_;
   double rayleigh_per_m_ = 0.0, mie_per_m_ = 0.0;  // largest extinction of any band at altitude 0
 };
 

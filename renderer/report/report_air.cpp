@@ -116,9 +116,9 @@ class Topic : public TopicWork {
          .style = kAirPanels,
          .in_summary = in_summary},
         [&](const ViewRay& ray) {
-          return air_.Inscatter(air_.Scatter(aerial_.Sample(ray, nullptr, nodes)), ray.nu);
+          return air_.Inscatter(aerial_.Once(ray, nullptr, nodes), ray.nu);
         },
-        [&](const ViewRay& ray) { return aerial_.Sample(ray, nullptr, nodes).count - 1; });
+        [&](const ViewRay& ray) { return aerial_.Sample(ray, nullptr, nodes).samples.Nodes(); });
   }
 
   void AddMarch(MarchRule rule, int steps, bool in_summary) {

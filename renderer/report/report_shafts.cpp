@@ -131,8 +131,7 @@ class ShaftTopic {
     ReportRow row = Row("no shafts", "", MethodOrigin::kLiterature, kUnbroken);
     row.in_summary = true;
     for (std::size_t r = 0; r < views_.size(); ++r) {
-      Measure(r, row,
-              [&](std::size_t i) { return air_.Scatter(aerial_.Sample(Ray(r, i), nullptr, {})); });
+      Measure(r, row, [&](std::size_t i) { return aerial_.Once(Ray(r, i), nullptr, {}); });
     }
     topic_.rows.push_back(std::move(row));
   }
@@ -219,15 +218,19 @@ class ShaftTopic {
   template <typename Lit>
   void AddPanels(const Lit& lit, const AerialPerspective::Nodes& nodes, std::size_t r,
                  ReportRow& row) {
-    const auto samples = [&](std::size_t i) {
-      const ViewRay ray = Ray(r, i);
-      const SunlitPath path = lit.Along(views_[r].view.eye, views_[r].view.directions[i],
-                                        std::min(ray.length_m, kLongest_m));
-      return aerial_.Sample(ray, &path, nodes);
+    const auto path = [&](std::size_t i) {
+      return lit.Along(views_[r].view.eye, views_[r].view.directions[i],
+                       std::min(Ray(r, i).length_m, kLongest_m));
     };
-    Measure(r, row, [&](std::size_t i) { return air_.Scatter(samples(i)); });
+    Measure(r, row, [&](std::size_t i) {
+      const SunlitPath sunlit = path(i);
+      return aerial_.Once(Ray(r, i), &sunlit, nodes);
+    });
     double points = 0.0;
-    for (std::size_t i = 0; i < Pixels(); ++i) points += static_cast<double>(samples(i).count - 1);
+    for (std::size_t i = 0; i < Pixels(); ++i) {
+      const SunlitPath sunlit = path(i);
+      points += static_cast<double>(aerial_.Sample(Ray(r, i), &sunlit, nodes).samples.Nodes());
+    }
     row.at[r].samples = points / static_cast<double>(Pixels());
   }
 

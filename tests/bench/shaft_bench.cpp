@@ -70,8 +70,7 @@ void SingleScatteringOfOnePixel(benchmark::State& state) {
   std::size_t i = 0;
   for (auto unused : state) {
     i = rays.Next(i, true);
-    benchmark::DoNotOptimize(
-        world.air.Scatter(world.aerial.Sample(RayOf(rays.view, i, rays.length_m[i]), nullptr, {})));
+    benchmark::DoNotOptimize(world.aerial.Once(RayOf(rays.view, i, rays.length_m[i]), nullptr, {}));
   }
 }
 BENCHMARK(SingleScatteringOfOnePixel);
@@ -97,7 +96,7 @@ void ShaftsOfOnePixel(benchmark::State& state) {
     const ViewRay ray = RayOf(rays.view, i, rays.length_m[i]);
     const SunlitPath path =
         shadow.Along(rays.view.eye, rays.view.directions[i], std::min(ray.length_m, 2000e3));
-    benchmark::DoNotOptimize(world.air.Scatter(world.aerial.Sample(ray, &path, {})));
+    benchmark::DoNotOptimize(world.aerial.Once(ray, &path, {}));
   }
 }
 BENCHMARK(ShaftsOfOnePixel)->Arg(15)->Arg(8)->Arg(3)->Arg(1)->ArgName("sun");
@@ -125,7 +124,7 @@ void ShaftsBySunProbes(benchmark::State& state) {
     const ViewRay ray = RayOf(rays.view, i, rays.length_m[i]);
     const SunlitPath path =
         probes.Along(rays.view.eye, rays.view.directions[i], std::min(ray.length_m, 2000e3));
-    benchmark::DoNotOptimize(world.air.Scatter(world.aerial.Sample(ray, &path, {})));
+    benchmark::DoNotOptimize(world.aerial.Once(ray, &path, {}));
   }
 }
 BENCHMARK(ShaftsBySunProbes)->Arg(15)->Arg(3)->ArgName("sun");

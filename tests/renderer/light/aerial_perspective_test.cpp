@@ -71,8 +71,7 @@ std::vector<ViewRay> RaysBetweenMountains(std::size_t count, double planet_radiu
 }
 
 Bands<float> Once(const Air& air, const ViewRay& ray, const SunlitPath* sunlit) {
-  return air.integrator.Inscatter(air.integrator.Scatter(air.aerial.Sample(ray, sunlit, {})),
-                                  ray.nu);
+  return air.integrator.Inscatter(air.aerial.Once(ray, sunlit, {}), ray.nu);
 }
 
 struct Error {
@@ -90,7 +89,7 @@ Error OverMountains(const Medium& medium) {
     const auto through = exact.TransmittanceAlong(ray);
     const Bands<float> found = Once(air, ray, nullptr);
     const Bands<float> seen = air.aerial.Along(ray, {}).transmittance;
-    error.nodes += static_cast<double>(air.aerial.Sample(ray, nullptr, {}).count - 1);
+    error.nodes += static_cast<double>(air.aerial.Sample(ray, nullptr, {}).samples.Nodes());
     for (std::size_t band = 0; band < truth.count; ++band) {
       const double relative = static_cast<double>(found[band]) / truth[band] - 1.0;
       error.rms += relative * relative;
@@ -300,7 +299,8 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
       squares += std::pow(double{seen.inscatter[band]} / view.radiance[band] - 1.0, 2);
     ViewRay to_a_mountain = view.ray;
     to_a_mountain.length_m = 3000.0;
-    const RaySamples<float> way = aerial.Sample(to_a_mountain, nullptr, AerialPerspective::Nodes{});
+    const RaySamples<float> way =
+        aerial.Sample(to_a_mountain, nullptr, AerialPerspective::Nodes{}).samples;
     const Bands<float> open = diffuse.InscatterAlong(way, view.ray.nu);
     const Bands<float> hidden = diffuse.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
     for (std::size_t band = 0; band < 3; ++band) {
