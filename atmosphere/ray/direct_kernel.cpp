@@ -63,6 +63,12 @@ void FillLanes(const DirectAir& air, const DirectRule& rule, const TwoPanels& pa
   }
 }
 
+// @param sunlight  at the lanes of the group; null: all that the planet lets through.
+template <typename T>
+T SunlightOn(const PanelLanes<T>& panel, const float* sunlight) {
+  return sunlight == nullptr ? panel(&DirectPanel::lit) : LoadLanes<T>(sunlight + panel.first);
+}
+
 /// Sums over the nodes of a ray, lane by lane, for each block of four bands: molecules and aerosol,
 /// and, of four rows, the same with the last polynomial.
 template <typename T, std::size_t rows>
@@ -76,14 +82,14 @@ struct LitLanes {
   ColumnSet<T> columns[kVectors];  // from the sun to the eye
   T weight[kVectors][rows];
 
-  // @param sunlight  of the lanes; null: 1.
-  LitLanes(const DirectRule& rule, const float* sunlight, const Lanes<count>& lanes) {
+  LitLanes(const DirectRule& rule, const TwoPanels& panels, const float* sunlight,
+           const Lanes<count>& lanes) {
     for (std::size_t i = 0; i < kVectors; ++i) {
       const NodeAir<T>& node = lanes.air[i];
       columns[i] = {node.view.rayleigh + node.sun.rayleigh, node.view.mie + node.sun.mie,
                     node.view.ozone + node.sun.ozone};
-      T lit = lanes.place[i].weight;
-      if (sunlight != nullptr) lit *= LoadLanes<T>(sunlight + i * kLanesOf<T>);
+      const T lit =
+          lanes.place[i].weight * SunlightOn<T>(PanelLanes<T>{panels, i * kLanesOf<T>}, sunlight);
       weight[i][0] = lit * node.rayleigh_density;
       weight[i][1] = lit * node.mie_density;
       if constexpr (rows == 4) {
@@ -148,7 +154,8 @@ template <std::size_t count, std::size_t rows>
   for (std::size_t i = 0; i < work.ray.groups; ++i) {
     Lanes<count> lanes;
     FillLanes<count>(work.air, RuleOf(work, i), PanelsOf(work.ray, i), work.ray.falls, lanes);
-    const LitLanes<count, rows> lit(RuleOf(work, i), SunlightOf(work, i), lanes);
+    const LitLanes<count, rows> lit(RuleOf(work, i), PanelsOf(work.ray, i), SunlightOf(work, i),
+                                    lanes);
     AddLight<count, rows>(work.air, lit, i == 0, light);
   }
   StoreLight<LaneVector<count>, rows>(work.air, light, 0, scattered);
@@ -195,8 +202,7 @@ void StoreGroup(const TwoPanels& panels, const float* sunlight, const Lanes<coun
     const T direction = panel(&DirectPanel::direction);
     put(samples.distance, panel(&DirectPanel::begin) + direction * place.position);
     put(samples.weight, place.weight);
-    put(samples.lit,
-        sunlight == nullptr ? panel(&DirectPanel::lit) : LoadLanes<T>(sunlight + panel.first));
+    put(samples.lit, SunlightOn<T>(panel, sunlight));
     put(samples.altitude, place.altitude);
     put(samples.mu, direction * min(place.mu, T(1.0F)));
     put(samples.mu_s, min(max(place.mu_s, T(-1.0F)), T(1.0F)));
@@ -239,7 +245,8 @@ template <std::size_t count>
     FillLanes<count>(work.air, rule, panels, work.ray.falls, lanes);
     StoreGroup<count>(panels, sunlight, lanes, samples);
     if (scattered != nullptr)
-      AddLight<count, 2>(work.air, LitLanes<count, 2>(rule, sunlight, lanes), i == 0, light);
+      AddLight<count, 2>(work.air, LitLanes<count, 2>(rule, panels, sunlight, lanes), i == 0,
+                         light);
   }
   if (scattered != nullptr) StoreLight<LaneVector<count>, 2>(work.air, light, 0, *scattered);
 }

@@ -31,7 +31,7 @@ struct DirectWork {
   const DirectAir& air;
   const DirectRules& rules;
   const DirectRay& ray;
-  const LaneLight* sunlight = nullptr;  // null: all groups are lit
+  const LaneLight* sunlight = nullptr;  // null: all that the planet lets through
 };
 
 struct DirectKernel {

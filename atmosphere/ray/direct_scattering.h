@@ -72,7 +72,7 @@ class DirectScattering {
 
   /// The panels of a ray, for those who choose DirectRay::few_nodes or weigh the nodes of panels.
   [[nodiscard]] DirectRay Place(const ViewRay& ray, const DirectSampling& sampling) const;
-  /// @param sunlight  at the lanes of `placed`; null: no panel is dark, and all light is let through.
+  /// @param sunlight  at the lanes of `placed`; null: all that the planet lets through.
   [[nodiscard]] ScatteredOnce<float> Scatter(const DirectRay& placed,
                                              const LaneLight* sunlight) const;
   /// The same with the nodes; their RaySamples::lit is `sunlight`.

@@ -124,39 +124,86 @@ void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::siz
                chunk.sun_weight);
 }
 
-// Some vectors of a node, summed over 16 nodes: the first kRows of those that are wanted and, after
-// them, the ones from kFrom on. Spelled out, so that the sums stay in registers.
+Eight Twice(const std::array<float, kBlockBands>& bands) {
+  alignas(64) float twice[8];
+  for (std::size_t band = 0; band < 8; ++band) twice[band] = bands[band % 4];
+  return LoadEight(twice);
+}
+
+/// The nodes around a point and their weights.
+struct Taps {
+  const float* node[16];
+  float weight[16];
+};
+
+// Vectors of a node: the first kRows of those that are wanted and, after them, the ones from kFrom
+// on. Where the index-th of them begins.
+template <std::size_t kRows, std::size_t kFrom>
+constexpr std::size_t PlaceOf(std::size_t index) {
+  return (index < kRows ? index : kFrom + index - kRows) * 8;
+}
+
+// Those vectors, summed over 16 nodes. Spelled out, so that the sums stay in registers.
 template <std::size_t kRows, std::size_t kFrom, std::size_t kFirst, std::size_t... kIndex>
-void SumTapsAt(const float* const* node, const float* weight, float* moments,
-               std::index_sequence<kIndex...>) {
-  const auto place = [](std::size_t i) { return (i < kRows ? i : kFrom + i - kRows) * 8; };
+void SumTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>) {
   Eight sum[sizeof...(kIndex)] = {(static_cast<void>(kIndex), Zero())...};
   for (std::size_t tap = 0; tap < 16; ++tap) {
-    const V w(weight[tap]);
-    const float* at = node[tap];
-    (Add(sum[kIndex], w, LoadEight(at + place(kFirst + kIndex))), ...);
+    const V w(taps.weight[tap]);
+    const float* at = taps.node[tap];
+    (Add(sum[kIndex], w, LoadEight(at + PlaceOf<kRows, kFrom>(kFirst + kIndex))), ...);
   }
   (StoreEight(moments + (kFirst + kIndex) * 8, sum[kIndex]), ...);
 }
 
+#ifdef ALPENGLOW_BATCHES
+// The same two vectors at a time, where the processor has lanes for them.
+template <std::size_t kRows, std::size_t kFrom, std::size_t kFirst, std::size_t... kIndex>
+void SumPairsOfTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>) {
+  using Wide = BatchOf<float>::Type;
+  Wide sum[sizeof...(kIndex)] = {(static_cast<void>(kIndex), Wide(0.0F))...};
+  for (std::size_t tap = 0; tap < 16; ++tap) {
+    const Wide w(taps.weight[tap]);
+    const float* at = taps.node[tap];
+    ((sum[kIndex] += w * Wide::load_unaligned(at + PlaceOf<kRows, kFrom>(kFirst + 2 * kIndex))),
+     ...);
+  }
+  (sum[kIndex].store_aligned(moments + (kFirst + 2 * kIndex) * 8), ...);
+}
+#endif
+
 // All kCount of them, as many at a time as there are registers for.
 template <std::size_t kRows, std::size_t kFrom, std::size_t kCount, std::size_t kFirst = 0>
-void SumTaps(const float* const* node, const float* weight, float* moments) {
+void SumTaps(const Taps& taps, float* moments) {
   constexpr std::size_t kMost = 18;
   constexpr std::size_t kHere = kCount - kFirst < kMost ? kCount - kFirst : kMost;
-  SumTapsAt<kRows, kFrom, kFirst>(node, weight, moments, std::make_index_sequence<kHere>{});
+#ifdef ALPENGLOW_BATCHES
+  constexpr bool kPairs =
+      BatchOf<float>::kLanes == 16 && kRows % 2 == 0 && kCount % 2 == 0 && kFirst % 2 == 0;
+  if constexpr (kPairs) {
+    SumPairsOfTapsAt<kRows, kFrom, kFirst>(taps, moments, std::make_index_sequence<kHere / 2>{});
+  } else {
+    SumTapsAt<kRows, kFrom, kFirst>(taps, moments, std::make_index_sequence<kHere>{});
+  }
+#else
+  SumTapsAt<kRows, kFrom, kFirst>(taps, moments, std::make_index_sequence<kHere>{});
+#endif
   if constexpr (kFirst + kHere < kCount)
-    SumTaps<kRows, kFrom, kCount, kFirst + kHere>(node, weight, moments);
+    SumTaps<kRows, kFrom, kCount, kFirst + kHere>(taps, moments);
 }
 
-// What a degree of the moments sends along the ray at a sample, before phase functions.
-Eight LightOfDegree(const Chunk& chunk, std::size_t s, std::size_t l, const float* moments) {
+// What moments of degree kL send along the ray at a sample, before phase functions.
+template <std::size_t kL, std::size_t... kPair>
+[[gnu::always_inline]] inline Eight LightOfDegree(const Chunk& chunk, std::size_t s,
+                                                  const float* moments,
+                                                  std::index_sequence<kPair...>) {
+  constexpr std::size_t kFirst = kL * (kL + 1) / 2;
   Eight light = Zero();
-  for (std::size_t p = 0; p <= l / 2; ++p) {
-    const std::size_t m = l * (l + 1) / 2 + 2 * p;
-    Add(light, Pair(chunk.harmonic[m][s], 2 * p < l ? chunk.harmonic[m + 1][s] : 0.0F),
-        LoadEight(moments + (kPackedRow[l] + p) * 8));
-  }
+  const auto odd = [&](std::size_t p) {
+    return 2 * p < kL ? chunk.harmonic[kFirst + 2 * p + 1][s] : 0.0F;
+  };
+  (Add(light, Pair(chunk.harmonic[kFirst + 2 * kPair][s], odd(kPair)),
+       LoadEight(moments + (kPackedRow[kL] + kPair) * 8)),
+   ...);
   return light;
 }
 
@@ -177,39 +224,6 @@ struct Scattered {
   Eight rayleigh, mie;
 };
 
-// Of the moments of rows 0 to kLast. All that a node holds of them is read in one pass.
-template <std::size_t kDegree, std::size_t kLast, std::size_t kStep, bool kPolarised>
-Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const float* const* node,
-                          const float* weight, const Eight* chi, const Eight& rayleigh_chi2) {
-  constexpr std::size_t kRows = kPackedRow[kLast + 1];
-  constexpr std::size_t kMore =
-      kPolarised ? PackedVectors(kDegree, true) - kPackedRow[kDegree + 1] : 0;
-  alignas(64) float moments[(kRows + kMore) * 8];
-  SumTaps<kRows, kPackedRow[kDegree + 1], kRows + kMore>(node, weight, moments);
-  Scattered light{Zero(), Zero()};
-  for (std::size_t l = 0; l <= kLast; l += kStep) {
-    const Eight of_degree = LightOfDegree(chunk, s, l, moments);
-    if (!kPolarised && l == 0) Add(light.rayleigh, V(1.0F), of_degree);
-    if (!kPolarised && l == 2) Add(light.rayleigh, rayleigh_chi2, of_degree);
-    Add(light.mie, chi[l], of_degree);
-  }
-  if (kPolarised) light.rayleigh = LightOfTensor(chunk, s, moments + kRows * 8, rayleigh_chi2);
-  return light;
-}
-
-// Where molecules alone scatter.
-template <std::size_t kDegree, bool kPolarised>
-Scattered ScatteredByMolecules(const Chunk& chunk, std::size_t s, const float* const* node,
-                               const float* weight, const Eight* chi, const Eight& rayleigh_chi2) {
-  if constexpr (kPolarised) {
-    alignas(64) float tensor[2 * 8];
-    SumTaps<0, kPackedRow[kDegree + 1], 2>(node, weight, tensor);
-    return {LightOfTensor(chunk, s, tensor, rayleigh_chi2), Zero()};
-  } else {
-    return ScatteredByRows<kDegree, 2, 2, false>(chunk, s, node, weight, chi, rayleigh_chi2);
-  }
-}
-
 /// Legendre coefficients of a block, for both halves of eight lanes.
 template <std::size_t kDegree>
 struct EightChi {
@@ -217,15 +231,71 @@ struct EightChi {
   Eight rayleigh2;
 };
 
-template <std::size_t kDegree, bool kPolarised>
-void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
-               const RaySamples<float>& samples, std::size_t sample, const DiffuseBlock& block,
-               const EightChi<kDegree>& chi, const float* moments, float* light) {
-  constexpr std::size_t kNode = PackedVectors(kDegree, kPolarised) * 8;
-  // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
-  // only those to degree 3.
-  constexpr float kNoAerosol = 3e-4F, kCoarseAerosol = 1e-3F;
-  constexpr std::size_t kCoarseDegree = kDegree < 3 ? kDegree : 3;
+template <std::size_t kL, bool kPolarised, std::size_t kDegree>
+void AddDegree(const Chunk& chunk, std::size_t s, const float* moments,
+               const EightChi<kDegree>& chi, Scattered& light) {
+  const Eight of_degree =
+      LightOfDegree<kL>(chunk, s, moments, std::make_index_sequence<kL / 2 + 1>{});
+  if constexpr (!kPolarised && kL == 0) Add(light.rayleigh, V(1.0F), of_degree);
+  if constexpr (!kPolarised && kL == 2) Add(light.rayleigh, chi.rayleigh2, of_degree);
+  Add(light.mie, chi.mie[kL], of_degree);
+}
+
+// Of the moments of rows 0, kStep, ... kLast. All that a node holds of them is read in one pass.
+template <std::size_t kLast, std::size_t kStep, bool kPolarised, std::size_t kDegree>
+Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const Taps& taps,
+                          const EightChi<kDegree>& chi) {
+  constexpr std::size_t kRows = kPackedRow[kLast + 1];
+  constexpr std::size_t kMore =
+      kPolarised ? PackedVectors(kDegree, true) - kPackedRow[kDegree + 1] : 0;
+  alignas(64) float moments[(kRows + kMore) * 8];
+  SumTaps<kRows, kPackedRow[kDegree + 1], kRows + kMore>(taps, moments);
+  Scattered light{Zero(), Zero()};
+  [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+    (AddDegree<kIndex * kStep, kPolarised>(chunk, s, moments, chi, light), ...);
+  }
+  (std::make_index_sequence<kLast / kStep + 1>{});
+  if (kPolarised) light.rayleigh = LightOfTensor(chunk, s, moments + kRows * 8, chi.rayleigh2);
+  return light;
+}
+
+// Where molecules alone scatter.
+template <bool kPolarised, std::size_t kDegree>
+Scattered ScatteredByMolecules(const Chunk& chunk, std::size_t s, const Taps& taps,
+                               const EightChi<kDegree>& chi) {
+  if constexpr (kPolarised) {
+    alignas(64) float tensor[2 * 8];
+    SumTaps<0, kPackedRow[kDegree + 1], 2>(taps, tensor);
+    return {LightOfTensor(chunk, s, tensor, chi.rayleigh2), Zero()};
+  } else {
+    return ScatteredByRows<2, 2, false>(chunk, s, taps, chi);
+  }
+}
+
+/// Four bands.
+using Four = float __attribute__((vector_size(16)));
+
+inline Four LoadFour(const float* from) {
+  Four four;
+  __builtin_memcpy(&four, from, sizeof four);
+  return four;
+}
+
+// The sum of both halves, where it is not negative.
+Four SumOfHalves(const Eight& eight) {
+  alignas(64) float halves[8];
+  StoreEight(halves, eight);
+  const Four sum = LoadFour(halves) + LoadFour(halves + 4), dark = {};
+  return sum > dark ? sum : dark;
+}
+
+// What is at a sample of the rows of a chunk.
+Four AtSample(const float (*rows)[kChunk], std::size_t s) {
+  return Four{rows[0][s], rows[1][s], rows[2][s], rows[3][s]};
+}
+
+template <std::size_t kNode>
+Taps TapsOf(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s, const float* moments) {
   const auto first_altitude = static_cast<int>(chunk.altitude_cell[s]) - 1;
   const auto first_sun = static_cast<int>(chunk.sun_cell[s]) - 1;
   const auto last_altitude = static_cast<int>(grid.altitudes) - 1;
@@ -236,44 +306,54 @@ void AddSample(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
   const std::size_t column[4] = {
       within(first_sun, last_sun) * kNode, within(first_sun + 1, last_sun) * kNode,
       within(first_sun + 2, last_sun) * kNode, within(first_sun + 3, last_sun) * kNode};
-  const float* node[16];
-  float weight[16];
+  const Four of_suns = AtSample(chunk.sun_weight, s);
+  Taps taps;
   for (int a = 0; a < 4; ++a) {
     const float* row = moments + within(first_altitude + a, last_altitude) * grid.suns * kNode;
-    for (int b = 0; b < 4; ++b) {
-      node[a * 4 + b] = row + column[b];
-      weight[a * 4 + b] = chunk.altitude_weight[a][s] * chunk.sun_weight[b][s];
-    }
+    for (int b = 0; b < 4; ++b) taps.node[a * 4 + b] = row + column[b];
+    const Four weight = chunk.altitude_weight[a][s] * of_suns;
+    __builtin_memcpy(taps.weight + a * 4, &weight, sizeof weight);
   }
-  float rayleigh_share[kBlockBands], mie_share[kBlockBands];
-  bool aerosol = false, fine = false;
-  for (std::size_t band = 0; band < kBlockBands; ++band) {
-    rayleigh_share[band] = block.rayleigh[band] * samples.rayleigh_density[sample];
-    mie_share[band] = block.mie_scattering[band] * samples.mie_density[sample];
-    aerosol = aerosol || mie_share[band] > kNoAerosol * rayleigh_share[band];
-    fine = fine || mie_share[band] > kCoarseAerosol * rayleigh_share[band];
-  }
-  const Scattered scattered = fine ? ScatteredByRows<kDegree, kDegree, 1, kPolarised>(
-                                         chunk, s, node, weight, chi.mie, chi.rayleigh2)
-                              : aerosol ? ScatteredByRows<kDegree, kCoarseDegree, 1, kPolarised>(
-                                              chunk, s, node, weight, chi.mie, chi.rayleigh2)
-                                        : ScatteredByMolecules<kDegree, kPolarised>(
-                                              chunk, s, node, weight, chi.mie, chi.rayleigh2);
-  alignas(64) float of_rayleigh[8], of_mie[8];
-  StoreEight(of_rayleigh, scattered.rayleigh);
-  StoreEight(of_mie, scattered.mie);
-  for (std::size_t band = 0; band < kBlockBands; ++band) {
-    const float r = of_rayleigh[band] + of_rayleigh[band + 4];
-    const float m = of_mie[band] + of_mie[band + 4];
-    light[band] +=
-        rayleigh_share[band] * (r > 0.0F ? r : 0.0F) + mie_share[band] * (m > 0.0F ? m : 0.0F);
-  }
+  return taps;
 }
 
-Eight Twice(const std::array<float, kBlockBands>& bands) {
-  alignas(64) float twice[8];
-  for (std::size_t band = 0; band < 8; ++band) twice[band] = bands[band % 4];
-  return LoadEight(twice);
+/// A block of bands with what every sample needs of it.
+template <std::size_t kDegree>
+struct ReadyBlock {
+  const DiffuseBlock& block;
+  EightChi<kDegree> chi;
+  float most_aerosol;  // scattered by aerosol per molecules, largest of any band, at altitude 0
+
+  explicit ReadyBlock(const DiffuseBlock& of_block) : block(of_block), most_aerosol(0.0F) {
+    for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(block.chi[l]);
+    chi.rayleigh2 = Twice(block.rayleigh_chi2);
+    for (std::size_t band = 0; band < kBlockBands; ++band) {
+      const float ratio = block.mie_scattering[band] /
+                          (block.rayleigh[band] > 1e-30F ? block.rayleigh[band] : 1e-30F);
+      most_aerosol = ratio > most_aerosol ? ratio : most_aerosol;
+    }
+  }
+};
+
+template <bool kPolarised, std::size_t kDegree>
+Four SourceAt(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
+              const RaySamples<float>& samples, std::size_t sample,
+              const ReadyBlock<kDegree>& ready, const float* moments) {
+  // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
+  // only those to degree 3.
+  constexpr float kNoAerosol = 3e-4F, kCoarseAerosol = 1e-3F;
+  constexpr std::size_t kCoarseDegree = kDegree < 3 ? kDegree : 3;
+  const Taps taps = TapsOf<PackedVectors(kDegree, kPolarised) * 8>(grid, chunk, s, moments);
+  const float molecules = samples.rayleigh_density[sample], haze = samples.mie_density[sample];
+  const float aerosol = ready.most_aerosol * haze;
+  const Scattered scattered =
+      aerosol > kCoarseAerosol * molecules
+          ? ScatteredByRows<kDegree, 1, kPolarised>(chunk, s, taps, ready.chi)
+      : aerosol > kNoAerosol * molecules
+          ? ScatteredByRows<kCoarseDegree, 1, kPolarised>(chunk, s, taps, ready.chi)
+          : ScatteredByMolecules<kPolarised>(chunk, s, taps, ready.chi);
+  return molecules * LoadFour(ready.block.rayleigh.data()) * SumOfHalves(scattered.rayleigh) +
+         haze * LoadFour(ready.block.mie_scattering.data()) * SumOfHalves(scattered.mie);
 }
 
 template <std::size_t kDegree, bool kPolarised>
@@ -290,9 +370,7 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
     Prepare<kDegree>(grid, samples, first, nu, chunk);
     const std::size_t size = samples.count - first < kChunk ? samples.count - first : kChunk;
     for (std::size_t b = 0; b < count; ++b) {
-      EightChi<kDegree> chi;
-      for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(blocks[b].chi[l]);
-      chi.rayleigh2 = Twice(blocks[b].rayleigh_chi2);
+      const ReadyBlock<kDegree> ready(blocks[b]);
       alignas(64) float attenuation[kBlockBands][kChunk];
       for (std::size_t band = 0; band < kBlockBands; ++band) {
         const Extinction<T> extinction{T(blocks[b].rayleigh[band]),
@@ -303,14 +381,13 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
         const T depth = OpticalDepthOf(extinction, columns);
         Lanes::Store(attenuation[band], Lanes::Load(&samples.weight[first]) * exp(-depth));
       }
+      Four sum = LoadFour(light + b * kBlockBands);
       for (std::size_t s = 0; s < size; ++s) {
         if (samples.weight[first + s] == 0.0F) continue;  // a place, not a node
-        float source[kBlockBands] = {0.0F, 0.0F, 0.0F, 0.0F};
-        AddSample<kDegree, kPolarised>(grid, chunk, s, samples, first + s, blocks[b], chi,
-                                       moments + b * block_stride, source);
-        for (std::size_t band = 0; band < kBlockBands; ++band)
-          light[b * kBlockBands + band] += attenuation[band][s] * source[band];
+        sum += AtSample(attenuation, s) * SourceAt<kPolarised>(grid, chunk, s, samples, first + s,
+                                                               ready, moments + b * block_stride);
       }
+      __builtin_memcpy(light + b * kBlockBands, &sum, sizeof sum);
     }
   }
 }

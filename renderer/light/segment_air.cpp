@@ -56,26 +56,19 @@ float LargestHazeShare(const AirConstants<float>& air) {
 }
 
 // What planet and terrain leave of the sunlight at each lane.
-LaneLight Shaded(const DirectRay& placed, const SunlitPath* sunlit) {
+LaneLight Shaded(const DirectRay& placed, const SunlitPath& sunlit) {
   LaneLight light;
   VisitPanels(placed, [&](const PanelNodes& nodes) {
     const DirectPanel& panel = placed.panel[nodes.panel];
     const std::size_t lanes = nodes.count == kManyNodes ? kDirectLanes : kDirectLanes / 2;
     std::fill_n(light.factor.begin() + static_cast<std::ptrdiff_t>(nodes.first), lanes, panel.lit);
-    if (sunlit == nullptr) return;
     const PanelMap map(panel, placed.extent.begin_m);
-    if (LightUnbroken(map, *sunlit)) return;
-    const ShaftNodes factor = SunlightAtNodes(map, static_cast<int>(nodes.count), *sunlit);
+    if (LightUnbroken(map, sunlit)) return;
+    const ShaftNodes factor = SunlightAtNodes(map, static_cast<int>(nodes.count), sunlit);
     for (std::size_t j = 0; j < nodes.count; ++j)
       light.factor[nodes.SampleOf(j)] *= static_cast<float>(factor[j]);
   });
   return light;
-}
-
-bool HasDarkPanel(const DirectRay& placed) {
-  return std::any_of(placed.panel.begin(),
-                     placed.panel.begin() + static_cast<std::ptrdiff_t>(placed.panels),
-                     [](const DirectPanel& panel) { return panel.lit == 0.0F; });
 }
 
 bool Breaks(const DirectRay& placed, const SunlitPath* sunlit) {
@@ -156,13 +149,13 @@ SegmentAir::Lit SegmentAir::LightOf(const ViewRay& ray, const DirectRay& placed,
                                     const SunlitPath* sunlit, int most_nodes) const {
   const bool shafts = Breaks(placed, sunlit);
   const int nodes = std::min(NodesFor(placed, shafts), most_nodes);
-  Lit lit{placed, !shafts && !HasDarkPanel(placed), {}};
+  Lit lit{placed, !shafts, {}};
   if (nodes <= static_cast<int>(kMostFewNodes)) {
     lit.placed.few_nodes = static_cast<std::size_t>(nodes);
   } else {
     lit.placed = direct_.Place(ray, {.mode = DirectMode::kNormal, .dark_samples = true});
   }
-  if (!lit.unbroken) lit.light = Shaded(lit.placed, sunlit);
+  if (shafts) lit.light = Shaded(lit.placed, *sunlit);
   return lit;
 }
 

@@ -136,6 +136,12 @@ void DiffuseLightOfOneRay(benchmark::State& state) {
 }
 BENCHMARK(DiffuseLightOfOneRay)->Arg(0)->Arg(1)->ArgName("polarised");
 
+SampledLight ByReference(const AirIntegrator<float>& air, const ViewRay& ray) {
+  SampledLight light{air.Sample(ray, {.nodes = 12, .dark_samples = true}), {}};
+  light.once = air.Scatter(light.samples);
+  return light;
+}
+
 // Light of all orders from a direction of the sky; argument: 0 AirIntegrator with 12 nodes, 1 fast,
 // 2 normal.
 void AllOrdersOfOneRay(benchmark::State& state) {
@@ -147,11 +153,12 @@ void AllOrdersOfOneRay(benchmark::State& state) {
   int i = 0;
   for (auto unused : state) {
     const ViewRay ray = RayNumber(++i);
-    const RaySamples<float> samples =
-        state.range(0) == 0 ? air.Sample(ray, {.nodes = 12, .dark_samples = true})
-                            : direct.Sample(ray, {.mode = mode, .dark_samples = true});
-    benchmark::DoNotOptimize(air.Inscatter(air.Scatter(samples), ray.nu));
-    benchmark::DoNotOptimize(light.InscatterAlong(samples, ray.nu));
+    const SampledLight sampled =
+        state.range(0) == 0
+            ? ByReference(air, ray)
+            : direct.Sample(direct.Place(ray, {.mode = mode, .dark_samples = true}), nullptr);
+    benchmark::DoNotOptimize(air.Inscatter(sampled.once, ray.nu));
+    benchmark::DoNotOptimize(light.InscatterAlong(sampled.samples, ray.nu));
   }
 }
 BENCHMARK(AllOrdersOfOneRay)->DenseRange(0, 2)->ArgName("method");
