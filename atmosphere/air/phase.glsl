@@ -122,3 +122,9 @@ SHARED Number PhaseFog(Number cos_scattering, Number d) {
   return PhaseHenyeyGreensteinDraine(cos_scattering, FogForwardG(d), FogDraineG(d),
                                      FogDraineWeight(d), FogDraineAlpha(d));
 }
+
+// Where nodes of a tabulated phase function stand, uniform in [0, 1] from forward to backward: dense
+// about the forward direction, and no inverse cosine is needed. From the square of the sine of half
+// the scattering angle; and that sine back.
+SHARED Number PhaseNode(Number half_sine_squared) { return sqrt(sqrt(half_sine_squared)); }
+SHARED Number PhaseHalfSine(Number node) { return node * node; }

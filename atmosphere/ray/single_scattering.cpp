@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 
-#include "atmosphere/air/phase_table.h"
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
@@ -241,6 +241,8 @@ AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium), cons
   RequireInRange(static_cast<double>(bands()), 1.0, static_cast<double>(kMaxBands),
                  "number of spectrum.wavelengths_nm");
   constants_ = ConstantsOf<Real>(medium_);
+  if (std::is_same_v<Real, float> && medium_.mie_phase.front().kind == PhaseKind::kTable)
+    phase_nodes_ = PhaseNodes(medium_);
 }
 
 template <typename Real>
@@ -379,22 +381,28 @@ ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples
 }
 
 template <typename Real>
+Bands<Real> AirIntegrator<Real>::AerosolPhases(double nu) const {
+  if constexpr (std::is_same_v<Real, float>) {
+    if (!phase_nodes_.empty()) return phase_nodes_.At(nu);
+  }
+  const std::vector<PhaseFunction>& phases = medium_.mie_phase;
+  Bands<Real> values(bands());
+  for (std::size_t i = 0; i < phases.size(); ++i)
+    values[i] = static_cast<Real>(Phase(phases[i], nu));
+  if (phases.size() == 1) std::fill_n(values.value.begin(), bands(), values[0]);
+  return values;
+}
+
+template <typename Real>
 Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
   const std::vector<double>& depolarisation = medium_.rayleigh_depolarisation;
   Real rayleigh_phase = Real(0);
-  const std::vector<PhaseFunction>& phases = medium_.mie_phase;
-  const bool tabulated = phases.front().kind == PhaseKind::kTable;
-  const double position = tabulated ? PhaseTable::Position(nu) : 0.0;  // one for all tables
-  Real mie_phase = Real(0);
-  Bands<Real> radiance(bands());
+  Bands<Real> radiance = AerosolPhases(nu);
   for (std::size_t band = 0; band < bands(); ++band) {
-    if (band < phases.size()) {
-      mie_phase =
-          static_cast<Real>(tabulated ? phases[band].table->At(position) : Phase(phases[band], nu));
-    }
     if (band < depolarisation.size())
       rayleigh_phase = static_cast<Real>(shared::PhaseMolecules(nu, depolarisation[band]));
-    radiance[band] = rayleigh_phase * scattered.rayleigh[band] + mie_phase * scattered.mie[band];
+    radiance[band] =
+        rayleigh_phase * scattered.rayleigh[band] + radiance[band] * scattered.mie[band];
   }
   return radiance;
 }

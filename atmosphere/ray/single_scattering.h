@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/ray/phase_nodes.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_kernel.h"
 #include "atmosphere/ray/ray_samples.h"
@@ -72,12 +73,17 @@ class AirIntegrator {
   /// Direct sunlight scattered once along the samples.
   [[nodiscard]] ScatteredOnce<Real> Scatter(const RaySamples<Real>& samples) const;
 
+  /// The aerosol's phase function [1/sr] in every band. In float, tables are read at nodes of their
+  /// own, within 1e-4 (of dust with a peak of a degree) of what they hold.
+  [[nodiscard]] Bands<Real> AerosolPhases(double nu) const;
+
   /// Radiance per unit solar irradiance [1/sr]: phase functions applied.
   [[nodiscard]] Bands<Real> Inscatter(const ScatteredOnce<Real>& scattered, double nu) const;
 
  private:
   Medium medium_;
   AirConstants<Real> constants_;
+  PhaseNodes phase_nodes_;  // of float, where phase functions are tables
 };
 
 extern template class AirIntegrator<float>;

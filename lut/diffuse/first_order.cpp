@@ -107,8 +107,10 @@ class PieceScatterer {
         if (options.forward_peak) {
           AddSeries(nu);
         } else {
-          for (const PhaseFunction& phase : medium.mie_phase)
-            mie_phase_.push_back(static_cast<float>(Phase(phase, nu)));
+          const Bands<float> phases = marches.air().AerosolPhases(nu);
+          mie_phase_.insert(
+              mie_phase_.end(), phases.value.begin(),
+              phases.value.begin() + static_cast<std::ptrdiff_t>(medium.mie_phase.size()));
         }
       }
     }

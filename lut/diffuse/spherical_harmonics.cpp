@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/number/constants.h"
@@ -104,6 +106,30 @@ std::vector<double> PanelEdges(const PhaseFunction& phase) {
   return edges;
 }
 
+/// Cosines with their weights, 2 pi Phase() included.
+struct PhaseQuadrature {
+  std::vector<double> cosine, weight;
+};
+
+// Filled up with weights of 0 to a multiple of `lanes`.
+PhaseQuadrature QuadratureOf(const PhaseFunction& phase, std::size_t lanes) {
+  const GaussRule& rule = GaussLegendre(phase.kind == PhaseKind::kTable ? 4 : 32);
+  const std::vector<double> edges = PanelEdges(phase);
+  PhaseQuadrature quadrature;
+  for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
+    const double width = edges[panel + 1] - edges[panel];
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const double x = edges[panel] + width * rule.node[i];
+      quadrature.cosine.push_back(x);
+      quadrature.weight.push_back(2.0 * kPi * rule.weight[i] * width * Phase(phase, x));
+    }
+  }
+  const std::size_t count = (quadrature.cosine.size() + lanes - 1) / lanes * lanes;
+  quadrature.cosine.resize(count, 0.0);
+  quadrature.weight.resize(count, 0.0);
+  return quadrature;
+}
+
 }  // namespace
 
 std::vector<double> LegendreSeries(int degree, double nu) {
@@ -119,25 +145,27 @@ std::vector<double> LegendreSeries(int degree, double nu) {
 }
 
 std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
-  std::vector<double> chi(static_cast<std::size_t>(degree) + 1, 0.0);
-  const GaussRule& rule = GaussLegendre(phase.kind == PhaseKind::kTable ? 4 : 32);
-  const std::vector<double> edges = PanelEdges(phase);
-  for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const double x = edges[panel] + (edges[panel + 1] - edges[panel]) * rule.node[i];
-      const double weight =
-          2.0 * kPi * rule.weight[i] * (edges[panel + 1] - edges[panel]) * Phase(phase, x);
-      double before = 0.0, now = 1.0;
-      for (std::size_t l = 0; l < chi.size(); ++l) {
-        chi[l] += weight * now;
-        const double next =
-            ((2.0 * static_cast<double>(l) + 1.0) * x * now - static_cast<double>(l) * before) /
-            (static_cast<double>(l) + 1.0);
-        before = now;
-        now = next;
+  constexpr std::size_t kLanes = 8;  // nodes at once: the recurrence of one waits for itself
+  const PhaseQuadrature rule = QuadratureOf(phase, kLanes);
+  std::vector<double> sums(kLanes * (static_cast<std::size_t>(degree) + 1), 0.0);
+  for (std::size_t first = 0; first < rule.cosine.size(); first += kLanes) {
+    const double* x = &rule.cosine[first];
+    std::array<double, kLanes> before{}, now{};
+    std::copy_n(&rule.weight[first], kLanes, now.begin());
+    for (int l = 0; l <= degree; ++l) {
+      const double rising = (2.0 * l + 1.0) / (l + 1.0), falling = l / (l + 1.0);
+      double* sum = &sums[kLanes * static_cast<std::size_t>(l)];
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        sum[i] += now[i];
+        const double next = rising * x[i] * now[i] - falling * before[i];
+        before[i] = now[i];
+        now[i] = next;
       }
     }
   }
+  std::vector<double> chi;
+  for (auto sum = sums.begin(); sum != sums.end(); sum += kLanes)
+    chi.push_back(std::accumulate(sum, sum + kLanes, 0.0));
   return chi;
 }
 

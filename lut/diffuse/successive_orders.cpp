@@ -417,19 +417,19 @@ void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band,
 // of a lobe of g = 0.8 6 %, of 0.7 1 %. [phase * suns + sun].
 std::vector<double> MissedShares(const DiffuseMarches& marches) {
   constexpr double kNoise = 0.01;  // of the rule for phase functions that it resolves
-  std::vector<double> shares;
-  for (const PhaseFunction& phase : marches.air().medium().mie_phase) {
-    for (std::size_t sun = 0; sun < marches.grid().suns; ++sun) {
-      double found = 0.0;
-      for (const March& march : marches.At(0)) {
-        double around = 0.0;
-        for (std::size_t k = 0; k < marches.azimuths(); ++k)
-          around += Phase(phase, marches.Nu(march, sun, k));
-        found += static_cast<double>(march.solid_angle) * around;
+  const std::size_t phases = marches.air().medium().mie_phase.size();
+  const std::size_t suns = marches.grid().suns;
+  std::vector<double> shares(phases * suns, 1.0);
+  for (std::size_t sun = 0; sun < suns; ++sun) {
+    for (const March& march : marches.At(0)) {
+      for (std::size_t k = 0; k < marches.azimuths(); ++k) {
+        const Bands<float> around = marches.air().AerosolPhases(marches.Nu(march, sun, k));
+        for (std::size_t phase = 0; phase < phases; ++phase)
+          shares[phase * suns + sun] -= static_cast<double>(march.solid_angle * around[phase]);
       }
-      shares.push_back(std::abs(1.0 - found) < kNoise ? 0.0 : 1.0 - found);
     }
   }
+  for (double& share : shares) share = std::abs(share) < kNoise ? 0.0 : share;
   return shares;
 }
 

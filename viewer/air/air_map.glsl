@@ -4,8 +4,7 @@
 //
 // Rows count from the horizon: quadratic in the tangent of half the angle from it, over that of the
 // range; those above it end where rays meet no land any more. Columns count from the sun's azimuth,
-// quadratic in the tangent of a quarter of the angle between, nodes of the aerosol's phase function
-// from the forward direction, quadratic in the sine of half the angle. None needs the angle itself.
+// quadratic in the tangent of a quarter of the angle between. None needs the angle itself.
 // Distances are shares t of a ray's reach: from where it first meets air below the altitude that no
 // land exceeds (the ceiling) to the ground or, above the horizon, to where it leaves it. With
 // crowding k > -1
@@ -26,10 +25,6 @@ SHARED Number AirColumn(Number half_sine_squared) {
   return sqrt(sqrt(x) / (Number(1.0) + sqrt(Number(1.0) - x)));
 }
 SHARED Number AirQuarterTangent(Number column) { return column * column; }
-
-// From the square of the sine of half the scattering angle; and that sine back.
-SHARED Number AirPhaseNode(Number half_sine_squared) { return sqrt(sqrt(half_sine_squared)); }
-SHARED Number AirHalfSine(Number node) { return node * node; }
 
 SHARED Number AirNodeFromShare(Number t, Number crowding) {
   return t * (Number(1.0) + crowding) / (Number(1.0) + crowding * t);

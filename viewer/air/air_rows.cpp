@@ -56,7 +56,7 @@ float AirPhases::OfMolecules(double nu) {
 }
 
 glm::vec4 AirPhases::OfAerosol(double nu) const {
-  const double place = shared::AirPhaseNode<double>(0.5 - 0.5 * nu) * (nodes_.width - 1);
+  const double place = shared::PhaseNode<double>(0.5 - 0.5 * nu) * (nodes_.width - 1);
   const int cell = std::min(static_cast<int>(place), nodes_.width - 2);
   const auto t = static_cast<float>(place - cell);
   return nodes_.At(cell, 0) + t * (nodes_.At(cell + 1, 0) - nodes_.At(cell, 0));

@@ -175,7 +175,7 @@ MediumTables MakeMediumTables(const AirIntegrator<float>& air) {
   RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, kSunAltitudes)};
   for (int k = 0; k < kPhaseNodes; ++k) {
-    const double half_sine = AirHalfSine<double>(Unit(k, kPhaseNodes));
+    const double half_sine = PhaseHalfSine<double>(Unit(k, kPhaseNodes));
     const std::vector<double> phase =
         MiePhaseValues(air.medium(), 1.0 - 2.0 * half_sine * half_sine);
     for (std::size_t band = 0; band < phase.size(); ++band)

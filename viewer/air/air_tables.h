@@ -92,7 +92,7 @@ void RequireFourBands(const Medium& medium);
 
 /// What depends on the medium alone.
 struct MediumTables {
-  /// Of the aerosol, [node]: AirPhaseNode of air_map.glsl, from forward to backward.
+  /// Of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
   AirTexels phase;
   /// Transmittance to space, [zenith cosine, altitude] on the map of transmittance_map.glsl.
   AirTexels to_sun;

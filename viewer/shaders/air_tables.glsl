@@ -44,7 +44,7 @@ float HalfSineSquared(vec3 direction) {
 
 vec4 AerosolPhase(float half_sine_squared) {
   return textureLod(air_phase,
-                    air_phase_nodes.x + air_phase_nodes.y * AirPhaseNode(half_sine_squared), 0.0);
+                    air_phase_nodes.x + air_phase_nodes.y * PhaseNode(half_sine_squared), 0.0);
 }
 
 // Tangent of half the angle over the horizon.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atmosphere/judge/judge.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/ray_regimes.h"
@@ -353,6 +354,25 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
       Medium shared = medium;
       shared.mie_phase = {medium.mie_phase[band]};
       EXPECT_EQ(light[band], Inscatter(AirIntegrator<float>(shared), ray, kFine)[band]);
+    }
+  }
+}
+
+// Of dust, whose peak is a degree wide, and of continental air.
+TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
+  for (const Medium& medium : {Dusty(), MediumPreset("mars"), MediumPreset("earth")}) {
+    const AirIntegrator<float> fast(medium);
+    const AirIntegrator<double> exact(medium);
+    for (int i = 0; i <= 3600; ++i) {
+      const double share = i / 3600.0;  // more about the sun
+      const double nu = std::cos(kPi * share * share);
+      const Bands<float> read = fast.AerosolPhases(nu);
+      const Bands<double> held = exact.AerosolPhases(nu);
+      for (std::size_t band = 0; band < held.count; ++band) {
+        ASSERT_EQ(held[band], Phase(MiePhase(medium, band), nu));
+        ASSERT_NEAR(static_cast<double>(read[band]) / held[band], 1.0, 1e-4)
+            << "2048 nodes; at " << 180.0 * share * share << " degrees";
+      }
     }
   }
 }

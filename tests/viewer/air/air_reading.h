@@ -125,7 +125,7 @@ class AirReading {
                                const glm::vec4& aerosol, const glm::vec4& rest) const {
     const double nu = SunCosine(angle, azimuth);
     const double node =
-        shared::AirPhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (medium_.phase.width - 1);
+        shared::PhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (medium_.phase.width - 1);
     return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(molecules) +
            Linear(medium_.phase, node) * glm::dvec4(aerosol) + glm::dvec4(rest);
   }

@@ -185,8 +185,6 @@ TEST(AirTables, OfMoreThanFourWavelengthsAreRefused) {
 TEST(AirMap, CoordinatesAndTheirInversesAgree) {
   for (double v = 0.0; v <= 1.0; v += 0.125) {
     EXPECT_NEAR(shared::AirRow<double>(shared::AirHalfTangent<double>(v, 1.3), 1.3), v, 1e-12);
-    const double sine = shared::AirHalfSine<double>(v);
-    EXPECT_NEAR(shared::AirPhaseNode<double>(sine * sine), v, 1e-12);
     const double azimuth = 4.0 * std::atan(shared::AirQuarterTangent<double>(v));
     EXPECT_NEAR(shared::AirColumn<double>(0.5 - 0.5 * std::cos(azimuth)), v, 1e-7);
     for (const double crowding : {-0.9, 0.0, 6.0}) {
