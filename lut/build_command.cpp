@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "atmosphere/air/aerosol_mixture.h"
 #include "atmosphere/air/medium_choice.h"
 #include "lut/eval/eval.h"
 #include "lut/program/output_name.h"
@@ -67,6 +68,19 @@ void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
                  {{"--atmosphere", *options.atmosphere}});
 }
 
+/// What those who load tables without phase functions can take for a tabulated one.
+std::string LobeText(const Medium& medium) {
+  if (medium.mie_phase.front().kind != PhaseKind::kTable) return "";
+  const std::size_t middle = medium.wavelengths_nm.size() / 2;
+  return fmt::format(
+      "skylut: warning: the aerosol of {} has a tabulated phase function, and these programs have "
+      "one lobe of Cornette and Shanks; with g = {:.3f} it has the same mean cosine at {:g} nm, "
+      "but "
+      "no aureole\n",
+      medium.name, CornetteShanksG(MeanCosine(MiePhase(medium, middle))),
+      medium.wavelengths_nm[middle]);
+}
+
 void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
                          const CommonOptions& common) {
   RequireAtmosphereElsewhere(options, kMediumFileName);
@@ -80,6 +94,7 @@ void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exc
         "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
         "these tables are for {}\n",
         medium.name));
+    Say(LobeText(medium));
   }
 }
 

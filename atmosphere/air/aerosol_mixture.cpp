@@ -34,6 +34,68 @@ double TopOfMixingLayer(std::string_view name) {
   return 2000.0;
 }
 
+/// Water-soluble, insoluble and soot particles [1/cm^3] of continental aerosol: OPAC's Table 3.
+struct ContinentalParticles {
+  const char* mixture;
+  std::array<double, 3> number;
+};
+constexpr std::array<ContinentalParticles, 3> kTabulated{{
+    {"continental_clean", {2600.0, 0.15, 0.0}},
+    {"continental_average", {7000.0, 0.4, 8300.0}},
+    {"urban", {28000.0, 1.5, 130000.0}},
+}};
+constexpr ContinentalParticles kPolluted{"continental_polluted", {15700.0, 0.6, 34300.0}};
+
+double Determinant(const std::array<double, 3>& a, const std::array<double, 3>& b,
+                   const std::array<double, 3>& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1]) +
+         c[0] * (a[1] * b[2] - a[2] * b[1]);
+}
+
+// How many times each tabulated mixture must be taken to have the particles of the polluted one:
+// Cramer's rule.
+std::array<double, 3> SharesOfPolluted() {
+  std::array<std::array<double, 3>, 3> column{};
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = kTabulated[i].number;
+  const double whole = Determinant(column[0], column[1], column[2]);
+  std::array<double, 3> share{};
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    auto replaced = column;
+    replaced[i] = kPolluted.number;
+    share[i] = Determinant(replaced[0], replaced[1], replaced[2]) / whole;
+  }
+  return share;
+}
+
+Mixture& Named(std::vector<Mixture>& mixtures, std::string_view name) {
+  return *std::find_if(mixtures.begin(), mixtures.end(),
+                       [&](const Mixture& mixture) { return mixture.name == name; });
+}
+
+// The polluted mixture has no phase function in the tables, but the particles of three that have:
+// scattering coefficient times phase function is additive. It follows within 0.1 % (scattering and
+// mean cosine, which the tables have too), the tables' last digits being magnified.
+void AddPollutedPhase(std::vector<Mixture>& mixtures) {
+  const std::array<double, 3> share = SharesOfPolluted();
+  SpectralPhase phase = Named(mixtures, kTabulated[0].mixture).phase;
+  for (std::size_t w = 0; w < phase.wavelength_nm.size(); ++w) {
+    std::vector<double>& per_sr = phase.per_sr[w];
+    std::vector<double> light(per_sr.size());
+    double scattering = 0.0;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      const Mixture& part = Named(mixtures, kTabulated[i].mixture);
+      const SampledFunction extinction(part.wavelength_nm, part.extinction_per_m);
+      const SampledFunction albedo(part.wavelength_nm, part.albedo);
+      const double nm = phase.wavelength_nm[w];
+      const double per_m = share[i] * extinction(nm) * albedo(nm);
+      scattering += per_m;
+      for (std::size_t k = 0; k < light.size(); ++k) light[k] += per_m * part.phase.per_sr[w][k];
+    }
+    for (std::size_t k = 0; k < light.size(); ++k) per_sr[k] = light[k] / scattering;
+  }
+  Named(mixtures, kPolluted.mixture).phase = std::move(phase);
+}
+
 void AddPhases(std::vector<Mixture>& mixtures) {
   const std::vector<std::string> names = atmosphere::ReadTextColumn(kPhaseFile, 0);
   const auto columns = atmosphere::ReadColumns(kPhaseFile, {1, 2, 3});
@@ -46,6 +108,7 @@ void AddPhases(std::vector<Mixture>& mixtures) {
     };
     mixture.phase = SpectralPhaseFromRows(rows(0), rows(1), rows(2));
   }
+  AddPollutedPhase(mixtures);
 }
 
 std::vector<Mixture> ReadMixtures() {
@@ -128,6 +191,11 @@ AerosolOptics AerosolMixture(std::string_view name, const std::vector<double>& w
   }
   optics.phase = PhasesOf(mixture, wavelengths_nm);
   return optics;
+}
+
+std::vector<PhaseFunction> AerosolMixturePhase(std::string_view name,
+                                               const std::vector<double>& wavelengths_nm) {
+  return PhasesOf(FindMixture(name), wavelengths_nm);
 }
 
 double CornetteShanksG(double mean_cosine) {

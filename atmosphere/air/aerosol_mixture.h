@@ -29,12 +29,18 @@ struct AerosolOptics {
 
 /// A mixture with its own load. Extinction is interpolated in the logarithms of both between 350
 /// and 900 nm, albedo linearly; beyond them both are continued with the last slope (extinction) and
-/// value (albedo). continental_clean, continental_average, urban, desert and maritime_clean have
-/// tabulated phase functions (450, 550, 650 nm; linear between, constant beyond); the others that
-/// of Cornette and Shanks with the mixture's mean cosine at each wavelength, to 1e-9. Throws
-/// InputError for another name. @param wavelengths_nm  ascending.
+/// value (albedo); phase functions are those of AerosolMixturePhase. Throws InputError for another
+/// name. @param wavelengths_nm  ascending.
 [[nodiscard]] AerosolOptics AerosolMixture(std::string_view name,
                                            const std::vector<double>& wavelengths_nm);
+
+/// A mixture's phase functions, one per wavelength. continental_clean, continental_average, urban,
+/// desert and maritime_clean are tabulated (450, 550, 650 nm; linear between, constant beyond), and
+/// continental_polluted follows from the particles that it shares with the first three; the others
+/// have that of Cornette and Shanks with the mixture's mean cosine at each wavelength, to 1e-9.
+/// Throws InputError for another name. @param wavelengths_nm  ascending.
+[[nodiscard]] std::vector<PhaseFunction> AerosolMixturePhase(
+    std::string_view name, const std::vector<double>& wavelengths_nm);
 
 /// The g for which the phase function of Cornette and Shanks has this mean cosine, in [0, 1).
 [[nodiscard]] double CornetteShanksG(double mean_cosine);

@@ -170,7 +170,7 @@ class AtmosphereFile {
                          &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
       list->clear();
     }
-    if (medium.mie_phase.size() > 1) medium.mie_phase.clear();
+    medium.mie_phase = AerosolPhase(preset_, *wavelengths_nm);
     return medium;
   }
 
@@ -248,19 +248,10 @@ class AtmosphereFile {
       phases = {FogOfFile()};
     } else if (name == kTabulated) {
       phases = TableOfFile(medium.wavelengths_nm);
-    } else if (name) {
-      const PhaseKind kind = KindOf(*name);
-      if (phases.empty() || kind != phases.front().kind) {
-        phases = {PhaseFunction{.kind = kind}};
-        if (kind != PhaseKind::kRayleigh && !mie_->Has("g")) {
-          mie_->Fail("phase",
-                     fmt::format("mie.phase is \"{}\", not the preset's: give mie.g too, for "
-                                 "a g of one phase function is not that of another",
-                                 *name));
-        }
-      }
+    } else if (name || (mie_->Has("g") && phases.front().kind == PhaseKind::kTable)) {
+      const PhaseKind kind = name ? KindOf(*name) : PhaseKind::kCornetteShanks;
+      if (kind != phases.front().kind) phases = {LobeInsteadOf(phases.front().kind, kind)};
     }
-    RequirePhase(phases);
     const PhaseKind kind = phases.front().kind;
     const bool mixed = kind == PhaseKind::kHenyeyGreensteinDraine && name != kFog;
     const bool two_lobes = mixed || kind == PhaseKind::kDoubleHenyeyGreenstein;
@@ -271,6 +262,21 @@ class AtmosphereFile {
     ReadParameter("alpha", mixed || kind == PhaseKind::kDraine, &PhaseFunction::alpha, medium);
     const bool equal = std::equal(phases.begin() + 1, phases.end(), phases.begin());
     if (equal) phases.resize(1);
+  }
+
+  // Of this kind, where the preset has another. A lobe of Cornette and Shanks may stand for the
+  // preset's table, with its mean cosine at 550 nm; any other needs a g of its own.
+  PhaseFunction LobeInsteadOf(PhaseKind of_preset, PhaseKind kind) const {
+    if (kind == PhaseKind::kRayleigh || mie_->Has("g")) return {.kind = kind};
+    const bool has_mixture = aerosol_ && aerosol_->Has("mixture");
+    if (kind == PhaseKind::kCornetteShanks && of_preset == PhaseKind::kTable && !has_mixture) {
+      const double mean_cosine = MeanCosine(AerosolPhase(preset_, {550.0}).front());
+      return {.kind = kind, .g = CornetteShanksG(mean_cosine)};
+    }
+    mie_->Fail("phase",
+               fmt::format("mie.phase is \"{}\", not the preset's: give mie.g too, for a g "
+                           "of one phase function is not that of another",
+                           NameOf(kind)));
   }
 
   void RefuseKeysOfOtherPhases(const std::string& phase) const {
@@ -364,8 +370,6 @@ class AtmosphereFile {
     }
     for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
   }
-
-  void RequirePhase(const Phases& phases) const { RequireList(Values(phases.size()), "mie.phase"); }
 
   // Share of scattering in the extinction of the preset's aerosol; empty where it has no data.
   static Values ScatteringShare(const Medium& medium) {
@@ -556,7 +560,6 @@ class AtmosphereFile {
     RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
     RequireList(medium.mie_scattering_per_m, "mie.scattering_per_m");
     RequireList(medium.mie_extinction_per_m, "mie.extinction_per_m");
-    RequirePhase(medium.mie_phase);
     RequireList(medium.ozone_absorption_per_m, "ozone.absorption_per_m");
   }
 

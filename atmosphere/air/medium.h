@@ -150,6 +150,10 @@ void Validate(const Medium& medium);
 /// (AirDepolarisation), on "mars" of carbon dioxide.
 [[nodiscard]] std::vector<double> GasDepolarisation(std::string_view preset,
                                                     const std::vector<double>& wavelengths_nm);
+/// Phase functions of a preset's aerosol: one per wavelength, or, of "bruneton2017", one for all.
+/// @param wavelengths_nm  ascending; beyond the tables they are as at the tables' ends.
+[[nodiscard]] std::vector<PhaseFunction> AerosolPhase(std::string_view preset,
+                                                      const std::vector<double>& wavelengths_nm);
 /// The same medium in polarised light, scattered by the gas of the preset.
 [[nodiscard]] Medium InPolarisedLight(Medium medium, std::string_view preset);
 /// The same medium of round molecules in scalar light, as other renderers have it.

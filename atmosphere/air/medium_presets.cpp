@@ -2,16 +2,17 @@
 // The atmospheres that are known by name, with the source of every number.
 //
 // Aerosol of the earth presets: Angstrom (1929), tau(lambda) = tau(550) (lambda / 550 nm)^-a, in
-// one exponential layer; single scattering albedo and mean cosine of OPAC mixtures at 80 % relative
-// humidity (Hess, Koepke and Schult 1998, Bull. Amer. Meteor. Soc. 79, 831-844); the g of Cornette
-// and Shanks is the one whose mean cosine, 3 g (4 + g^2) / (5 (2 + g^2)), is the mixture's.
+// one exponential layer; single scattering albedo and phase functions of OPAC mixtures at 80 %
+// relative humidity (Hess, Koepke and Schult 1998, Bull. Amer. Meteor. Soc. 79, 831-844).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
+#include "atmosphere/air/aerosol_mixture.h"
 #include "atmosphere/air/medium.h"
 #include "atmosphere/air/ozone_column.h"
 #include "atmosphere/air/phase_table.h"
@@ -36,20 +37,16 @@ struct Aerosol {
   double optical_depth_550;
   double angstrom_exponent;
   std::array<double, 3> single_scattering_albedo;  // at 450, 550, 650 nm
-  double g;                                        // Cornette-Shanks
+  const char* mixture;                             // whose phase function it has
 };
 
-// Albedos and mean cosines (in brackets, at 550 nm): OPAC. Optical depths are round numbers: earth
-// a clean continental day, visibility near 74 km (Koschmieder); clear-mountain the cleanest days of
-// remote stations; hazy a summer day in the lowlands, visibility near 22 km. Exponent 1.3: the
-// usual mean over land (Angstrom 1929).
+// Albedos: OPAC. Optical depths are round numbers: earth a clean continental day, visibility near
+// 74 km (Koschmieder); clear-mountain the cleanest days of remote stations; hazy a summer day in
+// the lowlands, visibility near 22 km. Exponent 1.3: the usual mean over land (Angstrom 1929).
 constexpr Aerosol kEarthAerosols[] = {
-    // continental average (0.7034)
-    {"earth", 0.05, 1.3, {0.9304, 0.9253, 0.9186}, 0.6407},
-    // continental clean (0.7086)
-    {"clear-mountain", 0.02, 1.3, {0.9766, 0.9720, 0.9667}, 0.6463},
-    // continental polluted (0.6977)
-    {"hazy", 0.2, 1.3, {0.8977, 0.8925, 0.8849}, 0.6346},
+    {"earth", 0.05, 1.3, {0.9304, 0.9253, 0.9186}, "continental_average"},
+    {"clear-mountain", 0.02, 1.3, {0.9766, 0.9720, 0.9667}, "continental_clean"},
+    {"hazy", 0.2, 1.3, {0.8977, 0.8925, 0.8849}, "continental_polluted"},
 };
 
 void AddAerosol(const Aerosol& aerosol, Medium& medium) {
@@ -64,7 +61,7 @@ void AddAerosol(const Aerosol& aerosol, Medium& medium) {
     medium.mie_scattering_per_m.push_back(medium.mie_extinction_per_m[i] *
                                           albedo(medium.wavelengths_nm[i]));
   }
-  medium.mie_phase = {{.kind = PhaseKind::kCornetteShanks, .g = aerosol.g}};
+  medium.mie_phase = AerosolMixturePhase(aerosol.mixture, medium.wavelengths_nm);
 }
 
 Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) {
@@ -124,12 +121,27 @@ MarsDust ReadMarsDust() {
           SpectralPhaseFromRows(rows[0], rows[1], rows[2])};
 }
 
+const MarsDust& DustOfMars() {
+  static const MarsDust dust = ReadMarsDust();
+  return dust;
+}
+
+std::vector<PhaseFunction> PhasesOfMarsDust(const std::vector<double>& wavelengths_nm) {
+  std::vector<PhaseFunction> phases;
+  for (const double wavelength_nm : wavelengths_nm) {
+    phases.push_back(
+        {.kind = PhaseKind::kTable,
+         .table = std::make_shared<const PhaseTable>(DustOfMars().phase.At(wavelength_nm))});
+  }
+  return phases;
+}
+
 // Mars on a clear day of its dusty season: dust of optical depth 0.5, mixed with the gas.
 Medium Mars(const std::vector<double>& wavelengths_nm) {
   constexpr double kDistance_au = 1.524;      // semi-major axis of the orbit
   constexpr double kDustOpticalDepth = 0.5;   // Smith et al. (1997), Science 278, 1758-1765
   constexpr double kScaleHeight_m = 11000.0;  // R T / M g at 210 K; the dust is well mixed
-  static const MarsDust dust = ReadMarsDust();
+  const MarsDust& dust = DustOfMars();
   // Bright, dusty ground (Bell et al. 1999, Icarus 138, 25-35), rounded to 0.02.
   const SampledFunction ground({400.0, 500.0, 600.0, 700.0, 800.0}, {0.06, 0.08, 0.20, 0.28, 0.30});
   Medium medium;
@@ -145,16 +157,13 @@ Medium Mars(const std::vector<double>& wavelengths_nm) {
   medium.rayleigh_scattering_per_m = Evaluate(wavelengths_nm, RayleighScatteringOnMars);
   medium.rayleigh_scale_height_m = kScaleHeight_m;
   medium.mie_scale_height_m = kScaleHeight_m;
-  medium.mie_phase.clear();
   for (const double wavelength_nm : wavelengths_nm) {
     const double extinction =
         kDustOpticalDepth / kScaleHeight_m * dust.relative_extinction(wavelength_nm);
     medium.mie_extinction_per_m.push_back(extinction);
     medium.mie_scattering_per_m.push_back(extinction * dust.albedo(wavelength_nm));
-    medium.mie_phase.push_back(
-        {.kind = PhaseKind::kTable,
-         .table = std::make_shared<const PhaseTable>(dust.phase.At(wavelength_nm))});
   }
+  medium.mie_phase = PhasesOfMarsDust(wavelengths_nm);
   medium.ozone_absorption_per_m.assign(wavelengths_nm.size(), 0.0);
   return medium;
 }
@@ -218,6 +227,15 @@ std::vector<double> GasDepolarisation(std::string_view preset,
   return Evaluate(wavelengths_nm, AirDepolarisation);
 }
 
+std::vector<PhaseFunction> AerosolPhase(std::string_view preset,
+                                        const std::vector<double>& wavelengths_nm) {
+  RequireKnownName(preset);
+  for (const Aerosol& aerosol : kEarthAerosols) {
+    if (preset == aerosol.name) return AerosolMixturePhase(aerosol.mixture, wavelengths_nm);
+  }
+  return preset == "mars" ? PhasesOfMarsDust(wavelengths_nm) : Bruneton2017().mie_phase;
+}
+
 Medium InPolarisedLight(Medium medium, std::string_view preset) {
   medium.polarised = true;
   medium.rayleigh_depolarisation = GasDepolarisation(preset, medium.wavelengths_nm);
@@ -243,10 +261,10 @@ Medium MediumPreset(std::string_view name, const std::vector<double>& wavelength
     throw InputError("preset bruneton2017 is published at 440, 550 and 680 nm only");
   }
   RequireTablesReach(name, wavelengths_nm);
-  Medium medium = Mars(wavelengths_nm);
-  for (const Aerosol& aerosol : kEarthAerosols) {
-    if (name == aerosol.name) medium = Earth(aerosol, wavelengths_nm);
-  }
+  const auto* aerosol = std::find_if(std::begin(kEarthAerosols), std::end(kEarthAerosols),
+                                     [&](const Aerosol& one) { return name == one.name; });
+  Medium medium =
+      aerosol == std::end(kEarthAerosols) ? Mars(wavelengths_nm) : Earth(*aerosol, wavelengths_nm);
   medium = InPolarisedLight(std::move(medium), name);
   Validate(medium);
   return medium;

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "atmosphere/air/phase_table.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow {
@@ -39,6 +41,40 @@ TEST(AerosolMixture, MeanCosinesAreThoseThatOpacGives) {
     EXPECT_NEAR(MeanCosine(optics.phase.front()), published.at(name), 7e-4)
         << name << ": OPAC integrates with its own, coarser quadrature";
   }
+}
+
+// Of the phase function that follows from other mixtures: OPAC's Table of mean cosines knows it.
+TEST(AerosolMixture, PollutedAirHasItsMeanCosineAtAllWavelengths) {
+  const std::vector<PhaseFunction> phase =
+      AerosolMixturePhase("continental_polluted", {450.0, 550.0, 650.0});
+  const std::array<double, 3> published{0.7097, 0.6977, 0.6847};
+  for (std::size_t i = 0; i < phase.size(); ++i) {
+    EXPECT_EQ(phase[i].kind, PhaseKind::kTable);
+    EXPECT_NEAR(MeanCosine(phase[i]), published[i], 7e-4)
+        << "OPAC integrates with its own, coarser quadrature";
+  }
+}
+
+// The narrow peak is the light that insoluble particles throw forward: as bright, relative to the
+// scattering of all particles, as they are many. 2 % are left to the others, whose peak is wide.
+TEST(AerosolMixture, ThePeakOfContinentalAirIsThatOfItsInsolubleParticles) {
+  const struct {
+    const char* name;
+    double insoluble_per_cm3;
+  } mixtures[] = {{"continental_clean", 0.15},
+                  {"continental_average", 0.4},
+                  {"continental_polluted", 0.6},
+                  {"urban", 1.5}};
+  std::vector<double> peak_of_one;
+  for (const auto& mixture : mixtures) {
+    const AerosolOptics optics = AerosolMixture(mixture.name, {550.0});
+    const auto at = [&](double degrees) {
+      return Phase(optics.phase.front(), std::cos(kRadiansPerDegree * degrees));
+    };
+    peak_of_one.push_back((at(0.0) - at(3.0)) * optics.scattering_per_m[0] /
+                          mixture.insoluble_per_cm3);
+  }
+  for (const double peak : peak_of_one) EXPECT_NEAR(peak / peak_of_one.front(), 1.0, 0.02);
 }
 
 TEST(AerosolMixture, TabulatedPhaseFunctionsAreNormalisedToOnePercent) {

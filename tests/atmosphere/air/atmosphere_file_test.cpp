@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "atmosphere/air/aerosol_mixture.h"
 #include "atmosphere/air/medium.h"
@@ -243,6 +244,22 @@ TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
   EXPECT_THAT(FileFaultOf("[mie]\nphase = \"mie\"\n"),
               StartsWith("a.toml:2: mie.phase is \"mie\"; it must be one of rayleigh"));
   EXPECT_EQ(FileFaultOf("[mie]\n\ng = 1.0\n"), "a.toml:3: mie.g is 1; it must lie in (-1, 1)");
+}
+
+// Files that were written when the presets of the earth had one lobe.
+TEST(AtmosphereFile, ALobeMayStandForTheTableOfAPreset) {
+  const Medium lobe = Read("[mie]\ng = 0.76\n");
+  EXPECT_EQ(lobe.mie_phase,
+            (std::vector<PhaseFunction>{{.kind = PhaseKind::kCornetteShanks, .g = 0.76}}));
+  EXPECT_EQ(Read("[mie]\nphase = \"cornette-shanks\"\ng = 0.76\n").mie_phase, lobe.mie_phase);
+  const Medium of_preset = Read("[mie]\nphase = \"cornette-shanks\"\n");
+  EXPECT_EQ(of_preset.mie_phase.size(), 1U);
+  EXPECT_NEAR(MeanCosine(of_preset.mie_phase.front()), 0.7034, 7e-4) << "OPAC's, at 550 nm";
+  const Medium infrared = Read(
+      "[spectrum]\nwavelengths_nm = [1000]\nsolar_irradiance = [0.7]\n[planet]\n"
+      "ground_albedo = [0.2]\n[rayleigh]\nscattering_per_m = [1e-6]\n[mie]\n"
+      "scattering_per_m = [1e-5]\nextinction_per_m = [1e-5]\n[ozone]\nabsorption_per_m = [0]\n");
+  EXPECT_EQ(infrared.mie_phase, AerosolPhase("earth", {1000.0})) << "as at 650 nm";
 }
 
 TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
