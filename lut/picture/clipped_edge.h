@@ -10,8 +10,10 @@
 // L_2 and L_4 are the brightest within two and four pixels: from there the light that grows darker
 // towards its edge, as the sun does, goes on to where the pixel is. Over the limb it falls as the
 // root of the distance x from the edge: (3 sqrt(2) - 2 sqrt(4)) L' = 0.2 L' instead of 0 there.
+// L_beside is what lies behind, brighter by as much as it grows towards the light: an aureole.
 // A light that a curve still holds needs none of it: w rises from 0 at 16 times white to 1 at 256, so
-// that nothing jumps while the sun sets.
+// that nothing jumps while the sun sets. Beside an aureole of over half of white, in which the edge
+// is lost, w falls to 0 at white.
 #pragma once
 
 #include <array>
