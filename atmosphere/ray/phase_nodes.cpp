@@ -8,12 +8,25 @@
 
 namespace alpenglow {
 
+namespace {
+
+// Where the nodes stand in every table.
+std::vector<double> PositionsInTables() {
+  std::vector<double> positions;
+  for (std::size_t node = 0; node < PhaseNodes::kNodes; ++node) {
+    const double half_sine = shared::PhaseHalfSine<double>(
+        static_cast<double>(node) / static_cast<double>(PhaseNodes::kNodes - 1));
+    positions.push_back(PhaseTable::Position(1.0 - 2.0 * half_sine * half_sine));
+  }
+  return positions;
+}
+
+}  // namespace
+
 PhaseNodes::PhaseNodes(const Medium& medium) : bands_(medium.wavelengths_nm.size()) {
+  static const std::vector<double> positions = PositionsInTables();
   value_.reserve(kNodes * bands_);
-  for (std::size_t node = 0; node < kNodes; ++node) {
-    const double half_sine =
-        shared::PhaseHalfSine<double>(static_cast<double>(node) / static_cast<double>(kNodes - 1));
-    const double position = PhaseTable::Position(1.0 - 2.0 * half_sine * half_sine);
+  for (const double position : positions) {
     for (std::size_t band = 0; band < bands_; ++band)
       value_.push_back(static_cast<float>(MiePhase(medium, band).table->At(position)));
   }

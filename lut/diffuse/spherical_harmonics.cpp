@@ -106,28 +106,55 @@ std::vector<double> PanelEdges(const PhaseFunction& phase) {
   return edges;
 }
 
-/// Cosines with their weights, 2 pi Phase() included.
+/// Cosines with their weights; filled up with weights of 0 to a multiple of kLanes.
 struct PhaseQuadrature {
+  static constexpr std::size_t kLanes = 8;  // nodes at once
   std::vector<double> cosine, weight;
 };
 
-// Filled up with weights of 0 to a multiple of `lanes`.
-PhaseQuadrature QuadratureOf(const PhaseFunction& phase, std::size_t lanes) {
-  const GaussRule& rule = GaussLegendre(phase.kind == PhaseKind::kTable ? 4 : 32);
-  const std::vector<double> edges = PanelEdges(phase);
+PhaseQuadrature QuadratureOver(const std::vector<double>& edges, const GaussRule& rule) {
   PhaseQuadrature quadrature;
   for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
     const double width = edges[panel + 1] - edges[panel];
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const double x = edges[panel] + width * rule.node[i];
-      quadrature.cosine.push_back(x);
-      quadrature.weight.push_back(2.0 * kPi * rule.weight[i] * width * Phase(phase, x));
+      quadrature.cosine.push_back(edges[panel] + width * rule.node[i]);
+      quadrature.weight.push_back(2.0 * kPi * rule.weight[i] * width);
     }
   }
-  const std::size_t count = (quadrature.cosine.size() + lanes - 1) / lanes * lanes;
+  constexpr std::size_t kLanes = PhaseQuadrature::kLanes;
+  const std::size_t count = (quadrature.cosine.size() + kLanes - 1) / kLanes * kLanes;
   quadrature.cosine.resize(count, 0.0);
   quadrature.weight.resize(count, 0.0);
   return quadrature;
+}
+
+/// The quadrature of all tables, and where its cosines lie in them.
+struct TableQuadrature {
+  PhaseQuadrature rule;
+  std::vector<double> position;
+};
+
+TableQuadrature MakeTableQuadrature() {
+  TableQuadrature of_tables{
+      QuadratureOver(PanelEdges({.kind = PhaseKind::kTable}), GaussLegendre(4)), {}};
+  for (const double cosine : of_tables.rule.cosine)
+    of_tables.position.push_back(PhaseTable::Position(cosine));
+  return of_tables;
+}
+
+// Weights include the phase function.
+PhaseQuadrature QuadratureOf(const PhaseFunction& phase) {
+  if (phase.kind == PhaseKind::kTable) {
+    static const TableQuadrature of_tables = MakeTableQuadrature();
+    PhaseQuadrature rule = of_tables.rule;
+    for (std::size_t i = 0; i < rule.weight.size(); ++i)
+      rule.weight[i] *= phase.table->At(of_tables.position[i]);
+    return rule;
+  }
+  PhaseQuadrature rule = QuadratureOver(PanelEdges(phase), GaussLegendre(32));
+  for (std::size_t i = 0; i < rule.weight.size(); ++i)
+    rule.weight[i] *= Phase(phase, rule.cosine[i]);
+  return rule;
 }
 
 }  // namespace
@@ -145,8 +172,8 @@ std::vector<double> LegendreSeries(int degree, double nu) {
 }
 
 std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
-  constexpr std::size_t kLanes = 8;  // nodes at once: the recurrence of one waits for itself
-  const PhaseQuadrature rule = QuadratureOf(phase, kLanes);
+  constexpr std::size_t kLanes = PhaseQuadrature::kLanes;  // the recurrence of one waits for itself
+  const PhaseQuadrature rule = QuadratureOf(phase);
   std::vector<double> sums(kLanes * (static_cast<std::size_t>(degree) + 1), 0.0);
   for (std::size_t first = 0; first < rule.cosine.size(); first += kLanes) {
     const double* x = &rule.cosine[first];
