@@ -18,9 +18,18 @@ constexpr int kLastDegree = 160;
 
 // Angles s in [0, 1], angle = pi s^2: dense where the peak is.
 constexpr std::size_t kAngles = 256;
+// The glow about the sun fades away from 15 degrees on, where higher degrees are but a ripple, and
+// is over at this node, 30 degrees.
+constexpr std::size_t kGlowAngles = 104;
+constexpr double kGlowFades_rad = 15.0 * kRadiansPerDegree;
 // Depths y = kDeepest u^2: light behind more has turned anywhere.
 constexpr std::size_t kDepths = 32;
 constexpr double kDeepest = 40.0;
+// The glow of more is that of so much: such air is thick, and needs its forward peak apart.
+constexpr float kDeepestGlow = 4.0F;
+constexpr std::size_t kGlowDepths = 12;  // deeper than that
+// Light of higher degrees that is scattered twice is narrower than two degrees.
+constexpr int kLastGlowDegree = 96;
 
 double AngleAt(std::size_t i) {
   const double s = static_cast<double>(i) / static_cast<double>(kAngles - 1);
@@ -66,6 +75,45 @@ Place PlaceOfDepth(float y) {
   return {cell, (squared - low * low) / (2.0F * low + 1.0F)};
 }
 
+/// How much of a shape is wanted; the rest holds nothing.
+struct ShapeSize {
+  int last_degree;
+  std::size_t angles, depths;
+};
+
+PeakShape ShapeOf(const PhaseFunction& phase, int degree, const ShapeSize& size) {
+  const std::vector<double> chi = LegendreCoefficients(phase, size.last_degree);
+  const auto first = static_cast<std::size_t>(degree) + 1;
+  std::vector<std::array<double, kDepths>> above(chi.size());
+  for (std::size_t l = first; l < chi.size(); ++l) {
+    for (std::size_t y = 0; y < size.depths; ++y) above[l][y] = HigherOrders(chi[l], DepthAt(y));
+  }
+  PeakShape shape{std::vector<float>(kAngles), std::vector<float>(kAngles * kDepths)};
+  for (std::size_t angle = 0; angle < size.angles; ++angle) {
+    const std::vector<double> series = LegendreSeries(size.last_degree, std::cos(AngleAt(angle)));
+    double low = 0.0;
+    for (std::size_t l = 0; l < first; ++l) low += series[l] * chi[l];
+    std::array<double, kDepths> high{};
+    for (std::size_t l = first; l < chi.size(); ++l) {
+      for (std::size_t y = 0; y < size.depths; ++y) high[y] += series[l] * above[l][y];
+    }
+    shape.low[angle] = static_cast<float>(low);
+    for (std::size_t y = 0; y < size.depths; ++y)
+      shape.high[angle * kDepths + y] = static_cast<float>(high[y]);
+  }
+  return shape;
+}
+
+// Light of higher degrees at the depths, at an angle.
+std::array<float, kDepths> HighAt(const PeakShape& shape, const Place& angle) {
+  std::array<float, kDepths> high;
+  for (std::size_t y = 0; y < kDepths; ++y) {
+    const float low = shape.high[angle.cell * kDepths + y];
+    high[y] = low + angle.share * (shape.high[(angle.cell + 1) * kDepths + y] - low);
+  }
+  return high;
+}
+
 }  // namespace
 
 AirWithoutPeak WithoutPeak(const Medium& medium, int degree) {
@@ -86,33 +134,59 @@ AirWithoutPeak WithoutPeak(const Medium& medium, int degree) {
   return air;
 }
 
+namespace {
+
+float GlowShare(std::size_t angle) {
+  const double end = AngleAt(kGlowAngles);
+  const double x = std::clamp((end - AngleAt(angle)) / (end - kGlowFades_rad), 0.0, 1.0);
+  return static_cast<float>(x * x * (3.0 - 2.0 * x));
+}
+
+PeakShape GlowOf(const PhaseFunction& phase, int degree) {
+  PeakShape shape = ShapeOf(phase, degree, {kLastGlowDegree, kGlowAngles, kGlowDepths});
+  for (std::size_t angle = 0; angle < kGlowAngles; ++angle) {
+    for (std::size_t y = 0; y < kGlowDepths; ++y)
+      shape.high[angle * kDepths + y] *= GlowShare(angle);
+  }
+  return shape;
+}
+
+}  // namespace
+
+GlowAboutTheSun::GlowAboutTheSun(const Medium& medium, int degree) {
+  for (const double per_m : medium.mie_scattering_per_m)
+    scattering_per_km_.push_back(static_cast<float>(1000.0 * per_m));
+  for (const PhaseFunction& phase : medium.mie_phase) shapes_.push_back(GlowOf(phase, degree));
+}
+
+bool GlowAboutTheSun::Reaches(double nu) {
+  static const double cosine = std::cos(AngleAt(kGlowAngles));
+  return nu > cosine;
+}
+
+Bands<float> GlowAboutTheSun::FactorOf(double nu, float column_km) const {
+  Bands<float> factor(scattering_per_km_.size());
+  if (!Reaches(nu)) return factor;
+  const Place angle = PlaceOfAngle(nu);
+  for (std::size_t band = 0; band < factor.count; ++band) {
+    const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
+    const float y = std::min(scattering_per_km_[band] * column_km, kDeepestGlow);
+    const Place place = PlaceOfDepth(y);
+    const auto at = [&](std::size_t depth) {
+      const float* high = &shape.high[angle.cell * kDepths + depth];
+      return high[0] + angle.share * (high[kDepths] - high[0]);
+    };
+    const float low = at(place.cell);
+    factor[band] = std::exp(y) * (low + place.share * (at(place.cell + 1) - low));
+  }
+  return factor;
+}
+
 ForwardPeak::ForwardPeak(const Medium& medium, int degree) : air_(medium), degree_(degree) {
   const std::vector<double> share = WithoutPeak(medium, degree).share;
   share_.assign(share.begin(), share.end());
-  for (const PhaseFunction& phase : medium.mie_phase) shapes_.push_back(ShapeOf(phase, degree));
-}
-
-ForwardPeak::Shape ForwardPeak::ShapeOf(const PhaseFunction& phase, int degree) {
-  const std::vector<double> chi = LegendreCoefficients(phase, kLastDegree);
-  const auto first = static_cast<std::size_t>(degree) + 1;
-  std::vector<std::array<double, kDepths>> above(chi.size());
-  for (std::size_t l = first; l < chi.size(); ++l) {
-    for (std::size_t y = 0; y < kDepths; ++y) above[l][y] = HigherOrders(chi[l], DepthAt(y));
-  }
-  Shape shape{std::vector<float>(kAngles), std::vector<float>(kAngles * kDepths)};
-  for (std::size_t angle = 0; angle < kAngles; ++angle) {
-    const std::vector<double> series = LegendreSeries(kLastDegree, std::cos(AngleAt(angle)));
-    double low = 0.0;
-    for (std::size_t l = 0; l < first; ++l) low += series[l] * chi[l];
-    std::array<double, kDepths> high{};
-    for (std::size_t l = first; l < chi.size(); ++l) {
-      for (std::size_t y = 0; y < kDepths; ++y) high[y] += series[l] * above[l][y];
-    }
-    shape.low[angle] = static_cast<float>(low);
-    for (std::size_t y = 0; y < kDepths; ++y)
-      shape.high[angle * kDepths + y] = static_cast<float>(high[y]);
-  }
-  return shape;
+  for (const PhaseFunction& phase : medium.mie_phase)
+    shapes_.push_back(ShapeOf(phase, degree, {kLastDegree, kAngles, kDepths}));
 }
 
 Bands<float> ForwardPeak::Beam(double altitude_m, double mu_s) const {
@@ -135,15 +209,10 @@ float ForwardPeak::SumAlong(std::size_t band, const RaySamples<float>& samples, 
                             float ahead, float base) const {
   const AirConstants<float>& air = air_.constants();
   const Place angle = PlaceOfAngle(nu);
-  const Shape& shape = shapes_[shapes_.size() > 1 ? band : 0];
-  const auto at_angle = [&](const std::vector<float>& table, std::size_t stride,
-                            std::size_t column) {
-    const float low = table[angle.cell * stride + column];
-    return low + angle.share * (table[(angle.cell + 1) * stride + column] - low);
-  };
-  const float low = at_angle(shape.low, 1, 0);
-  std::array<float, kDepths> high;
-  for (std::size_t y = 0; y < kDepths; ++y) high[y] = at_angle(shape.high, kDepths, y);
+  const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
+  const float low =
+      shape.low[angle.cell] + angle.share * (shape.low[angle.cell + 1] - shape.low[angle.cell]);
+  const std::array<float, kDepths> high = HighAt(shape, angle);
   const std::vector<double> series = LegendreSeries(degree_, nu);
   const auto narrow = static_cast<float>(std::accumulate(series.begin(), series.end(), 0.0));
   const auto gas =

@@ -23,6 +23,10 @@
 //
 // times T sigma_M (2 l + 1)/(4 pi) P_l(nu), and that of molecules p_R exp(f y) instead of p_R. What is behind the end of the ray, seen through
 // that air, is brighter than through the true by T (exp(f y) - 1), y along the ray.
+//
+// In thin air nothing is taken out of the moments, and degrees l <= L hold all light. What they
+// lack is the second line with T sigma_M before it, and only near the sun, where y is nearly the
+// same from end to end of a ray (GlowAboutTheSun).
 #pragma once
 
 #include <vector>
@@ -40,6 +44,31 @@ struct AirWithoutPeak {
 };
 
 [[nodiscard]] AirWithoutPeak WithoutPeak(const Medium& medium, int degree);
+
+/// One phase function: its degrees up to L, and light of higher degrees by depth.
+struct PeakShape {
+  std::vector<float> low;   // [angle]: of the phase function
+  std::vector<float> high;  // [angle * depths + depth], times exp(-y)
+};
+
+/// What thin air scatters more than once towards an eye that looks near the sun, beyond moments of
+/// some degree. Immutable.
+class GlowAboutTheSun {
+ public:
+  GlowAboutTheSun(const Medium& medium, int degree);
+
+  /// Whether a direction of this cosine to the sun lies where there is any.
+  [[nodiscard]] static bool Reaches(double nu);
+
+  /// By what light scattered once by aerosol, without its phase function, is to be multiplied [1/sr].
+  /// @param column_km  of aerosol at its density on the ground: from the sun to the point and on to
+  ///   the eye.
+  [[nodiscard]] Bands<float> FactorOf(double nu, float column_km) const;
+
+ private:
+  std::vector<float> scattering_per_km_;
+  std::vector<PeakShape> shapes_;  // one, or one a band
+};
 
 /// Ready for look-ups. Immutable.
 class ForwardPeak {
@@ -68,20 +97,14 @@ class ForwardPeak {
   [[nodiscard]] const AirIntegrator<float>& air() const { return air_; }
 
  private:
-  /// One phase function: its degrees up to L, and light of higher degrees by depth.
-  struct Shape {
-    std::vector<float> low;   // [angle]: of the phase function
-    std::vector<float> high;  // [angle * depths + depth], times exp(-y)
-  };
   /// Sum of formula(y + ahead) - formula(base y) along samples.
   [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
                                float ahead, float base) const;
-  [[nodiscard]] static Shape ShapeOf(const PhaseFunction& phase, int degree);
 
   AirIntegrator<float> air_;
   int degree_;
-  std::vector<float> share_;   // f of a band
-  std::vector<Shape> shapes_;  // one, or one a band
+  std::vector<float> share_;       // f of a band
+  std::vector<PeakShape> shapes_;  // one, or one a band
 };
 
 }  // namespace alpenglow

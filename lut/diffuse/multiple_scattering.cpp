@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/shell.h"
@@ -151,7 +152,10 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   if (options_.forward_peak) {
     peak_.emplace(medium_, options_.degree);
     smooth_ = WithBeam(medium_, options_, -1.0F, values_);
+  } else if (!options_.exact_orders) {
+    glow_.emplace(medium_, options_.degree);
   }
+  air_ = AirIntegrator<float>(medium_).constants();
   blocks_ = BlocksOf();
   packed_ = Packed();
   packed_sky_ = PackedSky();
@@ -248,13 +252,39 @@ Bands<float> DiffuseLight::InscatterByMoments(const RaySamples<float>& samples, 
 Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu,
                                           SegmentEnd end) const {
   Bands<float> light = InscatterByMoments(samples, nu);
-  if (!peak_ || samples.count == 0) return light;
+  if (samples.count == 0) return light;
+  if (glow_ && GlowAboutTheSun::Reaches(nu)) {
+    const Bands<float> glow = GlowAlong(samples, nu);
+    for (std::size_t band = 0; band < bands_; ++band)
+      light[band] = std::max(light[band] + glow[band], 0.0F);
+  }
+  if (!peak_) return light;
   const bool is_hidden = end == SegmentEnd::kOpaque && samples.extent.end == RayEnd::kLength;
   const Bands<float> more = peak_->Along(samples, nu),
                      behind = is_hidden ? Bands<float>(bands_) : PeakBehind(samples, nu);
   for (std::size_t band = 0; band < bands_; ++band)
     light[band] = std::max(light[band] + more[band] + behind[band], 0.0F);
   return light;
+}
+
+Bands<float> DiffuseLight::GlowFactor(double nu, float column_km) const {
+  return glow_ ? glow_->FactorOf(nu, column_km) : Bands<float>(bands_);
+}
+
+// The column is the mean over the aerosol in the sun.
+Bands<float> DiffuseLight::GlowAlong(const RaySamples<float>& samples, double nu) const {
+  float lit_km = 0.0F, column = 0.0F;
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    const float lit = samples.weight[i] * samples.lit[i] * samples.mie_density[i];
+    lit_km += lit;
+    column += lit > 0.0F ? lit * (samples.sun_mie[i] + samples.view_mie[i]) : 0.0F;
+  }
+  if (!(lit_km > 0.0F)) return Bands<float>(bands_);
+  ScatteredOnce<float> once{Bands<float>(bands_), Bands<float>(bands_)};
+  Kernel<RayKernel<float>>().scatter(air_, samples, once);
+  Bands<float> glow = glow_->FactorOf(nu, column / lit_km);
+  for (std::size_t band = 0; band < bands_; ++band) glow[band] *= once.mie[band];
+  return glow;
 }
 
 Bands<float> DiffuseLight::GroundLight(double mu_s) const {

@@ -106,6 +106,14 @@ class DiffuseLight {
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
                                             SegmentEnd end = SegmentEnd::kOpen) const;
 
+  /// Of it what the moments hold, as DiffuseFan finds it for many azimuths.
+  [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
+
+  /// What that adds near the sun to moments of thin air (GlowAboutTheSun), over light scattered once
+  /// by aerosol without its phase function [1/sr]; nothing where the forward peak is set apart.
+  /// @param column_km  as for GlowAboutTheSun::FactorOf.
+  [[nodiscard]] Bands<float> GlowFactor(double nu, float column_km) const;
+
   /// Q and U of the same light, with signs as in PolarisedLight; 0 where light is not polarised.
   [[nodiscard]] PolarisedLight PolarisationAlong(const RaySamples<float>& samples, double nu) const;
 
@@ -143,7 +151,7 @@ class DiffuseLight {
 
  private:
   [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
-  [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Bands<float> GlowAlong(const RaySamples<float>& samples, double nu) const;
   [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
   [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
   [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu) const;
@@ -170,6 +178,8 @@ class DiffuseLight {
   std::vector<float> values_;
   DiffuseGrid grid_;
   std::optional<ForwardPeak> peak_;
+  AirConstants<float> air_{};
+  std::optional<GlowAboutTheSun> glow_;  // where peak_ is not
   std::vector<float> smooth_;
   std::vector<DiffuseBlock> blocks_;
   AlignedFloats packed_;           // the moments again, as kernels read them

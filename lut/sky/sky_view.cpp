@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/ray/direct_scattering.h"
+#include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_fan.h"
 #include "lut/diffuse/diffuse_grid.h"
@@ -125,17 +127,33 @@ void SplineMirroredLine(const Line& line) {
   std::copy_n(line.node(n - 2), line.width, line.node(n));
 }
 
-std::vector<float> PhaseSamples(const Medium& medium, std::size_t first_band) {
-  std::vector<float> table(kViewLanes * (kSkyPhaseNodes + 1));
-  for (int k = 0; k <= kSkyPhaseNodes; ++k) {
+// Of the aerosol on the way of its light from the sun to the eye; by twilight along the horizon.
+float ColumnTowardsSun_km(const AirIntegrator<float>& air, double altitude_m, double mu_s) {
+  constexpr double kHair = 1e-6;  // above the horizon
+  const Medium& medium = air.medium();
+  if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
+  const double h = std::max(altitude_m, 0.0);
+  const double horizon = shared::HorizonCosine<double>(
+      h / kMetresPerKilometre, medium.planet_radius_m / kMetresPerKilometre);
+  return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
+}
+
+// The aerosol's phase function with the glow about the sun: a table for every four bands.
+std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
+                                            const DiffuseLight& diffuse, float column_km) {
+  const std::size_t blocks = (air.bands() + kViewLanes - 1) / kViewLanes;
+  std::vector<std::vector<float>> tables(blocks,
+                                         std::vector<float>(kViewLanes * (kSkyPhaseNodes + 1)));
+  for (std::size_t k = 0; k <= kSkyPhaseNodes; ++k) {
     const double x = static_cast<double>(k) / kSkyPhaseNodes;
-    const std::vector<double> values = MiePhaseValues(medium, std::cos(kPi * x * x));
-    for (std::size_t lane = 0; lane < kViewLanes; ++lane) {
-      const std::size_t band = std::min(first_band + lane, values.size() - 1);
-      table[kViewLanes * static_cast<std::size_t>(k) + lane] = static_cast<float>(values[band]);
+    const double nu = std::cos(kPi * x * x);
+    const Bands<float> phase = air.AerosolPhases(nu), glow = diffuse.GlowFactor(nu, column_km);
+    for (std::size_t lane = 0; lane < blocks * kViewLanes; ++lane) {
+      const std::size_t band = std::min(lane, phase.count - 1);
+      tables[lane / kViewLanes][kViewLanes * k + lane % kViewLanes] = phase[band] + glow[band];
     }
   }
-  return table;
+  return tables;
 }
 
 }  // namespace
@@ -378,8 +396,8 @@ SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, d
   RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
   RequireInRange(size.azimuths, 3, 4096, "azimuths");
   ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-    blocks_[i].phase = PhaseSamples(air.medium(), kViewLanes * i);
+  auto phases = PhaseTables(air, diffuse, ColumnTowardsSun_km(air, altitude_m, mu_s));
+  for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].phase = std::move(phases[i]);
   Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
 }
 
