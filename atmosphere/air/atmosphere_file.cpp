@@ -29,8 +29,8 @@ const Names kSections{"preset",   "polarised", "planet",  "spectrum",
                       "rayleigh", "mie",       "aerosol", "ozone"};
 const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
 const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
-const Names kRayleighKeys{"scattering_per_m", "scale_height_m", "deficit", "deficit_scale_height_m",
-                          "depolarisation"};
+const Names kRayleighKeys{"scattering_per_m",       "scale_height_m", "deficit",
+                          "deficit_scale_height_m", "depolarisation", "refraction"};
 const Names kMieKeys{
     "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
     "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
@@ -38,6 +38,8 @@ const Names kMieKeys{
 // Kinds of mie.phase that are no PhaseKind of their own, or need more than parameters.
 constexpr const char* kFog = "fog";
 constexpr const char* kTabulated = "table";
+constexpr const char* kByMolecules = "molecules";
+constexpr const char* kByAlmanacs = "almanacs";
 const Names kTableKeys{"phase_file", "phase_angles_deg", "phase_per_sr"};
 const Names kAerosolAmounts{"visibility_m", "turbidity", "optical_depth_550"};
 const Names kAerosolKeys{"visibility_m",
@@ -216,6 +218,21 @@ class AtmosphereFile {
                       "rayleigh.deficit_scale_height_m has no effect without rayleigh.deficit");
     }
     ReadDepolarisation(medium);
+    ReadRefraction(medium);
+  }
+
+  // Molecules whose density is given bend rays by it.
+  void ReadRefraction(Medium& medium) const {
+    if (rayleigh_->Has("scale_height_m") || rayleigh_->Has("deficit"))
+      medium.refraction = RefractionBy::kMolecules;
+    const auto name = rayleigh_->Text("refraction");
+    if (!name) return;
+    if (*name != kByMolecules && *name != kByAlmanacs) {
+      rayleigh_->Fail("refraction",
+                      fmt::format("rayleigh.refraction is \"{}\"; it must be one of {}, {}", *name,
+                                  kByMolecules, kByAlmanacs));
+    }
+    medium.refraction = *name == kByAlmanacs ? RefractionBy::kAlmanacs : RefractionBy::kMolecules;
   }
 
   void ReadDepolarisation(Medium& medium) const {

@@ -30,6 +30,11 @@ struct MoleculeDeficit {
   bool operator==(const MoleculeDeficit&) const = default;
 };
 
+/// How the refractivity falls off with height: as the density of the molecules, or as in the air of
+/// almanacs (kAlmanacLayers of atmosphere/sun/bent_ray.h), whose gradient near the ground is what
+/// lifts a low sun.
+enum class RefractionBy { kMolecules, kAlmanacs };
+
 /// Tent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017).
 /// Smooth: (27/4 y (1 - y)^2)^4 with y = h / top and the peak at top / 3. A tent bends the light of
 /// twilight at its edges, which no quadrature with few nodes can follow; this does not.
@@ -73,6 +78,8 @@ struct Medium {
   /// over what vibrates across it; one for all wavelengths, or one per wavelength, in [0, 1/2]. It
   /// shapes their scattering; the coefficient is as given.
   std::vector<double> rayleigh_depolarisation{0.0};
+  /// It bends lines of sight and changes no light.
+  RefractionBy refraction = RefractionBy::kMolecules;
 
   std::vector<double> mie_scattering_per_m;  // at altitude 0
   std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
@@ -130,7 +137,7 @@ struct MediumFault {
 void Validate(const Medium& medium);
 
 /// A 64-bit hash (FNV-1a over the bit patterns, -0 read as 0) of everything that a table depends
-/// on: all but the name. Stable over programs, machines and versions.
+/// on: all but the name and the refraction. Stable over programs, machines and versions.
 [[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
 
 /// The medium over the sphere that osculates the ellipsoid at a latitude, where its ground is one;

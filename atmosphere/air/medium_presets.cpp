@@ -82,6 +82,8 @@ Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) 
   // One exponential of 8 km is 2 times too dense at 40 km, where twilight comes from.
   medium.rayleigh_scale_height_m = 6800.0;
   medium.rayleigh_deficit = {0.42, 2857.0};
+  // That density falls off too slowly near the ground: it would lift a sun on the horizon by 30'.
+  medium.refraction = RefractionBy::kAlmanacs;
   AddAerosol(aerosol, medium);
   medium.ozone = SmoothOzone();
   medium.ozone_absorption_per_m = Evaluate(wavelengths_nm, [&](double wavelength_nm) {

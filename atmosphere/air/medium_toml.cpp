@@ -74,6 +74,7 @@ std::string TomlFromMedium(const Medium& medium) {
                   ListOf(medium.rayleigh_scattering_per_m), medium.rayleigh_scale_height_m) +
       DeficitLines(medium.rayleigh_deficit) +
       fmt::format("depolarisation = {}\n", ListOf(medium.rayleigh_depolarisation)) +
+      (medium.refraction == RefractionBy::kAlmanacs ? "refraction = \"almanacs\"\n" : "") +
       fmt::format("[mie]\nscattering_per_m = {}\nextinction_per_m = {}\nscale_height_m = {}\n",
                   ListOf(medium.mie_scattering_per_m), ListOf(medium.mie_extinction_per_m),
                   medium.mie_scale_height_m) +

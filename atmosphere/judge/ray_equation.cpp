@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/sun/bent_ray.h"
+
 namespace alpenglow::judge {
 namespace {
 
@@ -21,7 +23,7 @@ double PeckAndReeder(double wavelength_nm) {
 }
 
 RayEquation::End RayEquation::Follow(double elevation_rad, double height_m, double length_m) const {
-  const double start = 1.0 + refractivity_ * Density(height_m);
+  const double start = 1.0 + refractivity_ * Refracting(height_m);
   State at{0.0, medium_.planet_radius_m + height_m, start * std::cos(elevation_rad),
            start * std::sin(elevation_rad)};
   double gone_m = EnterAir(at);
@@ -56,6 +58,15 @@ double RayEquation::Density(double height_m) const {
   return height_m > medium_.atmosphere_height_m ? 0.0 : MoleculeDensity(medium_, height_m);
 }
 
+double RayEquation::Refracting(double height_m) const {
+  if (medium_.refraction == RefractionBy::kMolecules) return Density(height_m);
+  if (height_m > medium_.atmosphere_height_m) return 0.0;
+  double sum = 0.0;
+  for (const auto& [share, scale_height_m] : kAlmanacLayers)
+    sum += share * std::exp(-height_m / scale_height_m);
+  return sum;
+}
+
 double RayEquation::Height(const State& at) const {
   return std::hypot(at.x, at.y) - medium_.planet_radius_m;
 }
@@ -76,9 +87,9 @@ double RayEquation::EnterAir(State& at) const {
 
 RayEquation::State RayEquation::Slope(const State& at) const {
   const double height = Height(at);
-  const double n = 1.0 + refractivity_ * Density(height);
+  const double n = 1.0 + refractivity_ * Refracting(height);
   const double gradient =
-      refractivity_ * (Density(height + 0.5) - Density(height - 0.5));  // a metre up
+      refractivity_ * (Refracting(height + 0.5) - Refracting(height - 0.5));  // a metre up
   const double radius = std::hypot(at.x, at.y);
   return {at.p / n, at.q / n, gradient * at.x / radius, gradient * at.y / radius};
 }

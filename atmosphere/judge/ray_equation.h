@@ -12,7 +12,7 @@ namespace alpenglow::judge {
 /// equation 2.
 [[nodiscard]] double PeckAndReeder(double wavelength_nm);
 
-/// Rays in the molecules of a medium, by the density that they have; refers to the medium.
+/// Rays in a medium, whose refractivity falls off as it says; refers to the medium.
 class RayEquation {
  public:
   /// @param refractivity  n - 1 at altitude 0; 0 for straight rays.
@@ -37,6 +37,8 @@ class RayEquation {
 
  private:
   [[nodiscard]] double Density(double height_m) const;
+  /// Refractivity relative to altitude 0.
+  [[nodiscard]] double Refracting(double height_m) const;
   [[nodiscard]] double Height(const State& at) const;
   double EnterAir(State& at) const;
   [[nodiscard]] State Slope(const State& at) const;

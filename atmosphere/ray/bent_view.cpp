@@ -44,17 +44,13 @@ double RelativeDensity(const Medium& medium) {
 
 }  // namespace
 
-double RefractivityAtSeaLevel(double wavelength_nm) {
-  const double wave_number = 1000.0 / wavelength_nm;  // 1/um
-  const double square = wave_number * wave_number;
-  return 1e-8 * (5792105.0 / (238.0185 - square) + 167917.0 / (57.362 - square));
-}
-
 BendingAir BendingAirOf(const Medium& medium, double wavelength_nm) {
+  const MoleculeDeficit& deficit = medium.rayleigh_deficit;
+  const RefractivityLayers of_molecules{{{1.0 + deficit.share, medium.rayleigh_scale_height_m},
+                                         {-deficit.share, deficit.scale_height_m},
+                                         {0.0, medium.rayleigh_scale_height_m}}};
   return {.refractivity = RelativeDensity(medium) * RefractivityAtSeaLevel(wavelength_nm),
-          .scale_height_m = medium.rayleigh_scale_height_m,
-          .deficit_share = medium.rayleigh_deficit.share,
-          .deficit_scale_height_m = medium.rayleigh_deficit.scale_height_m,
+          .layers = medium.refraction == RefractionBy::kAlmanacs ? kAlmanacLayers : of_molecules,
           .top_m = medium.atmosphere_height_m,
           .planet_radius_m = medium.planet_radius_m};
 }
@@ -63,6 +59,29 @@ BendingAir GentleAirOf(const Medium& medium) {
   BendingAir air = BendingAirOf(medium, kHorizonWavelength_nm);
   if (!GentlyBends(air)) air.refractivity = 0.0;
   return air;
+}
+
+BentLight BentLightOf(const Medium& medium, const BendingAir& air, double elevation_rad,
+                      double height_m) {
+  BentLight light;
+  light.refraction_rad = RefractionSeenAt(air, elevation_rad, height_m);
+  constexpr double kStep = 1e-2;
+  BendingAir thicker = air;
+  thicker.refractivity *= 1.0 + kStep;
+  if (air.refractivity > 0.0) {
+    light.per_refractivity_rad =
+        (RefractionSeenAt(thicker, elevation_rad, height_m) - light.refraction_rad) /
+        (kStep * air.refractivity);
+  }
+  if (elevation_rad > kLittleMoreDepth_rad) return light;
+  const auto molecules = [&](double h_m) { return MoleculeDensity(medium, h_m); };
+  const auto aerosol = [&](double h_m) { return std::exp(-h_m / medium.mie_scale_height_m); };
+  BendingAir still = air;
+  still.refractivity = 0.0;
+  const BentRay bent(air, elevation_rad, height_m), straight(still, elevation_rad, height_m);
+  light.molecules_m = bent.ColumnToSpace(molecules) - straight.ColumnToSpace(molecules);
+  light.aerosol_m = bent.ColumnToSpace(aerosol) - straight.ColumnToSpace(aerosol);
+  return light;
 }
 
 BentView::BentView(const Medium& medium, double height_m)
@@ -80,7 +99,7 @@ BentView::BentView(const Medium& medium, double height_m)
   ground_scale_rad_ = std::clamp(-horizon_rad_, 1e-5, kWidest_rad);
   for (int i = 0; i < kSkyNodes; ++i) {
     const double over = NodePlace(i, kSkyNodes, sky_scale_rad_, kHorizontal - horizon_rad_);
-    sky_.push_back(NodeAt(medium, horizon_rad_ + over));
+    sky_.push_back(BentLightOf(medium, air_, horizon_rad_ + over, height_m_));
   }
   const double at_ground_m = (1.0 + air_.refractivity) * air_.planet_radius_m;
   const double at_eye_m =
@@ -93,28 +112,6 @@ BentView::BentView(const Medium& medium, double height_m)
     const BentRay ray(air_, elevation, height_m_);
     bending_.push_back(ray.Bending(at_ground, std::min(-elevation, ray.ElevationAt(air_.top_m))));
   }
-}
-
-BentView::Node BentView::NodeAt(const Medium& medium, double elevation_rad) const {
-  Node node;
-  node.refraction_rad = RefractionSeenAt(air_, elevation_rad, height_m_);
-  constexpr double kStep = 1e-2;
-  BendingAir thicker = air_;
-  thicker.refractivity *= 1.0 + kStep;
-  if (air_.refractivity > 0.0) {
-    node.per_refractivity_rad =
-        (RefractionSeenAt(thicker, elevation_rad, height_m_) - node.refraction_rad) /
-        (kStep * air_.refractivity);
-  }
-  if (elevation_rad > kLittleMoreDepth_rad) return node;
-  const auto molecules = [&](double h_m) { return MoleculeDensity(medium, h_m); };
-  const auto aerosol = [&](double h_m) { return std::exp(-h_m / medium.mie_scale_height_m); };
-  BendingAir still = air_;
-  still.refractivity = 0.0;
-  const BentRay bent(air_, elevation_rad, height_m_), straight(still, elevation_rad, height_m_);
-  node.molecules_m = bent.ColumnToSpace(molecules) - straight.ColumnToSpace(molecules);
-  node.aerosol_m = bent.ColumnToSpace(aerosol) - straight.ColumnToSpace(aerosol);
-  return node;
 }
 
 BentView::Node BentView::At(double elevation_rad) const {

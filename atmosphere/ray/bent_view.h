@@ -2,14 +2,10 @@
 // What an eye sees through bent rays in the air of a medium: where light of each band comes from,
 // how much of it the air lets through, and where rays meet the ground.
 //
-// The refractivity of air of 15 C and 1013.25 hPa is Ciddor's (1996, Appl. Opt. 35, 1566-1573,
-// equation 1),
-//
-//   10^8 (n - 1) = 5792105 / (238.0185 - s^2) + 167917 / (57.362 - s^2),   s = 1 um / wavelength,
-//
-// that of a medium as many times larger as its molecules scatter more than those of such air at 550
-// nm, and follows their density with height. That takes the molecules for air: those of carbon
-// dioxide bend 1.7 times less than they would be taken to, which on Mars is 0.3' at the horizon.
+// The refractivity of a medium is as many times that of air of 15 C and 1013.25 hPa as its molecules
+// scatter more than those of such air at 550 nm. It falls off with height as the medium says
+// (Medium::refraction). That takes the molecules for air: those of carbon dioxide bend 1.7 times less
+// than they would be taken to, which on Mars is 0.3' at the horizon.
 #pragma once
 
 #include <cstddef>
@@ -20,13 +16,6 @@
 #include "atmosphere/sun/bent_ray.h"
 
 namespace alpenglow {
-
-/// n - 1 of air of 15 C and 1013.25 hPa with 450 ppm of carbon dioxide.
-/// @param wavelength_nm  in [200, 4000]; measured from 300 to 1690.
-[[nodiscard]] double RefractivityAtSeaLevel(double wavelength_nm);
-
-/// Where most of the light is that eyes see, and the horizon therefore.
-inline constexpr double kHorizonWavelength_nm = 550.0;
 
 [[nodiscard]] BendingAir BendingAirOf(const Medium& medium, double wavelength_nm);
 
@@ -39,6 +28,18 @@ struct BentGroundRay {
   double angle_rad;      // at the planet's centre, between the eye and where it ends
   double elevation_rad;  // > 0, of the eye's line of sight there, seen from the ground
 };
+
+/// What air does to light from outside that is seen in a direction, at kHorizonWavelength_nm.
+struct BentLight {
+  double refraction_rad = 0.0;
+  double per_refractivity_rad = 0.0;          // its derivative with respect to N
+  double molecules_m = 0.0, aerosol_m = 0.0;  // columns to space, more than if straight; 0 from 15
+                                              // degrees up
+};
+
+/// Some hundred microseconds. @param air  GentleAirOf(medium); elevation_rad: from the horizon up.
+[[nodiscard]] BentLight BentLightOf(const Medium& medium, const BendingAir& air,
+                                    double elevation_rad, double height_m);
 
 /// Tables for an eye at one height. Immutable. All elevations are apparent unless they are called
 /// true. Below the horizon the sky is as on it.
@@ -76,13 +77,7 @@ class BentView {
   [[nodiscard]] std::optional<BentGroundRay> ToGround(double elevation_rad) const;
 
  private:
-  /// What rays of an elevation have in common.
-  struct Node {
-    double refraction_rad = 0.0;
-    double per_refractivity_rad = 0.0;          // its derivative with respect to N
-    double molecules_m = 0.0, aerosol_m = 0.0;  // columns, more than if straight
-  };
-  [[nodiscard]] Node NodeAt(const Medium& medium, double elevation_rad) const;
+  using Node = BentLight;
   [[nodiscard]] Node At(double elevation_rad) const;
 
   BendingAir air_;

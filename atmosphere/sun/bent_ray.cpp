@@ -10,34 +10,46 @@ namespace {
 
 /// n r less that at the ground [m].
 double OverGround(const BendingAir& air, double height_m) {
-  const double main = std::expm1(-height_m / air.scale_height_m);
-  const double deficit = std::expm1(-height_m / air.deficit_scale_height_m);
-  const double more =
-      air.refractivity * ((1.0 + air.deficit_share) * main - air.deficit_share * deficit);
-  return height_m * (1.0 + RefractivityAt(air, height_m)) + air.planet_radius_m * more;
+  double less = 0.0;
+  for (const RefractivityLayer& layer : air.layers)
+    less += layer.share * std::expm1(-height_m / layer.scale_height_m);
+  return height_m * (1.0 + RefractivityAt(air, height_m)) +
+         air.planet_radius_m * air.refractivity * less;
 }
 
 }  // namespace
 
+double RefractivityAtSeaLevel(double wavelength_nm) {
+  const double wave_number = 1000.0 / wavelength_nm;  // 1/um
+  const double square = wave_number * wave_number;
+  return 1e-8 * (5792105.0 / (238.0185 - square) + 167917.0 / (57.362 - square));
+}
+
+// Layers without a share are left out: few airs have all.
 double RefractivityAt(const BendingAir& air, double height_m) {
-  const double main = std::exp(-height_m / air.scale_height_m);
-  if (air.deficit_share == 0.0) return air.refractivity * main;
-  return air.refractivity * ((1.0 + air.deficit_share) * main -
-                             air.deficit_share * std::exp(-height_m / air.deficit_scale_height_m));
+  double sum = 0.0;
+  for (const auto& [share, scale_height_m] : air.layers)
+    if (share != 0.0) sum += share * std::exp(-height_m / scale_height_m);
+  return air.refractivity * sum;
 }
 
 double RefractivitySlopeAt(const BendingAir& air, double height_m) {
-  const double main = std::exp(-height_m / air.scale_height_m) / air.scale_height_m;
-  if (air.deficit_share == 0.0) return -air.refractivity * main;
-  const double deficit =
-      std::exp(-height_m / air.deficit_scale_height_m) / air.deficit_scale_height_m;
-  return -air.refractivity * ((1.0 + air.deficit_share) * main - air.deficit_share * deficit);
+  double sum = 0.0;
+  for (const auto& [share, scale_height_m] : air.layers)
+    if (share != 0.0) sum += share / scale_height_m * std::exp(-height_m / scale_height_m);
+  return -air.refractivity * sum;
 }
 
 bool GentlyBends(const BendingAir& air) {
-  // A bound of -r n'; between the ground and the top r grows by less than a third.
-  const double steepest = air.refractivity * (1.0 + air.deficit_share) / air.scale_height_m;
-  return steepest * air.planet_radius_m < 0.8;
+  // Looked for where layers may be steep; between the ground and the top r grows by less than a
+  // third.
+  constexpr int kPlaces = 64;
+  double steepest_per_m = 0.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double height_m = 4.0 * air.UpperScaleHeight() * i / kPlaces;
+    steepest_per_m = std::max(steepest_per_m, -RefractivitySlopeAt(air, height_m));
+  }
+  return steepest_per_m * air.planet_radius_m < 0.8;
 }
 
 BentRay::BentRay(const BendingAir& air, double elevation_rad, double height_m)

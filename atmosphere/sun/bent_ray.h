@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rays in air whose density falls off with height over a sphere: Bouguer's law.
 //
-//   n(h) - 1 = N [(1 + d) exp(-h / H) - d exp(-h / H_D)]      as the molecules of a medium
+//   n(h) - 1 = N sum of s_i exp(-h / H_i),  sum of s_i = 1
 //   q cos(e) = b,  q = n r                                    along a ray of the elevation e
 //   bending  = integral of -r n' / (n + r n') over e          Auer and Standish (2000)
 //   column   = integral of density b / (cos^2(e) (n + r n')) over e
@@ -14,6 +14,7 @@
 // What asks for a height takes one below 0 as 0.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -22,14 +23,41 @@
 
 namespace alpenglow {
 
+/// Where most of the light is that eyes see, and the horizon therefore.
+inline constexpr double kHorizonWavelength_nm = 550.0;
+
+/// n - 1 of air of 15 C and 1013.25 hPa with 450 ppm of carbon dioxide: Ciddor (1996), Appl. Opt.
+/// 35, 1566-1573, equation 1, s = 1 um / wavelength,
+///
+///   10^8 (n - 1) = 5792105 / (238.0185 - s^2) + 167917 / (57.362 - s^2).
+///
+/// @param wavelength_nm  in [200, 4000]; measured from 300 to 1690.
+[[nodiscard]] double RefractivityAtSeaLevel(double wavelength_nm);
+
+/// A part of the refractivity that falls off exponentially with height.
+struct RefractivityLayer {
+  double share;           // of that at altitude 0; of either sign
+  double scale_height_m;  // > 0
+};
+using RefractivityLayers = std::array<RefractivityLayer, 3>;
+
+/// How the refractivity of the air of almanacs falls off, fitted so that from sea level a star on
+/// the horizon is lifted by 34.0' and one up to 20 degrees high as by Bennett (1982) within 0.25',
+/// and that rays which are level 2 to 13 km up bend as in the U.S. Standard Atmosphere 1976 within
+/// 0.6'. That atmosphere itself lifts a star on the horizon by 33.0', and the fit has its density
+/// within 5 % up to 30 km.
+inline constexpr RefractivityLayers kAlmanacLayers{
+    {{2.236, 6078.0}, {-2.116, 3576.0}, {0.880, 2664.2}}};
+
 /// Air that bends rays, over a sphere. GentlyBends must be true of it.
 struct BendingAir {
-  double refractivity;    // n - 1 at altitude 0, >= 0
-  double scale_height_m;  // H
-  double deficit_share = 0.0;
-  double deficit_scale_height_m = 4000.0;
+  double refractivity;  // n - 1 at altitude 0, >= 0
+  RefractivityLayers layers;
   double top_m;  // nothing bends above
   double planet_radius_m = kEarthMeanRadius_m;
+
+  /// Over which refractivity falls off far up [m].
+  [[nodiscard]] double UpperScaleHeight() const { return layers.front().scale_height_m; }
 };
 
 /// n - 1 [1], and how it changes with height [1/m].

@@ -13,14 +13,11 @@ namespace {
 
 // ---------------------------------------------------------------- rays
 
-// Edlen (1966), Metrologia 2, 71-80, eq. 1 at 550 nm: 2.7782e-4.
-constexpr double kRefractivity = 2.778e-4;
-constexpr double kScaleHeight_m = 9366.0;
-constexpr double kTop_m = 20.0 * kScaleHeight_m;  // bends by 1e-9 of the whole above
+constexpr double kTop_m = 120e3;  // bends by 1e-8 of the whole above
 
 BendingAir AirOver(double earth_radius_m) {
-  return {.refractivity = kRefractivity,
-          .scale_height_m = kScaleHeight_m,
+  return {.refractivity = RefractivityAtSeaLevel(kHorizonWavelength_nm),
+          .layers = kAlmanacLayers,
           .top_m = kTop_m,
           .planet_radius_m = earth_radius_m};
 }
@@ -33,13 +30,13 @@ struct ValueAndSlope {
 
 /// For air of 15 C and 1013.25 hPa: A cos e / (sin e + b / (sin e + c / (sin e + d))), the
 /// continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e high up and
-/// finite at the horizon. The four constants were fitted to RefractionOfRay from sea level for true
-/// elevations from -1.2 to 90 degrees; they miss it by less than 0.05' above -1 degree.
+/// finite at the horizon. The four constants were fitted to RefractionOfRay from sea level, which they
+/// miss by less than 0.04' from the horizon up; below it they go on smoothly.
 ValueAndSlope StandardRefraction(double elevation_rad) {
-  constexpr double kA = 2.78480978e-4;
-  constexpr double kB = 1.78501289e-3;
-  constexpr double kC = 7.50019978e-3;
-  constexpr double kD = 1.42003864e-1;
+  constexpr double kA = 2.78291862e-4;
+  constexpr double kB = 1.60741104e-3;
+  constexpr double kC = 5.59356459e-3;
+  constexpr double kD = 1.17198817e-1;
   const double sine = std::sin(elevation_rad);
   const double cosine = std::cos(elevation_rad);
   const double inner = sine + kD;

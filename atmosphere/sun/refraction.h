@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Refraction by rays: where light from outside the air arrives, seen from any height.
 //
-// Refractivity falls off exponentially, n(h) - 1 = N exp(-h / H), in spherical shells; N is that of
-// air of 15 C and 1013.25 hPa at 550 nm, and H = 9.37 km is chosen so that a star seen at the
-// horizontal from sea level is lifted by the 34' of the almanacs. With these two numbers the model
-// reproduces what almanacs tabulate apart: refraction at any elevation, the refracted dip of the
-// sea horizon, and the refraction of a body that stands on it. sun.h has a closed form for
+// Refractivity falls off with height as kAlmanacLayers (bent_ray.h) say, in spherical shells; at the
+// ground it is that of air of 15 C and 1013.25 hPa at 550 nm. A star seen at the horizontal from sea
+// level is lifted by the 34' of the almanacs. The model reproduces what almanacs tabulate apart:
+// refraction at any elevation, the refracted dip of the sea horizon, and the refraction of a body
+// that stands on it. The air of the earth presets bends rays alike. sun.h has a closed form for
 // observers on the ground, of which this is the judge. Weather moves all of it by minutes of arc
 // near the horizon.
 #pragma once

@@ -46,7 +46,7 @@ glm::dvec3 BentPath::Turn(const glm::dvec3& at, const glm::dvec3& direction) con
 double BentPath::PieceLength(double nothing_before_m) const {
   const glm::dvec3 up = CentreUp(at_, air_.planet_radius_m);
   const double sine = glm::dot(direction_, up);
-  const double bends_below_m = kScaleHeightsThatBend * air_.scale_height_m;
+  const double bends_below_m = kScaleHeightsThatBend * air_.UpperScaleHeight();
   const double height_m = HeightHere();
   const double over_m = height_m - bends_below_m;
   // Straight down to where the air bends.
@@ -59,7 +59,7 @@ double BentPath::PieceLength(double nothing_before_m) const {
   const double b = 4.0 * off_rad_ / std::max(steepest_per_m_, 1e-15);
   const double by_chord_m = 0.5 * b + std::sqrt(0.25 * b * b + 2.0 * b * gone_m_);
   // Steeply, and level rays, which rise with the square of their length.
-  const double may_rise_m = kHeightOfPiece * air_.scale_height_m;
+  const double may_rise_m = kHeightOfPiece * air_.UpperScaleHeight();
   const double by_height_m =
       may_rise_m / std::max(std::abs(sine), std::sqrt(may_rise_m / (2.0 * air_.planet_radius_m)));
   return std::min(std::max(by_chord_m, nothing_before_m - gone_m_), by_height_m);

@@ -154,6 +154,16 @@ TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
   EXPECT_THAT(FileFaultOf("[rayleigh]\ndeficit = 2\n"), HasSubstr("[0, 1]"));
 }
 
+TEST(AtmosphereFile, RaysBendAsInAlmanacsUnlessTheFileGivesTheDensity) {
+  EXPECT_EQ(Read("[rayleigh]\nrefraction = \"molecules\"\n").refraction, RefractionBy::kMolecules);
+  EXPECT_EQ(Read("[mie]\nscale_height_m = 1000\n").refraction, RefractionBy::kAlmanacs);
+  EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").refraction, RefractionBy::kMolecules);
+  EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\nrefraction = \"almanacs\"\n").refraction,
+            RefractionBy::kAlmanacs);
+  EXPECT_EQ(Read("preset = \"mars\"\n").refraction, RefractionBy::kMolecules);
+  EXPECT_THAT(FileFaultOf("[rayleigh]\nrefraction = \"none\"\n"), HasSubstr("molecules, almanacs"));
+}
+
 TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
   const Medium medium =
       Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");

@@ -156,6 +156,13 @@ std::vector<Change> HashedChanges() {
   };
 }
 
+TEST(Medium, RefractionLeavesTheHashOfTablesAsItIs) {
+  Medium medium = MediumPreset("earth");
+  const std::uint64_t hash = MediumHash(medium);
+  medium.refraction = RefractionBy::kMolecules;
+  EXPECT_EQ(MediumHash(medium), hash) << "it changes no light";
+}
+
 TEST(Medium, HashTellsApartEverythingButTheName) {
   std::set<std::uint64_t> hashes{MediumHash(MediumPreset("earth"))};
   for (const Change& change : HashedChanges()) {

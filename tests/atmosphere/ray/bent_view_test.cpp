@@ -132,6 +132,7 @@ TEST(BentView, AirThatWouldTrapRaysIsTakenToBendNone) {
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 500.0;
   medium.rayleigh_deficit = {};
+  medium.refraction = RefractionBy::kMolecules;
   EXPECT_FALSE(GentlyBends(BendingAirOf(medium, 550.0)));
   EXPECT_EQ(BentView(medium, 2.0).TrueElevation(0.0, 0), 0.0);
 }
