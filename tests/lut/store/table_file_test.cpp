@@ -252,8 +252,8 @@ TEST_F(TableFile, EveryPresetsMediumComesBackFromItsText) {
     EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), name)), MediumHash(medium));
   }
   Medium medium = MediumPreset("earth");
-  medium.mie_phase.front() = {
-      .kind = PhaseKind::kDoubleHenyeyGreenstein, .g = 0.7, .g_back = -0.3, .back_weight = 0.1};
+  medium.mie_phase = {
+      {.kind = PhaseKind::kDoubleHenyeyGreenstein, .g = 0.7, .g_back = -0.3, .back_weight = 0.1}};
   EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), "x")), MediumHash(medium));
   medium.mie_phase.front() = {.kind = PhaseKind::kDraine, .g = 0.7, .alpha = 1.0 / 3.0};
   EXPECT_EQ(MediumHash(MediumFromToml(TomlFromMedium(medium), "x")), MediumHash(medium));
