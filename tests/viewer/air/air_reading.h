@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "lut/table/transmittance_map.h"
 #include "viewer/air/air_tables.h"
