@@ -44,8 +44,12 @@ class OrdersTopic : public TopicWork {
   /// @param higher  function from samples and nu to light of orders two and up.
   template <typename Higher>
   void Add(ReportRow row, const Higher& higher) {
-    AddOnSamples(
-        std::move(row), [&](const ViewRay& ray) { return air_.Sample(ray, kSampling); }, higher);
+    const auto sample = [&](const ViewRay& ray) {
+      SampledLight light{air_.Sample(ray, kSampling), {}};
+      light.once = air_.Scatter(light.samples);
+      return light;
+    };
+    AddOnSamples(std::move(row), sample, higher);
   }
 
   /// The usual moments on the nodes of direct integration.
@@ -60,7 +64,7 @@ class OrdersTopic : public TopicWork {
          .memory_bytes = light.values().size() * sizeof(float),
          .build_s = seconds},
         [this, mode](const ViewRay& ray) {
-          return direct_.Sample(ray, {.mode = mode, .dark_samples = true});
+          return direct_.Sample(direct_.Place(ray, {.mode = mode, .dark_samples = true}), nullptr);
         },
         [&light = light](const RaySamples<float>& samples, double nu) {
           return light.InscatterAlong(samples, nu);
@@ -72,13 +76,13 @@ class OrdersTopic : public TopicWork {
     AddRow(
         std::move(row),
         [&](const ViewRay& ray) {
-          const RaySamples<float> samples = sample(ray);
-          Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);
+          const auto& [samples, once] = sample(ray);
+          Bands<float> light = air_.Inscatter(once, ray.nu);
           const Bands<float> more = higher(samples, ray.nu);
           for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
           return light;
         },
-        [&](const ViewRay& ray) { return sample(ray).count; });
+        [&](const ViewRay& ray) { return sample(ray).samples.Nodes(); });
   }
 
   void AddNothing() {

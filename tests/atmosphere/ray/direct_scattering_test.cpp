@@ -291,6 +291,57 @@ TEST(DirectScattering, EndsOfRaysAreThoseOfExtentOf) {
   }
 }
 
+TEST(DirectScattering, ColumnsOfShortWaysKeepTheirDigits) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  const AirIntegrator<double> fine(medium);
+  for (int i = 1; i <= 400; ++i) {
+    const double altitude = 200.0 + 3000.0 * Halton(i, 2);
+    const double length = std::pow(10.0, 5.0 * Halton(i, 3));
+    // No steeper than two kilometres over the way, and over the horizon of the planet.
+    const double slope = std::min(2000.0 / length, 1.0) * (2.0 * Halton(i, 5) - 1.0);
+    const ViewRay ray{altitude, std::max(slope, -100.0 / length), 0.5, 0.5, length};
+    const DirectRay placed = direct.Place(ray, {.dark_samples = true});
+    const ColumnSet<float> found = direct.ColumnsAlong(placed);
+    const ColumnSet<double> truth = fine.ColumnsAlong(ray);
+    EXPECT_NEAR(static_cast<double>(found.rayleigh) / truth.rayleigh, 1.0, 1e-6) << length;
+    EXPECT_NEAR(static_cast<double>(found.mie) / truth.mie, 1.0, 2e-6) << length;
+    EXPECT_NEAR(static_cast<double>(found.ozone), truth.ozone, 2e-4 * truth.ozone + 1e-9)
+        << "its density goes with the fourth power of the altitude";
+  }
+}
+
+// The lanes of every panel get that share of what the planet lets through.
+LaneLight ShareOfLight(const DirectRay& placed, float share) {
+  LaneLight light{};
+  VisitPanels(placed, [&](const PanelNodes& nodes) {
+    for (std::size_t j = 0; j < nodes.count; ++j)
+      light.factor[nodes.SampleOf(j)] = share * placed.panel[nodes.panel].lit;
+  });
+  return light;
+}
+
+TEST(DirectScattering, SunlightAtLanesWeighsEveryNode) {
+  const Medium medium = MediumPreset("earth");
+  const DirectScattering direct(medium);
+  for (const DirectRegime& regime : DirectRegimes()) {
+    SCOPED_TRACE(regime.name);
+    for (int i = 1; i <= 20; ++i) {
+      const ViewRay ray = regime.ray(i, medium);
+      const DirectMode mode = kModes[static_cast<std::size_t>(i % 2)];
+      const DirectRay placed = direct.Place(ray, {.mode = mode, .dark_samples = true});
+      const LaneLight quarter = ShareOfLight(placed, 0.25F);
+      const SampledLight found = direct.Sample(placed, &quarter);
+      const float whole = direct.Scatter(placed, nullptr).rayleigh[0];
+      EXPECT_NEAR(found.once.rayleigh[0], 0.25F * whole, 1e-6F * whole) << "rounding";
+      EXPECT_NEAR(direct.reference().Scatter(found.samples).rayleigh[0], 0.25F * whole,
+                  1e-4F * whole + 1e-12F)
+          << "exponentials of two kinds in single precision";
+      EXPECT_EQ(direct.Scatter(placed, &quarter).rayleigh[0], found.once.rayleigh[0]);
+    }
+  }
+}
+
 TEST(DirectScattering, EveryBandIsThatOfAMediumOfThatBandAlone) {
   std::vector<double> wavelengths_nm;
   for (int i = 0; i < 40; ++i) wavelengths_nm.push_back(380.0 + 10.0 * i);

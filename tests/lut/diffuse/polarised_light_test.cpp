@@ -11,6 +11,7 @@
 #include "atmosphere/judge/path_tracer.h"
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
+#include "tests/fixtures/direct_regimes.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"
@@ -218,6 +219,28 @@ TEST(PolarisedLight, ValuesAtNodesAreTheNodesAndSurfacesSeeTheSky) {
     const Bands<float> level = light.Irradiance(1000.0, mu_s, 1.0, 1.0);
     for (std::size_t band = 0; band < 3; ++band)
       EXPECT_NEAR(level[band], sky[band], 1e-4F * sky[band]) << mu_s;
+  }
+}
+
+TEST(PolarisedLight, OfDirectIntegrationIsThatOfTheReference) {
+  const Medium medium = MediumPreset("earth");
+  ASSERT_TRUE(medium.polarised);
+  const DirectScattering direct(medium), scalar(InScalarLight(medium));
+  const AirIntegrator<float>& air = direct.reference();
+  for (const tests::DirectRegime& regime : tests::DirectRegimes()) {
+    for (int i = 1; i <= 20; ++i) {
+      const ViewRay ray = regime.ray(i, medium);
+      const ScatteredOnce<float> found = direct.Scatter(ray, DirectMode::kNormal);
+      EXPECT_EQ(found.rayleigh, scalar.Scatter(ray, DirectMode::kNormal).rayleigh)
+          << "the molecules' matrix is applied after the integral";
+      const ScatteredOnce<float> truth = air.Scatter(air.Sample(ray, {.nodes = 32}));
+      const PolarisedLight light = PolarisedOnce(medium, found, ray),
+                           reference = PolarisedOnce(medium, truth, ray);
+      const float radiance = air.Inscatter(truth, ray.nu)[1];
+      EXPECT_NEAR(light.q[1], reference.q[1], 3.5e-3F * radiance) << regime.name << ' ' << i;
+      EXPECT_NEAR(light.u[1], reference.u[1], 3.5e-3F * radiance)
+          << "as the 99th percentile of the radiance's error; " << regime.name << ' ' << i;
+    }
   }
 }
 

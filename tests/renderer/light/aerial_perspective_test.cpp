@@ -104,10 +104,10 @@ Error OverMountains(const Medium& medium) {
   return error;
 }
 
-TEST(AerialPerspective, ClearAirToAHundredKilometresIsRightToATenthOfAPercent) {
+TEST(AerialPerspective, ClearAirToAHundredKilometresIsRightToATwentiethOfAPercent) {
   for (const double depth : {0.0, 0.0053}) {
     const Error error = OverMountains(WithOpticalDepth(depth));
-    EXPECT_LT(error.rms, 1e-3) << "Gauss nodes chosen by extinction and difference of altitude";
+    EXPECT_LT(error.rms, 5e-4) << "Gauss nodes chosen by extinction and difference of altitude";
     EXPECT_LT(error.worst, 5e-3);
     EXPECT_LT(error.nodes, 3.0) << "of rays 100 m to 100 km long, in the mean";
     EXPECT_LT(error.transmittance, 3e-7) << "sums of columns in single precision";
