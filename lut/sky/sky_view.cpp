@@ -127,17 +127,6 @@ void SplineMirroredLine(const Line& line) {
   std::copy_n(line.node(n - 2), line.width, line.node(n));
 }
 
-// Of the aerosol on the way of its light from the sun to the eye; by twilight along the horizon.
-float ColumnTowardsSun_km(const AirIntegrator<float>& air, double altitude_m, double mu_s) {
-  constexpr double kHair = 1e-6;  // above the horizon
-  const Medium& medium = air.medium();
-  if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
-  const double h = std::max(altitude_m, 0.0);
-  const double horizon = shared::HorizonCosine<double>(
-      h / kMetresPerKilometre, medium.planet_radius_m / kMetresPerKilometre);
-  return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
-}
-
 // The aerosol's phase function with the glow about the sun: a table for every four bands.
 std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
                                             const DiffuseLight& diffuse, float column_km) {
@@ -157,6 +146,16 @@ std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
 }
 
 }  // namespace
+
+float GlowColumn_km(const AirIntegrator<float>& air, double altitude_m, double mu_s) {
+  constexpr double kHair = 1e-6;  // above the horizon
+  const Medium& medium = air.medium();
+  if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
+  const double h = std::max(altitude_m, 0.0);
+  const double horizon = shared::HorizonCosine<double>(
+      h / kMetresPerKilometre, medium.planet_radius_m / kMetresPerKilometre);
+  return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
+}
 
 // Smallest sizes, of those tried with sky_error (tests/bench), that keep the stated error.
 SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
@@ -396,7 +395,7 @@ SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, d
   RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
   RequireInRange(size.azimuths, 3, 4096, "azimuths");
   ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
-  auto phases = PhaseTables(air, diffuse, ColumnTowardsSun_km(air, altitude_m, mu_s));
+  auto phases = PhaseTables(air, diffuse, GlowColumn_km(air, altitude_m, mu_s));
   for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].phase = std::move(phases[i]);
   Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
 }

@@ -111,4 +111,9 @@ class SkyView {
   std::vector<Block> blocks_;
 };
 
+/// Column of aerosol at its density on the ground [km] with which sky views take the glow about the sun
+/// (DiffuseLight::GlowFactor): that on the way of its light from the sun to the eye, by twilight along the
+/// horizon.
+[[nodiscard]] float GlowColumn_km(const AirIntegrator<float>& air, double altitude_m, double mu_s);
+
 }  // namespace alpenglow

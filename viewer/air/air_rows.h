@@ -44,7 +44,8 @@ struct AirRow {
 /// Phase functions as shaders read them.
 class AirPhases {
  public:
-  explicit AirPhases(const MediumTables& medium) : nodes_(medium.phase) {}
+  /// @param nodes  of the aerosol, kept by the caller: as MediumTables::phase.
+  explicit AirPhases(const AirTexels& nodes) : nodes_(nodes) {}
 
   [[nodiscard]] static float OfMolecules(double nu);
   [[nodiscard]] glm::vec4 OfAerosol(double nu) const;

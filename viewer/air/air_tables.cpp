@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "atmosphere/text/error.h"
 #include "lut/sky/sky_view.h"
@@ -40,6 +41,20 @@ std::array<glm::vec4, 3> SkyMix(const AirIntegrator<float>& air, const SkyView& 
     for (glm::vec4& share : mix) share[band] = 1.0F;
   }
   return mix;
+}
+
+double CosineOfPhaseNode(int node) {
+  const double half_sine = shared::PhaseHalfSine<double>(Unit(node, kPhaseNodes));
+  return 1.0 - 2.0 * half_sine * half_sine;
+}
+
+AirTexels SkyPhase(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                   const AirTexels& aerosol, const AirEye& eye) {
+  const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s);
+  AirTexels phase = aerosol;
+  for (int k = 0; k < phase.width; ++k)
+    phase.At(k, 0) += Vec4Of(diffuse.GlowFactor(CosineOfPhaseNode(k), column_km));
+  return phase;
 }
 
 float TwilightAtFoot(const AirMap& map, const AirEye& eye, const AirRow& row, double nu) {
@@ -152,8 +167,10 @@ AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& dif
   const SkyView view = ViewOf(air, diffuse, eye, size.sky_fineness);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
                    static_cast<double>(diffuse.grid().twilight_fall));
-  const AirPhases phases(medium);
-  const std::array<glm::vec4, 3> mix = SkyMix(air, view, map, phases, eye);
+  AirTexels sky_phase = SkyPhase(air, diffuse, medium.phase, eye);
+  const AirPhases phases(medium.phase), sky_phases(sky_phase);
+  const std::array<glm::vec4, 3> mix = SkyMix(air, view, map, sky_phases, eye);
+  AirTexels sky = SkyTexels(view, map, sky_phases, eye, mix, size);
   const int rows = size.rows + size.ground_rows;
   AirTables tables{
       size,
@@ -161,7 +178,8 @@ AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& dif
       map,
       mix,
       SingleMix(air, map),
-      SkyTexels(view, map, phases, eye, mix, size),
+      std::move(sky_phase),
+      std::move(sky),
       ThroughTexels(air, map, eye, size),
       AirTexels(size.extinction_distances, size.extinction_rows + size.extinction_ground_rows),
       AirTexels(size.columns, rows, size.distances),
@@ -175,9 +193,7 @@ MediumTables MakeMediumTables(const AirIntegrator<float>& air) {
   RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, kSunAltitudes)};
   for (int k = 0; k < kPhaseNodes; ++k) {
-    const double half_sine = PhaseHalfSine<double>(Unit(k, kPhaseNodes));
-    const std::vector<double> phase =
-        MiePhaseValues(air.medium(), 1.0 - 2.0 * half_sine * half_sine);
+    const std::vector<double> phase = MiePhaseValues(air.medium(), CosineOfPhaseNode(k));
     for (std::size_t band = 0; band < phase.size(); ++band)
       tables.phase.At(k, 0)[static_cast<glm::length_t>(band)] = static_cast<float>(phase[band]);
   }

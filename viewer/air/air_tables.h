@@ -8,7 +8,8 @@
 //
 //   L(direction) = sky(direction) [p_R(nu) m_R + p_M(nu) m_M + m_0],
 //
-// so that an aureole is as sharp as the phase function at the pixel. Light on the way to a point is
+// so that an aureole is as sharp as the phase function at the pixel; p_M has with it the glow of light that
+// aerosol scatters more than once. Light on the way to a point is
 // divided by 1 - T as well, T the transmittance on that way: a mean source, which hardly changes
 // with distance,
 //
@@ -80,6 +81,8 @@ struct AirTables {
   AirMap map;
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
+  /// Of whole rays: MediumTables::phase with the glow about the sun (DiffuseLight::GlowFactor).
+  AirTexels sky_phase;
   AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
   AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
   AirTexels extinction;  // [distance, row]: mean on the way [1/km]

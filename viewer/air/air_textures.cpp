@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/air/air_textures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
 #include <tuple>
@@ -24,7 +25,7 @@ constexpr std::array<Slot, AirTextures::kUnits> kSlots{{{"air_sky", GL_TEXTURE_2
                                                         {"air_extinction", GL_TEXTURE_2D},
                                                         {"air_single", GL_TEXTURE_3D},
                                                         {"air_diffuse", GL_TEXTURE_3D},
-                                                        {"air_phase", GL_TEXTURE_1D},
+                                                        {"air_phase", GL_TEXTURE_2D},
                                                         {"air_to_sun", GL_TEXTURE_2D}}};
 
 // In place where the texture has this size already.
@@ -46,6 +47,14 @@ void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texe
   }
   ClampAndFilter(target, true);
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+}
+
+// The aerosol's phase function twice: alone, and as the sky's rows have it, which AirTables bring.
+AirTexels WithRowOfSky(const AirTexels& phase) {
+  AirTexels both(phase.width, 2);
+  for (const int row : {0, 1})
+    std::copy(phase.texel.begin(), phase.texel.end(), both.texel.begin() + row * phase.width);
+  return both;
 }
 
 /// First texel of an axis and the width of all, in texture coordinates: n nodes from `first` on of
@@ -78,7 +87,7 @@ std::vector<ShaderPiece> AirTableTexts() {
 AirTextures::AirTextures() = default;
 
 void AirTextures::Upload(const MediumTables& tables) {
-  UploadTexels(texture_[kPhase], kSlots[kPhase].target, tables.phase, false);
+  UploadTexels(texture_[kPhase], kSlots[kPhase].target, WithRowOfSky(tables.phase), false);
   UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun, false);
   const Axis phase(0, tables.phase.width, tables.phase.width);
   values_.phase_nodes = {phase.begin, phase.width, 0.0F, 0.0F};
@@ -91,6 +100,9 @@ void AirTextures::Upload(const AirTables& tables) {
     UploadTexels(texture_[table], kSlots[table].target, texels, same_size);
   };
   upload(kSky, tables.sky);
+  glBindTexture(GL_TEXTURE_2D, texture_[kPhase].id());
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 1, tables.sky_phase.width, 1, GL_RGBA, GL_FLOAT,
+                  tables.sky_phase.texel.data());
   upload(kThrough, tables.to_space);
   upload(kExtinction, tables.extinction);
   upload(kSingle, tables.single);

@@ -27,7 +27,7 @@ uniform sampler1D air_through;
 uniform sampler2D air_extinction;
 uniform sampler3D air_single;
 uniform sampler3D air_diffuse;
-uniform sampler1D air_phase;
+uniform sampler2D air_phase;  // of the aerosol; with the glow about the sun
 uniform sampler2D air_to_sun;
 
 struct AirTo {
@@ -42,10 +42,13 @@ float HalfSineSquared(vec3 direction) {
   return min(0.25 * dot(between, between), 1.0);
 }
 
-vec4 AerosolPhase(float half_sine_squared) {
-  return textureLod(air_phase,
-                    air_phase_nodes.x + air_phase_nodes.y * PhaseNode(half_sine_squared), 0.0);
+vec4 PhaseOfRow(float half_sine_squared, float row) {
+  float node = air_phase_nodes.x + air_phase_nodes.y * PhaseNode(half_sine_squared);
+  return textureLod(air_phase, vec2(node, row), 0.0);
 }
+vec4 AerosolPhase(float half_sine_squared) { return PhaseOfRow(half_sine_squared, 0.25); }
+// With the light that aerosol scatters more than once about the sun.
+vec4 AerosolPhaseOfSky(float half_sine_squared) { return PhaseOfRow(half_sine_squared, 0.75); }
 
 // Tangent of half the angle over the horizon.
 float HalfTangent(vec3 direction) {
@@ -81,8 +84,8 @@ vec4 SkyRadiance(vec3 direction) {
   vec2 at = vec2(air_columns.x + air_columns.y * ColumnOf(direction),
                  RowOf(rise, air_ranges.x, air_sky_rows));
   float h2 = HalfSineSquared(direction);
-  vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] + AerosolPhase(h2) * air_sky_mix[1] +
-                air_sky_mix[2];
+  vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] +
+                AerosolPhaseOfSky(h2) * air_sky_mix[1] + air_sky_mix[2];
   phases *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_shell.w));
   return AboveAir(rise) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
 }

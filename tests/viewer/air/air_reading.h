@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
@@ -60,7 +61,7 @@ class AirReading {
     const double foot =
         shared::AirFoot<double>(map.altitude, mu, angle < 0.0 ? 1.0 : 0.0, map.radius);
     return Twilight(angle, azimuth, foot) *
-           Mix(angle, azimuth, tables_.sky_mix[0], tables_.sky_mix[1], tables_.sky_mix[2]) *
+           Mix(angle, azimuth, tables_.sky_phase, tables_.sky_mix) *
            Linear(tables_.sky, Column(azimuth, size.sky_columns),
                   Row(angle, map.sky_range, size.sky_rows, size.sky_ground_rows));
   }
@@ -96,7 +97,8 @@ class AirReading {
     glm::dvec4 absorbed;
     for (int band = 0; band < 4; ++band) absorbed[band] = -std::expm1(-tau[band]);
     absorbed *= Twilight(angle, azimuth, near + 0.5 * beyond);
-    return {Mix(angle, azimuth, tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)) *
+    return {Mix(angle, azimuth, medium_.phase,
+                {tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)}) *
                 absorbed * Linear(tables_.single, x, y, z),
             absorbed * Linear(tables_.diffuse, x, y, z), glm::exp(-tau)};
   }
@@ -122,13 +124,14 @@ class AirReading {
     return shared::AirTwilight<double>(map.altitude, mu_s_, SunCosine(angle, azimuth), distance_km,
                                        map.twilight_fall, map.twilight_reference, map.radius);
   }
-  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const glm::vec4& molecules,
-                               const glm::vec4& aerosol, const glm::vec4& rest) const {
+  /// @param phase  of the aerosol; mix: of molecules, aerosol and the rest.
+  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const AirTexels& phase,
+                               const std::array<glm::vec4, 3>& mix) const {
     const double nu = SunCosine(angle, azimuth);
     const double node =
-        shared::PhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (medium_.phase.width - 1);
-    return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(molecules) +
-           Linear(medium_.phase, node) * glm::dvec4(aerosol) + glm::dvec4(rest);
+        shared::PhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (phase.width - 1);
+    return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(mix[0]) +
+           Linear(phase, node) * glm::dvec4(mix[1]) + glm::dvec4(mix[2]);
   }
 
   const AirTables& tables_;
