@@ -1,5 +1,6 @@
 // Where along a ray the light is sampled, and where the planet's shadow lies on it. Lengths in one
-// unit, kilometres but where it is said otherwise.
+// unit, kilometres but where it is said otherwise; stretches in kilometres of air as deep as the
+// Earth's, into which shallower air is scaled (MapLengthsPerKm of ray_panels.h).
 //
 // A panel is a stretch of the ray on which the altitude is monotone; t is the distance from its
 // lower end. With v in [0, 1] of a Gauss rule,

@@ -95,13 +95,23 @@ double LargestExtinctionPerKm(const Medium& medium) {
   return largest * kMetresPerKilometre;
 }
 
+// Vertical optical depth of a layer over that of all scattering, largest over bands.
+double LargestShare(const std::vector<double>& of, const std::vector<double>& other) {
+  double largest = 0.0;
+  for (std::size_t band = 0; band < of.size(); ++band) {
+    const double all = of[band] + other[band];
+    if (all > 0.0) largest = std::max(largest, of[band] / all);
+  }
+  return largest;
+}
+
 /// What the lower end of a panel is to the light along it.
 struct LowerEnd {
-  double altitude_km, cosine;
-  bool grazed;      // by sunbeams from below the horizontal, or at the shadow
-  bool at_perigee;  // of the ray
-  bool ahead;       // the ray comes down to it
-  bool from_above;  // and began in air too thin to hide anything
+  double altitude_km, cosine;  // altitude: of air as deep as the Earth's
+  bool grazed;                 // by sunbeams from below the horizontal, or at the shadow
+  bool at_perigee;             // of the ray
+  bool ahead;                  // the ray comes down to it
+  bool from_above;             // and began in air too thin to hide anything
 };
 
 // Extra nodes in halves of the ordinary ones. A long way down through the air hides its lower end,
@@ -118,7 +128,24 @@ int NodesOf(const LowerEnd& low, int nodes) {
   return std::min((nodes * halves + 1) / 2, kMaxGaussNodes);
 }
 
+std::vector<double> Times(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
 }  // namespace
+
+double MapLengthsPerKm(const Medium& medium) {
+  constexpr double kLeastShare = 0.05, kDeepAir_km = 6.4;
+  const double molecules_m = medium.rayleigh_scale_height_m;
+  const double aerosol_m = medium.mie_scale_height_m;
+  const std::vector<double> molecules = Times(medium.rayleigh_scattering_per_m, molecules_m);
+  const std::vector<double> aerosol = Times(medium.mie_extinction_per_m, aerosol_m);
+  double deepest_m = 0.0;
+  if (LargestShare(molecules, aerosol) > kLeastShare) deepest_m = molecules_m;
+  if (LargestShare(aerosol, molecules) > kLeastShare) deepest_m = std::max(deepest_m, aerosol_m);
+  return deepest_m > 0.0 ? std::max(kDeepAir_km / Kilometres(deepest_m), 1.0) : 1.0;
+}
 
 LineCrossings CrossingsOf(double h, double mu, double z, double radius) {
   const double a = (radius + h) * mu;
@@ -144,6 +171,7 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
   const double length = Kilometres(extent.end_m - extent.begin_m);
   const double perigee = -(radius + entry.altitude_km) * entry.mu;
   const double extinction = LargestExtinctionPerKm(medium);
+  const double map = MapLengthsPerKm(medium);
   const DarkSpan dark = DarkSpanOf(ray, extent, entry, medium);
   PanelEnds cuts(length);
   if (perigee > 0.0 && perigee < length) cuts.Add(perigee);
@@ -168,20 +196,20 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
         std::max(shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, at, radius), 0.0);
     const bool at_shadow = lit && dark.begin < dark.end && (at == dark.begin || at == dark.end);
     const double sun = (radius + entry.altitude_km) * entry.mu_s + at * entry.nu;
-    const LowerEnd low{altitude,
+    const LowerEnd low{map * altitude,
                        std::abs(shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu,
                                                                      at, altitude, radius)),
                        lit && (at_shadow || sun < 0.0),
                        at == perigee,
                        !rises,
-                       entry.altitude_km > 60.0};
+                       map * entry.altitude_km > 60.0};
     panels.panel[panels.count++] = {
         begin,
         end,
         lit,
         rises,
-        shared::PanelStretch<double>(altitude, low.cosine, end - begin, extinction,
-                                     at_shadow ? 1.0 : 0.0, radius),
+        shared::PanelStretch<double>(map * altitude, low.cosine, map * (end - begin),
+                                     extinction / map, at_shadow ? 1.0 : 0.0, map * radius),
         NodesOf(low, sampling.nodes)};
   }
   return panels;

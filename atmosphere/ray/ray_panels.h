@@ -33,6 +33,11 @@ struct RayPanels {
   std::size_t count = 0;
 };
 
+/// By what kilometres are multiplied for the map of ray_map.glsl, whose lengths are those of air as
+/// deep as the Earth's: 1 in such air and deeper. In a layer of scale height 100 m it is 64, so that
+/// nodes stand where the air is.
+[[nodiscard]] double MapLengthsPerKm(const Medium& medium);
+
 /// The entry of a ray into the air: the observer, or the first point in the shell.
 [[nodiscard]] RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium);
 

@@ -127,13 +127,14 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
         row[k] /= twilight * SinePowerOf(light_.grid(), k / kLanes, sine);
     }
 
-    // Beyond the ends of the grid the line through the last two nodes goes on, as in TapsAt.
     const std::size_t width = orders * kLanes;
     float* before = rows.data();
     float* after = &rows[(contraction.suns + 1) * width];
     for (std::size_t k = 0; k < width; ++k) {
-      before[k] = 2.0F * before[width + k] - before[2 * width + k];
-      after[k] = 2.0F * (after - width)[k] - (after - 2 * width)[k];
+      before[k] =
+          shared::BeyondEnd<float>(before[width + k], before[2 * width + k], before[3 * width + k]);
+      after[k] = shared::BeyondEnd<float>((after - width)[k], (after - 2 * width)[k],
+                                          (after - 3 * width)[k]);
     }
     kernel.gather({line.directions, position, &line.twilight[s * line.directions],
                    &line.cosine[s * line.directions],

@@ -18,18 +18,21 @@ struct Chunk {
   alignas(64) float harmonic[kLargestMoments][kChunk];
 };
 
-// Weights at the ends of an axis, where the node beyond continues the line through the last two.
+// Weights at the ends of an axis, where the node beyond is BeyondEnd of the last three.
 template <typename T>
 Weights<T> Folded(const Weights<T>& w, const T& cell, const T& last) {
   using namespace shared;
   const auto first = cell < T(0.5F);
   const auto end = cell > last - T(0.5F);
   Weights<T> out = w;
-  out.w1 = select(first, T(out.w1 + T(2.0F) * w.w0), out.w1);
-  out.w2 = select(first, T(out.w2 - w.w0), out.w2);
+  const T three(3.0F);
+  out.w1 = select(first, T(out.w1 + three * w.w0), out.w1);
+  out.w2 = select(first, T(out.w2 - three * w.w0), out.w2);
+  out.w3 = select(first, T(out.w3 + w.w0), out.w3);
   out.w0 = select(first, T(0.0F), out.w0);
-  out.w1 = select(end, T(out.w1 - w.w3), out.w1);
-  out.w2 = select(end, T(out.w2 + T(2.0F) * w.w3), out.w2);
+  out.w2 = select(end, T(out.w2 + three * w.w3), out.w2);
+  out.w1 = select(end, T(out.w1 - three * w.w3), out.w1);
+  out.w0 = select(end, T(out.w0 + w.w3), out.w0);
   out.w3 = select(end, T(0.0F), out.w3);
   return out;
 }

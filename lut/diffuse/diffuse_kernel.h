@@ -99,6 +99,7 @@ struct LitPieces {
   const float *nu, *mu_s;    // at the node
   float altitude_km, mu, radius_km;
   float extinction;           // at the ground [1/km], largest over bands
+  float map_lengths_per_km;   // MapLengthsPerKm
   std::size_t nodes;          // of the Gauss rule
   const float *node, *gauss;  // on [0, 1]
 };

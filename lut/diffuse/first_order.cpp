@@ -8,6 +8,7 @@
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
+#include "atmosphere/ray/ray_panels.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
 namespace alpenglow {
@@ -93,6 +94,7 @@ class PieceScatterer {
         air_(marches.air().constants()),
         altitude_km_(static_cast<float>(marches.altitude_km(altitude))),
         march_(march),
+        map_(static_cast<float>(MapLengthsPerKm(marches.air().medium()))),
         ends_(OriginAndPerigee(air_, altitude_km_, march)) {
     const GaussRule& rule = GaussLegendre(options.ray_nodes);
     node_.assign(rule.node.begin(), rule.node.end());
@@ -131,9 +133,9 @@ class PieceScatterer {
     float extinction = 0.0F;
     for (std::size_t band = 0; band < air_.bands; ++band)
       extinction = std::max(extinction, air_.rayleigh[band] + air_.mie_extinction[band]);
-    const LitPieces lit{count,       begin.data(), end.data(),   nu.data(),
-                        mu_s.data(), altitude_km_, march_.mu,    air_.radius,
-                        extinction,  node_.size(), node_.data(), weight_.data()};
+    const LitPieces lit{count,        begin.data(), end.data(),    nu.data(),  mu_s.data(),
+                        altitude_km_, march_.mu,    air_.radius,   extinction, map_,
+                        node_.size(), node_.data(), weight_.data()};
     Scatter(pieces, lit, light);
   }
 
@@ -185,6 +187,7 @@ class PieceScatterer {
   const AirConstants<float>& air_;
   float altitude_km_;
   const March& march_;
+  float map_;
   std::array<float, 6> ends_;
   std::vector<float> node_, weight_, rayleigh_phase_, mie_phase_;
 };

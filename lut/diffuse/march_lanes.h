@@ -71,14 +71,16 @@ void FindFactors(const MarchPoint& point, const MarchLight& light, const BlockSh
   }
 }
 
-// A node beyond each end continues the line through the last two, so that every tap has four
-// neighbours.
+// A node beyond each end, so that every tap has four neighbours.
 template <std::size_t kRow>
 void AddEnds(std::size_t suns, float* rows) {
-  for (std::size_t i = 0; i < kRow * 8; ++i) {
-    rows[i] = 2.0F * rows[kRow * 8 + i] - rows[2 * kRow * 8 + i];
-    const float* last = rows + suns * kRow * 8 + i;
-    rows[(suns + 1) * kRow * 8 + i] = 2.0F * last[0] - last[-static_cast<std::ptrdiff_t>(kRow * 8)];
+  constexpr std::size_t kStep = kRow * 8;
+  for (std::size_t i = 0; i < kStep; ++i) {
+    float* at = rows + i;
+    at[0] = shared::BeyondEnd<float>(at[kStep], at[2 * kStep], at[3 * kStep]);
+    float* end = at + (suns + 1) * kStep;
+    const float* last = at + (suns - 2) * kStep;
+    end[0] = shared::BeyondEnd<float>(last[2 * kStep], last[kStep], last[0]);
   }
 }
 
@@ -320,7 +322,8 @@ void Place(const LitPieces& pieces, const LitPoints& points) {
   using Lanes = BatchOf<float>;
   using T = typename Lanes::Type;
   const T h0(pieces.altitude_km), mu0(pieces.mu), radius(pieces.radius_km), zero(0.0F), one(1.0F),
-      gentle(1.0F);
+      gentle(1.0F), map(pieces.map_lengths_per_km),
+      extinction(pieces.extinction / pieces.map_lengths_per_km);
   for (std::size_t i = 0; i < pieces.count; i += Lanes::kLanes) {
     const T begin = Lanes::Load(pieces.begin + i), end = Lanes::Load(pieces.end + i);
     const T nu = Lanes::Load(pieces.nu + i), mu_s0 = Lanes::Load(pieces.mu_s + i);
@@ -331,7 +334,7 @@ void Place(const LitPieces& pieces, const LitPoints& points) {
     const T low = max(min(z_begin, z_end), zero);
     const T at = select(up, begin, end);
     const T cosine = abs(ZenithCosineAlongRay<T>(h0, mu0, at, low, radius));
-    const T b = PanelStretch<T>(low, cosine, length, T(pieces.extinction), gentle, radius);
+    const T b = PanelStretch<T>(low * map, cosine, length * map, extinction, gentle, radius * map);
     const auto straight = b < T(0.25F);
     const T stretch = select(straight, one, b);
     const T scale = StretchedScale<T>(length, T(exp(stretch)));

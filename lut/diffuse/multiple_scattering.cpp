@@ -120,9 +120,15 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
     options.altitudes = 24;
     options.later_ray_nodes = 8;
   }
+  // What nodes leave of one order adds up over many.
+  if (molecules > 0.4) {
+    options.ray_nodes = 14;
+    options.later_ray_nodes = 12;
+  }
   if (molecules > 0.9) {
-    options.ray_nodes = options.later_ray_nodes = 12;
-    options.later_zenith_nodes = 8;
+    options.ray_nodes = 28;
+    options.later_ray_nodes = 24;
+    options.later_zenith_nodes = 12;
   }
   return options;
 }

@@ -64,7 +64,8 @@ struct DiffuseLightOptions {
 };
 
 /// The usual ones in clear air. Where aerosol scatters more than 8 % of a vertical beam, degree 12
-/// with the forward peak in closed form; where all scattering takes more than 60 %, more nodes.
+/// with the forward peak in closed form; where all scattering takes more than 60 %, or molecules more
+/// than 33 %, more nodes.
 /// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol's optical depth
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
 [[nodiscard]] DiffuseLightOptions OptionsFor(const Medium& medium);

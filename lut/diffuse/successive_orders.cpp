@@ -303,7 +303,8 @@ class Block {
     return {moment[0], moment[1], moment[2], moment[3]};
   }
   [[nodiscard]] double LargestShare(const Field& part, const Field& whole) const;
-  void AddTail(const Field& last, const Field& before, Field& total) const;
+  void AddTail(const Field& last, const Field& before, const Field& second_before,
+               Field& total) const;
 
   const DiffuseLightOptions& options_;
   Layout layout_;
@@ -325,24 +326,31 @@ double Block::LargestShare(const Field& part, const Field& whole) const {
   return largest;
 }
 
-// Adds last (q + q^2 + ...) for the ratio q of two consecutive orders.
-void Block::AddTail(const Field& last, const Field& before, Field& total) const {
+// Adds (last + before) (q + q^2 + ...) for the ratio q of an order to the second one before it: over
+// bright ground orders come in pairs, light that the ground reflects and light that the air then
+// sends down again.
+void Block::AddTail(const Field& last, const Field& before, const Field& second_before,
+                    Field& total) const {
+  constexpr float kLargest = 0.96F;
   for (std::size_t node = 0; node < layout_.nodes; ++node) {
-    const Light now = Isotropic(last, node), then = Isotropic(before, node);
+    const Light now = Isotropic(last, node), then = Isotropic(second_before, node);
     Light factor(0.0F);
     for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
       if (then[lane] <= 0.0F) continue;
-      const float ratio = std::clamp(now[lane] / then[lane], 0.0F, 0.98F);
+      const float ratio = std::clamp(now[lane] / then[lane], 0.0F, kLargest);
       factor[lane] = ratio / (1.0F - ratio);
     }
     for (std::size_t i = 0; i < layout_.stride; ++i) {
       const std::size_t at = node * layout_.stride + i;
-      total.moments.data()[at] +=
-          factor[static_cast<int>(i % kBlockBands)] * last.moments.data()[at];
+      total.moments.data()[at] += factor[static_cast<int>(i % kBlockBands)] *
+                                  (last.moments.data()[at] + before.moments.data()[at]);
     }
-    total.sky[node] += factor * last.sky[node];
+    total.sky[node] += factor * (last.sky[node] + before.sky[node]);
   }
 }
+
+// What AddTail reads.
+constexpr int kFewestOrders = 3;
 
 // Light of clear and hazy air is summed with fewer.
 constexpr int kOrdersOfThinAir = 16;
@@ -356,12 +364,13 @@ void Accumulate(const Field& part, Field& total) {
 Block::Sum Block::Solve(Field first_order) const {
   Field order = std::move(first_order);
   Field total = order;
-  Field before = order;
+  Field before, second_before;
   int orders = 1;
   double share = 1.0, rest = 1.0, ratio = 0.0;
   const auto goes_on = [&] {
     if (options_.exact_orders) return orders < *options_.exact_orders;
-    return rest > options_.tolerance && share > 0.0 && orders < options_.max_orders;
+    if (share <= 0.0 || orders >= options_.max_orders) return false;
+    return orders < kFewestOrders || rest > options_.tolerance;
   };
   while (goes_on()) {
     Field next = Empty();
@@ -369,6 +378,7 @@ Block::Sum Block::Solve(Field first_order) const {
     tbb::parallel_for(std::size_t{0}, layout_.nodes / layout_.suns,
                       [&](std::size_t i) { transport.NextOrder(i, order, next); });
     Accumulate(next, total);
+    second_before = std::move(before);
     before = std::move(order);
     order = std::move(next);
     ++orders;
@@ -383,7 +393,7 @@ Block::Sum Block::Solve(Field first_order) const {
       rest *= std::min(10.0 * std::abs(ratio - ratio_before) / (1.0 - ratio), 1.0);
   }
   if (options_.exact_orders) return {std::move(total), orders, true};
-  AddTail(order, before, total);
+  if (orders >= kFewestOrders) AddTail(order, before, second_before, total);
   return {std::move(total), orders, rest <= options_.tolerance || share == 0.0};
 }
 

@@ -5,8 +5,8 @@
 // at the horizon, is marched through the previous order's moments and projected onto moments again.
 // Bands follow four at a time, in kernels (diffuse_kernel.h). Sunlight scattered once is integrated
 // over the lit pieces of each direction (first_order.h); light scattered more often is smooth, and
-// from the third step on fewer directions serve it. When the orders have become a geometric series
-// its rest is summed in closed form.
+// from the third step on fewer directions serve it. When the orders have become a geometric series,
+// every one in proportion to the second one before it, its rest is summed in closed form.
 #pragma once
 
 #include "lut/diffuse/multiple_scattering.h"

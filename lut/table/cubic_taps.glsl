@@ -14,3 +14,9 @@ SHARED Number CubicWeight2(Number t) {
 }
 
 SHARED Number CubicWeight3(Number t) { return Number(0.5) * t * t * (t - Number(1.0)); }
+
+// The value of a node beyond the end of the grid, from the last node and the two before it: the
+// parabola through the three goes on.
+SHARED Number BeyondEnd(Number last, Number before, Number second_before) {
+  return Number(3.0) * (last - before) + second_before;
+}

@@ -18,8 +18,8 @@ namespace alpenglow::shared {
 
 namespace alpenglow {
 
-/// The neighbours of a position; at the ends of the grid the missing neighbour continues the line
-/// through the last two, and has weight 0 here.
+/// The neighbours of a position; at the ends of the grid the missing neighbour continues the parabola
+/// through the last three (BeyondEnd), and has weight 0 here.
 struct CubicTaps {
   std::array<std::size_t, 4> node;
   std::array<float, 4> weight;
@@ -31,19 +31,23 @@ struct CubicTaps {
           shared::CubicWeight3(t)};
 }
 
-/// @param coordinate position in [0, 1] over n >= 2 nodes, clamped.
+/// @param coordinate position in [0, 1] over n >= 2 nodes, clamped; linear between two nodes.
 [[nodiscard]] inline CubicTaps TapsAt(double coordinate, int n) {
   const double position = std::clamp(coordinate, 0.0, 1.0) * (n - 1);
   const int cell = std::min(static_cast<int>(position), n - 2);
-  std::array<float, 4> weight = CatmullRom(static_cast<float>(position - cell));
-  if (cell == 0) {  // node -1 is 2 f(0) - f(1)
-    weight[1] += 2.0F * weight[0];
-    weight[2] -= weight[0];
+  const auto t = static_cast<float>(position - cell);
+  if (n == 2) return {{0, 0, 1, 1}, {0.0F, 1.0F - t, t, 0.0F}};
+  std::array<float, 4> weight = CatmullRom(t);
+  if (cell == 0) {
+    weight[1] += 3.0F * weight[0];
+    weight[2] -= 3.0F * weight[0];
+    weight[3] += weight[0];
     weight[0] = 0.0F;
   }
-  if (cell == n - 2) {  // node n is 2 f(n - 1) - f(n - 2)
-    weight[1] -= weight[3];
-    weight[2] += 2.0F * weight[3];
+  if (cell == n - 2) {
+    weight[2] += 3.0F * weight[3];
+    weight[1] -= 3.0F * weight[3];
+    weight[0] += weight[3];
     weight[3] = 0.0F;
   }
   CubicTaps taps{{}, weight};

@@ -128,6 +128,29 @@ TEST(SingleScattering, SamplingForAnErrorKeepsIt) {
 }
 
 // Rays through twilight have up to 912 samples where ozone is a tent and samples in shadow count.
+TEST(SingleScattering, ALayerOfAHundredMetresIsSampledAsTheEarthsAir) {
+  Medium medium = MediumPreset("bruneton2017");
+  medium.atmosphere_height_m = 2500.0;
+  medium.rayleigh_scale_height_m = 100.0;
+  for (std::size_t band = 0; band < 3; ++band) {
+    medium.rayleigh_scattering_per_m[band] = 0.1 / 100.0;
+    medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] = 0.0;
+    medium.ozone_absorption_per_m[band] = 0.0;
+  }
+  const AirIntegrator<double> air(medium);
+  for (const double zenith_deg : {10.0, 60.0, 82.0, 94.0, 130.0}) {
+    for (const double sun_deg : {20.0, 78.0, 88.0}) {
+      const ViewRay ray =
+          RayFromAngles(zenith_deg > 90.0 ? 2500.0 : 0.0, zenith_deg, 90.0, sun_deg);
+      const auto light = [&](int nodes) {
+        return air.Inscatter(air.Scatter(air.Sample(ray, {.nodes = nodes})), ray.nu)[0];
+      };
+      // 1e-5 was found over 135 rays.
+      EXPECT_NEAR(light(12) / light(32), 1.0, 1e-4) << zenith_deg << " " << sun_deg;
+    }
+  }
+}
+
 TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
   const Medium medium = MediumPreset("bruneton2017");
   const AirIntegrator<double> air(medium);
