@@ -91,7 +91,11 @@ ReportWords Words() {
           "(transmittance) start in the lower half of the air, dense near the ground; in twilight "
           "their lowest points are drawn so. Errors of radiance are relative to the radiance; what "
           "is darker than a hundredth of the singly scattered light of the zenith, same place and "
-          "sun, counts as if it were that bright. Molecules polarise light where the atmosphere "
+          "sun, counts as if it were that bright, but not in the column \"strict\", whose errors "
+          "are "
+          "relative to the radiance itself. From space (400 km) half of the views end on the "
+          "ground and half pass it at up to 100 km; the elevation is that of the sun at the ray's "
+          "lowest point. Molecules polarise light where the atmosphere "
           "says so, the sun is a point, rays are straight."};
 }
 

@@ -2,8 +2,8 @@
 // Speed and accuracy held against each other, on the same rays, in one run: `skylut report`.
 //
 // Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
-// answers the same rays, drawn once from the distribution of report_rays.h, by day, at sunset and
-// in twilight. Its error is the distance to a judge (judge.h, path_tracer.h); its cost is memory,
+// answers the same rays, drawn once from the distribution of report_rays.h, by day, at sunset, in
+// civil and nautical twilight, and from space. Its error is the distance to a judge (judge.h, path_tracer.h); its cost is memory,
 // the time to get ready, and the time of one answer on one thread. Methods of the literature,
 // written anew from their publications (report_baselines.h), stand beside this library's.
 //
@@ -36,19 +36,27 @@ struct ReportRegime {
   const char* key;
   const char* name;
   std::optional<SunRange> sun;  // nothing: the sun plays no part
+  // Seen from kSpaceAltitude_m; the sun's elevation is then that at the lowest point of the ray.
+  bool from_space = false;
 };
-inline constexpr std::size_t kReportRegimes = 3;
+inline constexpr std::size_t kReportRegimes = 5;
 inline constexpr std::array<ReportRegime, kReportRegimes> kRegimes = {{
     {"day", "Day: sun above 5°", SunRange{5.0, 90.0}},
     {"sunset", "Sunset: sun 5° to 0°", SunRange{0.0, 5.0}},
     {"twilight", "Civil twilight: sun 0° to −6°", SunRange{-6.0, 0.0}},
+    {"dusk", "Nautical twilight: sun −6° to −12°", SunRange{-12.0, -6.0}},
+    {"space", "From space: 400 km, sun above −6°", SunRange{-6.0, 90.0}, true},
 }};
+inline constexpr double kSpaceAltitude_m = 400e3;
 
 /// Of the errors of all rays and wavelengths of a regime.
 struct ErrorStatistics {
   double median = 0.0, rms = 0.0, percentile_99 = 0.0, largest = 0.0;
   /// The judge's own noise hides the error: rms is what it can be at most, about.
   bool rms_is_bound = false;
+  /// Relative to each value itself, however dark, above kDarkestValue (report_rays.h). Rms and
+  /// percentile_99 count what is dark as brighter (DarkestRadiance).
+  double strict_rms = 0.0, strict_percentile_99 = 0.0;
 };
 
 /// A method in one regime.

@@ -142,6 +142,15 @@ std::string RmsText(const ErrorStatistics& error) {
                      QuantityText(error.rms, PlotUnit::kShare));
 }
 
+/// Rms and percentile, and the strict rms where it is another.
+std::string ErrorText(const ErrorStatistics& error) {
+  std::string text =
+      fmt::format("{} / {}", RmsText(error), QuantityText(error.percentile_99, PlotUnit::kShare));
+  if (error.strict_rms != error.rms)
+    text += " / " + QuantityText(error.strict_rms, PlotUnit::kShare);
+  return text;
+}
+
 /// Time of an answer in the worst regime.
 double SlowestAnswer(const ReportRow& row) {
   double slowest = 0.0;
@@ -218,12 +227,13 @@ std::string Cell(double value, PlotUnit unit, const std::string& kind = "",
 }
 
 std::string RegimeCells(const RegimeResult& result) {
-  if (!result.IsMeasured()) return "<td class=\"first\"></td><td></td><td></td><td></td>";
+  if (!result.IsMeasured()) return "<td class=\"first\"></td><td></td><td></td><td></td><td></td>";
   const ErrorStatistics& error = result.error;
   return Cell(result.time_s, PlotUnit::kSeconds, "first") +
          Cell(error.rms, PlotUnit::kShare, CellClass(error.rms), error.rms_is_bound ? "< " : "") +
          Cell(error.percentile_99, PlotUnit::kShare, CellClass(error.percentile_99)) +
-         Cell(error.largest, PlotUnit::kShare, CellClass(error.largest));
+         Cell(error.largest, PlotUnit::kShare, CellClass(error.largest)) +
+         Cell(error.strict_rms, PlotUnit::kShare, CellClass(error.strict_rms));
 }
 
 std::string TableRow(const ReportRow& row) {
@@ -246,10 +256,12 @@ std::string TableOf(const ReportTopic& topic) {
       "<div class=\"wide\"><table>\n<thead><tr><th rowspan=\"2\">method</th><th "
       "rowspan=\"2\">size</th><th rowspan=\"2\">memory</th><th rowspan=\"2\">build</th>";
   for (const ReportRegime& regime : topic.regimes)
-    text += fmt::format("<th colspan=\"4\" class=\"first\">{}</th>", regime.name);
+    text += fmt::format("<th colspan=\"5\" class=\"first\">{}</th>", regime.name);
   text += "<th rowspan=\"2\" class=\"first\">spread</th></tr>\n<tr>";
   for (std::size_t r = 0; r < topic.regimes.size(); ++r)
-    text += "<th class=\"first\">time</th><th>rms</th><th>99 %</th><th>max</th>";
+    text +=
+        "<th class=\"first\">time</th><th>rms</th><th>99 %</th><th>max</th>"
+        "<th>strict</th>";
   text += "</tr></thead>\n<tbody>\n";
   for (const ReportRow& row : topic.rows) text += TableRow(row);
   return text + "</tbody></table></div>\n";
@@ -356,10 +368,7 @@ std::string SummaryRow(const ReportRow& row) {
       row.build_s == 0.0 ? "-" : QuantityText(row.build_s, PlotUnit::kSeconds),
       QuantityText(SlowestAnswer(row), PlotUnit::kSeconds));
   for (const RegimeResult& result : row.at) {
-    text += result.IsMeasured()
-                ? fmt::format(" {} / {} |", RmsText(result.error),
-                              QuantityText(result.error.percentile_99, PlotUnit::kShare))
-                : " |";
+    text += result.IsMeasured() ? " " + ErrorText(result.error) + " |" : " |";
   }
   return text + "\n";
 }
@@ -389,7 +398,8 @@ std::string CsvHeader() {
   return "topic,scene,atmosphere,atmosphere_hash,series,parameter,origin,memory_bytes,build_s,"
          "regime,"
          "sun_low_deg,sun_high_deg,rays,samples,time_s,time_spread,error_median,error_rms,"
-         "error_rms_is_bound,error_99,error_max,judge_noise,machine,made_by,date\n";
+         "error_rms_is_bound,error_99,error_max,error_strict_rms,error_strict_99,judge_noise,"
+         "machine,made_by,date\n";
 }
 
 std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
@@ -410,7 +420,9 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
           topic.rays, CsvNumber(at.samples), CsvNumber(at.time_s), CsvNumber(at.time_spread));
       text += fmt::format("{},{},{},{},{},{},", CsvNumber(at.error.median), CsvNumber(at.error.rms),
                           at.error.rms_is_bound ? 1 : 0, CsvNumber(at.error.percentile_99),
-                          CsvNumber(at.error.largest), CsvNumber(topic.judge.noise[r]));
+                          CsvNumber(at.error.largest), CsvNumber(at.error.strict_rms));
+      text += fmt::format("{},{},", CsvNumber(at.error.strict_percentile_99),
+                          CsvNumber(topic.judge.noise[r]));
       text += fmt::format("{},{},{}\n", CsvText(maker.machine), CsvText(maker.program),
                           CsvText(maker.date));
     }
@@ -421,9 +433,10 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
 std::string SummaryOf(const Report& report) {
   std::string text;
   for (const ReportTopic& topic : report.topics) {
-    text += fmt::format("**{}**. {}; {} {}s a column; error: rms / 99th percentile\n\n",
-                        topic.title.substr(0, topic.title.find(':')), PlaceText(topic), topic.rays,
-                        topic.answer);
+    text += fmt::format(
+        "**{}**. {}; {} {}s a column; error: rms / 99th percentile "
+        "(/ rms relative to each value, however dark)\n\n",
+        topic.title.substr(0, topic.title.find(':')), PlaceText(topic), topic.rays, topic.answer);
     text += fmt::format("| method | memory | build | time of a {} |", topic.answer);
     for (const ReportRegime& regime : topic.regimes) text += fmt::format(" {} |", regime.name);
     text += "\n|---|---|---|---|";

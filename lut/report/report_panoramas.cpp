@@ -20,10 +20,17 @@ namespace {
 // Lines of the plot.
 enum PanoramaStyle { kSkyViewRows = 0, kLatitudes = 1, kDirect = 2, kSkyView = 6 };
 
-constexpr double kAltitude_m = 2.0;
 constexpr std::size_t kSuns = 3;
 constexpr std::array<std::array<double, kSuns>, kReportRegimes> kElevations_deg{
-    {{60.0, 25.0, 8.0}, {4.0, 1.5, 0.2}, {-1.0, -3.5, -6.0}}};
+    {{60.0, 25.0, 8.0},
+     {4.0, 1.5, 0.2},
+     {-1.0, -3.5, -6.0},
+     {-7.0, -8.5, -10.0},
+     {50.0, 10.0, -8.0}}};
+
+double AltitudeOf(std::size_t regime) {
+  return kRegimes[regime].from_space ? kSpaceAltitude_m : 2.0;
+}
 
 double MuS(std::size_t regime, std::size_t sun) {
   return std::sin(kElevations_deg[regime][sun] * kRadiansPerDegree);
@@ -34,11 +41,11 @@ struct Direction {
   std::size_t sun;
   double zenith_rad, azimuth_rad;
 
-  [[nodiscard]] ViewRay Ray(double mu_s) const {
+  [[nodiscard]] ViewRay Ray(double mu_s, double altitude_m) const {
     const double mu = std::cos(zenith_rad);
     const double nu =
         mu * mu_s + std::sin(zenith_rad) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(azimuth_rad);
-    return {kAltitude_m, mu, mu_s, std::clamp(nu, -1.0, 1.0)};
+    return {altitude_m, mu, mu_s, std::clamp(nu, -1.0, 1.0)};
   }
 };
 
@@ -95,15 +102,15 @@ class DirectSky {
 /// bilinear: the sky-view table of Hillaire (2020), section 5.3, filled by direct evaluation.
 class LatitudeTable {
  public:
-  LatitudeTable(const DirectSky<float>& direct, double mu_s, std::size_t bands, int width,
-                int height)
+  LatitudeTable(const DirectSky<float>& direct, double altitude_m, double mu_s, std::size_t bands,
+                int width, int height)
       : bands_(bands), width_(width), height_(height), texels_(Count(width, height, bands)) {
     tbb::parallel_for(0, height, [&](int y) {
       for (int x = 0; x < width; ++x) {
         const double v = 2.0 * y / (height - 1.0) - 1.0;
         const Direction direction{0, 0.5 * kPi * (1.0 + std::copysign(v * v, v)),
                                   2.0 * kPi * x / width};
-        const Bands<float> light = direct.Radiance(direction.Ray(mu_s));
+        const Bands<float> light = direct.Radiance(direction.Ray(mu_s, altitude_m));
         std::copy_n(light.value.begin(), bands_,
                     texels_.begin() + static_cast<std::ptrdiff_t>(Count(width_, y, bands_) +
                                                                   Count(x, 1, bands_)));
@@ -168,7 +175,7 @@ class PanoramaTopic {
                   .style = kDirect,
                   .in_summary = true};
     Measure(row, [&](std::size_t r) {
-      return [&, r](const Direction& one) { return direct_.Radiance(one.Ray(MuS(r, one.sun))); };
+      return [&, r](const Direction& one) { return direct_.Radiance(RayIn(r, one)); };
     });
   }
 
@@ -181,8 +188,8 @@ class PanoramaTopic {
                   .style = kSkyView,
                   .in_summary = !size.has_value()};
     const auto view = [&](std::size_t r, std::size_t sun) {
-      return size ? SkyView(air_, diffuse_, kAltitude_m, MuS(r, sun), *size)
-                  : SkyView(air_, diffuse_, kAltitude_m, MuS(r, sun));
+      return size ? SkyView(air_, diffuse_, AltitudeOf(r), MuS(r, sun), *size)
+                  : SkyView(air_, diffuse_, AltitudeOf(r), MuS(r, sun));
     };
     AddTables(row, view);
     row = rows_.back();
@@ -199,7 +206,7 @@ class PanoramaTopic {
                   .style = kLatitudes,
                   .in_summary = published};
     AddTables(row, [&](std::size_t r, std::size_t sun) {
-      return LatitudeTable(direct_, MuS(r, sun), air_.bands(), width, height);
+      return LatitudeTable(direct_, AltitudeOf(r), MuS(r, sun), air_.bands(), width, height);
     });
   }
 
@@ -221,19 +228,40 @@ class PanoramaTopic {
   }
 
  private:
+  static ViewRay RayIn(std::size_t r, const Direction& one) {
+    return one.Ray(MuS(r, one.sun), AltitudeOf(r));
+  }
+
   void Judge(std::size_t r) {
     const DirectSky<double> exact(medium_, diffuse_, 32, true);
-    std::array<std::vector<double>, kSuns> floor;
-    for (std::size_t sun = 0; sun < kSuns; ++sun) {
-      floor[sun] = ValuesOf(exact.Radiance(Direction{sun, 0.0, 0.0}.Ray(MuS(r, sun))));
-      for (double& value : floor[sun]) value *= kDarkestPart;
-    }
-    judged_.rays[r].resize(directions_.size());
+    std::vector<JudgedRay>& rays = judged_.rays[r];
+    rays.resize(directions_.size());
     tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t i) {
-      const std::size_t sun = directions_[i].sun;
-      const ViewRay ray = directions_[i].Ray(MuS(r, sun));
-      judged_.rays[r][i] = {ray, ValuesOf(exact.Radiance(ray)), {}, floor[sun]};
+      const ViewRay ray = RayIn(r, directions_[i]);
+      rays[i] = {ray, ValuesOf(exact.Radiance(ray)), {}, {}};
     });
+    for (std::size_t sun = 0; sun < kSuns; ++sun) {
+      std::vector<double> floor = kRegimes[r].from_space
+                                      ? MeanOf(r, sun)
+                                      : ValuesOf(exact.Radiance(RayIn(r, {sun, 0.0, 0.0})));
+      for (double& value : floor) value *= kDarkestPart;
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        if (directions_[i].sun == sun) rays[i].floor = floor;
+    }
+  }
+
+  /// Over the directions of a sun: from space the zenith is black.
+  [[nodiscard]] std::vector<double> MeanOf(std::size_t r, std::size_t sun) const {
+    std::vector<double> mean(air_.bands(), 0.0);
+    double count = 0.0;
+    for (std::size_t i = 0; i < directions_.size(); ++i) {
+      if (directions_[i].sun != sun) continue;
+      for (std::size_t band = 0; band < mean.size(); ++band)
+        mean[band] += judged_.rays[r][i].truth[band];
+      ++count;
+    }
+    for (double& value : mean) value /= count;
+    return mean;
   }
 
   /// Times look-ups as a panorama makes them, row by row.
@@ -309,7 +337,8 @@ ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
   if (!effort.quick) topic.AddLatitudes(192, 108, true);
   const int width = effort.quick ? 128 : 2048;
   const std::string notes = fmt::format(
-      "Nine suns, three a column, seen from 2 m; half of the directions anywhere on the sphere, "
+      "Three suns a column, seen from 2 m and from 400 km; half of the directions anywhere on the "
+      "sphere, "
       "half within 10° of the horizontal. The table over latitudes is the sky-view table of "
       "Hillaire (2020), 192 x 108, filled here by direct evaluation: its errors are those of "
       "interpolation alone. A whole panorama of {} x {} pixels, sky view, colours and all, took "

@@ -25,10 +25,84 @@ void ForEveryValue(const std::vector<JudgedRay>& rays, ErrorKind kind, const Use
     const JudgedRay& ray = rays[i];
     for (std::size_t band = 0; band < ray.truth.size(); ++band) {
       const double floor = ray.floor.empty() ? 0.0 : ray.floor[band];
-      const double scale = kind == ErrorKind::kRelative ? std::max(ray.truth[band], floor) : 1.0;
-      if (scale > 0.0) use(i, band, scale);
+      use(i, band,
+          kind == ErrorKind::kRelative ? std::max({ray.truth[band], floor, kDarkestValue}) : 1.0);
     }
   }
+}
+
+/// Calls use(ray, band, value) for every ray and wavelength that strict errors count.
+template <typename Use>
+void ForEveryStrictValue(const std::vector<JudgedRay>& rays, const Use& use) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t band = 0; band < rays[i].truth.size(); ++band) {
+      if (rays[i].truth[band] > kDarkestValue) use(i, band, rays[i].truth[band]);
+    }
+  }
+}
+
+// Rms of the judge's standard errors, each over a scale that `visit` gives.
+template <typename Visit>
+double NoiseOver(const std::vector<JudgedRay>& rays, const Visit& visit) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  visit([&](std::size_t i, std::size_t band, double scale) {
+    if (rays[i].sigma.empty()) return;
+    const double noise = rays[i].sigma[band] / scale;
+    squares += noise * noise;
+    ++count;
+  });
+  return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
+}
+
+// Cosine of the zenith angle at which an eye in space sees a ray of that perigee.
+double CosineOfPerigee(double radius_m, double altitude_m, double perigee_m) {
+  return -std::sqrt((altitude_m - perigee_m) * (2.0 * radius_m + altitude_m + perigee_m)) /
+         (radius_m + altitude_m);
+}
+
+// The ray with the sun as its lowest point, `low_m` along it, has it.
+ViewRay WithSunAtLowest(const Medium& medium, ViewRay ray, double low_m, int i,
+                        const ReportRegime& regime) {
+  constexpr double kLow_deg = 5.0;
+  const SunRange sun = regime.sun.value();
+  const double share = Halton(i, 2);
+  const double elevation_deg = share < 0.5
+                                   ? sun.lowest_deg + (kLow_deg - sun.lowest_deg) * 2.0 * share
+                                   : kLow_deg + (sun.highest_deg - kLow_deg) * (2.0 * share - 1.0);
+  const double elevation = elevation_deg * kRadiansPerDegree, azimuth = kPi * Halton(i, 5);
+  const double sine = std::sqrt((1.0 - ray.mu) * (1.0 + ray.mu));
+  // By what the vertical turns on the way to the lowest point.
+  const double turn =
+      std::atan2(low_m * sine, medium.planet_radius_m + ray.altitude_m + low_m * ray.mu);
+  const double along = std::cos(elevation) * std::cos(azimuth), up = std::sin(elevation);
+  const double x = along * std::cos(turn) + up * std::sin(turn);
+  const double z = up * std::cos(turn) - along * std::sin(turn);
+  ray.mu_s = std::clamp(z, -1.0, 1.0);
+  ray.nu = std::clamp(x * sine + z * ray.mu, -1.0, 1.0);
+  return ray;
+}
+
+ViewRay LimbFromSpaceNumber(const Medium& medium, int i, const ReportRegime& regime) {
+  const double radius_m = medium.planet_radius_m;
+  const double highest_m = std::min(100e3, 0.9 * medium.atmosphere_height_m);
+  const double perigee_m = highest_m * (0.001 + 0.998 * Halton(i, 3));
+  const ViewRay ray{.altitude_m = kSpaceAltitude_m,
+                    .mu = CosineOfPerigee(radius_m, kSpaceAltitude_m, perigee_m)};
+  return WithSunAtLowest(medium, ray, -(radius_m + ray.altitude_m) * ray.mu, i, regime);
+}
+
+// Where zenith light is compared with a ray's: the observer, or the lowest point of a ray from
+// above the air.
+ViewRay ZenithOf(const Medium& medium, const ViewRay& ray) {
+  if (ray.altitude_m <= medium.atmosphere_height_m)
+    return {ray.altitude_m, 1.0, ray.mu_s, ray.mu_s};
+  const double r = medium.planet_radius_m + ray.altitude_m;
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  const double low_m = extent.end == RayEnd::kGround ? extent.end_m : std::max(-r * ray.mu, 0.0);
+  const double low_r = std::sqrt(r * r + low_m * (low_m + 2.0 * r * ray.mu));
+  const double mu_s = std::clamp((r * ray.mu_s + low_m * ray.nu) / low_r, -1.0, 1.0);
+  return {std::max(low_r - medium.planet_radius_m, 0.0), 1.0, mu_s, mu_s};
 }
 
 }  // namespace
@@ -58,13 +132,26 @@ double SunElevationNumber(int i, const ReportRegime& regime) {
 }
 
 std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray) {
-  std::vector<double> floor =
-      judge::SingleScatteringAlong(medium, {ray.altitude_m, 1.0, ray.mu_s, ray.mu_s}).inscatter;
+  std::vector<double> floor = judge::SingleScatteringAlong(medium, ZenithOf(medium, ray)).inscatter;
   for (double& value : floor) value *= kDarkestPart;
   return floor;
 }
 
+ViewRay GroundFromSpaceNumber(const Medium& medium, int i, const ReportRegime& regime) {
+  const double radius_m = medium.planet_radius_m;
+  const double horizon = std::acos(CosineOfPerigee(radius_m, kSpaceAltitude_m, 0.0));
+  const double share = Halton(i, 3) * Halton(i, 3);
+  const ViewRay ray{.altitude_m = kSpaceAltitude_m,
+                    .mu = std::cos(horizon + (kPi - horizon) * share)};
+  return WithSunAtLowest(medium, ray, ExtentOf(ray, radius_m, medium.atmosphere_height_m).end_m, i,
+                         regime);
+}
+
 ViewRay ViewNumber(const Medium& medium, int i, const ReportRegime& regime) {
+  if (regime.from_space) {
+    return Halton(i, 11) < 0.5 ? GroundFromSpaceNumber(medium, i, regime)
+                               : LimbFromSpaceNumber(medium, i, regime);
+  }
   constexpr std::array<double, 3> kAltitudes_m{2.0, 1500.0, 10000.0};
   const double altitude_m = kAltitudes_m[static_cast<std::size_t>(3.0 * Halton(i, 7))];
   const double kind = Halton(i, 11), share = Halton(i, 3);
@@ -82,11 +169,14 @@ ViewRay SunbeamNumber(const Medium& medium, int i, const ReportRegime& regime) {
   const double elevation = SunElevationNumber(i, regime) * kRadiansPerDegree;
   const double share = Halton(i, 3);
   const double low_m = 0.5 * medium.atmosphere_height_m * share * share;
-  const double radius_m = medium.planet_radius_m;
-  const double altitude_m = elevation < 0.0
-                                ? std::min((radius_m + low_m) / std::cos(elevation) - radius_m,
-                                           medium.atmosphere_height_m)
-                                : low_m;
+  const double radius_m = medium.planet_radius_m, top_m = medium.atmosphere_height_m;
+  const double altitude_m =
+      elevation < 0.0 ? (radius_m + low_m) / std::cos(elevation) - radius_m : low_m;
+  // Lower suns light no air.
+  if (regime.from_space || altitude_m > top_m) {
+    const double mu = CosineOfPerigee(radius_m, top_m, low_m);
+    return {top_m, mu, mu, 1.0};
+  }
   const double mu = std::sin(elevation);
   return {altitude_m, mu, mu, 1.0};
 }
@@ -145,25 +235,26 @@ JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths) {
 }
 
 double NoiseOf(const std::vector<JudgedRay>& rays, ErrorKind kind) {
-  double squares = 0.0;
-  std::size_t count = 0;
-  ForEveryValue(rays, kind, [&](std::size_t i, std::size_t band, double scale) {
-    if (rays[i].sigma.empty()) return;
-    const double noise = rays[i].sigma[band] / scale;
-    squares += noise * noise;
-    ++count;
-  });
-  return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
+  return NoiseOver(rays, [&](const auto& use) { ForEveryValue(rays, kind, use); });
 }
 
 ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
                              const std::vector<std::vector<double>>& answers) {
   ALPENGLOW_ENSURE(answers.size(), ==, rays.size());
-  std::vector<double> errors;
-  ForEveryValue(rays, kind, [&](std::size_t i, std::size_t band, double scale) {
-    errors.push_back(std::abs(answers[i][band] - rays[i].truth[band]) / scale);
-  });
-  return StatisticsOfErrors(std::move(errors), NoiseOf(rays, kind));
+  std::vector<double> errors, strict;
+  const auto add_to = [&](std::vector<double>& list) {
+    return [&](std::size_t i, std::size_t band, double scale) {
+      list.push_back(std::abs(answers[i][band] - rays[i].truth[band]) / scale);
+    };
+  };
+  ForEveryValue(rays, kind, add_to(errors));
+  ForEveryStrictValue(rays, add_to(strict));
+  ErrorStatistics result = StatisticsOfErrors(std::move(errors), NoiseOf(rays, kind));
+  const double noise = NoiseOver(rays, [&](const auto& use) { ForEveryStrictValue(rays, use); });
+  const ErrorStatistics relative = StatisticsOfErrors(std::move(strict), noise);
+  result.strict_rms = relative.rms;
+  result.strict_percentile_99 = relative.percentile_99;
+  return result;
 }
 
 ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise) {
@@ -179,6 +270,8 @@ ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise) {
   result.largest = errors.back();
   result.rms_is_bound = noise > 0.0 && rms_squared < 0.25 * noise * noise;
   result.rms = result.rms_is_bound ? 0.5 * noise : std::sqrt(rms_squared);
+  result.strict_rms = result.rms;
+  result.strict_percentile_99 = result.percentile_99;
   return result;
 }
 

@@ -10,13 +10,18 @@
 //             degrees above the horizontal, where the air is long, a quarter down to the ground
 //   azimuth   uniform from towards the sun to away from it
 //
+// From space half of the views end on the ground and half pass it, up to 100 km; the sun is that of
+// the ray's lowest point, half of the time below 5 degrees.
+//
 // Transmittance has beams to the sun instead: a point between the ground and the top in the sun's
 // light at the regime's elevation, dense in low air. In twilight, where beams come from below the
-// horizontal, the perigee of the beam is drawn so.
+// horizontal, the perigee of the beam is drawn so; where it would lie above the air, and from space,
+// the point is the top of the air.
 //
 // Errors of radiance are relative. What is darker than a hundredth of the light that the air at the
-// zenith of the same place scatters once under the same sun counts as if it were that bright: the
-// air between the eye and a ground two metres away would else rule every mean.
+// zenith of the same place (from space: of the ray's lowest point) scatters once under the same sun
+// counts as if it were that bright: the air between the eye and a ground two metres away would else
+// rule every mean. Strict errors are relative to each value itself.
 #pragma once
 
 #include <array>
@@ -32,6 +37,9 @@ namespace alpenglow {
 
 /// Part of the zenith's radiance below which errors are relative to that part.
 inline constexpr double kDarkestPart = 0.01;
+/// Part of the sun's light below which no strict error is counted, and all light counts as so bright
+/// in the others.
+inline constexpr double kDarkestValue = 1e-12;
 
 /// A ray with the judge's answer.
 struct JudgedRay {
@@ -79,6 +87,9 @@ using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 
 /// View number i >= 1 of the distribution above.
 [[nodiscard]] ViewRay ViewNumber(const Medium& medium, int i, const ReportRegime& regime);
+/// View from space down to the ground number i >= 1.
+[[nodiscard]] ViewRay GroundFromSpaceNumber(const Medium& medium, int i,
+                                            const ReportRegime& regime);
 /// Beam to the sun number i >= 1.
 [[nodiscard]] ViewRay SunbeamNumber(const Medium& medium, int i, const ReportRegime& regime);
 
@@ -88,7 +99,7 @@ using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 [[nodiscard]] ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
                                            const std::vector<std::vector<double>>& answers);
 
-/// Statistics of errors >= 0, of which a judge's noise makes a part.
+/// Statistics of errors >= 0, of which a judge's noise makes a part; the strict ones are the same.
 [[nodiscard]] ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise);
 
 /// Rms of the judge's standard errors over rays and wavelengths, as StatisticsOf counts errors.

@@ -124,7 +124,11 @@ class RefractionTopic {
            (sight.highest_m - sight.lowest_m) * static_cast<double>(eye) / (kEyes - 1.0);
   }
   static ReportRow Row(std::string series, RefractionStyle style) {
-    return {.series = std::move(series), .parameter = "", .style = style, .in_summary = true};
+    return {.series = std::move(series),
+            .parameter = "",
+            .style = style,
+            .in_summary = true,
+            .at = std::vector<RegimeResult>(kSights.size())};
   }
 
   void Judge(std::size_t r) {

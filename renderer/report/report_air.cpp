@@ -32,6 +32,11 @@ enum AirStyle {
 /// From an eye to a mountainside, both at or over the ground, with nothing of the planet between.
 /// Altitudes [m], of the eye and of the other end, as number i >= 1 of Halton's sequence has them.
 ViewRay SegmentNumber(const Medium& medium, int i, const ReportRegime& regime) {
+  if (regime.from_space) {
+    ViewRay ray = GroundFromSpaceNumber(medium, i, regime);
+    ray.length_m = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m).end_m;
+    return ray;
+  }
   constexpr std::array<double, 3> kEyes_m{2.0, 1500.0, 10000.0};
   constexpr double kHighestSummit_m = 4000.0;
   const double radius = medium.planet_radius_m;

@@ -35,6 +35,8 @@ void ExpectLessErrorEverywhere(const char* topic, const char* better, const char
   const ReportRow& bad = RowOf(topic, worse);
   for (std::size_t r = 0; r < good.at.size(); ++r) {
     if (!good.at[r].IsMeasured() || !bad.at[r].IsMeasured()) continue;
+    // Before mountains no air is lit when the sun is below -6 degrees.
+    if (topic == std::string("aerial_perspective") && good.at[r].error.largest == 0.0) continue;
     EXPECT_LT(good.at[r].error.rms, bad.at[r].error.rms)
         << topic << ": " << better << " against " << worse << ", column " << r;
   }
