@@ -22,16 +22,19 @@ TOPICS = {  # as ACCURACY.md calls them: as the reports do
     "all orders": "All orders", "panorama": "Panoramas", "refraction": "Refraction",
     "air before a mountain": "Aerial perspective", "shafts": "Shafts", "a lamp in fog": "A lamp in fog",
     "many lamps in fog": "Many lamps in fog", "a picture": "Whole pictures"}
-# Rows of README.md: the names of a topic and air, and the methods of the three columns.
+# Rows of README.md: the names of a topic and air, and the methods of the four columns.
 README_ROWS = {
     "single scattering, clear": ("single scattering, earth", "Gauss, 8 nodes",
+                                 "direct integration, fast, 7 nodes a panel",
                                  "4-D table (Bruneton), 32 x 128 x 32 x 8", None),
-    "all orders, clear": ("all orders, earth", "moments to degree 6, 18 x 32", None,
+    "all orders, clear": ("all orders, earth", "moments to degree 6, 18 x 32",
+                          "moments on direct nodes, fast", None,
                           "isotropic table (Hillaire 2020), 32 x 32, 64 directions"),
     "all orders, hazy": ("all orders, hazy", "moments to degree 12, forward peak apart, 18 x 32", None,
-                         "isotropic table (Hillaire 2020), 32 x 32, 64 directions"),
-    "sky around one camera, clear": ("panorama, earth", "sky view, in rows, size chosen", None, None),
-    "air before a mountain, clear": ("air before a mountain, earth", "Gauss panels, automatic",
+                         None, "isotropic table (Hillaire 2020), 32 x 32, 64 directions"),
+    "sky around one camera, clear": ("panorama, earth", "sky view, in rows, size chosen", None, None,
+                                     None),
+    "air before a mountain, clear": ("air before a mountain, earth", "Gauss panels, automatic", None,
                                      "two look-ups (Bruneton), 32 x 128 x 32 x 8",
                                      "froxels (Hillaire 2020), 32 x 32 x 32")}
 PLOTS = (("report", "single_scattering.earth.svg", "lut/single_scattering.svg"),
@@ -87,9 +90,9 @@ def short(column):
 
 
 def sky_row(reports, what, method):
-    """Memory, time to make, time, and errors by day, at sunset and in twilight."""
+    """Memory, time to make, time, and errors by day, at sunset, in twilight and from space."""
     _, row = reports.row(what, method)
-    return row[1:7]
+    return row[1:9]
 
 
 def picture_row(reports, what, method):
@@ -112,7 +115,8 @@ def with_rows(text, header, make):
 
 def accuracy(text, reports):
     for header, columns in (
-            ("| what, air | method | memory | made in | time | day | sunset | twilight to -6° |", sky_row),
+            ("| what, air | method | memory | made in | time | day | sunset | twilight to -6° | -6° to -12° "
+             "| from space |", sky_row),
             ("| what | method | made in | time | errors |", picture_row)):
         text = with_rows(text, header, lambda cells, columns=columns: (
             cells[0], cells[1], *columns(reports, cells[0], cells[1])))
@@ -134,7 +138,7 @@ def readme(text, reports):
     def make(cells):
         what, *methods = README_ROWS[cells[0]]
         return (cells[0], *(readme_cell(reports, what, method) for method in methods))
-    return with_rows(text, "| quantity | Alpenglow | Bruneton 2017 | Hillaire 2020 |", make)
+    return with_rows(text, "| quantity | Alpenglow | direct integration | Bruneton 2017 | Hillaire 2020 |", make)
 
 
 def main():
