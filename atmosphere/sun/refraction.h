@@ -38,7 +38,7 @@ struct SeaHorizon {
 /// scattered once from a sun of -5 to -8 degrees comes out within 20 % of that of bent rays in blue
 /// and green, and 50 % in red, whose light comes through lower air; without that lift it would be up
 /// to 63 % too dark. Between 1 and -3 degrees, where sunlit peaks and the sun's disk have the whole
-/// refraction, the sky has up to a third more light than it should. Some ten microseconds a call.
+/// refraction, the sky has up to 40 % more light than it should. Some ten microseconds a call.
 [[nodiscard]] double RefractionFromHeight(double true_elevation_rad, double height_m,
                                           double earth_radius_m = kEarthMeanRadius_m);
 /// The same, in any air that bends gently.

