@@ -27,8 +27,11 @@ class AirTo {
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up_), -1.0, 1.0),
             std::clamp(glm::dot(light.to_sun, up_), -1.0, 1.0),
             std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)};
-    // The planet's own horizon ends the ray by itself; a length there would only add a rounding.
-    if (kind_ == HitKind::kTerrain) ray_.length_m = rays.length_m();
+    // The planet's own horizon ends a straight ray by itself, where a length would only add a
+    // rounding. Bent rays see the planet over that horizon too.
+    const bool is_bent = frame.bent && frame.bent->moves_ground;
+    if (kind_ == HitKind::kTerrain || (kind_ == HitKind::kPlanet && is_bent))
+      ray_.length_m = rays.length_m();
     if (!sunlight_.IsBroken()) return;
     const RayExtent extent = ExtentOf(ray_, geometry.radius_m(), medium.atmosphere_height_m);
     path_ = sunlight_.Along(from, direction, extent.end_m);
