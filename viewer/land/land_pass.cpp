@@ -16,8 +16,8 @@ constexpr GLuint kLandBinding = 8;
 
 std::vector<ShaderPiece> Vertices() {
   return WithViewerPieces(SharedTexts(),
-                          {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
-                           "viewer/shaders/land.vert.glsl"});
+                          {"viewer/shaders/view_block.glsl", "viewer/shaders/bent_sight.glsl",
+                           "viewer/shaders/land_block.glsl", "viewer/shaders/land.vert.glsl"});
 }
 
 // Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.

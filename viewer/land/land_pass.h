@@ -23,7 +23,8 @@ struct LandView {
   glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
   glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
   glm::dvec3 forward{0.0, 1.0, 0.0};
-  int rays = 1;  // that a pixel will have: for more, land is finer
+  int rays = 1;              // that a pixel will have: for more, land is finer
+  double bends_per_m = 0.0;  // most curvature of rays, which lifts land
 };
 
 /// `block Land` of land_block.glsl.

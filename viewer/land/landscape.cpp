@@ -23,7 +23,11 @@ double HorizonDistance(double height_m) {
   return std::sqrt(above * (above + 2.0 * kRadius_m));
 }
 
-constexpr double kHighestGround_m = 9000.0;
+// How far the farthest ground that may be seen [m].
+double SightFrom(double height_m) {
+  constexpr double kHighestGround_m = 9000.0;
+  return HorizonDistance(height_m) + HorizonDistance(kHighestGround_m);
+}
 
 }  // namespace
 
@@ -52,7 +56,7 @@ LandEye Landscape::EyeAt(const GeodeticPosition& eye) const {
   LandEye at{lattice.At(eye.latitude_rad, eye.longitude_rad),
              SampleSizeAt(lattice, eye.latitude_rad), 0.0, 0.0};
   at.above_m = std::max(eye.height_m - ceiling_m_.value_or(0.0), 0.0);
-  at.sight_m = HorizonDistance(eye.height_m) + HorizonDistance(kHighestGround_m);
+  at.sight_m = SightFrom(eye.height_m);
   return at;
 }
 
@@ -121,6 +125,7 @@ void Landscape::FindAround() {
 
 void Landscape::ChooseDrawn() {
   drawn_.clear();
+  farthest_m_ = mesh_ ? SightFrom(eye_place_.height_m) : 0.0;
   if (!set_) return;
   for (const DrawnChunk& near : around_) {
     const ChunkSet::Kept* const kept = set_->Find(near.key);
@@ -130,7 +135,9 @@ void Landscape::ChooseDrawn() {
   const EyeInAnchor eye(set_->anchor().frame, eye_place_);
   drawn_ = InView(std::move(drawn_), eye, view_);
   constexpr double kHigh_m = 5000.0;  // over all ground about: little hides little
-  if (over_ground_ && eye_.above_m < kHigh_m) drawn_ = WithoutHidden(drawn_, eye);
+  if (over_ground_ && eye_.above_m < kHigh_m)
+    drawn_ = WithoutHidden(drawn_, eye, view_.bends_per_m);
+  farthest_m_ = FarthestOf(drawn_, eye);
 }
 
 void Landscape::BeginReading(const GeodeticPosition& place) {

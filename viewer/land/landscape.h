@@ -127,6 +127,8 @@ class Landscape {
   /// are not read, and that the range is made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
+  /// No land in view is farther from the eye [m].
+  [[nodiscard]] double farthest_m() const { return farthest_m_; }
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 
  private:
@@ -171,6 +173,7 @@ class Landscape {
   std::vector<LevelRange> ranges_;
   std::vector<DrawnChunk> around_;          // in view or not
   std::vector<ChunkBuffers::Drawn> drawn_;  // in view
+  double farthest_m_ = 0.0;
   LightFade fade_;
   long frame_ = 0;
   int heights_version_ = 0;

@@ -12,27 +12,40 @@
 namespace alpenglow {
 namespace {
 
+/// No more than this rays of a curvature lift what stands at a distance [m].
+double MostRise(double bends_per_m, double distance_m) {
+  return 0.5 * bends_per_m * distance_m * distance_m;
+}
+
+// Of a box's corners from the eye.
+double FarthestCorner(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& from) {
+  return glm::length(glm::max(glm::abs(low - from), glm::abs(high - from)));
+}
+
 // The four sides of the view and what is before it, as planes through the eye; inside is positive.
 class ViewPyramid {
  public:
-  ViewPyramid(const EyeInAnchor& eye, const LandView& view) : at_(eye.at) {
+  ViewPyramid(const EyeInAnchor& eye, const LandView& view)
+      : at_(eye.at), up_(eye.up), bends_per_m_(view.bends_per_m) {
     const double wide = glm::length(view.right), high = glm::length(view.up);
     const glm::dvec3 forward = eye.Turned(view.forward);
     const glm::dvec3 right = eye.Turned(view.right) / wide, up = eye.Turned(view.up) / high;
     planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
                high * forward - up, forward};
   }
-  // Whether any of a box may be inside.
+  // Whether any of a box may be inside, lifted or not.
   [[nodiscard]] bool Touches(const glm::dvec3& low, const glm::dvec3& high) const {
+    const double rise_m = MostRise(bends_per_m_, FarthestCorner(low, high, at_));
     return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec3& plane) {
       const glm::dvec3 corner{plane.x > 0.0 ? high.x : low.x, plane.y > 0.0 ? high.y : low.y,
                               plane.z > 0.0 ? high.z : low.z};
-      return glm::dot(plane, corner - at_) > 0.0;
+      return glm::dot(plane, corner - at_) + rise_m * std::max(glm::dot(plane, up_), 0.0) > 0.0;
     });
   }
 
  private:
-  glm::dvec3 at_;
+  glm::dvec3 at_, up_;
+  double bends_per_m_;
   std::array<glm::dvec3, 5> planes_;
 };
 
@@ -69,24 +82,27 @@ struct SeenPart {
   double radius_m, highest_m, nearest_m;
 };
 
-SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye) {
+// Crests that hide it are taken to be where they are, which is no higher than they look.
+SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye,
+                double bends_per_m) {
   const glm::dvec3 low(box.low), high(box.high);
   const glm::dvec3 middle = eye.From(0.5 * (low + high));
   const glm::dvec3 half = 0.5 * (high - low);
   // The box leans in the eye's frame: its highest corner counts.
   const glm::dvec3 rise = glm::abs(eye.up) * half;
   const double radius = std::hypot(half.x, half.y) + half.z * std::hypot(eye.up.x, eye.up.y);
-  return {chunk, middle, radius, middle.z + rise.x + rise.y + rise.z,
+  const double lifted_m = MostRise(bends_per_m, glm::length(middle) + radius);
+  return {chunk, middle, radius, middle.z + rise.x + rise.y + rise.z + lifted_m,
           Skyline::NearestOf(middle, radius)};
 }
 
 // Whether each chunk has a part that no nearer land hides.
-std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks,
-                            const EyeInAnchor& eye) {
+std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye,
+                            double bends_per_m) {
   std::vector<SeenPart> parts;
   for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk)
     for (const ChunkBox& box : chunks[chunk].chunk->parts)
-      if (box.low.x <= box.high.x) parts.push_back(PartOf(box, chunk, eye));
+      if (box.low.x <= box.high.x) parts.push_back(PartOf(box, chunk, eye, bends_per_m));
   std::sort(parts.begin(), parts.end(),
             [](const SeenPart& a, const SeenPart& b) { return a.nearest_m < b.nearest_m; });
   Skyline skyline;
@@ -112,12 +128,19 @@ std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
 }
 
 std::vector<ChunkBuffers::Drawn> WithoutHidden(const std::vector<ChunkBuffers::Drawn>& chunks,
-                                               const EyeInAnchor& eye) {
-  const std::vector<char> is_seen = NotHidden(chunks, eye);
+                                               const EyeInAnchor& eye, double bends_per_m) {
+  const std::vector<char> is_seen = NotHidden(chunks, eye, bends_per_m);
   std::vector<ChunkBuffers::Drawn> seen;
   for (std::size_t i = 0; i < chunks.size(); ++i)
     if (is_seen[i] != 0) seen.push_back(chunks[i]);
   return seen;
+}
+
+double FarthestOf(const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye) {
+  double farthest_m = 0.0;
+  for (const ChunkBuffers::Drawn& drawn : chunks)
+    farthest_m = std::max(farthest_m, FarthestCorner(drawn.chunk->low, drawn.chunk->high, eye.at));
+  return farthest_m;
 }
 
 }  // namespace alpenglow

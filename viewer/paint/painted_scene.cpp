@@ -46,6 +46,12 @@ GroundFollower::View GroundViewOf(const PaintedView& view, const LightsOfSky& li
   return seen;
 }
 
+LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) {
+  LandView seen = LandViewOf(view, samples);
+  seen.bends_per_m = -RefractivitySlopeAt(GentleAirOf(medium), 0.0);
+  return seen;
+}
+
 AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
   return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, DirectionToSun(sun)};
 }
@@ -212,7 +218,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
   const SunPosition& casting = lights.key.disk;
   KeepUpAir(view, lights, Pace::kFollow, seconds);
-  land_->Update(view.eye.place, LandViewOf(view), seconds);
+  land_->Update(view.eye.place, LandIn(view, air_.air()->medium), seconds);
   awaits_land_ = awaits_land_ && !land_->HasCome();
   TakeHeights();
   KeepUpEdges(view, lights.key, seconds);
@@ -225,11 +231,11 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
 
 void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, int samples) {
   KeepUpAir(view, lights, Pace::kSettle, 0.0);
-  land_->Settle(view.eye.place, LandViewOf(view, samples));
+  land_->Settle(view.eye.place, LandIn(view, air_.air()->medium, samples));
   TakeHeights();
   if (ground_.Settle(air_.air(), GroundViewOf(view, lights))) {
     TakeLight();
-    land_->Settle(view.eye.place, LandViewOf(view, samples));
+    land_->Settle(view.eye.place, LandIn(view, air_.air()->medium, samples));
   }
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kSettle);

@@ -8,6 +8,7 @@
 #include "viewer/air/air_rows.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/paint/picture_units.h"
+#include "viewer/paint/view_bend.h"
 
 namespace alpenglow {
 namespace {
@@ -70,6 +71,18 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
   return Draped(cover, scene.drape().place, at.x, at.y);
 }
 
+// Straight rays: the planet looks as large as it is.
+void SetBend(ViewBlock& block, const std::optional<LandBend>& bend) {
+  block.bend.x = block.eye.w;
+  if (!bend) return;
+  const auto layers = [](const std::array<double, 3>& of) {
+    return glm::vec4(glm::dvec4(of[0], of[1], of[2], 0.0));
+  };
+  block.bend = glm::vec4(glm::dvec4(bend->look_radius_km, bend->top_km, bend->usual_per_km, 0.0));
+  block.bend_slopes = layers(bend->slope_per_km);
+  block.bend_falls = layers(bend->fall_per_km);
+}
+
 }  // namespace
 
 void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
@@ -87,12 +100,14 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
   const glm::dvec2 shift = ShiftOf(ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
-  const ViewBlock block{{glm::vec3(axes.right), 0.0F},
-                        {glm::vec3(axes.up), 0.0F},
-                        {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)},
-                        {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad},
-                        key.irradiance,
-                        {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)}};
+  ViewBlock block{};
+  block.view_right = {glm::vec3(axes.right), 0.0F};
+  block.view_up = {glm::vec3(axes.up), 0.0F};
+  block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)};
+  block.sun = {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad};
+  block.sun_irradiance = key.irradiance;
+  block.eye = {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)};
+  SetBend(block, BendOf(view, medium, scene.land().farthest_m()));
   Upload(view_, kViewBinding, block);
 }
 

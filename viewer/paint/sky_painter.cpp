@@ -6,11 +6,13 @@
 
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/eclipse.h"
+#include "atmosphere/sun/moon.h"
 #include "renderer/ground/camera_stand.h"
 #include "renderer/light/moon_before_sun.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/scissor.h"
 #include "viewer/paint/picture_units.h"
+#include "viewer/paint/view_bend.h"
 
 namespace alpenglow {
 namespace {
@@ -146,7 +148,52 @@ void SkyPainter::PaintLamps(const PaintedView& view) {
   lamp_painter_.PaintGlow(view.width, view.height);
 }
 
-void SkyPainter::DescribeMoon(const MoonDisk& moon) {
+namespace {
+
+// Disks that stand where they seem to.
+constexpr BentDisk kUnbent{};
+
+void SendNodes(const ShaderProgram& program, const char* name,
+               const std::array<glm::vec4, BentDisk::kNodes>& of_sun,
+               const std::array<glm::vec4, BentDisk::kNodes>& of_moon) {
+  std::array<glm::vec4, 2 * BentDisk::kNodes> both{};
+  std::copy(of_sun.begin(), of_sun.end(), both.begin());
+  std::copy(of_moon.begin(), of_moon.end(), both.begin() + BentDisk::kNodes);
+  glUniform4fv(program.Uniform(name), static_cast<GLsizei>(both.size()), &both.front().x);
+}
+
+void SendAir(const ShaderProgram& program, const BentDisk& sun, const BentDisk& moon) {
+  SendNodes(program, "disk_lift", sun.lift_rad, moon.lift_rad);
+  SendNodes(program, "disk_depth", sun.more_depth, moon.more_depth);
+  glUniform4f(program.Uniform("disk_nodes"), static_cast<float>(sun.first_rad),
+              static_cast<float>(1.0 / sun.step_rad), static_cast<float>(moon.first_rad),
+              static_cast<float>(1.0 / moon.step_rad));
+}
+
+}  // namespace
+
+// A sun that the moon covers is drawn like the moon: their edges meet.
+SkyPainter::DisksInAir SkyPainter::InAir(const SkyDisks& disks, const PaintedView& view) {
+  const auto follow = [&](BentDiskFollower& follower, const glm::dvec3& apparent,
+                          double radius) -> const BentDisk* {
+    if (!PixelsOfDisk(apparent, radius, view)) return nullptr;
+    return follower.Follow(scene_.air().air(), view.eye.place.height_m,
+                           std::asin(std::clamp(apparent.z, -1.0, 1.0)), radius,
+                           0.5 * PixelAngle(view));
+  };
+  const GeodeticPosition& place = view.eye.place;
+  DisksInAir seen{disks, follow(bent_sun_, DirectionToSun(disks.sun), disks.sun.angular_radius_rad),
+                  follow(bent_moon_, disks.moon.to_moon, disks.moon.radius_rad)};
+  const MoonPosition moon = MoonAt(place, view.now);
+  if (EclipsedDiskOf(disks.sun, moon).IsCovered()) seen.moon = seen.sun;
+  if (seen.sun != nullptr) seen.disks.sun = SunAt(place, view.now);
+  if (seen.moon != nullptr)
+    seen.disks.moon.to_moon = DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz;
+  return seen;
+}
+
+void SkyPainter::DescribeDisks(const DisksInAir& seen) {
+  const MoonDisk& moon = seen.disks.moon;
   const ShaderProgram& program = programs_.Of({PictureStage::Pass::kDisks});
   program.Use();
   glUniform4f(program.Uniform("moon"), static_cast<float>(moon.to_moon.x),
@@ -159,6 +206,8 @@ void SkyPainter::DescribeMoon(const MoonDisk& moon) {
   glUniform4f(program.Uniform("moon_colour"), colour.x, colour.y, colour.z, colour.w);
   glUniform1f(program.Uniform("moon_earthshine"),
               static_cast<float>(moon.earthshine_per_irradiance));
+  SendAir(program, seen.sun != nullptr ? *seen.sun : kUnbent,
+          seen.moon != nullptr ? *seen.moon : kUnbent);
 }
 
 // One stage is made ready a frame: each takes tenths of a second.
@@ -173,10 +222,16 @@ void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_
   stars_.MakeReady(view, scene_.fog(), scene_.fog_phase());
 }
 
+// The planet's horizon is that of straight rays over the planet as it looks.
+int SkyPainter::RowsUnderHorizon(const PaintedView& view) const {
+  const Medium& medium = scene_.air().air()->medium;
+  const auto bend = BendOf(view, medium, scene_.land().farthest_m());
+  return RowsOfPlanet(view, bend ? bend->look_radius_km : RadiusUnder(view.eye, medium));
+}
+
 // Rows that hold the planet's ground. Before land has come there is sky in its place.
 int SkyPainter::RowsOfGround(const PaintedView& view) const {
-  if (scene_.AwaitsLand()) return 0;
-  return RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
+  return scene_.AwaitsLand() ? 0 : RowsUnderHorizon(view);
 }
 
 // Software drivers work out the planet of every pixel that a program has it for.
@@ -221,12 +276,13 @@ std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
 
 // The disk of the sun is the sun's, whatever lights the air.
 void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
-  const KeyLight sun = SunAsKey(LightsOf(view).sun, scene_.air().air()->medium);
+  const DisksInAir seen = InAir(DisksOf(view), view);
+  const KeyLight sun = SunAsKey(seen.disks.sun, scene_.air().air()->medium);
   blocks_.UploadView(scene_, view, sun, ray);
-  const double share = 1.0 / ray.of;
   const std::vector<PixelBox> boxes = DisksSeen(view);
   if (boxes.empty()) return;
-  DescribeMoon(DisksOf(view).moon);
+  const double share = 1.0 / ray.of;
+  DescribeDisks(seen);
   const BesideLand beside;
   const Adding adding(share);
   for (const PixelBox& box : boxes) {
@@ -312,7 +368,7 @@ void SkyPainter::PaintNightFloor(const PaintedView& view, double share) {
   const PictureStage stage{PictureStage::Pass::kNight};
   std::optional<Scissor> above;
   if (scene_.AwaitsLand()) {
-    const int rows = RowsOfPlanet(view, RadiusUnder(view.eye, scene_.air().air()->medium));
+    const int rows = RowsUnderHorizon(view);
     above.emplace(PixelBox{0, rows, view.width, view.height - rows});
   }
   night_floor_.Bind(programs_.Of(stage), kNightUnit);

@@ -22,6 +22,7 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_outline.h"
 #include "viewer/land/surface_map.h"
+#include "viewer/paint/bent_disk.h"
 #include "viewer/paint/key_light.h"
 #include "viewer/paint/night_floor.h"
 #include "viewer/paint/paint_sizes.h"
@@ -102,6 +103,12 @@ class SkyPainter {
     SunPosition sun;
     MoonDisk moon;
   };
+  /// The same where they truly stand, and what the air does to them; null: they are drawn where they
+  /// seem to be.
+  struct DisksInAir {
+    SkyDisks disks;
+    const BentDisk *sun, *moon;
+  };
   /// What shines on a view.
   struct Shining {
     PaintedView view;
@@ -113,7 +120,9 @@ class SkyPainter {
   [[nodiscard]] SkyDisks DisksOf(const PaintedView& view);
   [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
-  void DescribeMoon(const MoonDisk& moon);
+  [[nodiscard]] DisksInAir InAir(const SkyDisks& disks, const PaintedView& view);
+  void DescribeDisks(const DisksInAir& seen);
+  [[nodiscard]] int RowsUnderHorizon(const PaintedView& view) const;
   void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
@@ -150,6 +159,7 @@ class SkyPainter {
   bool has_towns_;
   PicturePrograms programs_;  // of all above
   PictureBlocks blocks_;
+  BentDiskFollower bent_sun_, bent_moon_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
   std::optional<Shining> shining_;  // on the view asked for last

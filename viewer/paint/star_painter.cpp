@@ -17,7 +17,7 @@
 namespace alpenglow {
 namespace {
 
-// Between two lists the sky turns as a whole, and refraction with it: less than a minute of arc.
+// Between two lists the sky turns as a whole, and the air is that of the list.
 constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-4, kMostRise_m = 200.0;
 
 const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_towards"},
@@ -29,9 +29,9 @@ const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_tow
 StarPainter::StarPainter()
     : maker_([](const Request& request) {
         constexpr double kAll = std::numeric_limits<double>::infinity();
-        const BentView view(request.medium, request.place.height_m);
-        return Made{request,
-                    StarLightsOver(request.place, request.now, view, *request.colour, kAll)};
+        const BentView bent(request.medium, request.place.height_m);
+        return Made{request, bent,
+                    StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
       }) {}
 
 bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
@@ -127,7 +127,8 @@ std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const Moon
   const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
   const glm::dmat3 turn =
       TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made_->request.now, view.now));
-  return StarPointsIn(view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad});
+  return StarPointsIn(
+      view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad, &made_->bent});
 }
 
 std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const MoonDisk& moon) const {

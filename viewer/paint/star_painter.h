@@ -59,6 +59,7 @@ class StarPainter {
   };
   struct Made {
     Request request;
+    BentView bent;
     std::vector<StarLight> lights;
   };
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/paint/star_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/sun.h"
 #include "renderer/picture/star_pixels.h"
 #include "viewer/shaders/uniform_blocks.h"
 
@@ -19,27 +21,53 @@ double PixelSolidAngle(const PaintedView& view, double along) {
   return side * side * along * along * along;
 }
 
+/// The direction at another elevation.
+glm::dvec3 AtElevation(const glm::dvec3& direction, double elevation_rad) {
+  return DirectionFromAngles(elevation_rad, std::atan2(direction.x, direction.y)).xyz;
+}
+
+double Elevation(const glm::dvec3& direction) {
+  return std::asin(std::clamp(direction.z, -1.0, 1.0));
+}
+
 }  // namespace
+
+glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
+  constexpr double kHigh_sine = 0.35;  // from there on refraction changes by 2" in half a minute
+  const glm::dvec3& before = light.direction;
+  if (sky.bent == nullptr || std::abs(before.z) > kHigh_sine) return sky.turn * before;
+  const glm::dvec3 truly =
+      sky.turn * AtElevation(before, sky.bent->TrueElevation(Elevation(before)));
+  return AtElevation(truly, sky.bent->LiftedElevationOf(Elevation(truly)));
+}
 
 std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky) {
   const LandView axes = LandViewOf(view);
+  // Stars about the picture may be lifted into it.
+  constexpr double kMostLift_rad = 0.1 * kRadiansPerDegree;
+  const double reach = kStarReach + 2.0 * kMostLift_rad / PixelAngle(view);
   const auto place = [](double share, double part, int side) {
     return 0.5 * side * (1.0 + share - part);
   };
-  std::vector<StarPoint> points;
-  for (const StarLight& light : sky.lights) {
-    if (light.lux < sky.faintest_lux) continue;
-    const glm::dvec3 towards = sky.turn * light.direction;
+  const auto place_of = [&](const glm::dvec3& towards, double margin) -> std::optional<glm::dvec2> {
     const double along = glm::dot(towards, axes.forward);
-    if (along <= 1e-3 || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;
+    if (along <= 1e-3) return std::nullopt;
     const double x = place(glm::dot(towards, axes.right) / glm::dot(axes.right, axes.right) / along,
                            view.part.x * view.part.z, view.width);
     const double y = place(glm::dot(towards, axes.up) / glm::dot(axes.up, axes.up) / along,
                            view.part.y * view.part.w, view.height);
-    if (!(x > -kStarReach && x < view.width + kStarReach && y > -kStarReach &&
-          y < view.height + kStarReach)) {
-      continue;
-    }
+    const bool is_in =
+        x > -margin && x < view.width + margin && y > -margin && y < view.height + margin;
+    return is_in ? std::optional(glm::dvec2(x, y)) : std::nullopt;
+  };
+  std::vector<StarPoint> points;
+  for (const StarLight& light : sky.lights) {
+    if (light.lux < sky.faintest_lux) continue;
+    if (!place_of(sky.turn * light.direction, reach)) continue;
+    const glm::dvec3 towards = TowardsStar(light, sky);
+    const auto at = place_of(towards, kStarReach);
+    if (!at || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;
+    const double x = at->x, y = at->y, along = glm::dot(towards, axes.forward);
     const StarBell across = StarBellAround(x), up = StarBellAround(y);
     glm::vec4 radiance(0.0F);
     const auto per_sr = static_cast<float>(1.0 / PixelSolidAngle(view, along));

@@ -8,6 +8,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "atmosphere/ray/bent_view.h"
 #include "renderer/light/star_lights.h"
 #include "viewer/paint/painted_view.h"
 
@@ -30,7 +31,13 @@ struct StarrySky {
   double faintest_lux;  // that is painted
   glm::dvec3 to_moon;   // unit, before what it hides
   double moon_radius_rad;
+  const BentView* bent =
+      nullptr;  // the air that lifted the lights; null: they are where they stand
 };
+
+/// Where a star of such a sky is seen, unit: its true direction turns, and where it is now the air
+/// lifts it otherwise.
+[[nodiscard]] glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky);
 
 /// Those that fall into the picture.
 [[nodiscard]] std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky);

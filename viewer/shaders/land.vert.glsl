@@ -38,13 +38,13 @@ float DiskOverHorizonHere(vec3 at, vec3 from_eye) {
 }
 
 // How far below all land, half a kilometre under the sphere, the ray to a place beyond the horizon
-// dips before it gets there.
+// dips before it gets there. @param from_eye  as it is seen.
 float SunkBehindPlanet(vec3 from_eye) {
   const float deepest_km = -0.5;
   float d = 1e-3 * length(from_eye);
   float mu = from_eye.z / max(length(from_eye), 1e-6);
-  bool beyond = PLANET_RADIUS > 0.0 && mu < 0.0 && d > -(PLANET_RADIUS + EYE_ALTITUDE) * mu;
-  return beyond ? deepest_km - PerigeeAltitude(EYE_ALTITUDE, mu, PLANET_RADIUS) : -1.0;
+  bool beyond = PLANET_RADIUS > 0.0 && mu < 0.0 && d > -(LOOK_RADIUS + EYE_ALTITUDE) * mu;
+  return beyond ? deepest_km - PerigeeAltitude(EYE_ALTITUDE, mu, LOOK_RADIUS) : -1.0;
 }
 
 void main() {
@@ -62,12 +62,14 @@ void main() {
                     eye_above.y);
   if (eye_above.w > 0.0)
     disk_height = mix(disk_height, DiskOverHorizonHere(at, from_eye), eye_above.w);
-  sunk = SunkBehindPlanet(from_eye);
-  float along_view = dot(from_eye, view_forward.xyz);
+  vec3 from_eye_seen = SeenAt(from_eye);
+  sunk = SunkBehindPlanet(from_eye_seen);
+  float along_view = dot(from_eye_seen, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);
   float height = dot(view_up.xyz, view_up.xyz);
   // Only the near plane clips. Reversed depth is nearest / w; else the fragment stage writes it.
   float z = eye_above.z > 0.0 ? nearest : along_view - 2.0 * nearest;
-  vec2 seen = vec2(dot(from_eye, view_right.xyz) / width, dot(from_eye, view_up.xyz) / height);
+  vec2 seen = vec2(dot(from_eye_seen, view_right.xyz) / width,
+                   dot(from_eye_seen, view_up.xyz) / height);
   gl_Position = vec4(seen - PICTURE_SHIFT * along_view, z, along_view);
 }

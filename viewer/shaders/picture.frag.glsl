@@ -55,9 +55,9 @@ vec4 ShadeOnTheWay(vec3 direction, float distance_km, float shaded_km, vec4 sing
   return taken;
 }
 
-// Land as a texel of the surface map has it.
-SeenGround LandOf(vec4 surface, vec3 direction) {
-  return LandSeen(surface.w * direction, UnitFromOctahedral(surface.xy), -direction);
+// Land as a texel of the surface map has it. @param place  where it truly stands, from the eye [m].
+SeenGround LandOf(vec4 surface, vec3 place, vec3 direction) {
+  return LandSeen(place, UnitFromOctahedral(surface.xy), -direction);
 }
 
 // The light of ground under sun and sky, through the fog over it. @param sky  irradiance on seen.normal.
@@ -70,9 +70,10 @@ vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 }
 
 #if HAS_LAMPS
-// The light of lamps that the ground at a distance [m] sends back.
-vec4 LampsReflected(SeenGround seen, vec3 direction, float distance_m) {
-  vec4 irradiance = LampsOnGround(distance_m * direction, seen.normal, RAY_ANGLE * distance_m);
+// The light of lamps that the ground sends back.
+// @param place  of the ground, from the eye [m].
+vec4 LampsReflected(SeenGround seen, vec3 place, vec3 direction) {
+  vec4 irradiance = LampsOnGround(place, seen.normal, RAY_ANGLE * length(place));
   return SentOfIrradiance(seen, irradiance, -direction);
 }
 #endif
@@ -92,9 +93,10 @@ void main() {
   vec4 surface = texelFetch(surface_map, pixel, 0);
   float distance_km = 1e-3 * surface.w;
   AirTo air = AirToPoint(direction, distance_km);
-  SeenGround seen = LandOf(surface, direction);
+  vec3 place = PlaceSeen(direction, surface.w);
+  SeenGround seen = LandOf(surface, place, direction);
 #if SKY_BY_PIXEL
-  vec4 sky = SkyAtPixel(seen.at, surface.w * direction, seen.normal);
+  vec4 sky = SkyAtPixel(seen.at, place, seen.normal);
 #else
   vec4 sky = SkyByShare(seen, texelFetch(sky_on_surface, pixel, 0));
 #endif
@@ -106,7 +108,7 @@ void main() {
   picture = vec4(LinearSrgb(sun_irradiance * radiance), Nearness(along_m));
 #if HAS_LAMPS
   vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
-  picture.rgb += LampRgb(left * LampsReflected(seen, direction, surface.w)) +
+  picture.rgb += LampRgb(left * LampsReflected(seen, place, direction)) +
                  LampGlowRgb(direction, LampRayEnd(direction, surface.w));
 #endif
 }
@@ -117,20 +119,20 @@ void main() {
 #define PLANET_IS_PLAIN (!HAS_FOG && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
 
 vec4 PlanetThroughAir(vec3 direction) {
-  float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
+  float distance_km = PlanetDistance(direction);
   AirTo air = AirToPoint(direction, distance_km);
-  SeenGround seen = PlanetSeen(1e3 * distance_km * direction, -direction);
+  SeenGround seen = PlanetSeen(PlanetPlace(direction, distance_km), -direction);
   vec4 ground = air.transmittance * SunlitGround(seen, kNoEdge, SkyOnPlanet(seen), -direction);
   return ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
 }
 
 #if HAS_LAMPS
 vec4 PlanetUnderLamps(vec3 direction) {
-  float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
+  float distance_km = PlanetDistance(direction);
   vec4 left = AirToPoint(direction, distance_km).transmittance *
               FogTransmittance(direction, distance_km);
-  SeenGround seen = PlanetSeen(1e3 * distance_km * direction, -direction);
-  return left * LampsReflected(seen, direction, 1e3 * distance_km);
+  vec3 place = PlanetPlace(direction, distance_km);
+  return left * LampsReflected(PlanetSeen(place, -direction), place, direction);
 }
 #endif
 
@@ -148,8 +150,12 @@ void main() {
   vec3 direction = ViewDirection(screen);
 #if PASS == OPEN_SKY_PASS
   direction = NotUnderHorizon(direction);
-#endif
   vec4 clear = SkyRadiance(direction);
+#else
+  bool planet = SeesPlanet(direction);
+  vec3 straight = planet ? StraightToPlanet(direction) : direction;
+  vec4 clear = SkyRadiance(straight);
+#endif
   vec4 radiance = clear;
 #if HAS_FOG
   radiance = ThroughFog(direction, kOutOfFog_km, clear, vec4(0.0));
@@ -158,21 +164,18 @@ void main() {
   radiance -= min(TakenByShade(1e9, clear), clear);
 #endif
 #if PASS == SKY_PASS && !PLANET_IS_PLAIN
-  if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
-    radiance = PlanetThroughAir(direction);
+  if (planet) radiance = PlanetThroughAir(direction);
 #elif PASS == SKY_PASS && PLANET_IS_LAND
-  if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0) {
-    float distance_km = DistanceDownTo(EYE_ALTITUDE, direction.z, 0.0, RADIUS);
-    vec4 beyond = PlanetBeyondEven(1e3 * distance_km * direction, -direction);
-    radiance = max(radiance + TransmittanceToSpace(direction) * beyond, vec4(0.0));
+  if (planet) {
+    vec4 beyond = PlanetBeyondEven(PlanetPlace(direction, PlanetDistance(direction)), -direction);
+    radiance = max(radiance + TransmittanceToSpace(straight) * beyond, vec4(0.0));
   }
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 #if HAS_LAMPS
   picture.rgb += LampGlowRgb(direction, LampRayEnd(direction, 0.0));
 #if PASS == SKY_PASS
-  if (GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0)
-    picture.rgb += LampRgb(PlanetUnderLamps(direction));
+  if (planet) picture.rgb += LampRgb(PlanetUnderLamps(direction));
 #endif
 #endif
 }
@@ -181,11 +184,8 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  float beside_moon = 1.0 - CoveredByMoon(direction, RAY_ANGLE);
-  vec4 disks =
-      beside_moon * SunDiskRadiance(direction, RAY_ANGLE) + MoonRadiance(direction, RAY_ANGLE);
-  bool planet = GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
-  vec4 radiance = planet ? vec4(0.0) : disks * TransmittanceToSpace(direction);
+  vec4 disks = BentDisks(direction, RAY_ANGLE) * TransmittanceToSpace(direction);
+  vec4 radiance = SeesPlanet(direction) ? vec4(0.0) : disks;
 #if HAS_FOG
   radiance *= FogTransmittance(direction, 1e3);
 #endif
@@ -214,17 +214,16 @@ void main() {
   vec3 direction = ViewDirection(screen);
   vec4 surface = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0);
   bool land = surface.w > 0.0;
-  bool planet = !land && GroundClearance(EYE_ALTITUDE, direction.z, RADIUS) > 0.0;
-  float to_planet_km = DistanceDownTo(EYE_ALTITUDE, min(direction.z, -1e-9), 0.0, RADIUS);
-  float distance_km = land ? 1e-3 * surface.w : planet ? to_planet_km : 1e3;
+  bool planet = !land && SeesPlanet(direction);
+  float distance_km = land ? 1e-3 * surface.w : planet ? PlanetDistance(direction) : 1e3;
   float clear = FogTransmittance(direction, distance_km);
-  vec4 left = TransmittanceToSpace(direction) * clear;
+  vec4 left = TransmittanceToSpace(planet ? StraightToPlanet(direction) : direction) * clear;
   vec4 behind;
   if (land) {
     left = AirToPoint(direction, distance_km).transmittance * clear;
-    behind = NightReflected(LandOf(surface, direction), -direction);
+    behind = NightReflected(LandOf(surface, PlaceSeen(direction, surface.w), direction), -direction);
   } else if (planet) {
-    behind = NightReflected(PlanetSeen(1e3 * distance_km * direction, -direction), -direction);
+    behind = NightReflected(PlanetSeen(PlanetPlace(direction, distance_km), -direction), -direction);
   } else {
     behind = NightAbove(direction);
   }

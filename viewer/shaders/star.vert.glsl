@@ -18,7 +18,7 @@ uniform vec2 picture_size;      // [pixels]
 uniform bool surface_hides;     // the surface map is of that size; else the depth test hides stars
 
 bool IsHidden() {
-  bool planet = GroundClearance(EYE_ALTITUDE, star_towards.z, RADIUS) > 0.0;
+  bool planet = SeesPlanet(star_towards.xyz);
   ivec2 middle = clamp(ivec2(star_corner.zw), ivec2(0), textureSize(surface_map, 0) - 1);
   return planet || (surface_hides && texelFetch(surface_map, middle, 0).w > 0.0);
 }

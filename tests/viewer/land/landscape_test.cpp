@@ -78,6 +78,7 @@ class LandscapePictures : public HeadlessLand {
     block.view_forward = padded(view.forward);
     block.eye = {1e-3 * eye.place.height_m, eye.shift.x, eye.shift.y,
                  1e-3 * OsculatingRadius(kWgs84, eye.place.latitude_rad)};
+    block.bend.x = block.eye.w;  // straight rays
     const GlBuffer buffer;
     glBindBufferBase(GL_UNIFORM_BUFFER, kView, buffer.id());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);

@@ -120,5 +120,25 @@ TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
   EXPECT_GT(seen, 5);
 }
 
+TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
+  const BandColour colour({440.0, 490.0, 550.0, 630.0});
+  for (const double height_m : {2.0, 10e3}) {
+    const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, height_m);
+    const BentView view(MediumPreset("earth"), place.height_m);
+    const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 5.0);
+    const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 5.0);
+    const StarrySky sky{before, TurnOfSky(place.latitude_rad, 30.0), 0.0, {}, 0.0, &view};
+    int low = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const double over_rad = std::asin(now[i].direction.z) - view.horizon_rad();
+      if (over_rad < 0.0 || over_rad > 10.0 * kDegree) continue;
+      ++low;
+      EXPECT_LT(glm::length(TowardsStar(before[i], sky) - now[i].direction), 0.1 / 60.0 * kDegree)
+          << "a tenth of a minute of arc, as BentView; " << height_m << " m";
+    }
+    EXPECT_GT(low, 20);
+  }
+}
+
 }  // namespace
 }  // namespace alpenglow

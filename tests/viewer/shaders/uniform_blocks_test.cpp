@@ -76,6 +76,9 @@ TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
                           {"view_forward", offsetof(ViewBlock, view_forward)},
                           {"sun", offsetof(ViewBlock, sun)},
                           {"sun_irradiance", offsetof(ViewBlock, sun_irradiance)},
+                          {"bend", offsetof(ViewBlock, bend)},
+                          {"bend_slopes", offsetof(ViewBlock, bend_slopes)},
+                          {"bend_falls", offsetof(ViewBlock, bend_falls)},
                           {"eye", offsetof(ViewBlock, eye)}});
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Whether refraction moves land or the horizon of a view, and where to.
+#pragma once
+
+#include <optional>
+
+#include "atmosphere/ray/land_lift.h"
+#include "viewer/paint/painted_view.h"
+
+namespace alpenglow {
+
+/// Nothing where neither the farthest land nor the planet's horizon moves by more than half a pixel.
+/// @param farthest_land_m  of what is in view.
+[[nodiscard]] std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
+                                             double farthest_land_m);
+
+}  // namespace alpenglow

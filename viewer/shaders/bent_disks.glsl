@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Disks of sun and moon near the horizon, band by band where air lifts them to, through the air of
+// bent rays: BentDisk of bent_disk.h. The block View has the sun where it truly stands, and `moon`
+// (sun_light.glsl) the moon.
+#define DISK_NODES 13
+
+// Of the two disks one after the other, by elevation; a component is a band.
+uniform vec4 disk_lift[2 * DISK_NODES];   // apparent less true elevation [rad]
+uniform vec4 disk_depth[2 * DISK_NODES];  // optical depth, more than if the ray were straight
+uniform vec4 disk_nodes;  // of sun and moon: elevation of the first node [rad], nodes a radian
+
+struct DiskAir {
+  vec4 lift, depth;
+};
+
+// @param of  0: the sun; 1: the moon.
+DiskAir DiskAirAt(int of, float elevation) {
+  vec2 nodes = of == 0 ? disk_nodes.xy : disk_nodes.zw;
+  float at = clamp((elevation - nodes.x) * nodes.y, 0.0, float(DISK_NODES - 1));
+  int below = min(int(at), DISK_NODES - 2);
+  int node = of * DISK_NODES + below;
+  float share = at - float(below);
+  return DiskAir(mix(disk_lift[node], disk_lift[node + 1], share),
+                 mix(disk_depth[node], disk_depth[node + 1], share));
+}
+
+// Both disks, per unit of the sun's irradiance [1/sr]: SunDiskRadiance and MoonRadiance of where each
+// band comes from.
+vec4 BentDisks(vec3 direction, float width) {
+  float level = length(direction.xy);
+  float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
+  DiskAir of_sun = DiskAirAt(0, elevation), of_moon = DiskAirAt(1, elevation);
+  vec4 disks;
+  for (int band = 0; band < 4; ++band) {
+    vec3 to_sun = TurnedUp(direction, level, -of_sun.lift[band]);
+    vec3 to_moon = TurnedUp(direction, level, -of_moon.lift[band]);
+    float beside_moon = 1.0 - CoveredByMoon(to_moon, width);
+    disks[band] = beside_moon * exp(-of_sun.depth[band]) * SunDiskRadiance(to_sun, width)[band] +
+                  exp(-of_moon.depth[band]) * MoonRadiance(to_moon, width)[band];
+  }
+  return disks;
+}
