@@ -56,10 +56,13 @@ void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality q
 
 // --- against direct evaluation ---
 
+// Near a low sun most of the error is that of the glow, which is taken to be that of one column of aerosol.
 TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, 60.0), AirQuality::kHigh, {7e-5, 2.1e-4, 2e-5});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 6.0), AirQuality::kHigh, {4e-4, 6.2e-4, 9e-5});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 0.2), AirQuality::kHigh, {5e-4, 1.1e-3, 9e-5});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 6.0), AirQuality::kHigh,
+                    {1.7e-3, 6.2e-4, 9e-5});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 0.2), AirQuality::kHigh,
+                    {1.5e-3, 1.5e-3, 9e-5});
   ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, -4.0), AirQuality::kHigh,
                     {8e-4, 1.3e-3, 9e-5});
   ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -10.0), AirQuality::kHigh, {4e-4, 2.5e-3, 2e-5});
@@ -84,11 +87,12 @@ TEST(AirTables, OfHazeAreThoseOfTheIntegrator) {
 
 TEST(AirTables, OfLowQualityAreGoodToAPercent) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 20.0), AirQuality::kLow,
-                    {8e-4, 1.2e-3, 3.6e-4});
-  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 2.0), AirQuality::kLow, {4e-4, 4.5e-3, 1.2e-3});
+                    {1.25e-3, 1.2e-3, 3.6e-4});
+  ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 2.0), AirQuality::kLow, {1.3e-3, 4.5e-3, 1.2e-3});
 }
 
-// Of dust, whose phase function rises a hundredfold within ten degrees of the sun; up to its disk.
+// Dust's phase function rises a hundredfold within ten degrees of the sun. Of the largest error, 0.9 %, the
+// glow makes more than half: it is taken to be that of one column of aerosol.
 TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   const tests::LitAir dusty(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
   const AirEye eye = EyeUnder(300.0, 20.0);
@@ -105,7 +109,7 @@ TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
     const Bands<double> exact = judge.Sky(tables.map, angle, azimuth);
     const glm::dvec4 read = reading.Sky(angle, azimuth);
     for (std::size_t band = 0; band < exact.count; ++band) {
-      EXPECT_NEAR(read[static_cast<glm::length_t>(band)] / exact[band], 1.0, 4e-3)
+      EXPECT_NEAR(read[static_cast<glm::length_t>(band)] / exact[band], 1.0, 1.2e-2)
           << from_sun / kRadiansPerDegree << " degrees from the sun";
     }
   }
