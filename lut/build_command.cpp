@@ -68,7 +68,7 @@ void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
                  {{"--atmosphere", *options.atmosphere}});
 }
 
-/// What those who load tables without phase functions can take for a tabulated one.
+/// One lobe for those who load tables, which hold no phase functions.
 std::string LobeText(const Medium& medium) {
   if (medium.mie_phase.front().kind != PhaseKind::kTable) return "";
   const std::size_t middle = medium.wavelengths_nm.size() / 2;

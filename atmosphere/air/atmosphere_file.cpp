@@ -281,7 +281,7 @@ class AtmosphereFile {
     if (equal) phases.resize(1);
   }
 
-  // Of this kind, where the preset has another. A lobe of Cornette and Shanks may stand for the
+  // Returns a lobe of this kind where the preset has another. A lobe of Cornette and Shanks may stand for the
   // preset's table, with its mean cosine at 550 nm; any other needs a g of its own.
   PhaseFunction LobeInsteadOf(PhaseKind of_preset, PhaseKind kind) const {
     if (kind == PhaseKind::kRayleigh || mie_->Has("g")) return {.kind = kind};

@@ -29,7 +29,7 @@ struct BentGroundRay {
   double elevation_rad;  // > 0, of the eye's line of sight there, seen from the ground
 };
 
-/// What air does to light from outside that is seen in a direction, at kHorizonWavelength_nm.
+/// Changes that air makes to light from outside, seen in a direction, at kHorizonWavelength_nm.
 struct BentLight {
   double refraction_rad = 0.0;
   double per_refractivity_rad = 0.0;          // its derivative with respect to N

@@ -26,7 +26,7 @@ struct DirectRules {
   DirectRule eight;  // of all lanes, in both halves: for columns along panels
 };
 
-/// What light along a ray is found from.
+/// Inputs from which light along a ray is found.
 struct DirectWork {
   const DirectAir& air;
   const DirectRules& rules;

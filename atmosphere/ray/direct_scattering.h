@@ -75,7 +75,7 @@ class DirectScattering {
   /// @param sunlight  at the lanes of `placed`; null: all that the planet lets through.
   [[nodiscard]] ScatteredOnce<float> Scatter(const DirectRay& placed,
                                              const LaneLight* sunlight) const;
-  /// The same with the nodes; their RaySamples::lit is `sunlight`.
+  /// Returns that with the nodes; their RaySamples::lit is `sunlight`.
   [[nodiscard]] SampledLight Sample(const DirectRay& placed, const LaneLight* sunlight) const;
 
   /// Columns from end to end of a ray placed with dark samples [km], nothing subtracted, so that

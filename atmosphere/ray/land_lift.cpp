@@ -24,7 +24,7 @@ double LookRadius_m(const BendingAir& air, double height_m) {
   return height * std::cos(dip) / (2.0 * sine * sine);
 }
 
-// Of the curvature of rays at the ground, what most rays to far land have: fitted to the ray equation
+// Share of the curvature at the ground that most rays to far land have, fitted to the ray equation
 // for eyes from the ground to 36,000 km.
 double UsualShare(double height_m, double upper_m, double top_m) {
   if (height_m > top_m) return 0.5 + 0.15 * std::exp(-(height_m - top_m) / (1.6 * upper_m));

@@ -12,7 +12,7 @@
 
 namespace alpenglow {
 
-/// What an eye at one height needs to know of the air; kilometres.
+/// Bending of rays by the air as an eye at one height sees it; kilometres.
 struct LandBend {
   double radius_km, look_radius_km;    // of the planet, and of the one that it looks as
   double top_km;                       // rays are straight above
@@ -20,7 +20,7 @@ struct LandBend {
   std::array<double, 3> slope_per_km;  // curvature of level rays at the ground, layer by layer
   std::array<double, 3> fall_per_km;   // with height
 
-  /// Of level rays at the ground.
+  /// Curvature of level rays at the ground.
   [[nodiscard]] double MostCurvature() const {
     return slope_per_km[0] + slope_per_km[1] + slope_per_km[2];
   }

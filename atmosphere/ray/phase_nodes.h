@@ -18,7 +18,7 @@ class PhaseNodes {
   static constexpr std::size_t kNodes = 2048;
 
   PhaseNodes() = default;
-  /// Of a medium whose phase functions are tables.
+  /// @param medium  its phase functions are tables.
   explicit PhaseNodes(const Medium& medium);
 
   [[nodiscard]] bool empty() const { return value_.empty(); }

@@ -159,7 +159,7 @@ void SumTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>)
 }
 
 #ifdef ALPENGLOW_BATCHES
-// The same two vectors at a time, where the processor has lanes for them.
+// Sums two vectors at a time, where the processor has lanes for them.
 template <std::size_t kRows, std::size_t kFrom, std::size_t kFirst, std::size_t... kIndex>
 void SumPairsOfTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>) {
   using Wide = BatchOf<float>::Type;
@@ -194,7 +194,7 @@ void SumTaps(const Taps& taps, float* moments) {
     SumTaps<kRows, kFrom, kCount, kFirst + kHere>(taps, moments);
 }
 
-// What moments of degree kL send along the ray at a sample, before phase functions.
+// Light that moments of degree kL send along the ray at a sample, before phase functions.
 template <std::size_t kL, std::size_t... kPair>
 [[gnu::always_inline]] inline Eight LightOfDegree(const Chunk& chunk, std::size_t s,
                                                   const float* moments,
@@ -244,7 +244,7 @@ void AddDegree(const Chunk& chunk, std::size_t s, const float* moments,
   Add(light.mie, chi.mie[kL], of_degree);
 }
 
-// Of the moments of rows 0, kStep, ... kLast. All that a node holds of them is read in one pass.
+// Light of the moments of rows 0, kStep, ... kLast. All that a node holds of them is read in one pass.
 template <std::size_t kLast, std::size_t kStep, bool kPolarised, std::size_t kDegree>
 Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const Taps& taps,
                           const EightChi<kDegree>& chi) {
@@ -292,7 +292,7 @@ Four SumOfHalves(const Eight& eight) {
   return sum > dark ? sum : dark;
 }
 
-// What is at a sample of the rows of a chunk.
+// Values at a sample of the rows of a chunk.
 Four AtSample(const float (*rows)[kChunk], std::size_t s) {
   return Four{rows[0][s], rows[1][s], rows[2][s], rows[3][s]};
 }

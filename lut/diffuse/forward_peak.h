@@ -51,13 +51,13 @@ struct PeakShape {
   std::vector<float> high;  // [angle * depths + depth], times exp(-y)
 };
 
-/// What thin air scatters more than once towards an eye that looks near the sun, beyond moments of
+/// Light that thin air scatters more than once towards an eye that looks near the sun, beyond moments of
 /// some degree. Immutable.
 class GlowAboutTheSun {
  public:
   GlowAboutTheSun(const Medium& medium, int degree);
 
-  /// Whether a direction of this cosine to the sun lies where there is any.
+  /// Returns whether a direction of this cosine to the sun lies where there is any.
   [[nodiscard]] static bool Reaches(double nu);
 
   /// By what light scattered once by aerosol, without its phase function, is to be multiplied [1/sr].

@@ -120,7 +120,7 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
     options.altitudes = 24;
     options.later_ray_nodes = 8;
   }
-  // What nodes leave of one order adds up over many.
+  // Errors of the nodes in one order add up over many.
   if (molecules > 0.4) {
     options.ray_nodes = 14;
     options.later_ray_nodes = 12;

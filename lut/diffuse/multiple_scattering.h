@@ -107,10 +107,10 @@ class DiffuseLight {
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
                                             SegmentEnd end = SegmentEnd::kOpen) const;
 
-  /// Of it what the moments hold, as DiffuseFan finds it for many azimuths.
+  /// The part of it that the moments hold, as DiffuseFan finds it for many azimuths.
   [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
 
-  /// What that adds near the sun to moments of thin air (GlowAboutTheSun), over light scattered once
+  /// Light that this adds near the sun to moments of thin air (GlowAboutTheSun), over light scattered once
   /// by aerosol without its phase function [1/sr]; nothing where the forward peak is set apart.
   /// @param column_km  as for GlowAboutTheSun::FactorOf.
   [[nodiscard]] Bands<float> GlowFactor(double nu, float column_km) const;

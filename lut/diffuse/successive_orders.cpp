@@ -349,7 +349,7 @@ void Block::AddTail(const Field& last, const Field& before, const Field& second_
   }
 }
 
-// What AddTail reads.
+// AddTail reads as many.
 constexpr int kFewestOrders = 3;
 
 // Light of clear and hazy air is summed with fewer.

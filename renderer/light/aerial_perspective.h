@@ -62,13 +62,13 @@ class AerialPerspective {
   [[nodiscard]] ScatteredOnce<float> Once(const ViewRay& ray, const SunlitPath* sunlit,
                                           const Nodes& nodes) const;
 
-  /// The same with its samples; the last one has no weight and lies at the end of the ray.
+  /// Returns that with its samples; the last one has no weight and lies at the end of the ray.
   /// RaySamples::lit is the sunlight as above.
   [[nodiscard]] SampledLight Sample(const ViewRay& ray, const SunlitPath* sunlit,
                                     const Nodes& nodes) const;
 
  private:
-  /// Of rays that end in space or at the planet's own ground; or that have no length.
+  /// Samples rays that end in space or at the planet's own ground, or that have no length.
   [[nodiscard]] RaySamples<float> SampleWhole(const ViewRay& ray, const SunlitPath* sunlit,
                                               int nodes) const;
   /// b of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.

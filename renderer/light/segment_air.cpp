@@ -55,7 +55,7 @@ float LargestHazeShare(const AirConstants<float>& air) {
   return largest;
 }
 
-// What planet and terrain leave of the sunlight at each lane.
+// Sunlight that planet and terrain leave at each lane.
 LaneLight Shaded(const DirectRay& placed, const SunlitPath& sunlit) {
   LaneLight light;
   VisitPanels(placed, [&](const PanelNodes& nodes) {

@@ -27,7 +27,7 @@ class SegmentAir {
   [[nodiscard]] ScatteredOnce<float> Once(const ViewRay& ray, const DirectRay& placed,
                                           const SunlitPath* sunlit, int most_nodes) const;
 
-  /// The same with its samples, of which the last has no weight and lies at the end of the ray.
+  /// Returns that with its samples, of which the last has no weight and lies at the end of the ray.
   /// RaySamples::lit is the sunlight that the panels' polynomials need (aerial_perspective.h).
   [[nodiscard]] SampledLight Sample(const ViewRay& ray, const DirectRay& placed,
                                     const SunlitPath* sunlit, int most_nodes) const;

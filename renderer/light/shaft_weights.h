@@ -76,7 +76,7 @@ template <typename Panel>
   return FactorsFromMoments(nodes, moments);
 }
 
-/// Whether a piece in full light covers all of a panel.
+/// Returns whether a piece in full light covers all of a panel.
 template <typename Panel>
 [[nodiscard]] bool LightUnbroken(const Panel& panel, const SunlitPath& sunlit) {
   return std::any_of(sunlit.begin(), sunlit.end(), [&](const SunlitPiece& piece) {

@@ -81,7 +81,7 @@ struct AirTables {
   AirMap map;
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
-  /// Of whole rays: MediumTables::phase with the glow about the sun (DiffuseLight::GlowFactor).
+  /// Phase function of whole rays: MediumTables::phase with the glow about the sun (DiffuseLight::GlowFactor).
   AirTexels sky_phase;
   AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
   AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
@@ -95,7 +95,7 @@ void RequireFourBands(const Medium& medium);
 
 /// What depends on the medium alone.
 struct MediumTables {
-  /// Of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
+  /// Phase function of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
   AirTexels phase;
   /// Transmittance to space, [zenith cosine, altitude] on the map of transmittance_map.glsl.
   AirTexels to_sun;

@@ -52,7 +52,7 @@ bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
   return AngleBetween(asked, wanted) < kSunMoves * wanted.angular_radius_rad;
 }
 
-// Whether time jumped: in a frame the sun moves by a tenth of this where time runs a thousand times as fast.
+// Returns whether time jumped: in a frame the sun moves by a tenth of this where time runs a thousand times as fast.
 bool IsAJump(const GroundFollower::View& before, const GroundFollower::View& now) {
   constexpr double kLargestStep_rad = 1.0 * kRadiansPerDegree;
   return before.casts != now.casts || AngleBetween(before.by, now.by) > kLargestStep_rad;

@@ -17,7 +17,7 @@ double MostRise(double bends_per_m, double distance_m) {
   return 0.5 * bends_per_m * distance_m * distance_m;
 }
 
-// Of a box's corners from the eye.
+// Distance of a box's farthest corner from the eye.
 double FarthestCorner(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& from) {
   return glm::length(glm::max(glm::abs(low - from), glm::abs(high - from)));
 }
@@ -33,7 +33,7 @@ class ViewPyramid {
     planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
                high * forward - up, forward};
   }
-  // Whether any of a box may be inside, lifted or not.
+  // Returns whether any of a box may be inside, lifted or not.
   [[nodiscard]] bool Touches(const glm::dvec3& low, const glm::dvec3& high) const {
     const double rise_m = MostRise(bends_per_m_, FarthestCorner(low, high, at_));
     return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec3& plane) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the air does to a disk of sun or moon near the horizon: it flattens it, spreads its colours and
+// Air changes the disk of sun or moon near the horizon: it flattens it, spreads its colours and
 // dims its lower limb. Nodes of elevation across the disk, by the renderer's bent rays; shaders
 // interpolate (shaders/bent_disks.glsl).
 #pragma once

@@ -103,7 +103,7 @@ class SkyPainter {
     SunPosition sun;
     MoonDisk moon;
   };
-  /// The same where they truly stand, and what the air does to them; null: they are drawn where they
+  /// Disks where they truly stand, and what the air does to them; null: they are drawn where they
   /// seem to be.
   struct DisksInAir {
     SkyDisks disks;

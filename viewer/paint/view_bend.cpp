@@ -19,7 +19,7 @@ std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
   const double height_km = height_m / kMetresPerKilometre;
   const double horizon_rad = std::asin(shared::HorizonCosine(height_km, bend.look_radius_km)) -
                              std::asin(shared::HorizonCosine(height_km, bend.radius_km));
-  // Of rays as much bent as those at the ground.
+  // Lift by rays that are as much bent as those at the ground.
   const double land_rad = 0.5 * bend.MostCurvature() * farthest_land_m / kMetresPerKilometre;
   if (std::max(horizon_rad, land_rad) <= 0.5 * PixelAngle(view)) return std::nullopt;
   return bend;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether refraction moves land or the horizon of a view, and where to.
+// Refraction of a view: it moves land and the horizon, or nothing that one could see.
 #pragma once
 
 #include <optional>

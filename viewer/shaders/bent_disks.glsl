@@ -4,7 +4,7 @@
 // (sun_light.glsl) the moon.
 #define DISK_NODES 13
 
-// Of the two disks one after the other, by elevation; a component is a band.
+// Nodes of the two disks one after the other, by elevation; a component is a band.
 uniform vec4 disk_lift[2 * DISK_NODES];   // apparent less true elevation [rad]
 uniform vec4 disk_depth[2 * DISK_NODES];  // optical depth, more than if the ray were straight
 uniform vec4 disk_nodes;  // of sun and moon: elevation of the first node [rad], nodes a radian

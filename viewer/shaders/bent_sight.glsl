@@ -39,7 +39,7 @@ vec3 PlaceSeen(vec3 direction, float distance_m) {
   return TurnedUp(seen, distance_m * level, -LiftAt(lower, distance_km));
 }
 
-// Whether the bare planet is seen in a direction.
+// Returns whether the bare planet is seen in a direction.
 bool SeesPlanet(vec3 direction) {
   return GroundClearance(EYE_ALTITUDE, direction.z, LOOK_RADIUS) > 0.0;
 }

@@ -43,7 +43,7 @@ TEST(AerosolMixture, MeanCosinesAreThoseThatOpacGives) {
   }
 }
 
-// Of the phase function that follows from other mixtures: OPAC's Table of mean cosines knows it.
+// This phase function follows from other mixtures; OPAC's table has its mean cosine.
 TEST(AerosolMixture, PollutedAirHasItsMeanCosineAtAllWavelengths) {
   const std::vector<PhaseFunction> phase =
       AerosolMixturePhase("continental_polluted", {450.0, 550.0, 650.0});

@@ -381,7 +381,7 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   }
 }
 
-// Of dust, whose peak is a degree wide, and of continental air.
+// Dust has a peak a degree wide, continental air a wider one.
 TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
   for (const Medium& medium : {Dusty(), MediumPreset("mars"), MediumPreset("earth")}) {
     const AirIntegrator<float> fast(medium);

@@ -31,7 +31,7 @@ class AureoleAir {
   explicit AureoleAir(const Medium& medium, const DiffuseLightOptions& options = tests::kSmallLight)
       : medium_(medium), air_(medium), diffuse_(medium, options) {}
 
-  /// Of all orders, per unit solar irradiance [1/sr].
+  /// Light of all orders, per unit solar irradiance [1/sr].
   [[nodiscard]] Bands<float> Radiance(const ViewRay& ray) const {
     const auto samples = air_.Sample(ray, {.nodes = 12, .dark_samples = true});
     Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);

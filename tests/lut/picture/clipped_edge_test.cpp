@@ -124,7 +124,7 @@ TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
   EXPECT_EQ(between, partly) << "none of them is as white as the disk, none as blue as the sky";
 }
 
-// As bright at the disk as a share of white, and a third of it six pixels farther out.
+// The aureole is as bright at the disk as a share of white, six pixels farther out a third of that.
 Image DiskInAnAureole(double radius, float of_white) {
   Image image = DiskBeforeSky(32, radius);
   for (int y = 0; y < 32; ++y) {
