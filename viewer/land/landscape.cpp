@@ -133,11 +133,11 @@ void Landscape::ChooseDrawn() {
     drawn_.push_back({kept->slot, kept->chunk.get(), near.coarse_sides});
   }
   const EyeInAnchor eye(set_->anchor().frame, eye_place_);
+  farthest_m_ = FarthestOf(drawn_, eye);
   drawn_ = InView(std::move(drawn_), eye, view_);
   constexpr double kHigh_m = 5000.0;  // over all ground about: little hides little
   if (over_ground_ && eye_.above_m < kHigh_m)
     drawn_ = WithoutHidden(drawn_, eye, view_.bends_per_m);
-  farthest_m_ = FarthestOf(drawn_, eye);
 }
 
 void Landscape::BeginReading(const GeodeticPosition& place) {

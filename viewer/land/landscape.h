@@ -127,7 +127,7 @@ class Landscape {
   /// are not read, and that the range is made up.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
-  /// No land in view is farther from the eye [m].
+  /// No land that is loaded about the eye, in view or not, is farther from it [m].
   [[nodiscard]] double farthest_m() const { return farthest_m_; }
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 

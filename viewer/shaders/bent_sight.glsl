@@ -66,6 +66,7 @@ vec3 PlanetPlace(vec3 direction, float distance_km) {
 
 // The straight line whose air and ground a table of the sky has for ground that is seen.
 vec3 StraightToPlanet(vec3 direction) {
-  float reach = HorizonDistance(EYE_ALTITUDE, PLANET_RADIUS);
+  // Just before the horizon, so that rounding never takes the ray for one of the sky.
+  float reach = 0.99 * HorizonDistance(EYE_ALTITUDE, PLANET_RADIUS);
   return DirectionToGround(direction, min(PlanetDistance(direction), reach));
 }

@@ -393,8 +393,8 @@ TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
       const Bands<double> held = exact.AerosolPhases(nu);
       for (std::size_t band = 0; band < held.count; ++band) {
         ASSERT_EQ(held[band], Phase(MiePhase(medium, band), nu));
-        ASSERT_NEAR(static_cast<double>(read[band]) / held[band], 1.0, 1e-4)
-            << "2048 nodes; at " << 180.0 * share * share << " degrees";
+        ASSERT_NEAR(static_cast<double>(read[band]) / held[band], 1.0, 3e-5)
+            << "places among nodes in float; at " << 180.0 * share * share << " degrees";
       }
     }
   }
@@ -403,7 +403,7 @@ TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
 // Hard case 12.
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   Medium medium = MediumPreset("earth");
-  medium.mie_phase.front() = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999};
+  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999}};
   const AirIntegrator<float> air(medium);
   for (const double nu : {1.0, -1.0}) {
     const ViewRay ray{2.0, nu * 0.5, 0.5, nu};

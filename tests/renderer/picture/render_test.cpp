@@ -250,9 +250,10 @@ TEST(Render, TheDiskOfASettingSunIsFlat) {
     return area / (0.25 * kPi * (right - left) * (right - left));  // of an ellipse
   };
   const BentView view(renderer.medium(), 20.0);
-  const double limb = sun.elevation_rad - 16.0 * kRadiansPerDegree / 60.0;
+  const double middle = view.TrueElevation(sun.elevation_rad), radius = sun.angular_radius_rad;
   const double flat =
-      (view.ApparentElevationOf(limb + 0.01) - view.ApparentElevationOf(limb)) / 0.01;
+      (view.ApparentElevationOf(middle + radius) - view.ApparentElevationOf(middle - radius)) /
+      (2.0 * radius);
   const EffectSet straight = EffectSet::All().Without(Effect::kRefraction);
   EXPECT_NEAR(height_by_width(straight), 1.0, 0.03) << "pixels of a thirtieth of the disk";
   EXPECT_LT(flat, 0.93);
