@@ -9,7 +9,8 @@
 
 namespace alpenglow {
 
-/// Nothing where neither the farthest land nor the planet's horizon moves by more than half a pixel.
+/// Returns how air bends the rays of a view; nothing where neither the farthest land nor the planet's
+/// horizon moves by more than half a pixel.
 /// @param farthest_land_m  of the land about the eye, whatever part of a picture is painted.
 [[nodiscard]] std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
                                              double farthest_land_m);
