@@ -61,4 +61,11 @@ double LiftOfLand(const LandBend& bend, double eye_m, double place_m, double dis
                                   slope[1], slope[2], fall[0], fall[1], fall[2]);
 }
 
+double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land_m) {
+  const double eye_km = std::max(eye_m, 0.0) / kMetresPerKilometre;
+  const double horizon_rad = std::asin(shared::HorizonCosine(eye_km, bend.look_radius_km)) -
+                             std::asin(shared::HorizonCosine(eye_km, bend.radius_km));
+  return std::max(horizon_rad, LiftOfLand(bend, eye_m, 0.0, farthest_land_m));
+}
+
 }  // namespace alpenglow

@@ -40,6 +40,18 @@ double RefractivitySlopeAt(const BendingAir& air, double height_m) {
   return -air.refractivity * sum;
 }
 
+// The exponentials of both sums are the same.
+double CurvaturePerMetreAt(const BendingAir& air, double height_m) {
+  double sum = 0.0, slope_sum = 0.0;
+  for (const auto& [share, scale_height_m] : air.layers) {
+    if (share == 0.0) continue;
+    const double part = share * std::exp(-height_m / scale_height_m);
+    sum += part;
+    slope_sum += part / scale_height_m;
+  }
+  return -air.refractivity * slope_sum / (1.0 + air.refractivity * sum);
+}
+
 bool GentlyBends(const BendingAir& air) {
   // Looked for where layers may be steep; between the ground and the top r grows by less than a
   // third.

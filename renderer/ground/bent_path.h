@@ -3,8 +3,9 @@
 //
 //   dt/ds = (grad n - (t grad n) t) / n          the ray equation, t the unit direction
 //
-// is followed by the midpoint rule: a piece of length L leaves along the direction that the ray has
-// after L / 2, so that the ends of pieces lie on the ray but for terms of L^3. Between them a ray of
+// is followed by the midpoint rule: over a piece of length L the direction turns by L t'(L / 2), and
+// the piece leads along t + L (t'(0) + 2 t'(L / 2)) / 6, the mean direction where t' changes evenly, so
+// that the ends of pieces lie on the ray but for terms of L^3 in direction, L^4 in place. Between them a ray of
 // curvature c lies c L^2 / 8 beside its chord, and pieces are as long as that may be from the eye,
 //
 //   c L^2 / 8 = (distance + L / 2) off,

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/ray/land_lift.h"
 #include "atmosphere/sun/moon.h"
 #include "renderer/picture/scene_state.h"
 
@@ -83,8 +85,8 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
   const bool may_see_sun = may_see(light.to_sun, light.sun_radius_rad);
   const bool may_see_moon = light.moon && may_see(light.moon->to_moon, light.moon->radius_rad);
   const bool may_see_sea = !geometry.HasTerrain() && horizon_in_picture(geometric_rad);
-  const bool may_see_far = geometry.HasTerrain() && MostLift(frame) > half_pixel;
-  if (!may_see_sun && !may_see_moon && !may_see_sea && !may_see_far) return nullptr;
+  const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
+  if (!may_see_sun && !may_see_moon && !may_see_sea && !moves_terrain) return nullptr;
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   const SunPosition sun = SunAt(EyeOf(shot), shot.instant);
   const MoonPosition moon = MoonAt(EyeOf(shot), shot.instant);
@@ -99,35 +101,13 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
   const bool moves_disk = (may_see_sun && moves(light.to_sun, light.sun_radius_rad)) ||
                           (may_see_moon && moves(light.moon->to_moon, light.moon->radius_rad));
   const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;
-  bent->moves_ground = !geometry.HasTerrain() || (may_see_far && MovesTerrain(*bent, frame));
-  const bool moves_terrain = geometry.HasTerrain() && bent->moves_ground;
+  bent->moves_ground = !geometry.HasTerrain() || moves_terrain;
   return moves_disk || moves_sea || moves_terrain ? bent : nullptr;
 }
 
-// Of what stands at a distance d by rays of the curvature c: c d / 2.
-double SceneState::MostLift(const PictureFrame& frame) const {
-  const double curvature_per_m =
-      std::abs(RefractivitySlopeAt(BendingAirOf(medium, kHorizonWavelength_nm), 0.0));
-  return 0.5 * curvature_per_m * geometry.FarthestFrom(frame.camera().eye());
-}
-
-bool SceneState::MovesTerrain(const BentSight& bent, const PictureFrame& frame) const {
-  constexpr int kColumns = 33, kRows = 128;
-  const double half_pixel = 0.5 * frame.camera().PixelAngle();
-  const glm::dvec3& eye = frame.camera().eye();
-  const double height_m = std::max(geometry.AltitudeOf(eye), 0.0);
-  const double geometric_rad = -std::acos(geometry.radius_m() / (geometry.radius_m() + height_m));
-  const bool moves_horizon = bent.view.horizon_rad() - geometric_rad > half_pixel;
-  for (int i = 0; i < kColumns * kRows; ++i) {
-    const CameraRay ray =
-        frame.camera().MiddleRay((i % kColumns + 0.5) * frame.settings.width / kColumns,
-                                 (i / kColumns + 0.5) * frame.settings.height / kRows);
-    const Hit hit = OnBentRay(ray, bent, frame);
-    if (hit.kind == HitKind::kSky) continue;
-    if (hit.kind == HitKind::kPlanet && moves_horizon) return true;
-    if (glm::length(glm::normalize(hit.point - eye) - ray.direction) > half_pixel) return true;
-  }
-  return false;
+double SceneState::MostLift(const PictureFrame& frame, double eye_height_m) const {
+  const LandBend bend = LandBendOf(GentleAirOf(medium), eye_height_m);
+  return MostLiftOfPlanet(bend, eye_height_m, geometry.FarthestFrom(frame.camera().eye()));
 }
 
 namespace {
@@ -153,24 +133,20 @@ bool HiddenByPlanet(const SceneGeometry& geometry, const BentGroundRay& met, con
 }  // namespace
 
 Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame) const {
-  return OnBentRay(ray, *frame.bent, frame);
-}
-
-Hit SceneState::OnBentRay(const CameraRay& ray, const BentSight& bent,
-                          const PictureFrame& frame) const {
-  const auto met = bent.view.ToGround(bent.ElevationOf(ray.direction));
-  const glm::dvec3 across = AtElevation(ray.direction, bent.up, 0.0);
-  const glm::dvec3 foot = ray.eye - geometry.AltitudeOf(ray.eye) * bent.up;
+  const BentSight& bent = *frame.bent;
+  Hit hit;
   if (geometry.HasTerrain()) {
     const double off_rad = std::max(kOffPixels * frame.camera().PixelAngle(), kLeastOff_rad);
-    const Hit hit = Relief(frame).TerrainAlong(
-        BentPath(bent.view.air(), ray.origin, ray.direction, off_rad), frame.camera().PixelAngle());
-    const bool is_seen =
-        hit.kind == HitKind::kTerrain &&
-        !(met && HiddenByPlanet(geometry, *met, bent.view.air(), foot, bent.up, across, hit.point));
-    if (is_seen) return hit;
+    hit = Relief(frame).TerrainAlong(BentPath(bent.view.air(), ray.origin, ray.direction, off_rad),
+                                     frame.camera().PixelAngle());
   }
-  if (!met) return {};
+  const auto met = bent.view.ToGround(bent.ElevationOf(ray.direction));
+  if (!met) return hit;
+  const glm::dvec3 across = AtElevation(ray.direction, bent.up, 0.0);
+  const glm::dvec3 foot = ray.eye - geometry.AltitudeOf(ray.eye) * bent.up;
+  if (hit.kind == HitKind::kTerrain &&
+      !HiddenByPlanet(geometry, *met, bent.view.air(), foot, bent.up, across, hit.point))
+    return hit;
   const double sine = std::sin(0.5 * met->angle_rad);
   const glm::dvec3 point = foot + geometry.radius_m() * (std::sin(met->angle_rad) * across -
                                                          2.0 * sine * sine * bent.up);

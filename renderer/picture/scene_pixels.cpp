@@ -78,6 +78,8 @@ double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 /// where the moon stands before it.
 std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& to_sun,
                                  const glm::dvec3& to_moon, const Lighting& light) {
+  // A chord is no longer than its arc.
+  if (glm::length(direction - to_sun) >= light.sun_radius_rad) return std::nullopt;
   const double rho = AngleBetween(direction, to_sun) / light.sun_radius_rad;
   if (rho >= 1.0) return std::nullopt;
   if (light.eclipse && AngleBetween(direction, to_moon) < light.moon->radius_rad)
@@ -89,6 +91,8 @@ std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& 
 BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                       const Lighting& light, const BentSight& bent, const Medium& medium) {
   BandLight disk(light.irradiance.count);
+  // The disk is not wider than a round one.
+  if (glm::length(direction - light.to_sun) > 2.0 * light.sun_radius_rad) return disk;
   const double elevation = bent.ElevationOf(direction);
   const double per_sr = 1.0 / DiskSolidAngle(light.sun_radius_rad);
   for (std::size_t band = 0; band < disk.count; ++band) {

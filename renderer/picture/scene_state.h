@@ -83,12 +83,8 @@ struct SceneState {
   }
   /// What a bent ray meets. Terrain is seen within 0.1' of where the ray equation has it.
   [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame) const;
-  [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const BentSight& bent,
-                              const PictureFrame& frame) const;
-  /// By which air lifts the farthest terrain, or less [rad].
-  [[nodiscard]] double MostLift(const PictureFrame& frame) const;
-  /// Whether a bent ray in the picture meets ground that it moves by more than half a pixel.
-  [[nodiscard]] bool MovesTerrain(const BentSight& bent, const PictureFrame& frame) const;
+  /// By how much air lifts terrain and the horizon at most [rad].
+  [[nodiscard]] double MostLift(const PictureFrame& frame, double eye_height_m) const;
   /// Where it moves something in the picture by more than half a pixel; else null.
   [[nodiscard]] std::shared_ptr<const BentSight> BentSightOf(const PictureFrame& frame,
                                                              const Shot& shot) const;

@@ -37,7 +37,7 @@ struct BentSight {
   BentView view;
   glm::dvec3 up;               // at the eye, unit
   glm::dvec3 to_sun, to_moon;  // unit, as if there were no air
-  bool moves_ground = false;   // by more than half a pixel, somewhere
+  bool moves_ground = false;   // the farthest, or the horizon, by more than half a pixel
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
   /// Where light of a band that is seen in a direction comes from, unit.

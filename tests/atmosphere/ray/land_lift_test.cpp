@@ -61,11 +61,32 @@ TEST(LandLift, AMountainAHundredKilometresAwayLooksFourMinutesHigher) {
       << "half of 100 km times the curvature, a sixth of the earth's";
 }
 
+TEST(LandLift, OfAPlanetIsAtLeastThatOfItsLandAndItsHorizon) {
+  const Medium medium = MediumPreset("earth");
+  const BendingAir air = GentleAirOf(medium);
+  for (const double eye_m : {2.0, 1e3, 12e3, 400e3}) {
+    const LandBend bend = LandBendOf(air, eye_m);
+    const double geometric_rad =
+        -std::acos(medium.planet_radius_m / (medium.planet_radius_m + eye_m));
+    constexpr double kFarthest_m = 60e3;
+    const double most_rad = MostLiftOfPlanet(bend, eye_m, kFarthest_m);
+    EXPECT_GT(most_rad, GrazingElevation(air, eye_m) - geometric_rad - 0.01 * kMinuteOfArc)
+        << eye_m;
+    for (const double place_m : {0.0, 1e3, 3e3})
+      EXPECT_GE(most_rad, LiftOfLand(bend, eye_m, place_m, 30e3)) << eye_m << ", " << place_m;
+  }
+  const double half_curved_rad = -0.5 * 60e3 * CurvaturePerMetreAt(air, 0.0);
+  EXPECT_NEAR(MostLiftOfPlanet(LandBendOf(air, 2.0), 2.0, 60e3) / half_curved_rad, 1.0, 0.05)
+      << "half of 60 km times the curvature at the ground, which the horizon 5 km away does not "
+         "reach";
+}
+
 TEST(LandLift, NothingIsLiftedWithoutAir) {
   BendingAir air = GentleAirOf(MediumPreset("earth"));
   air.refractivity = 0.0;
   const LandBend bend = LandBendOf(air, 3000.0);
   EXPECT_EQ(LiftOfLand(bend, 3000.0, 1000.0, 150e3), 0.0);
+  EXPECT_NEAR(MostLiftOfPlanet(bend, 3000.0, 150e3), 0.0, 1e-9);
   EXPECT_NEAR(bend.look_radius_km, bend.radius_km, 1e-3) << "a metre";
 }
 
