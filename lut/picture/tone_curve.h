@@ -62,10 +62,10 @@ template <typename Real>
   return std::min(std::sqrt(std::sqrt(sum)), Real(1));
 }
 
-/// Display light with the hue of a printed colour, as far as that is blue (agx_look.h).
-[[nodiscard]] inline Rgb<double> WithBlueHueOf(const Rgb<double>& printed,
+/// Display light with the hue of a printed colour, `scene`, as far as that is blue (agx_look.h).
+[[nodiscard]] inline Rgb<double> WithBlueHueOf(const Oklab<double>& scene,
                                                const Rgb<double>& light) {
-  const Oklab<double> scene = OklabOf(printed), shown = OklabOf(light);
+  const Oklab<double> shown = OklabOf(light);
   const double scene_chroma = std::hypot(scene.a, scene.b), chroma = std::hypot(shown.a, shown.b);
   if (!(scene_chroma > 1e-6) || !(chroma > 1e-6)) return light;
   const double y = shared::Luminance(light[0], light[1], light[2]);
@@ -78,18 +78,19 @@ template <typename Real>
       RgbOf(Oklab<double>{shown.lightness, chroma * a / length, chroma * b / length}));
 }
 
-/// Display light of less than kMostChroma times the chroma that the printed colour has at the same
-/// lightness (agx_look.h): without an edge, an eighth-power norm of both.
-[[nodiscard]] inline Rgb<double> WithChromaNear(const Rgb<double>& printed,
+/// Display light of less than kMostChroma times the chroma that the printed colour, `scene`, has at
+/// the same lightness (agx_look.h): without an edge, an eighth-power norm of both.
+[[nodiscard]] inline Rgb<double> WithChromaNear(const Oklab<double>& scene,
                                                 const Rgb<double>& light) {
-  const Oklab<double> scene = OklabOf(printed), shown = OklabOf(light);
+  const Oklab<double> shown = OklabOf(light);
   if (!(scene.lightness > 1e-6)) return light;
   const double most =
       kMostChroma * std::hypot(scene.a, scene.b) * shown.lightness / scene.lightness;
   const double chroma = std::hypot(shown.a, shown.b);
   if (!(chroma > 1e-5)) return light;
   const double over = chroma / std::max(most, 1e-12);
-  const double share = std::pow(1.0 + std::pow(std::min(over, 1e12), 8.0), -0.125);
+  const double over2 = std::min(over, 1e12) * std::min(over, 1e12), over4 = over2 * over2;
+  const double share = 1.0 / std::sqrt(std::sqrt(std::sqrt(1.0 + over4 * over4)));
   return InsideDisplay(RgbOf(Oklab<double>{shown.lightness, share * shown.a, share * shown.b}));
 }
 
@@ -144,7 +145,7 @@ template <typename Real>
   for (std::size_t c = 0; c < 3; ++c)
     light[c] = shared::AgxWithToe(shared::AgxLight(code[c], code_share), printed[c], toe);
   // Cube roots and their way back lose four bits, which float does not have to spare.
-  const Rgb<double> scene{printed[0], printed[1], printed[2]};
+  const Oklab<double> scene = OklabOf(Rgb<double>{printed[0], printed[1], printed[2]});
   Rgb<double> shown{light[0], light[1], light[2]};
   if (grade.keeps_blue) shown = WithBlueHueOf(scene, shown);
   shown = WithChromaNear(scene, shown);
