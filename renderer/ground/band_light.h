@@ -35,13 +35,13 @@ using BandLight = Bands<float>;
 /// The same light for the sums of colours.
 class InDouble {
  public:
-  explicit InDouble(const BandLight& light) : count_(light.count) {
+  explicit InDouble(const BandLight& light) : count_(light.count) {  // NOLINT: value_ is filled
     std::copy_n(light.value.begin(), count_, value_.begin());
   }
   operator std::span<const double>() const { return {value_.data(), count_}; }  // NOLINT: a view
 
  private:
-  std::array<double, kMaxBands> value_{};
+  std::array<double, kMaxBands> value_;  // the first `count_`; the rest is never read
   std::size_t count_;
 };
 

@@ -18,6 +18,11 @@ double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
 
 namespace {
 
+/// Nothing of the box around the terrain is lower: the farther from the middle, the higher.
+double BottomOf(const SceneGround& ground) {
+  return ground.terrain ? ground.terrain->Bounds().first.z : 0.0;
+}
+
 /// Of the box around the terrain: the farther from the middle, the higher over the sphere.
 double TopOf(const SceneGround& ground, double radius_m) {
   if (!ground.terrain) return 0.0;
@@ -32,7 +37,8 @@ SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bo
     : ground_(ground),
       medium_(medium),
       with_relief_(with_relief),
-      top_m_(TopOf(ground, medium.planet_radius_m)) {}
+      top_m_(TopOf(ground, medium.planet_radius_m)),
+      bottom_m_(BottomOf(ground)) {}
 
 double SceneGeometry::AltitudeOf(const glm::dvec3& point) const {
   return AltitudeOverSphere(point, radius_m());
@@ -90,13 +96,50 @@ Hit SceneGeometry::OnTerrain(const TerrainHit& hit, const glm::dvec3& origin,
   return found;
 }
 
-Hit SceneGeometry::TerrainAlong(BentPath path, double pixel_angle_rad) const {
-  const double farthest_m = FarthestFrom(path.here()), nearest_m = NearestTo(path.here());
-  while (path.gone_m() < farthest_m && !(path.Rises() && path.HeightHere() > top_m_)) {
-    const RayPiece piece = path.Next(nearest_m);
-    if (path.gone_m() < nearest_m) continue;
-    const auto hit = ground_.terrain->Intersect(piece.begin, piece.direction, piece.length_m);
-    if (hit) return OnTerrain(*hit, piece.begin, piece.direction, piece.begin_m, pixel_angle_rad);
+double SceneGeometry::EndOf(const FanRay& ray) const {
+  return std::min({ray.fan().reach_m(), ray.fan().RisesAbove(ray, top_m_),
+                   ray.fan().SinksBelow(ray, bottom_m_)});
+}
+
+std::optional<SceneGeometry::OnChord> SceneGeometry::MeetOnChord(const FanRay& ray, double from_m,
+                                                                 double to_m) const {
+  const glm::dvec3 begin = ray.At(from_m), chord = ray.At(to_m) - begin;
+  const double length_m = glm::length(chord);
+  const glm::dvec3 direction = chord / length_m;
+  const auto hit = ground_.terrain->Intersect(begin, direction, length_m);
+  if (!hit) return std::nullopt;
+  return OnChord{begin, direction, length_m, *hit};
+}
+
+// Where the ground is solid below its surface, nothing stands on a ray whose chord below it is in
+// the air. So a long chord says up to where that is so, and a short one from there on what is met;
+// of the long one, too, the end lies near enough to the ray.
+Hit SceneGeometry::TerrainAlong(const FanRay& ray, double off_rad, double pixel_angle_rad,
+                                double expected_m) const {
+  constexpr double kBefore = 1.0 - 1e-4;  // the place that is met
+  constexpr double kBehind = 1.01;        // what is expected
+  const double end_m = EndOf(ray), near_end_m = ray.fan().EndOfChord(off_rad);
+  double from_m = NearestTo(ray.At(0.0));
+  const auto hit_on = [&](const OnChord& met) {
+    return OnTerrain(met.hit, met.begin, met.direction, from_m, pixel_angle_rad);
+  };
+  double look_m =
+      expected_m > 0.0 ? std::min(kBehind * expected_m + 0.5 * near_end_m, end_m) : end_m;
+  while (from_m < end_m) {
+    if (ground_.is_solid && from_m + ray.fan().ChordFrom(from_m, off_rad) < look_m) {
+      const auto ahead = MeetOnChord(ray, from_m, look_m);
+      if (ahead && ahead->length_m - ahead->hit.distance_m < near_end_m) return hit_on(*ahead);
+      if (!ahead) {
+        from_m = look_m;
+        look_m = end_m;
+        continue;
+      }
+      from_m += kBefore * ahead->hit.distance_m / ahead->length_m * (look_m - from_m);
+    }
+    const double to_m = std::min(from_m + ray.fan().ChordFrom(from_m, off_rad), end_m);
+    if (const auto met = MeetOnChord(ray, from_m, to_m)) return hit_on(*met);
+    from_m = to_m;
+    look_m = end_m;
   }
   return {};
 }

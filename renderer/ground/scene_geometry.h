@@ -7,9 +7,10 @@
 
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 
 #include "atmosphere/air/medium.h"
-#include "renderer/ground/bent_path.h"
+#include "renderer/ground/bent_fan.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"
 
@@ -53,7 +54,10 @@ class SceneGeometry {
                           double pixel_angle_rad) const;
 
   /// What stands on a bent ray; the sky where no terrain does. Needs terrain.
-  [[nodiscard]] Hit TerrainAlong(BentPath path, double pixel_angle_rad) const;
+  /// @param off_rad  that places on the ray may lie beside it, seen from the eye. @param expected_m
+  ///     how far it may go: a good guess saves half of the time. 0: unknown.
+  [[nodiscard]] Hit TerrainAlong(const FanRay& ray, double off_rad, double pixel_angle_rad,
+                                 double expected_m) const;
   /// Not nearer than anything of the terrain [m]. Needs terrain.
   [[nodiscard]] double FarthestFrom(const glm::dvec3& point) const;
   /// Whether terrain covers the sphere of the planet below a point. Needs terrain.
@@ -62,6 +66,16 @@ class SceneGeometry {
  private:
   /// Not farther than anything of the terrain [m].
   [[nodiscard]] double NearestTo(const glm::dvec3& point) const;
+  /// From the eye on, beyond which no terrain stands on a ray [m].
+  [[nodiscard]] double EndOf(const FanRay& ray) const;
+  /// What stands on the chord of a ray between two distances.
+  struct OnChord {
+    glm::dvec3 begin, direction;
+    double length_m;
+    TerrainHit hit;
+  };
+  [[nodiscard]] std::optional<OnChord> MeetOnChord(const FanRay& ray, double from_m,
+                                                   double to_m) const;
   /// @param before_m  from the eye to where the straight ray starts.
   [[nodiscard]] Hit OnTerrain(const TerrainHit& hit, const glm::dvec3& origin,
                               const glm::dvec3& direction, double before_m,
@@ -72,7 +86,8 @@ class SceneGeometry {
   const SceneGround& ground_;
   const Medium& medium_;
   bool with_relief_;
-  double top_m_;  // altitude that no terrain reaches
+  double top_m_;     // altitude that no terrain reaches
+  double bottom_m_;  // below which there is none
 };
 
 }  // namespace alpenglow

@@ -20,7 +20,16 @@ namespace {
 struct LoadedMesh {
   std::optional<TriangleMesh> mesh;
   std::string message;
+  bool is_whole = false;  // a grid without holes
 };
+
+/// Whether a grid's triangles are all there: none is left out beside a void.
+LoadedMesh MeshOf(const ElevationGrid& grid, const LocalFrame& frame, std::string message) {
+  LoadedMesh loaded{MeshFromElevation(grid, frame), std::move(message)};
+  loaded.is_whole = loaded.mesh->triangles.size() == 2 * static_cast<std::size_t>(grid.rows - 1) *
+                                                         static_cast<std::size_t>(grid.columns - 1);
+  return loaded;
+}
 
 // South, north, west and east ends of a grid [degrees].
 struct GroundRectangle {
@@ -99,18 +108,18 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
       const ElevationGrid range =
           BuiltInRange(scene.terrain.centre.value_or(scene.place), scene.terrain.range_seed);
       Prepare(progress, "mesh");
-      return {MeshFromElevation(range, frame),
-              scene.terrain.is_default
-                  ? "the terrain is made up: no elevation model of the place was named (--dem; or "
-                    "[terrain] in a scene file, where range = true asks for it)"
-                  : ""};
+      return MeshOf(
+          range, frame,
+          scene.terrain.is_default
+              ? "the terrain is made up: no elevation model of the place was named (--dem; or "
+                "[terrain] in a scene file, where range = true asks for it)"
+              : "");
     }
     case TerrainSource::Kind::kElevationModel: {
       const auto [model, extent, message] = ReadModelInSight(scene);
       RequireEyeOver(extent, model.grid, scene);
       Prepare(progress, "mesh");
-      return {MeshFromElevation(model.grid, frame),
-              Joined(message, NoteOn(model, scene.terrain.file.string()))};
+      return MeshOf(model.grid, frame, Joined(message, NoteOn(model, scene.terrain.file.string())));
     }
     case TerrainSource::Kind::kMesh: {
       ObjMesh read = ReadObj(scene.terrain.file, scene.terrain.up);
@@ -122,12 +131,10 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
   return {};
 }
 
-// At the foot of the eye; 0 on the bare ellipsoid.
-GroundHeights GroundAtFoot(const std::optional<Terrain>& terrain) {
-  const auto ground = terrain
-                          ? GroundHeightsAlong(*terrain, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0))
-                          : std::nullopt;
-  return ground.value_or(GroundHeights{0.0, 0.0});
+// At the foot of the eye; nothing on the bare ellipsoid.
+std::optional<GroundHeights> GroundAtFoot(const std::optional<Terrain>& terrain) {
+  if (!terrain) return std::nullopt;
+  return GroundHeightsAlong(*terrain, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
 }
 
 }  // namespace
@@ -144,7 +151,8 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
   std::optional<Terrain> terrain;
   if (loaded.mesh) Prepare(progress, "tree of triangles");
   if (loaded.mesh) terrain.emplace(std::move(*loaded.mesh));
-  const GroundHeights ground = GroundAtFoot(terrain);
+  const auto under_eye = GroundAtFoot(terrain);
+  const GroundHeights ground = under_eye.value_or(GroundHeights{0.0, 0.0});
   const Height& height = scene.camera.height;
   const double eye = height.above_ground ? ground.highest_m + height.value_m : height.value_m;
   if (eye < ground.lowest_m) {
@@ -160,7 +168,12 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
         "{}: the mesh has overhangs; sunlight in the air under them is found by occlusion rays",
         scene.terrain.file.string());
   }
-  return {frame, std::move(terrain), eye, std::move(loaded.message), is_one_surface};
+  return {frame,
+          std::move(terrain),
+          eye,
+          std::move(loaded.message),
+          is_one_surface,
+          loaded.is_whole && under_eye.has_value()};
 }
 
 }  // namespace alpenglow

@@ -17,6 +17,8 @@ struct SceneGround {
   double eye_height_m;             // over the ellipsoid
   std::string message;             // what loading has to tell, empty if nothing
   bool is_one_surface;             // no overhangs: see IsOneSurface
+  /// The eye is over one surface of an elevation model that has no holes: below it all is ground.
+  bool is_solid = false;
 };
 
 /// The ellipsoid that the scene's planet has: WGS84, or a sphere of the medium's radius.

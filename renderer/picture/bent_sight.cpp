@@ -101,6 +101,10 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
   const bool moves_disk = (may_see_sun && moves(light.to_sun, light.sun_radius_rad)) ||
                           (may_see_moon && moves(light.moon->to_moon, light.moon->radius_rad));
   const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;
+  if (moves_terrain) {
+    bent->fan = std::make_shared<BentFan>(bent->view.air(), camera.eye(), up,
+                                          geometry.FarthestFrom(camera.eye()));
+  }
   bent->moves_ground = !geometry.HasTerrain() || moves_terrain;
   return moves_disk || moves_sea || moves_terrain ? bent : nullptr;
 }
@@ -130,15 +134,24 @@ bool HiddenByPlanet(const SceneGeometry& geometry, const BentGroundRay& met, con
                                              (std::sin(inside) * across - 2.0 * sine * sine * up));
 }
 
+/// Whether a ray sinks all the way to a point that is not below the planet's sphere. The chord to it
+/// is not above the ray.
+bool IsBeforeHorizon(const SceneGeometry& geometry, const CameraRay& ray, const glm::dvec3& point) {
+  return geometry.AltitudeOf(point) >= 0.0 &&
+         glm::dot(point - ray.origin, geometry.UpAt(point)) < 0.0;
+}
+
 }  // namespace
 
-Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame) const {
+Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame,
+                          double expected_m) const {
   const BentSight& bent = *frame.bent;
   Hit hit;
   if (geometry.HasTerrain()) {
     const double off_rad = std::max(kOffPixels * frame.camera().PixelAngle(), kLeastOff_rad);
-    hit = Relief(frame).TerrainAlong(BentPath(bent.view.air(), ray.origin, ray.direction, off_rad),
-                                     frame.camera().PixelAngle());
+    hit = Relief(frame).TerrainAlong(FanRay(*bent.fan, ray.origin, ray.direction), off_rad,
+                                     frame.camera().PixelAngle(), expected_m);
+    if (hit.kind == HitKind::kTerrain && IsBeforeHorizon(geometry, ray, hit.point)) return hit;
   }
   const auto met = bent.view.ToGround(bent.ElevationOf(ray.direction));
   if (!met) return hit;

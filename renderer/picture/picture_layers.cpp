@@ -44,11 +44,11 @@ LayerValues FactorOf(const BandColour& colour, const PixelSum& rays) {
 }
 
 LayerValues SunVisibility(const BandColour&, const PixelSum& rays) {
-  return {rays.sum.sun_visibility / static_cast<float>(rays.rays)};
+  return {rays.parts->sun_visibility / static_cast<float>(rays.rays)};
 }
 
 LayerValues Scotopic(const BandColour& colour, const PixelSum& rays) {
-  return {static_cast<float>(colour.ScotopicLuminance(InDouble(rays.Mean(&Shaded::radiance))))};
+  return {static_cast<float>(colour.ScotopicLuminance(InDouble(rays.MeanRadiance())))};
 }
 
 LayerValues RayCountLayer(const BandColour&, const PixelSum& rays) {
@@ -57,14 +57,14 @@ LayerValues RayCountLayer(const BandColour&, const PixelSum& rays) {
 
 template <BandLight PolarisedLight::*kPart>
 LayerValues StokesOf(const BandColour& colour, const PixelSum& rays) {
-  return Rgb(colour, (1.0F / static_cast<float>(rays.rays)) * (*rays.sum.polarised.*kPart));
+  return Rgb(colour, (1.0F / static_cast<float>(rays.rays)) * (*rays.parts->polarised.*kPart));
 }
 
 LayerValues Polarisation(const BandColour& colour, const PixelSum& rays) {
   const auto luminance = [&](const BandLight& light) { return colour.Xyz(InDouble(light))[1]; };
   const auto [degree, angle] =
-      DegreeAndAngle(luminance(rays.sum.radiance), luminance(rays.sum.polarised->q),
-                     luminance(rays.sum.polarised->u));
+      DegreeAndAngle(luminance(rays.radiance), luminance(rays.parts->polarised->q),
+                     luminance(rays.parts->polarised->u));
   return {degree, angle};
 }
 
@@ -108,14 +108,19 @@ const std::vector<LayerKind>& LayerKinds() {
 
 }  // namespace
 
-void PixelSum::Add(const Shaded& ray) {
+void PixelSum::Add(const Shaded& ray, bool with_parts) {
   const bool is_first = rays++ == 0;
-  for (const auto part : {&Shaded::radiance, &Shaded::inscatter, &Shaded::transmittance,
-                          &Shaded::albedo, &Shaded::lamps, &Shaded::volumes}) {
-    sum.*part = is_first ? ray.*part : sum.*part + ray.*part;
+  radiance = is_first ? ray.radiance : radiance + ray.radiance;
+  if (!with_parts) return;
+  if (is_first) {
+    parts = std::make_shared<Shaded>(ray);
+    return;
   }
-  if (ray.polarised) sum.polarised = is_first ? *ray.polarised : *sum.polarised + *ray.polarised;
-  sum.sun_visibility += ray.sun_visibility;
+  for (const auto part : {&Shaded::inscatter, &Shaded::transmittance, &Shaded::albedo,
+                          &Shaded::lamps, &Shaded::volumes})
+    (*parts).*part = (*parts).*part + ray.*part;
+  if (ray.polarised) parts->polarised = *parts->polarised + *ray.polarised;
+  parts->sun_visibility += ray.sun_visibility;
 }
 
 const std::vector<std::string>& LayerNames() {

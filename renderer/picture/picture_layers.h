@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,12 +57,18 @@ struct Shaded {
 
 /// Rays of a pixel, which count alike.
 struct PixelSum {
-  Shaded sum;
+  BandLight radiance;
   int rays = 0;
+  /// Sums of the rest: only where layers ask for it, since most pictures have none.
+  std::shared_ptr<Shaded> parts = nullptr;
 
-  void Add(const Shaded& ray);
+  /// @param with_parts  of the first ray and all that follow.
+  void Add(const Shaded& ray, bool with_parts);
+  [[nodiscard]] BandLight MeanRadiance() const {
+    return (1.0F / static_cast<float>(rays)) * radiance;
+  }
   [[nodiscard]] BandLight Mean(BandLight Shaded::*part) const {
-    return (1.0F / static_cast<float>(rays)) * (sum.*part);
+    return (1.0F / static_cast<float>(rays)) * ((*parts).*part);
   }
 };
 

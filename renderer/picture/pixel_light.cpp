@@ -28,17 +28,16 @@ CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
 }  // namespace
 
 PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y,
-                       int most_rays, AirLattice* around)
+                       int most_rays, AirLattice* around, double expected_m)
     : scene_(&scene),
       frame_(&frame),
       x_(x),
       y_(y),
       through_middle_(most_rays == 1),
       around_(around),
+      last_m_(expected_m),
       samples_(x, y, most_rays),
-      glow_(scene.medium.wavelengths_nm.size()) {
-  airs_.reserve(2);  // of what stands in front and what it hides
-}
+      glow_(scene.medium.wavelengths_nm.size()) {}
 
 PixelLight::Ray PixelLight::Traced(int sample) {
   glm::dvec2 offset(0.0);
@@ -47,7 +46,8 @@ PixelLight::Ray PixelLight::Traced(int sample) {
     offset = {frame_->filter.Offset(u), frame_->filter.Offset(v)};
   }
   const CameraRay ray = RayOf(samples_, sample, glm::dvec2(x_ + 0.5, y_ + 0.5) + offset, *frame_);
-  const Hit hit = scene_->Trace(ray, *frame_);
+  const Hit hit = scene_->Trace(ray, *frame_, last_m_);
+  if (hit.kind != HitKind::kSky) last_m_ = hit.distance_m;
   return {ray, hit, AirFor(hit, ray.through, *frame_, airs_), offset};
 }
 
@@ -69,27 +69,36 @@ void PixelLight::AddNewAir(std::size_t known) {
 }
 
 void PixelLight::TakeUpTo(int rays) {
+  if (rays <= sum_.rays) return;
   const std::size_t known = airs_.size();
-  std::vector<Ray> more;
-  const auto count = static_cast<std::size_t>(std::max(rays - sum_.rays, 0));
-  more.reserve(count);
-  new_rays_.reserve(new_rays_.size() + count);
+  thread_local std::vector<Ray> more;  // memory that all pixels of a thread use
+  more.clear();
   for (int sample = sum_.rays; sample < rays; ++sample) more.push_back(Traced(sample));
   AddNewAir(known);
+  new_rays_.reserve(new_rays_.size() + more.size());
+  for (const Ray& seen : more) Add(seen);
+}
+
+void PixelLight::TakeOpenSky() {
+  const CameraRay ray = frame_->camera().MiddleRay(x_ + 0.5, y_ + 0.5);
+  const Ray seen{ray, {}, AirFor({}, ray.through, *frame_, airs_), glm::dvec2(0.0)};
+  AddNewAir(0);
+  Add(seen);
+}
+
+void PixelLight::Add(const Ray& seen) {
   const LampTile& near = frame_->plan->tiles.empty() ? DarkTile() : frame_->plan->At(x_, y_);
-  for (const Ray& seen : more) {
-    const Shaded shaded = scene_->Shade(seen.hit, airs_[seen.air], seen.ray, *frame_, near,
-                                        samples_.Point(sum_.rays, SampleOf::kSunDisk));
-    spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
-    const BandLight glow = shaded.lamps + shaded.volumes;
-    const bool sees_sky = seen.hit.kind == HitKind::kSky;
-    if (sees_sky && !sky_) sky_ = shaded.inscatter;
-    BandLight shared = shaded.radiance + -1.0F * glow;
-    if (sees_sky) shared = shared + -1.0F * *sky_;
-    new_rays_.push_back({seen.offset.x, seen.offset.y, shared, sees_sky});
-    glow_ = glow_ + glow;
-    sum_.Add(shaded);
-  }
+  const Shaded shaded = scene_->Shade(seen.hit, airs_[seen.air], seen.ray, *frame_, near,
+                                      samples_.Point(sum_.rays, SampleOf::kSunDisk));
+  spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
+  const BandLight glow = shaded.lamps + shaded.volumes;
+  const bool sees_sky = seen.hit.kind == HitKind::kSky;
+  if (sees_sky && !sky_) sky_ = shaded.inscatter;
+  BandLight shared = shaded.radiance + -1.0F * glow;
+  if (sees_sky) shared = shared + -1.0F * *sky_;
+  new_rays_.push_back({seen.offset.x, seen.offset.y, shared, sees_sky});
+  glow_ = glow_ + glow;
+  sum_.Add(shaded, !frame_->settings.layers.empty());
 }
 
 }  // namespace alpenglow

@@ -25,13 +25,18 @@ class PixelLight {
   /// @param most_rays  that it will ever be asked for. A pixel of a single one looks through its
   ///     middle.
   /// @param around  air that is shared with other pixels; null: none is.
+  /// @param expected_m  how far rays may go (SceneState::Trace).
   PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y, int most_rays,
-             AirLattice* around = nullptr);
+             AirLattice* around = nullptr, double expected_m = 0.0);
 
   /// More rays until there are so many. Air that earlier rays look through is not asked for again.
   void TakeUpTo(int rays);
+  /// The first ray, through the middle of a pixel in which nothing but sky is seen.
+  void TakeOpenSky();
 
   [[nodiscard]] const PixelSum& sum() const { return sum_; }
+  /// Length of the last ray that met something, or what was expected [m].
+  [[nodiscard]] double last_m() const { return last_m_; }
   [[nodiscard]] const RaySpread& spread() const { return spread_; }
 
   /// The rays since it was last asked, without light from lamps and volumes: its glow in the air is
@@ -41,7 +46,7 @@ class PixelLight {
   [[nodiscard]] const std::optional<BandLight>& sky() const { return sky_; }
   /// What is known of the mean radiance without that better than from its rays alone.
   void SetMeanRadiance(const BandLight& mean) {
-    sum_.sum.radiance = static_cast<float>(sum_.rays) * mean + glow_;
+    sum_.radiance = static_cast<float>(sum_.rays) * mean + glow_;
   }
 
  private:
@@ -53,12 +58,14 @@ class PixelLight {
   };
   [[nodiscard]] Ray Traced(int sample);
   void AddNewAir(std::size_t known);
+  void Add(const Ray& seen);
 
   const SceneState* scene_;
   const PictureFrame* frame_;
   int x_, y_;
   bool through_middle_;
   AirLattice* around_;
+  double last_m_;
   PixelSamples samples_;
   std::vector<SharedAir> airs_;
   PixelSum sum_;

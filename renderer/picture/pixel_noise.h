@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // How many rays a pixel takes so that its noise is what was asked for.
 //
-// Every pixel takes two rays first. Where those of its eight neighbours would not ask for more even if
-// all that they differ by were noise, edges and gradients and all, there is nothing to be missed, and
-// two are enough to begin with: skies, haze, still water. Elsewhere more are taken before it is asked
-// how much noise there is. What these first rays say of it decides how many follow, once:
+// Every pixel takes two rays first, but for those well over the skyline, of which one says as much
+// (open_sky_pixels.h). Where those of its eight neighbours would not ask for more even if all that
+// they differ by were noise, edges and gradients and all, there is nothing to be missed, and two are
+// enough to begin with: skies, haze, still water. Elsewhere more are taken before it is asked how
+// much noise there is. What these first rays say of it decides how many follow, once:
 //
 //   s^2 = sum |c_i - m|^2 / (n - 1) / max(|m|, floor)^2     of the first n rays of a pixel, c in
 //                                                           linear R, G and B, m their mean

@@ -31,7 +31,7 @@ void PixelWriter::Set(const Plane& plane, int x, int y, const LayerValues& value
 
 void PixelWriter::Write(int x, int y, const PixelSum& rays) {
   Count(static_cast<std::uint64_t>(rays.rays));
-  const auto rgb = colour_.LinearSrgb(InDouble(rays.Mean(&Shaded::radiance)));
+  const auto rgb = colour_.LinearSrgb(InDouble(rays.MeanRadiance()));
   image_.at(x, y) = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
                      static_cast<float>(rgb[2])};
   for (const Plane& plane : planes_) {

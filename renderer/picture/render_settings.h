@@ -35,6 +35,8 @@ struct RenderSettings {
   bool share_air = true;  // between rays of a pixel; false for comparison
   /// With noise between pixels, too, where it is smooth (air_lattice.h); false for comparison.
   bool share_air_of_pixels = true;
+  /// With noise one ray for pixels that see nothing but sky; false for comparison.
+  bool skips_open_sky = true;
   std::vector<PictureLayer> layers;
   LampSettings lamps = {};
   Progress* progress = nullptr;  // told of steps, and of the rows of pixels that are done

@@ -12,6 +12,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "lut/program/program.h"
 #include "renderer/effect/picture_change.h"
+#include "renderer/picture/open_sky_pixels.h"
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/pixel_writer.h"
 #include "renderer/picture/scene_state.h"
@@ -49,16 +50,14 @@ struct Tile {
 };
 
 /// Mean of the relative variances of the neighbours of a pixel; its own where it has none.
-double VarianceAround(const std::vector<PixelLight>& pixels, const Tile& tile, int x, int y,
-                      double floor) {
+double VarianceAround(const std::vector<double>& variances, const Tile& tile, int x, int y) {
   double sum = 0.0;
   int neighbours = 0;
   tile.VisitNeighbours(x, y, [&](std::size_t at) {
-    sum += pixels[at].spread().RelativeVariance(floor);
+    sum += variances[at];
     ++neighbours;
   });
-  return neighbours > 0 ? sum / neighbours
-                        : pixels[tile.Index(x, y)].spread().RelativeVariance(floor);
+  return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
 }
 
 /// Of all rays of the neighbours of a pixel as if they were of one.
@@ -153,10 +152,10 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
 BandLight BentMoon(const glm::dvec3& direction, const AirAlongRay& through, const Lighting& light,
                    const BentSight& bent) {
   BandLight seen(light.irradiance.count);
-  MoonDisk moon = *light.moon;
   // The disk is not wider than a round one, nor its way.
-  const double widest = 2.0 * moon.radius_rad + glm::length(light.moon_turn);
-  if (glm::length(direction - moon.to_moon) > widest) return seen;
+  const double widest = 2.0 * light.moon->radius_rad + glm::length(light.moon_turn);
+  if (glm::length(direction - light.moon->to_moon) > widest) return seen;
+  MoonDisk moon = *light.moon;
   moon.to_moon = bent.to_moon;
   const double elevation = bent.ElevationOf(direction);
   for (std::size_t band = 0; band < seen.count; ++band) {
@@ -185,8 +184,7 @@ BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& t
 
 PixelSum SceneState::WithStars(const PictureFrame& frame, int x, int y, PixelSum rays) {
   const BandLight* star = frame.stars ? frame.stars->At(x, y) : nullptr;
-  if (star != nullptr)
-    rays.sum.radiance = rays.sum.radiance + static_cast<float>(rays.rays) * *star;
+  if (star != nullptr) rays.radiance = rays.radiance + static_cast<float>(rays.rays) * *star;
   return rays;
 }
 
@@ -343,10 +341,11 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
   const int columns = (settings.width + Tile::kSide - 1) / Tile::kSide;
   const int tiles = columns * ((settings.height + Tile::kSide - 1) / Tile::kSide);
   const double floor = NoiseFloor(frame);
+  const OpenSkyPixels open_sky(*this, frame);
   std::atomic<int> done{0};
   tbb::parallel_for(0, tiles, [&](int i) {
     const int x0 = i % columns * Tile::kSide, y0 = i / columns * Tile::kSide;
-    AddTile(frame, floor, x0, y0, writer);
+    AddTile(frame, floor, x0, y0, open_sky, writer);
     if (settings.progress != nullptr) settings.progress->Part(static_cast<double>(++done) / tiles);
   });
 }
@@ -354,7 +353,7 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
 // First rays of the tile and of the pixels around it, which belong to others and are only asked
 // about noise and for what these rays see.
 void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0,
-                         PixelWriter& writer) const {
+                         const OpenSkyPixels& open_sky, PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
   const int fewest = std::min(first, kFewestRaysForNoise);
@@ -367,26 +366,38 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
   AirLattice* const lattice = settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
   std::vector<PixelLight> pixels;
   std::vector<RaySpread> spreads;
+  std::vector<bool> is_done;
   pixels.reserve(asked.Size());
   asked.Visit([&](int x, int y) {
     if (stopped()) return;
-    pixels.emplace_back(*this, frame, x, y, most, lattice).TakeUpTo(fewest);
-    spreads.push_back(pixels.back().spread());
+    const double expected_m = pixels.empty() ? 0.0 : pixels.back().last_m();
+    PixelLight& pixel = pixels.emplace_back(*this, frame, x, y, most, lattice, expected_m);
+    is_done.push_back(open_sky.Has(x, y));
+    if (is_done.back()) {
+      pixel.TakeOpenSky();
+    } else {
+      pixel.TakeUpTo(fewest);
+    }
+    spreads.push_back(pixel.spread());
   });
   if (stopped()) return;
   asked.Visit([&](int x, int y) {
-    if (stopped()) return;
+    if (stopped() || is_done[asked.Index(x, y)]) return;
     const double among = VarianceAmong(spreads, asked, x, y, floor);
     if (RaysForNoise(among, *settings.noise, fewest, first) > fewest)
       pixels[asked.Index(x, y)].TakeUpTo(first);
   });
   if (stopped()) return;
+  std::vector<double> variances;
+  for (const PixelLight& pixel : pixels)
+    variances.push_back(pixel.spread().RelativeVariance(floor));
   std::vector<int> wanted;
   asked.Visit([&](int x, int y) {
     const int begun = pixels[asked.Index(x, y)].sum().rays;
-    wanted.push_back(tile.Has(x, y) ? RaysForNoise(VarianceAround(pixels, asked, x, y, floor),
-                                                   *settings.noise, begun, most)
-                                    : begun);
+    const bool may_take_more = tile.Has(x, y) && !is_done[asked.Index(x, y)];
+    wanted.push_back(may_take_more ? RaysForNoise(VarianceAround(variances, asked, x, y),
+                                                  *settings.noise, begun, most)
+                                   : begun);
   });
   SharedRays shared(frame.filter, asked.x1 - asked.x0, asked.y1 - asked.y0,
                     medium.wavelengths_nm.size());

@@ -27,6 +27,8 @@
 
 namespace alpenglow {
 
+class OpenSkyPixels;
+
 struct SceneState {
   SceneState(const Scene& of, Progress* progress)
       : SceneState(of, std::make_shared<SceneGround>(LoadGround(of, progress))) {}
@@ -69,20 +71,24 @@ struct SceneState {
   void AddRows(const PictureFrame& frame, PixelWriter& writer) const;
   /// Tiles of one whose pixels take what their noise asks for.
   void AddTiles(const PictureFrame& frame, PixelWriter& writer) const;
-  void AddTile(const PictureFrame& frame, double floor, int x0, int y0, PixelWriter& writer) const;
+  void AddTile(const PictureFrame& frame, double floor, int x0, int y0,
+               const OpenSkyPixels& open_sky, PixelWriter& writer) const;
   void Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
              PixelWriter& writer) const;
   /// Of what is darker, noise counts as if it were so bright (picture_change.h) [cd/m^2].
   [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
-  [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame) const {
-    if (frame.bent && frame.bent->moves_ground) return OnBentRay(ray, frame);
+  /// @param expected_m  how far the ray may go; 0: unknown.
+  [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame,
+                          double expected_m = 0.0) const {
+    if (frame.bent && frame.bent->moves_ground) return OnBentRay(ray, frame, expected_m);
     return Relief(frame).Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
   }
   [[nodiscard]] const SceneGeometry& Relief(const PictureFrame& frame) const {
     return frame.Has(Effect::kRelief) ? geometry : smooth_geometry;
   }
   /// What a bent ray meets. Terrain is seen within 0.1' of where the ray equation has it.
-  [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame) const;
+  [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame,
+                              double expected_m) const;
   /// By how much air lifts terrain and the horizon at most [rad].
   [[nodiscard]] double MostLift(const PictureFrame& frame, double eye_height_m) const;
   /// Where it moves something in the picture by more than half a pixel; else null.

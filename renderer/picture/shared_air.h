@@ -11,6 +11,7 @@
 #include "atmosphere/ray/bent_view.h"
 #include "renderer/camera/moving_camera.h"
 #include "renderer/camera/pixel_samples.h"
+#include "renderer/ground/bent_fan.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/terrain_sunlight.h"
 #include "renderer/lamp/lamp_light.h"
@@ -38,6 +39,7 @@ struct BentSight {
   glm::dvec3 up;               // at the eye, unit
   glm::dvec3 to_sun, to_moon;  // unit, as if there were no air
   bool moves_ground = false;   // the farthest, or the horizon, by more than half a pixel
+  std::shared_ptr<const BentFan> fan = nullptr;  // rays to terrain; null: it moves none
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
   /// Where light of a band that is seen in a direction comes from, unit.

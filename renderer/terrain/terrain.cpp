@@ -46,8 +46,9 @@ std::optional<Interval> Clip(const Box& box, const glm::dvec3& origin, const glm
       if (origin[axis] < box.low[axis] || origin[axis] > box.high[axis]) return std::nullopt;
       continue;
     }
-    const double a = (box.low[axis] - origin[axis]) / unit[axis];
-    const double b = (box.high[axis] - origin[axis]) / unit[axis];
+    const double per_length = 1.0 / unit[axis];
+    const double a = (box.low[axis] - origin[axis]) * per_length;
+    const double b = (box.high[axis] - origin[axis]) * per_length;
     inside.begin = std::max(inside.begin, std::min(a, b));
     inside.end = std::min(inside.end, std::max(a, b));
   }
@@ -60,12 +61,15 @@ glm::dvec3 CheckedUnit(const glm::dvec3& origin, const glm::dvec3& direction) {
   if (!IsFinite(origin)) {
     throw InternalError(fmt::format("a ray starts at ({}, {}, {})", origin.x, origin.y, origin.z));
   }
+  constexpr double kUnit = 4.0 * std::numeric_limits<double>::epsilon();
   const double largest =
       std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
   if (!IsFinite(direction) || !(largest > 0.0)) {
     throw InternalError(
         fmt::format("a ray points along ({}, {}, {})", direction.x, direction.y, direction.z));
   }
+  const double length2 = glm::dot(direction, direction);
+  if (std::abs(length2 - 1.0) < kUnit) return direction;
   return glm::normalize(direction / largest);
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/ray/bent_view.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/mesh.h"
 
@@ -124,6 +125,56 @@ TEST(SceneGeometry, WhatTheGroundIsMadeOfIsLookedUpWhereTheRayMeetsItAndLitOnThe
   }
   EXPECT_GT(farthest_m, 1.0) << "bent slopes lie metres off their triangles; a pattern of the "
                                 "ground looked up there slides over the triangles";
+}
+
+// Long chords are below their rays, so that they meet more of the ground; short ones show what is
+// there.
+TEST(SceneGeometry, LongChordsOfBentRaysMeetWhatShortOnesMeet) {
+  const LocalFrame frame(kWgs84, {0.8, 0.1, 0.0});
+  ElevationGrid grid;
+  grid.rows = grid.columns = 121;
+  grid.step_lat_rad = grid.step_lon_rad = 1.5e-4;  // 1 km
+  grid.north_rad = 0.8 + 60 * grid.step_lat_rad;
+  grid.west_rad = 0.1 - 60 * grid.step_lon_rad;
+  for (int i = 0; i < grid.rows * grid.columns; ++i) {
+    const double x = i % grid.columns, y = i / grid.columns;
+    grid.height_m.push_back(static_cast<float>(900.0 +
+                                               500.0 * std::sin(0.31 * x) * std::cos(0.23 * y) +
+                                               300.0 * std::sin(1.1 * x + 0.7 * y)));
+  }
+  constexpr double kEye_m = 1800.0, kOff_rad = 0.05 * kRadiansPerDegree / 60.0;
+  const auto made = [&](bool is_solid) {
+    return SceneGround{frame, Terrain(MeshFromElevation(grid, frame)), kEye_m, "", true, is_solid};
+  };
+  const SceneGround solid_ground = made(true), ground = made(false);
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 0.8);
+  const SceneGeometry solid(solid_ground, medium, false), pieces(ground, medium, false);
+  const glm::dvec3 eye(0.0, 0.0, kEye_m);
+  const BentFan fan(BendingAirOf(medium, kHorizonWavelength_nm), eye, {0.0, 0.0, 1.0},
+                    pieces.FarthestFrom(eye));
+  int met = 0, other = 0;
+  double expected_m = 0.0;
+  for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.13) {
+    for (double elevation = -0.2; elevation < 0.01; elevation += 0.0007) {
+      const FanRay ray(fan, eye, DirectionFromAngles(elevation, azimuth).xyz);
+      const Hit truth = pieces.TerrainAlong(ray, kOff_rad, kPixel_rad, 0.0);
+      const Hit blind = solid.TerrainAlong(ray, kOff_rad, kPixel_rad, 0.0);
+      const Hit guided = solid.TerrainAlong(ray, kOff_rad, kPixel_rad, expected_m);
+      if (truth.kind == HitKind::kTerrain) expected_m = truth.distance_m;
+      ++met;
+      for (const Hit& hit : {blind, guided}) {
+        // Seen from the eye, both are within the angle of where the ray is; over ground that a ray
+        // all but grazes that is far apart.
+        const bool is_same =
+            hit.kind == truth.kind &&
+            (hit.kind == HitKind::kSky ||
+             std::abs(hit.distance_m - truth.distance_m) < 0.01 * truth.distance_m);
+        if (!is_same) ++other;
+      }
+    }
+  }
+  EXPECT_GT(met, 10000);
+  EXPECT_LT(other, met / 200) << "rays that graze a ridge";
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(PictureLayers, FactorsOfTheReddestLightAreNotNegative) {
   ray.transmittance[ray.transmittance.count - 1] = 0.9F;  // as if through a red filter
   ray.albedo[1] = 0.9F;                                   // or a green one
   PixelSum pixel;
-  pixel.Add(ray);
+  pixel.Add(ray, true);
   for (const PictureLayer layer : {PictureLayer::kTransmittance, PictureLayer::kAlbedo}) {
     const LayerValues factor = KindOf(layer).of_rays(colour, pixel);
     for (const float value : factor) {

@@ -112,7 +112,7 @@ TEST_F(NoisyPicture, SaysHowManyRaysItTook) {
   EXPECT_EQ(static_cast<double>(held.rays.rays), sum);
   EXPECT_EQ(held.rays.least, 2U);
   EXPECT_EQ(static_cast<float>(held.rays.most), *std::max_element(rays.begin(), rays.end()));
-  EXPECT_EQ(rays.front(), 2.0F) << "a clear sky";
+  EXPECT_EQ(rays.front(), 2.0F) << "a clear sky, some pixels over a ridge";
   const RayCount even = Ridges().RenderCounted(kEvening, Small(3)).rays;
   EXPECT_EQ(even.rays, 3U * 32U * 18U);
   EXPECT_EQ(even.least, even.most);
@@ -154,6 +154,23 @@ TEST_F(NoisyPicture, SharesAirThatIsThatOfEachPixel) {
   EXPECT_GT(square, 0.0) << "some cells are smooth";
   EXPECT_LT(std::sqrt(square / pixels) / (mean / pixels), 1e-3)
       << "cells are held to 2e-3 in their middle, where they are wrong most";
+}
+
+TEST_F(NoisyPicture, HasTheSkyThatAllItsRaysWouldSee) {
+  RenderSettings settings = Held(0.05);
+  settings.width = 160;
+  settings.height = 90;
+  const CountedPicture skipped = Ridges().RenderCounted(kEvening, settings);
+  settings.skips_open_sky = false;
+  const CountedPicture traced = Ridges().RenderCounted(kEvening, settings);
+  EXPECT_LT(skipped.rays.rays, traced.rays.rays - 1000U);
+  EXPECT_EQ(skipped.rays.least, 1U);
+  for (std::size_t i = 0; i < traced.image.rgb.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(skipped.image.rgb[i][c], traced.image.rgb[i][c], 1e-5F * traced.image.rgb[i][c])
+          << "one ray through the middle of a pixel and the mean of its rays: roundings";
+    }
+  }
 }
 
 TEST_F(NoisyPicture, HasASunCutOutOfTheSkyByTheShareOfEachPixelThatItCovers) {
