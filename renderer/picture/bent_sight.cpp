@@ -25,9 +25,10 @@ double Elevation(const glm::dvec3& direction, const glm::dvec3& up) {
   return std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
 }
 
-/// How far pieces of bent rays may lie beside them, seen from the eye. At 0.2 pixels rough ground at noon is off by
-/// 3.9 % of its light in one pixel of a thousand, at 0.04 by 0.9 %, in the same time.
-constexpr double kOffPixels = 0.04, kLeastOff_rad = 0.01 * kRadiansPerDegree / 60.0;
+/// How far chords of bent rays may lie beside them, seen from the eye. Beside exact rays, moonlit crests of one pixel
+/// are off by 2.8 % of their light in one pixel of a thousand at 0.04 pixels, by 1.0 % at 0.005, in 1.01 times the
+/// time.
+constexpr double kOffPixels = 0.005, kLeastOff_rad = 1e-4 * kRadiansPerDegree / 60.0;
 
 /// How much flatter a disk is than round at its lower limb, or its colours apart at its
 /// rim [rad].
