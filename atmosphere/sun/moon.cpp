@@ -132,15 +132,15 @@ MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant, do
 }
 
 MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant) {
-  MoonPosition moon = MoonAt(place, instant);
-  moon.elevation_rad += RefractionFromHeight(moon.elevation_rad, place.height_m);
-  return moon;
+  return ApparentMoonAt(place, instant, AlmanacAir());
 }
 
 MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,
                             const BendingAir& air) {
   MoonPosition moon = MoonAt(place, instant);
-  moon.elevation_rad += RefractionFromHeight(air, moon.elevation_rad, place.height_m);
+  const double lift_rad = RefractionFromHeight(air, moon.elevation_rad, place.height_m);
+  moon.lower_for_air_rad = lift_rad - LiftForAir(air, moon.elevation_rad);
+  moon.elevation_rad += lift_rad;
   return moon;
 }
 

@@ -27,6 +27,7 @@ struct MoonPosition {
   double phase_angle_rad;  // at the moon, between sun and place: 0 at full moon, pi at new moon
   double bright_limb_rad;  // position angle of the middle of the bright limb on the sky, from the
                            // celestial north pole over east, [0, 2 pi)
+  double lower_for_air_rad = 0.0;  // as of SunPosition (sun.h)
 
   /// Of the disk, by area, [0, 1].
   [[nodiscard]] double IlluminatedFraction() const;
@@ -41,7 +42,7 @@ struct MoonPosition {
                                   double delta_t_s);
 
 /// The moon where refraction shows it from the place's height, as ApparentSunAt (sun.h). Only its
-/// elevation is another than that of MoonAt.
+/// elevation and lower_for_air_rad are others than those of MoonAt.
 [[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant);
 /// The same, in any air that bends gently.
 [[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,

@@ -46,8 +46,12 @@ MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon, const g
   const double sunlight = SunlightAt(moon, earth_sun_au);
   const double seen = MoonReflectance(angle_rad, kWavelength_nm) / kPi;
   const double earthlit = MoonReflectance(0.0, kWavelength_nm) / kPi;
-  return {to_moon, to_sun, moon.angular_radius_rad, 2.0 * sunlight * seen / SpherePhase(angle_rad),
-          sunlight * EarthIrradiance(moon) * earthlit};
+  return {to_moon,
+          to_sun,
+          moon.angular_radius_rad,
+          2.0 * sunlight * seen / SpherePhase(angle_rad),
+          sunlight * EarthIrradiance(moon) * earthlit,
+          to_moon};
 }
 
 double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wavelength_nm) {
@@ -60,8 +64,11 @@ MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& insta
                           double earth_sun_au, const BendingAir& air) {
   const MoonPosition moon = ApparentMoonAt(place, instant, air);
   const LocalFrame frame(kWgs84, place);
-  return MoonDiskOf(moon, DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz,
-                    frame.EnuFromEcef(moon.to_sun).xyz, earth_sun_au);
+  MoonDisk disk = MoonDiskOf(moon, DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz,
+                             frame.EnuFromEcef(moon.to_sun).xyz, earth_sun_au);
+  disk.to_moon_for_air =
+      DirectionFromAngles(moon.elevation_rad - moon.lower_for_air_rad, moon.azimuth_rad).xyz;
+  return disk;
 }
 
 double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {

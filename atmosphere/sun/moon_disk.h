@@ -26,6 +26,7 @@ struct MoonDisk {
   double
       radiance_per_irradiance;  // [1/sr], of LommelSeeliger: by the sun's irradiance at the earth
   double earthshine_per_irradiance = 0.0;  // [1/sr], of the whole disk, even over it
+  glm::dvec3 to_moon_for_air{0.0};         // unit, of straight rays that light the air (sun.h)
 };
 
 /// At 550 nm. Phase angles over 150 degrees, which were never measured, are as bright a place as

@@ -11,19 +11,6 @@
 namespace alpenglow {
 namespace {
 
-// ---------------------------------------------------------------- rays
-
-constexpr double kTop_m = 120e3;  // bends by 1e-8 of the whole above
-
-BendingAir AirOver(double earth_radius_m) {
-  return {.refractivity = RefractivityAtSeaLevel(kHorizonWavelength_nm),
-          .layers = kAlmanacLayers,
-          .top_m = kTop_m,
-          .planet_radius_m = earth_radius_m};
-}
-
-// ---------------------------------------------------------------- closed form
-
 struct ValueAndSlope {
   double value, slope;
 };
@@ -69,29 +56,27 @@ double SmoothStep(double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// Rays that light the air of twilight graze the planet some 17 km up, for lower ones hardly arrive:
-// by twice the horizontal refraction e^(-17 / 8.4) of the two ways through that. From -5 to -8
-// degrees 0.1 to 0.4 of it suit green light, as the view is. Night ends that.
-double OfTwilight(const BendingAir& air, double true_elevation_rad) {
-  constexpr double kShare = 0.25;
-  constexpr double kNight_rad = -24.0 * kRadiansPerDegree, kDusk_rad = -18.0 * kRadiansPerDegree;
-  return kShare * RefractionSeenAt(air, 0.0, 0.0) *
-         SmoothStep((true_elevation_rad - kNight_rad) / (kDusk_rad - kNight_rad));
-}
-
 }  // namespace
 
+BendingAir AlmanacAir(double earth_radius_m) {
+  constexpr double kTop_m = 120e3;  // bends by 1e-8 of the whole above
+  return {.refractivity = RefractivityAtSeaLevel(kHorizonWavelength_nm),
+          .layers = kAlmanacLayers,
+          .top_m = kTop_m,
+          .planet_radius_m = earth_radius_m};
+}
+
 double RefractionOfRay(double apparent_elevation_rad, double height_m, double earth_radius_m) {
-  return RefractionSeenAt(AirOver(earth_radius_m), apparent_elevation_rad, height_m);
+  return RefractionSeenAt(AlmanacAir(earth_radius_m), apparent_elevation_rad, height_m);
 }
 
 SeaHorizon SeaHorizonFrom(double height_m, double earth_radius_m) {
-  const double grazing = GrazingElevation(AirOver(earth_radius_m), height_m);
+  const double grazing = GrazingElevation(AlmanacAir(earth_radius_m), height_m);
   return {-grazing, grazing - RefractionOfRay(grazing, height_m, earth_radius_m)};
 }
 
 double RefractionFromHeight(double true_elevation_rad, double height_m, double earth_radius_m) {
-  return RefractionFromHeight(AirOver(earth_radius_m), true_elevation_rad, height_m);
+  return RefractionFromHeight(AlmanacAir(earth_radius_m), true_elevation_rad, height_m);
 }
 
 double RefractionFromHeight(const BendingAir& air, double true_elevation_rad, double height_m) {
@@ -100,12 +85,18 @@ double RefractionFromHeight(const BendingAir& air, double true_elevation_rad, do
   const double last_seen = horizon - on_horizon;
   if (true_elevation_rad <= last_seen) {
     constexpr double kFade_rad = 3.0 * kRadiansPerDegree;  // peaks are sunlit for most of that
-    const double below = (last_seen - true_elevation_rad) / kFade_rad;
-    const double of_twilight = OfTwilight(air, true_elevation_rad);
-    return of_twilight + SmoothStep(1.0 - below) * (on_horizon - of_twilight);
+    return SmoothStep(1.0 - (last_seen - true_elevation_rad) / kFade_rad) * on_horizon;
   }
   const auto apparent = ApparentElevation(air, true_elevation_rad, height_m);
   return apparent.value_or(horizon) - true_elevation_rad;
+}
+
+double LiftForAir(const BendingAir& air, double true_elevation_rad) {
+  constexpr double kShare = 0.2;
+  const double on_horizon = RefractionSeenAt(air, 0.0, 0.0);
+  return kShare * (true_elevation_rad > -on_horizon
+                       ? RefractionFromHeight(air, true_elevation_rad, 0.0)
+                       : on_horizon);
 }
 
 double Refraction(double true_elevation_rad, const AirAtObserver& air) {

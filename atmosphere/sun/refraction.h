@@ -15,6 +15,9 @@
 
 namespace alpenglow {
 
+/// The air of almanacs at kHorizonWavelength_nm.
+[[nodiscard]] BendingAir AlmanacAir(double earth_radius_m = kEarthMeanRadius_m);
+
 /// Apparent minus true elevation [rad] of light that arrives at an observer `height_m` above sea
 /// level under an apparent elevation, or, below the sea horizon, of the light that grazes it.
 /// Within 1' of a ray traced through the U.S. Standard Atmosphere 1976 from the ground.
@@ -32,17 +35,26 @@ struct SeaHorizon {
                                         double earth_radius_m = kEarthMeanRadius_m);
 
 /// Refraction [rad] of the *true* elevation, seen from `height_m`: as alpenglow::Refraction, for an
-/// observer on a mountain, in an aeroplane or in orbit. Below the sea horizon there is nothing to be
-/// seen but twilight: within 3 degrees the refraction on it fades to a quarter of the horizontal one
-/// from sea level, 7', which is what lifts the light of high air, and at night to 0. Light that is
-/// scattered once from a sun of -5 to -8 degrees comes out within 20 % of that of bent rays in blue
-/// and green, and 50 % in red, whose light comes through lower air; without that lift it would be up
-/// to 63 % too dark. Between 1 and -3 degrees, where sunlit peaks and the sun's disk have the whole
-/// refraction, the sky has up to 40 % more light than it should. Some ten microseconds a call.
+/// observer on a mountain, in an aeroplane or in orbit. Below the sea horizon, where only sunlit peaks
+/// show where the sun is, the refraction on it fades to 0 within 3 degrees. Some ten microseconds a
+/// call.
 [[nodiscard]] double RefractionFromHeight(double true_elevation_rad, double height_m,
                                           double earth_radius_m = kEarthMeanRadius_m);
 /// The same, in any air that bends gently.
 [[nodiscard]] double RefractionFromHeight(const BendingAir& air, double true_elevation_rad,
                                           double height_m);
+
+/// By how much a sun or moon [rad] of a *true* elevation has to be lifted for its straight rays to light
+/// the air about as bent rays do: a fifth of the refraction seen from sea level, 7' from the horizon
+/// down, whatever the height of the eye.
+///
+/// A bent ray that grazes the planet arrives higher than a straight one, but it stays low for longer,
+/// and spreads: straight rays from where the sun is seen bring up to twice the light. Light scattered
+/// once (450, 550, 650 nm) towards eyes from sea level to 3 km is then within 5 % (rms over directions)
+/// of that of bent rays while the sun is up, 6 % down to -4 degrees and 17 % down to -8, where blue is
+/// brighter and red, whose light comes through lower air, darker. Not in these figures is the sky up to
+/// 10 degrees over the horizon opposite a sun that has set, where light scattered once ends.
+/// tests/bench/bent_twilight.cpp compares shares.
+[[nodiscard]] double LiftForAir(const BendingAir& air, double true_elevation_rad);
 
 }  // namespace alpenglow

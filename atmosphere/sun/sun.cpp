@@ -20,16 +20,23 @@ SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant, doub
           std::asin(kSunRadius_m / (sun.distance_au * kAstronomicalUnit_m)), sun.direction};
 }
 
-SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant) {
-  SunPosition sun = SunAt(place, instant);
-  sun.elevation_rad += RefractionFromHeight(sun.elevation_rad, place.height_m);
+SunPosition SunForAir(const SunPosition& seen) {
+  SunPosition sun = seen;
+  sun.elevation_rad -= seen.lower_for_air_rad;
+  sun.lower_for_air_rad = 0.0;
   return sun;
+}
+
+SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant) {
+  return ApparentSunAt(place, instant, AlmanacAir());
 }
 
 SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,
                           const BendingAir& air) {
   SunPosition sun = SunAt(place, instant);
-  sun.elevation_rad += RefractionFromHeight(air, sun.elevation_rad, place.height_m);
+  const double lift_rad = RefractionFromHeight(air, sun.elevation_rad, place.height_m);
+  sun.lower_for_air_rad = lift_rad - LiftForAir(air, sun.elevation_rad);
+  sun.elevation_rad += lift_rad;
   return sun;
 }
 

@@ -11,14 +11,22 @@
 
 namespace alpenglow {
 
-/// The sun seen from a place, without refraction (topocentric, apparent).
+/// The sun seen from a place, without refraction (topocentric, apparent) unless a function says so.
 struct SunPosition {
   double elevation_rad;       // above the horizontal plane of the ellipsoid
   double azimuth_rad;         // [0, 2 pi), from north over east
   double distance_au;         // from the place
   double angular_radius_rad;  // of the disk
   Vector<Ecef> direction;     // unit vector from the place to the sun
+  /// By how much lower the sun stands whose straight rays light the air (SunForAir).
+  double lower_for_air_rad = 0.0;
 };
+
+/// The sun whose straight rays light the air as the bent rays of one that is seen do (LiftForAir of
+/// refraction.h). What is seen of a sun, its disk, the middle of its aureole, shadows and light on the
+/// ground, is where refraction shows it; columns of air between the sun and air, the planet's shadow
+/// in it and light scattered more than once are those of this sun.
+[[nodiscard]] SunPosition SunForAir(const SunPosition& seen);
 
 /// Position of the sun. ERFA: IAU 2006/2000A precession-nutation, VSOP-type ephemeris (eraEpv00),
 /// aberration and parallax. Within 2 arcseconds of NREL SPA where delta-T is known.
@@ -28,7 +36,8 @@ struct SunPosition {
                                 double delta_t_s);
 
 /// The sun where refraction shows it from the place's height: SunAt, its elevation raised by
-/// RefractionFromHeight (refraction.h). `direction` stays the one without refraction.
+/// RefractionFromHeight (refraction.h). SunForAir of it is raised by LiftForAir. `direction` stays the
+/// one without refraction.
 [[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant);
 /// The same, in any air that bends gently.
 [[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What it does to the light of twilight that rays of the sun are bent (tests/fixtures/bent_twilight.h):
-// beside it stands what straight rays bring, from the sun's true place and from where pictures have it
-// (RefractionFromHeight at the eye).
+// Light of twilight that bent rays of the sun bring (tests/fixtures/bent_twilight.h), against what
+// straight rays bring from a sun that is lifted by a share of its refraction (LiftForAir), and against
+// what they bring from where it is seen. Last, light of the sun on the ground by the straight ray along
+// which it is seen.
 #include <fmt/core.h>
 
 #include <array>
+#include <cmath>
+#include <vector>
 
+#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 #include "tests/fixtures/bent_twilight.h"
@@ -13,6 +17,7 @@
 namespace {
 
 using namespace alpenglow;
+using tests::BandValues;
 using tests::BentTwilight;
 
 struct View {
@@ -20,48 +25,89 @@ struct View {
   double elevation_deg, azimuth_deg;  // from the sun
 };
 
-constexpr std::array kViews{View{"zenith", 90.0, 0.0}, View{"45 towards", 45.0, 0.0},
-                            View{"45 away", 45.0, 180.0}, View{"5 towards", 5.0, 0.0},
-                            View{"20 across", 20.0, 90.0}};
+constexpr std::array kViews{View{"zenith", 90.0, 0.0},     View{"45 towards", 45.0, 0.0},
+                            View{"45 away", 45.0, 180.0},  View{"20 across", 20.0, 90.0},
+                            View{"10 towards", 10.0, 0.0}, View{"3 towards", 3.0, 0.0},
+                            View{"10 away", 10.0, 180.0},  View{"2 away", 2.0, 180.0}};
+constexpr std::array kElevations_deg{5.0,  3.0,  2.0,  1.0,  0.0,  -1.0, -2.0,
+                                     -3.0, -4.0, -5.0, -6.0, -7.0, -8.0};
 
-/// By how much the sun would have to be lifted for straight rays to bring as much.
-double LiftThatSuits(const BentTwilight& air, const glm::dvec3& view, double truly_rad,
-                     std::size_t band, double wanted) {
-  double low = -0.5 * kRadiansPerDegree, high = 1.0 * kRadiansPerDegree;
-  for (int i = 0; i < 12; ++i) {
-    const double middle = 0.5 * (low + high);
-    const auto sun = DirectionFromAngles(truly_rad + middle, 0.0).xyz;
-    (air.Radiance(view, sun, false)[band] < wanted ? low : high) = middle;
+glm::dvec3 Towards(double elevation_rad, double azimuth_rad) {
+  return DirectionFromAngles(elevation_rad, azimuth_rad).xyz;
+}
+
+/// A rule by which a sun is lifted that lights the air.
+struct Rule {
+  const char* name;
+  double share;  // of the refraction at sea level; negative: the sun as the eye sees it
+};
+constexpr std::array kRules{Rule{"seen", -1.0}, Rule{"true", 0.0}, Rule{"0.15", 0.15},
+                            Rule{"LiftForAir", 0.2}, Rule{"0.25", 0.25}};
+
+double LiftBy(const Rule& rule, const BendingAir& air, double truly_rad, double height_m) {
+  if (rule.share < 0.0) return RefractionFromHeight(air, truly_rad, height_m);
+  return rule.share / kRules[3].share * LiftForAir(air, truly_rad);
+}
+
+/// Of relative errors, in directions that bring a tenth of what the zenith does at least.
+struct Errors {
+  double squares = 0.0, worst = 0.0;
+  int count = 0;
+
+  void Add(double error) {
+    squares += error * error;
+    if (std::abs(error) > std::abs(worst)) worst = error;
+    ++count;
   }
-  return 0.5 * (low + high);
+  [[nodiscard]] double Rms() const { return std::sqrt(squares / count); }
+};
+
+void CompareRules(const BentTwilight& twilight, double height_m, double elevation_deg) {
+  const double truly_rad = elevation_deg * kRadiansPerDegree;
+  std::array<Errors, kRules.size()> errors;
+  BandValues zenith;
+  for (const View& view : kViews) {
+    const glm::dvec3 towards =
+        Towards(view.elevation_deg * kRadiansPerDegree, view.azimuth_deg * kRadiansPerDegree);
+    const BandValues bent = twilight.Radiance(towards, Towards(truly_rad, 0.0), true);
+    if (zenith.empty()) zenith = bent;
+    for (std::size_t rule = 0; rule < kRules.size(); ++rule) {
+      const double lift = LiftBy(kRules[rule], twilight.air(), truly_rad, height_m);
+      const BandValues straight = twilight.Radiance(towards, Towards(truly_rad + lift, 0.0), false);
+      for (std::size_t band = 0; band < bent.size(); ++band)
+        if (bent[band] >= 0.1 * zenith[band]) errors[rule].Add(straight[band] / bent[band] - 1.0);
+    }
+  }
+  fmt::print("eye {:5.0f} m, sun {:+.0f} deg:", height_m, elevation_deg);
+  for (std::size_t rule = 0; rule < kRules.size(); ++rule)
+    fmt::print("  {} {:.1f} / {:+.1f} %", kRules[rule].name, 100.0 * errors[rule].Rms(),
+               100.0 * errors[rule].worst);
+  fmt::print("\n");
+}
+
+/// Light on a level place at sea level by the straight ray of the apparent elevation, over that of the
+/// bent one.
+void CompareGround(const Medium& medium, const BentTwilight& twilight, double apparent_deg) {
+  const double apparent_rad = apparent_deg * kRadiansPerDegree;
+  const BandValues bent = twilight.OnLevelPlace(apparent_rad);
+  const Bands<double> straight =
+      AirIntegrator<double>(medium).TransmittanceToSpace(0.0, std::sin(apparent_rad));
+  fmt::print("sun seen at {:4.1f} deg, light on level ground:", apparent_deg);
+  for (std::size_t band = 0; band < bent.size(); ++band)
+    fmt::print("  {:+.1f} %", 100.0 * (straight[band] * std::sin(apparent_rad) / bent[band] - 1.0));
+  fmt::print("\n");
 }
 
 }  // namespace
 
 int main() {
-  const BentTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
-  for (const double elevation_deg : {1.0, 0.0, -1.0, -2.0, -3.0, -4.0, -5.0, -6.0, -7.0, -8.0}) {
-    const double truly_rad = elevation_deg * kRadiansPerDegree;
-    const double lift = RefractionFromHeight(air.air(), truly_rad, 0.0);
-    fmt::print("sun truly at {} degrees, lifted by {:.1f}' in pictures\n", elevation_deg,
-               lift / kRadiansPerDegree * 60.0);
-    const auto true_sun = DirectionFromAngles(truly_rad, 0.0).xyz;
-    const auto lifted_sun = DirectionFromAngles(truly_rad + lift, 0.0).xyz;
-    for (const View& view : kViews) {
-      const auto towards = DirectionFromAngles(view.elevation_deg * kRadiansPerDegree,
-                                               view.azimuth_deg * kRadiansPerDegree)
-                               .xyz;
-      const auto bent = air.Radiance(towards, true_sun, true);
-      const auto straight = air.Radiance(towards, true_sun, false);
-      const auto lifted = air.Radiance(towards, lifted_sun, false);
-      fmt::print("  {:<12}", view.name);
-      for (std::size_t band = 0; band < bent.size(); ++band) {
-        const double suits = LiftThatSuits(air, towards, truly_rad, band, bent[band]);
-        fmt::print("  true {:+6.1f} %, lifted {:+6.1f} %, suits {:5.1f}'",
-                   100.0 * (straight[band] / bent[band] - 1.0),
-                   100.0 * (lifted[band] / bent[band] - 1.0), suits / kRadiansPerDegree * 60.0);
-      }
-      fmt::print("\n");
-    }
+  const Medium medium = MediumPreset("earth", {450.0, 550.0, 650.0});
+  for (const double height_m : {0.0, 3000.0, 11000.0}) {
+    const BentTwilight twilight(medium, height_m);
+    for (const double elevation_deg : kElevations_deg)
+      CompareRules(twilight, height_m, elevation_deg);
   }
+  const BentTwilight twilight(medium);
+  for (const double apparent_deg : {0.1, 0.5, 1.0, 2.0, 5.0, 10.0})
+    CompareGround(medium, twilight, apparent_deg);
 }
