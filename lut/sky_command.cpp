@@ -46,11 +46,12 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
   return sun;
 }
 
-// Where refraction shows it, as in the pictures of skyseries.
+// Where refraction shows it, and the air lit, as in the pictures of skyseries.
 PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
                         const Medium& medium) {
   const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));
-  return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad};
+  return {sun.elevation_rad, sun.azimuth_rad, sun.distance_au, sun.angular_radius_rad,
+          sun.lower_for_air_rad};
 }
 
 SkyJob JobFrom(const SkyOptions& options) {

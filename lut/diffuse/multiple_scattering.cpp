@@ -256,18 +256,18 @@ Bands<float> DiffuseLight::InscatterByMoments(const RaySamples<float>& samples, 
 }
 
 Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu,
-                                          SegmentEnd end) const {
+                                          double nu_seen, SegmentEnd end) const {
   Bands<float> light = InscatterByMoments(samples, nu);
   if (samples.count == 0) return light;
-  if (glow_ && GlowAboutTheSun::Reaches(nu)) {
-    const Bands<float> glow = GlowAlong(samples, nu);
+  if (glow_ && GlowAboutTheSun::Reaches(nu_seen)) {
+    const Bands<float> glow = GlowAlong(samples, nu_seen);
     for (std::size_t band = 0; band < bands_; ++band)
       light[band] = std::max(light[band] + glow[band], 0.0F);
   }
   if (!peak_) return light;
   const bool is_hidden = end == SegmentEnd::kOpaque && samples.extent.end == RayEnd::kLength;
-  const Bands<float> more = peak_->Along(samples, nu),
-                     behind = is_hidden ? Bands<float>(bands_) : PeakBehind(samples, nu);
+  const Bands<float> more = peak_->Along(samples, nu_seen),
+                     behind = is_hidden ? Bands<float>(bands_) : PeakBehind(samples, nu, nu_seen);
   for (std::size_t band = 0; band < bands_; ++band)
     light[band] = std::max(light[band] + more[band] + behind[band], 0.0F);
   return light;
@@ -324,7 +324,8 @@ ViewRay DiffuseLight::RayBehind(const RaySamples<float>& samples, double nu) con
 
 // Of the light behind the end of samples, what the peak brings: from the ground, or, where they end
 // before, from the air and the ground that follow.
-Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double nu) const {
+Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double nu,
+                                      double nu_seen) const {
   Bands<float> light(bands_), closed(bands_);
   if (samples.extent.end == RayEnd::kSpace) return light;
   const ForwardPeak::Way way = peak_->WayTo(samples);
@@ -336,7 +337,7 @@ Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double n
         peak_->air().Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});
     if (after.count == 0) return light;
     light = InscatterByMoments(after, nu);
-    closed = peak_->Behind(way, after, nu);
+    closed = peak_->Behind(way, after, nu_seen);
     if (after.extent.end == RayEnd::kGround) {
       const ForwardPeak::Way further = peak_->WayTo(after);
       const Bands<float> ground = GroundLight(RayBehind(after, nu).mu_s);

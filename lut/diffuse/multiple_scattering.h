@@ -105,7 +105,13 @@ class DiffuseLight {
   /// Does not include light from the ground at the end of the ray. Of what is behind an open end it
   /// includes what aerosol throws on towards the eye (forward_peak.h), not of what stands there.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
-                                            SegmentEnd end = SegmentEnd::kOpen) const;
+                                            SegmentEnd end = SegmentEnd::kOpen) const {
+    return InscatterAlong(samples, nu, nu, end);
+  }
+  /// The same under a sun that is seen elsewhere than the one that lights the air (SunForAir of sun.h).
+  /// @param nu_seen  of what is seen: what aerosol throws forward lies about it.
+  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
+                                            double nu_seen, SegmentEnd end) const;
 
   /// The part of it that the moments hold, as DiffuseFan finds it for many azimuths.
   [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
@@ -155,7 +161,8 @@ class DiffuseLight {
   [[nodiscard]] Bands<float> GlowAlong(const RaySamples<float>& samples, double nu) const;
   [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
   [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
-  [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu,
+                                        double nu_seen) const;
   /// What is interpolated: values(), or without the beam that peak_ knows in closed form.
   [[nodiscard]] const std::vector<float>& smooth() const { return peak_ ? smooth_ : values_; }
   [[nodiscard]] AlignedFloats Packed() const;

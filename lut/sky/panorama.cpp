@@ -252,10 +252,11 @@ double CentreAzimuth(PanoramaOrientation orientation) {
 Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
   Image image(settings.width, settings.height);
-  const double mu_s = std::sin(settings.sun.elevation_rad);
-  const SkyView view(air, diffuse, settings.altitude_m, mu_s,
-                     settings.view_size.value_or(
-                         FineSize(SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))));
+  const double mu_s = std::sin(settings.sun.elevation_for_air_rad());
+  const SkyView view = SkyView(air, diffuse, settings.altitude_m, mu_s,
+                               settings.view_size.value_or(FineSize(
+                                   SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))))
+                           .WithSunSeenAt(0.5 * kPi - settings.sun.elevation_rad);
   const PanoramaGrid grid{settings.width, settings.height, CentreAzimuth(settings.orientation)};
   std::vector<double> from_sun;
   for (int x = 0; x < grid.width; ++x)
@@ -297,7 +298,7 @@ double HorizontalIlluminance(const AirIntegrator<float>& air, const DiffuseLight
   const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad);
   const double mu = disk.mu_s_effective;
   const Bands<float> direct = air.TransmittanceToSpace(h, mu);
-  const Bands<float> sky = diffuse.SkyIrradiance(h, mu_s);
+  const Bands<float> sky = diffuse.SkyIrradiance(h, std::sin(sun.elevation_for_air_rad()));
   std::vector<double> light;
   for (std::size_t band = 0; band < sky.count; ++band) {
     light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *

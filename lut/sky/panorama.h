@@ -38,12 +38,16 @@ enum class PanoramaOrientation { kNorth, kBlender, kOpenExr, kThree, kUnity, kGo
 /// Azimuth, from north over east [rad], of the middle of a picture.
 [[nodiscard]] double CentreAzimuth(PanoramaOrientation orientation);
 
-/// The sun as the picture shows it.
+/// The sun as the picture shows it. Rays are straight.
 struct PanoramaSun {
   double elevation_rad = 0.0;
   double azimuth_rad = kPi;  // from north over east
   double distance = 1.0;     // relative to the one for which the medium's irradiance is
   double angular_radius_rad = kSunAngularRadius_rad;
+  double lower_for_air_rad = 0.0;  // as of SunPosition (sun.h)
+
+  /// Of the sun that lights the air.
+  [[nodiscard]] double elevation_for_air_rad() const { return elevation_rad - lower_for_air_rad; }
 };
 
 struct PanoramaSettings {

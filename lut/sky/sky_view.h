@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
@@ -73,6 +74,13 @@ class SkyView {
           double mu_s, const SkyViewSize& size);
   SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
           double mu_s);
+
+  /// The same sky under a sun that is seen elsewhere than the one that lights the air (SunForAir of
+  /// sun.h), a degree from it at most: the aureole lies about what is seen.
+  [[nodiscard]] SkyView WithSunSeenAt(double zenith_angle_rad) && {
+    sun_zenith_angle_rad_ = zenith_angle_rad;
+    return std::move(*this);
+  }
 
   [[nodiscard]] std::size_t bands() const { return bands_; }
   /// Floats from one look-up to the next in a filled row: bands() rounded up to a multiple of 4.
