@@ -153,9 +153,10 @@ AirAlongRay AerialPerspective::Sum(const SampledLight& light, const ViewRay& ray
                                    const Nodes& nodes) const {
   const AirConstants<float>& air_per_km = air_.constants();
   const auto& [samples, once] = light;
-  const auto direct = air_.Inscatter(once, ray.nu);
+  const double nu_seen = nodes.nu_seen.value_or(ray.nu);
+  const auto direct = air_.Inscatter(once, nu_seen);
   const auto diffuse = nodes.higher_orders
-                           ? diffuse_.InscatterAlong(samples, ray.nu, SegmentEnd::kOpaque)
+                           ? diffuse_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
                            : Bands<float>(air_.bands());
   AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   const std::size_t last = samples.count - 1;

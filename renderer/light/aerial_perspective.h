@@ -50,6 +50,9 @@ class AerialPerspective {
     int sky = 12;               // rays that end in space or at the planet's own ground, in [2, 16]
     bool higher_orders = true;  // light scattered more than once
     bool polarised = false;     // AirAlongRay::polarised, with the signs of PolarisedLight
+    /// Cosine between the ray and where the sun is seen, about which the aureole lies; null: it is seen
+    /// where its rays light the air from, ViewRay::nu.
+    std::optional<double> nu_seen = std::nullopt;
   };
 
   /// A ray in unbroken sunlight.

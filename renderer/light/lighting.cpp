@@ -14,9 +14,13 @@ namespace alpenglow {
 Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
                     const GeodeticPosition& place, const Medium& medium, double wetness) {
   const MountainCover cover = CoverInSeason(place, instant.modified_julian_day);
+  const SunPosition for_air = SunForAir(sun);
   Lighting light{DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-                 sun.angular_radius_rad, BandLight(medium.solar_irradiance.size()),
-                 MountainSurface(medium.wavelengths_nm, cover, wetness), SeaTime(instant)};
+                 DirectionFromAngles(for_air.elevation_rad, for_air.azimuth_rad).xyz,
+                 sun.angular_radius_rad,
+                 BandLight(medium.solar_irradiance.size()),
+                 MountainSurface(medium.wavelengths_nm, cover, wetness),
+                 SeaTime(instant)};
   for (std::size_t band = 0; band < light.irradiance.count; ++band) {
     light.irradiance[band] =
         static_cast<float>(medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au));
@@ -46,6 +50,7 @@ std::vector<DistantLight> Lighting::Lights() const {
 Lighting Lighting::By(const DistantLight& light) const {
   Lighting alone = *this;
   alone.to_sun = light.to_light;
+  alone.to_sun_for_air = light.to_light_for_air;
   alone.sun_radius_rad = light.radius_rad;
   alone.irradiance = light.irradiance;
   alone.moon = std::nullopt;
@@ -70,7 +75,8 @@ DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
                          const UtcInstant& instant, double earth_sun_au, const BandLight& colour,
                          const BandLight& sun) {
   const double share = MoonIrradiance(MoonAt(place, instant), earth_sun_au, 550.0);
-  return {disk.to_moon, disk.radius_rad, static_cast<float>(share) * (colour * sun)};
+  return {disk.to_moon, disk.to_moon_for_air, disk.radius_rad,
+          static_cast<float>(share) * (colour * sun)};
 }
 
 double DepressionOfDarkAir(double altitude_m, double radius_m, double atmosphere_height_m) {
@@ -81,14 +87,14 @@ double DepressionOfDarkAir(double altitude_m, double radius_m, double atmosphere
 }
 
 LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
-                    const glm::dvec3& to_sun, double sun_radius_rad) {
+                    const DistantLight& sun) {
   const double altitude = std::max(geometry.AltitudeOf(point), 0.0);
   const double r = geometry.radius_m();
   const glm::dvec3 up = geometry.UpAt(point);
-  const double mu_s = std::clamp(glm::dot(up, to_sun), -1.0, 1.0);
+  const auto cosine = [&](const glm::dvec3& to) { return std::clamp(glm::dot(up, to), -1.0, 1.0); };
   const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
-  const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun_radius_rad);
-  return {altitude, up, mu_s, disk.fraction, disk.mu_s_effective};
+  const VisibleDisk disk = DiskOverHorizon(cosine(sun.to_light), horizon, sun.radius_rad);
+  return {altitude, up, cosine(sun.to_light_for_air), disk.fraction, disk.mu_s_effective};
 }
 
 }  // namespace alpenglow

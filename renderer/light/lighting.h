@@ -25,11 +25,13 @@
 
 namespace alpenglow {
 
-/// A light so far away that it shines everywhere from one direction.
+/// A light so far away that it shines everywhere from one direction, and lights the air from another
+/// where refraction lifts it (SunForAir of sun.h).
 struct DistantLight {
-  glm::dvec3 to_light;   // unit, to the middle of its disk
-  double radius_rad;     // of the disk
-  BandLight irradiance;  // above the air, W m^-2 nm^-1
+  glm::dvec3 to_light;          // unit, to the middle of its disk as it is seen
+  glm::dvec3 to_light_for_air;  // unit
+  double radius_rad;            // of the disk
+  BandLight irradiance;         // above the air, W m^-2 nm^-1
 };
 
 /// The sun with the moon before it, which stands where Lighting::moon says.
@@ -40,7 +42,8 @@ struct EclipsedSun {
 
 /// Light in the air and on surfaces for one position of the sun.
 struct Lighting {
-  glm::dvec3 to_sun;  // unit
+  glm::dvec3 to_sun;          // unit, to where it is seen
+  glm::dvec3 to_sun_for_air;  // unit, to where its straight rays light the air from
   double sun_radius_rad;
   BandLight irradiance;                         // of the sun above the air, W m^-2 nm^-1
   MountainSurface surface;                      // as the season covers it
@@ -67,7 +70,9 @@ struct Lighting {
   /// totality: what the air outside of the shadow sends in is left out.
   [[nodiscard]] Lighting EclipsedBy(const EclipsedDisk& disk,
                                     const std::vector<double>& wavelengths_nm) const;
-  [[nodiscard]] DistantLight Sun() const { return {to_sun, sun_radius_rad, irradiance}; }
+  [[nodiscard]] DistantLight Sun() const {
+    return {to_sun, to_sun_for_air, sun_radius_rad, irradiance};
+  }
   /// Of sun and moon those that could show.
   [[nodiscard]] std::vector<DistantLight> Lights() const;
   /// The same scene with one light alone, as if that were the sun.
@@ -100,13 +105,12 @@ struct Lighting {
 struct LocalSun {
   double altitude_m;
   glm::dvec3 up;
-  double mu_s;
+  double mu_s_for_air;      // of DistantLight::to_light_for_air: for the light of the sky
   double visible_fraction;  // of the disk over the planet's horizon
   double mu_s_effective;    // of that part
 };
 
-/// @param to_sun  unit, towards the disk's centre.
 [[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
-                                  const glm::dvec3& to_sun, double sun_radius_rad);
+                                  const DistantLight& sun);
 
 }  // namespace alpenglow

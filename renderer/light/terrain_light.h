@@ -55,7 +55,7 @@ struct SlopePoint {
   glm::dvec3 normal;  // unit, in the frame
   glm::dvec3 up;      // unit: the vertical there
   double altitude_m;
-  double mu_s;  // zenith cosine of the sun there
+  double mu_s;  // zenith cosine there of the sun that lights the air
 };
 
 /// For one position of the sun. Immutable; safe to ask from many threads.

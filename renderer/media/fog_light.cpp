@@ -29,32 +29,31 @@ std::vector<double> AltitudesOver(double bottom_m, const FogLayer& layer) {
 
 }  // namespace
 
-FogLight::FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
-                   const BandLight& sun, double bottom_m)
+FogLight::FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const FogSun& sun,
+                   double bottom_m)
     : fog_(fog),
-      to_sun_(to_sun),
+      to_sun_(sun.to_light),
       chi_(LegendreCoefficients(fog.optics.phase, diffuse.options().degree)),
       extinction_per_m_(fog.optics.extinction_per_m[0]),
       depth_(extinction_per_m_ * fog.fog()->ColumnAbove(bottom_m)),
-      sky_(diffuse, {0.0, 0.0, 1.0}, to_sun, AltitudesOver(bottom_m, *fog.fog())),
+      sky_(diffuse, {0.0, 0.0, 1.0}, sun.to_light_for_air, AltitudesOver(bottom_m, *fog.fog())),
       ground_(diffuse.bands()) {
   const double albedo = fog.optics.scattering_per_m[0] / extinction_per_m_;
   peak_scale_ = 1.0 - albedo * std::max(chi_[2], 0.0);
   broad_.kind = PhaseKind::kHenyeyGreenstein;
   broad_.g = std::clamp(chi_[1], -0.99, 0.99);
-  const double mu_s = sky_.mu_s();
-  const BandLight sky = diffuse.SkyIrradiance(std::max(bottom_m, 0.0), mu_s);
+  const BandLight sky = diffuse.SkyIrradiance(std::max(bottom_m, 0.0), sky_.mu_s());
   const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
   for (std::size_t band = 0; band < ground_.count; ++band) {
     ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
-                    (static_cast<float>(std::max(mu_s, 0.0)) * sun[band] + sky[band]);
+                    (static_cast<float>(std::max(to_sun_.z, 0.0)) * sun.in_air[band] + sky[band]);
   }
   sky_ = sky_.WithoutGround(ground_);
   // The cosine that makes the layer as deep towards the sun as it is over a round planet.
   const FogLayer& layer = *fog.fog();
   const double slant =
-      layer.ColumnToSpace({0.0, 0.0, bottom_m}, to_sun) / layer.ColumnAbove(bottom_m);
-  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), sun, sky, ground_albedo);
+      layer.ColumnToSpace({0.0, 0.0, bottom_m}, to_sun_) / layer.ColumnAbove(bottom_m);
+  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), sun.in_air, sky, ground_albedo);
 }
 
 void FogLight::Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,

@@ -21,14 +21,18 @@
 
 namespace alpenglow {
 
+/// The sun over fog; directions as those of DistantLight (lighting.h).
+struct FogSun {
+  glm::dvec3 to_light, to_light_for_air;  // unit
+  BandLight in_air;  // what the air leaves of sunlight at the fog, of the disk over the horizon
+};
+
 /// For one position of the sun; per unit solar irradiance. Immutable. Refers to the fog.
 class FogLight {
  public:
   /// @param fog  a LocalMedium that is fog.
   /// @param bottom_m  altitude of the ground under it.
-  /// @param sun  what the air leaves of sunlight at the fog, of the disk over the horizon.
-  FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
-           const BandLight& sun, double bottom_m);
+  FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const FogSun& sun, double bottom_m);
 
   /// A ray through the fog.
   struct Look {

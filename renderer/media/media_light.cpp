@@ -86,9 +86,7 @@ struct MediaLight::State {
   const AirIntegrator<float>& air;
   const DiffuseLight& diffuse;
   const LampLight* lamps;
-  glm::dvec3 to_sun;
-  double sun_radius_rad;
-  BandLight irradiance;
+  DistantLight sun;
   std::vector<LitVolume> volumes;
   std::optional<FogLight> fog;
 
@@ -103,7 +101,7 @@ struct MediaLight::State {
   [[nodiscard]] Bands<double> VolumesToSun(const glm::dvec3& point) const;
   /// Of the fog.
   [[nodiscard]] double FogToSun(const glm::dvec3& point) const {
-    return media.fog()->optics.extinction_per_m[0] * fog_layer().ColumnToSpace(point, to_sun);
+    return media.fog()->optics.extinction_per_m[0] * fog_layer().ColumnToSpace(point, sun.to_light);
   }
 
   [[nodiscard]] LitVolume Light(const LocalMedium& medium) const;
@@ -116,14 +114,7 @@ struct MediaLight::State {
 
 MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const AirIntegrator<float>& in,
                          const DiffuseLight& sky, const Lighting& light, const LampLight* with)
-    : media(std::move(of)),
-      geometry(over),
-      air(in),
-      diffuse(sky),
-      lamps(with),
-      to_sun(light.to_sun),
-      sun_radius_rad(light.sun_radius_rad),
-      irradiance(light.irradiance) {
+    : media(std::move(of)), geometry(over), air(in), diffuse(sky), lamps(with), sun(light.Sun()) {
   for (const LocalMedium& medium : media.all()) {
     if (medium.volume() != nullptr) volumes.push_back(Light(medium));
   }
@@ -131,21 +122,22 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const AirInte
   const double scale = fog_layer().scale_height_m();
   const double bottom = media.fog_bottom_m();
   const glm::dvec3 head(0.0, 0.0, bottom + (std::isinf(scale) ? 0.0 : scale));
-  fog.emplace(*media.fog(), diffuse, to_sun, SunInAir(head), bottom);
+  fog.emplace(*media.fog(), diffuse, FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)},
+              bottom);
 }
 
 BandLight MediaLight::State::SunInAir(const glm::dvec3& point) const {
-  const LocalSun sun = LocalSunAt(geometry, point, to_sun, sun_radius_rad);
-  if (sun.visible_fraction <= 0.0) return BandLight(bands());
-  return static_cast<float>(sun.visible_fraction) *
-         air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+  const LocalSun here = LocalSunAt(geometry, point, sun);
+  if (here.visible_fraction <= 0.0) return BandLight(bands());
+  return static_cast<float>(here.visible_fraction) *
+         air.TransmittanceToSpace(here.altitude_m, here.mu_s_effective);
 }
 
 LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
   const LocalVolume& volume = *medium.volume();
   const double low = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 0.0}));
   const double high = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 1.0}));
-  const SkyMoments sky(diffuse, geometry.UpAt(volume.Middle()), to_sun,
+  const SkyMoments sky(diffuse, geometry.UpAt(volume.Middle()), sun.to_light_for_air,
                        {low, 0.5 * (low + high), high});
   LitVolume lit{LegendreCoefficients(medium.optics.phase, diffuse.options().degree), sky,
                 std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
@@ -158,7 +150,7 @@ VolumeGrid MediaLight::State::SunColumns(const LocalVolume& volume) const {
   std::array<int, 3> size = volume.grid()->size();
   for (int& side : size) side = std::min(side, kMost);
   return Tabulated(size, [&](const glm::dvec3& unit) {
-    return volume.Column(volume.FrameFromUnit(unit), to_sun, kEndless);
+    return volume.Column(volume.FrameFromUnit(unit), sun.to_light, kEndless);
   });
 }
 
@@ -249,7 +241,7 @@ Bands<double> MediaLight::State::VolumesToSun(const glm::dvec3& point) const {
     const bool in_box = std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5;
     AddDepth(media.all()[m].optics,
              in_box && volumes[m].sun_column ? volumes[m].sun_column->At(off + 0.5)
-                                             : volume.Column(point, to_sun, kEndless),
+                                             : volume.Column(point, sun.to_light, kEndless),
              depth);
   }
   return depth;
@@ -320,7 +312,7 @@ class Sources {
   Sources(const MediaLight::State& light, const glm::dvec3& origin, const glm::dvec3& direction,
           const SunlitPath* sunlit)
       : light_(light), direction_(direction), air_(light, origin, direction), sunlit_(sunlit) {
-    const double cosine = glm::dot(direction, light.to_sun);
+    const double cosine = glm::dot(direction, light.sun.to_light);
     for (std::size_t m = 0; m < light.volumes.size(); ++m) {
       phase_.push_back(Phase(light.media.all()[m].optics.phase, cosine));
       sky_.push_back(light.volumes[m].sky.Towards(direction, light.volumes[m].chi));
@@ -366,7 +358,7 @@ class Sources {
           sky_through_fog * sky[band] * static_cast<float>(volume.sky_left[band].At(unit));
       sum[band] +=
           static_cast<float>(density) * (static_cast<float>(medium.optics.scattering_per_m[band]) *
-                                             light_.irradiance[band] * arriving +
+                                             light_.sun.irradiance[band] * arriving +
                                          static_cast<float>(medium.optics.emission_per_m[band]));
     }
     for (const VolumeLamp& lamp : volume.lamps) AddLamp(medium, lamp, point, unit, density, sum);
@@ -398,7 +390,7 @@ class Sources {
     const auto scattering =
         static_cast<float>(density * light_.media.fog()->optics.scattering_per_m[0]);
     for (std::size_t band = 0; band < sum.count; ++band) {
-      sum[band] += scattering * light_.irradiance[band] * (fog.of_sun[band] + fog.of_sky[band]);
+      sum[band] += scattering * light_.sun.irradiance[band] * (fog.of_sun[band] + fog.of_sky[band]);
     }
   }
 

@@ -38,12 +38,12 @@ std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& 
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
-  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, diffuse_, light.to_sun);
+  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, diffuse_, light.to_sun_for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
         [&](const SlopePlace& place) { return SentToSlopes(place, from, *on_terrain); },
-        light.to_sun.z);
+        light.to_sun_for_air.z);
   }
   return on_terrain;
 }
@@ -59,7 +59,8 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
       place.point + 0.01 * cell_m * place.normal;  // nodes lie in the surface, not on it
   hit.footprint_m = cell_m;
   const LocalSun sun = LocalSunAt(hit.point, light);
-  BandLight irradiance = sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s});
+  BandLight irradiance =
+      sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air});
   if (const auto direct = SunIrradiance(hit, from, sun, light.to_sun))
     irradiance = irradiance + *direct;
   // Seen at 60 degrees, which stands for the mean over directions.
@@ -68,7 +69,7 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
 }
 
 LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
-  return alpenglow::LocalSunAt(parts_.geometry, point, light.to_sun, light.sun_radius_rad);
+  return alpenglow::LocalSunAt(parts_.geometry, point, light.Sun());
 }
 
 double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
@@ -89,16 +90,17 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
 BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
                                      const LocalSun& sun) const {
   const Lighting& light = from.light;
-  const glm::dvec3 flat_sun = light.to_sun - sun.mu_s * sun.up;
+  const glm::dvec3 flat_sun = light.to_sun_for_air - sun.mu_s_for_air * sun.up;
   const double normal_mu = std::clamp(glm::dot(hit.normal, sun.up), -1.0, 1.0);
   const glm::dvec3 flat_normal = hit.normal - normal_mu * sun.up;
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
-  const BandLight clear = SeesTerrain(hit, light)
-                              ? light.on_terrain->Irradiance({hit.smooth_point, hit.normal, sun.up,
-                                                              sun.altitude_m, sun.mu_s})
-                              : diffuse_.Irradiance(sun.altitude_m, sun.mu_s, normal_mu, azimuth);
+  const BandLight clear =
+      SeesTerrain(hit, light)
+          ? light.on_terrain->Irradiance(
+                {hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air})
+          : diffuse_.Irradiance(sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
   if (from.media == nullptr) return clear;
   const SkyThroughFog fog = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return fog.left * clear + fog.added;
@@ -131,7 +133,7 @@ BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const 
 
 BandLight GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
                               const LocalSun& sun) const {
-  const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s};
+  const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air};
   return SeesTerrain(hit, light) ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
                                  : light.on_terrain->SkyRadiance(at, ray.direction);
 }

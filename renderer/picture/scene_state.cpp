@@ -40,7 +40,7 @@ double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& e
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
       direct * models.whole().air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
-      models.whole().diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s);
+      models.whole().diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
   return colour.Xyz(InDouble(source.irradiance * irradiance))[1];
 }
 
@@ -87,6 +87,7 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
   const SunPosition sun = ApparentSun(shot);
   Lighting light = LightingOf(sun, shot.instant, scene.place, medium, scene.ground.wetness);
   light.to_sun = stand.frame_from_enu * light.to_sun;
+  light.to_sun_for_air = stand.frame_from_enu * light.to_sun_for_air;
   if (!medium.follows_wgs84) return light;  // no other planet has this moon
   const GeodeticPosition eye = EyeOf(shot);
   light.moon = ApparentMoonDisk(eye, shot.instant, sun.distance_au, GentleAirOf(medium));
@@ -96,6 +97,7 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
     light.moon->to_moon = ToMoonBefore(sun, eye, shot.instant);
   }
   light.moon->to_moon = stand.frame_from_enu * light.moon->to_moon;
+  light.moon->to_moon_for_air = stand.frame_from_enu * light.moon->to_moon_for_air;
   light.moon->to_sun = stand.frame_from_enu * light.moon->to_sun;
   light.moon_turn = MoonTurn(scene.camera.shutter_s, eye.latitude_rad, stand);
   AddNight(shot, stand, sun.distance_au, light);
@@ -118,7 +120,8 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
                                              light.moon_colour, light.WholeSun());
   const double moon_lux = IlluminanceBy(moonlight, stand.eye, light);
   if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
-  const double depression_rad = -std::asin(glm::dot(light.to_sun, geometry.UpAt(stand.eye)));
+  const double depression_rad =
+      -std::asin(glm::dot(light.to_sun_for_air, geometry.UpAt(stand.eye)));
   light.shows =
       sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
       depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),

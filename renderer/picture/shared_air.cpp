@@ -21,12 +21,13 @@ class AirTo {
         is_lit_(light.shows),
         kind_(rays.kind),
         direction_(direction),
-        to_sun_(light.to_sun),
+        to_sun_(light.to_sun_for_air),
+        nu_seen_(std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)),
         up_(geometry.UpAt(frame.camera().eye())) {
     const glm::dvec3& from = frame.camera().eye();
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up_), -1.0, 1.0),
-            std::clamp(glm::dot(light.to_sun, up_), -1.0, 1.0),
-            std::clamp(glm::dot(direction, light.to_sun), -1.0, 1.0)};
+            std::clamp(glm::dot(to_sun_, up_), -1.0, 1.0),
+            std::clamp(glm::dot(direction, to_sun_), -1.0, 1.0)};
     // The planet's own horizon ends a straight ray by itself, where a length would only add a
     // rounding. Bent rays see the planet over that horizon too.
     const bool is_bent = frame.bent && frame.bent->moves_ground;
@@ -55,7 +56,8 @@ class AirTo {
     const AerialPerspective::Nodes sampling{
         .sky = frame_.Has(Effect::kFineAir) ? nodes : std::max(nodes / 2, 2),
         .higher_orders = frame_.Has(Effect::kMultipleScattering),
-        .polarised = frame_.polarised};
+        .polarised = frame_.polarised,
+        .nu_seen = nu_seen_};
     AirAlongRay air = sunlight_.IsBroken() ? in.aerial.Along(ray, path_, sampling)
                                            : in.aerial.Along(ray, sampling);
     if (air.polarised) {
@@ -70,7 +72,9 @@ class AirTo {
   const TerrainSunlight& sunlight_;
   bool is_lit_;
   HitKind kind_;
-  glm::dvec3 direction_, to_sun_, up_;
+  glm::dvec3 direction_, to_sun_;
+  double nu_seen_;
+  glm::dvec3 up_;
   ViewRay ray_;
   SunlitPath path_;
 };

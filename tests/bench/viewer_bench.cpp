@@ -78,7 +78,8 @@ void Pass(benchmark::State& state, const std::string& statement, int width, int 
   AirTextures textures;
   textures.Upload(MakeMediumTables(Earth().air));
   textures.Upload(Tables(static_cast<AirQuality>(state.range(0)), 1500.0));
-  textures.SetView(1500.0, {0.0, std::sqrt(1.0 - 0.09), 0.3});
+  const glm::dvec3 sun(0.0, std::sqrt(1.0 - 0.09), 0.3);
+  textures.SetView(1500.0, {sun, sun});
   std::vector<ShaderPiece> pieces = SharedTexts();
   for (ShaderPiece& piece : AirTableTexts()) pieces.push_back(std::move(piece));
   pieces.push_back({"main", fmt::format("in vec2 screen;\nout vec4 picture;\nvoid main() {{\n"

@@ -15,7 +15,7 @@ constexpr double kGreatChange = 5e-3;  // that does not wait
 constexpr double kJump = 0.1;          // that is not shown: small tables are made at once
 constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
 
-AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.z, view.ceiling_m}; }
+AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.for_air.z, view.ceiling_m}; }
 
 AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
   const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
@@ -128,7 +128,10 @@ AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   if (!runs || AirChange(EyeOf(last_view_), EyeOf(view)) > kJump) return view;
   AirView ahead = view;
   const double frames = kShown * (making_s_ + seconds) / seconds;
-  ahead.sun = glm::normalize(view.sun + frames * (view.sun - last_view_.sun));
+  const auto gone_on = [&](glm::dvec3 SkySun::*to) {
+    return glm::normalize(view.sun.*to + frames * (view.sun.*to - last_view_.sun.*to));
+  };
+  ahead.sun = {gone_on(&SkySun::seen), gone_on(&SkySun::for_air)};
   return ahead;
 }
 

@@ -19,7 +19,7 @@ namespace alpenglow {
 struct AirView {
   double altitude_m;    // of the eye over the sphere that osculates the ellipsoid below it
   double latitude_rad;  // of the eye
-  glm::dvec3 sun;       // unit vector to the apparent sun: east, north, up
+  SkySun sun;
   double ceiling_m = AirEye{}.ceiling_m;  // no land is higher
   bool operator==(const AirView&) const = default;
 };

@@ -126,13 +126,14 @@ void AirTextures::Upload(const AirTables& tables) {
   CheckGl("AirTextures::Upload");
 }
 
-void AirTextures::SetView(double altitude_m, const glm::dvec3& sun) {
+void AirTextures::SetView(double altitude_m, const SkySun& sun) {
   const double h = std::max(altitude_m, 0.0) / 1000.0;
   const auto radius = static_cast<double>(values_.shell.w);
   const double horizon = shared::HorizonCosine<double>(h, radius);
-  const double flat = std::hypot(sun.x, sun.y);
-  const glm::dvec2 azimuth = flat > 1e-9 ? glm::dvec2(sun) / flat : glm::dvec2(0.0, 1.0);
-  values_.sun = {sun, 0.0};
+  const double flat = std::hypot(sun.for_air.x, sun.for_air.y);
+  const glm::dvec2 azimuth = flat > 1e-9 ? glm::dvec2(sun.for_air) / flat : glm::dvec2(0.0, 1.0);
+  values_.sun = {sun.for_air, 0.0};
+  values_.sun_seen = {sun.seen, 0.0};
   values_.frame = {azimuth, -horizon, std::sqrt((1.0 - horizon) * (1.0 + horizon))};
 }
 

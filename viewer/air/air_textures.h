@@ -14,14 +14,21 @@
 
 namespace alpenglow {
 
+/// Where a sun stands, as unit vectors in the frame of the eye, east, north, up, and where its straight
+/// rays light the air from (SunForAir of sun.h).
+struct SkySun {
+  glm::dvec3 seen, for_air;
+  bool operator==(const SkySun&) const = default;
+};
+
 /// `block AirTables` of air_tables.glsl.
 struct AirTablesBlock {
-  glm::vec4 sun, frame, shell, ranges, crowding, columns;
+  glm::vec4 sun, sun_seen, frame, shell, ranges, crowding, columns;
   glm::vec4 sky_rows, through_rows, way_rows, extinction_rows, distances, phase_nodes;
   std::array<glm::vec4, 3> sky_mix;
   std::array<glm::vec4, 2> single_mix;
 };
-static_assert(sizeof(AirTablesBlock) == 17 * sizeof(glm::vec4));
+static_assert(sizeof(AirTablesBlock) == 18 * sizeof(glm::vec4));
 
 /// Pieces of a shader that calls the functions of air_tables.glsl, after SharedTexts().
 [[nodiscard]] std::vector<ShaderPiece> AirTableTexts();
@@ -38,8 +45,7 @@ class AirTextures {
 
   /// What is uploaded as an eye sees it that has moved since, by less than what asks for new tables:
   /// rows count from its own horizon, azimuths from its own sun.
-  /// @param sun  unit vector to the sun in the frame of the eye, east, north, up.
-  void SetView(double altitude_m, const glm::dvec3& sun);
+  void SetView(double altitude_m, const SkySun& sun);
 
   /// Once a program: its samplers read from units first_unit to first_unit + kUnits - 1, its block
   /// from `binding`.

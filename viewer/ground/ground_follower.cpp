@@ -61,6 +61,7 @@ bool IsAJump(const GroundFollower::View& before, const GroundFollower::View& now
 SunPosition After(double steps, const SunPosition& before, const SunPosition& now) {
   SunPosition after = now;
   after.elevation_rad += steps * (now.elevation_rad - before.elevation_rad);
+  after.lower_for_air_rad += steps * (now.lower_for_air_rad - before.lower_for_air_rad);
   after.azimuth_rad += steps * std::remainder(now.azimuth_rad - before.azimuth_rad, 2.0 * kPi);
   return after;
 }
@@ -72,7 +73,7 @@ double OpenAltitude_m(const GroundSite& site) {
 
 SkyTilt OpenSkyUnder(const GroundSite& site, const SunPosition& disk) {
   return {*site.air().integrator, *site.air().diffuse, OpenAltitude_m(site),
-          std::sin(disk.elevation_rad)};
+          std::sin(SunForAir(disk).elevation_rad)};
 }
 
 std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<float, 4>& open) {
@@ -142,11 +143,8 @@ class GroundFollower::Maker {
     const LocalFrame here(site.ground().frame.ellipsoid(), view.eye);
     Lighting light =
         LightingOf(disk, view.now, view.eye, site.medium(), site.material().cover().wetness);
-    light.to_sun = site.ground()
-                       .frame
-                       .EnuFromEcef(here.EcefFromEnu(
-                           DirectionFromAngles(disk.elevation_rad, disk.azimuth_rad)))
-                       .xyz;
+    for (glm::dvec3* to_sun : {&light.to_sun, &light.to_sun_for_air})
+      *to_sun = site.ground().frame.EnuFromEcef(here.EcefFromEnu(Vector<Enu>{*to_sun})).xyz;
     return light;
   }
 
@@ -158,7 +156,7 @@ class GroundFollower::Maker {
     if (!material.HasGloss()) return {};
     const AirIntegrator<float> integrator(medium);
     const DiffuseLight& diffuse = request.air->diffuse;
-    const glm::dvec3 to_sun = Direction(disk);
+    const glm::dvec3 to_sun = Direction(SunForAir(disk));
     const OpenSky sky(integrator, diffuse, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
     return SeaMirror::Of(sky, diffuse, material.water(), to_sun);
   }

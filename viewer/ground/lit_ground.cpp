@@ -49,7 +49,7 @@ TerrainLight::OnSlope GroundSky::On(const GroundVertex& vertex) const {
   const glm::dvec3 up = geometry.UpAt(point);
   const SlopePoint at{point, InDoubles(vertex.normal), up,
                       std::max(geometry.AltitudeOf(point), 0.0),
-                      std::clamp(glm::dot(up, light_.to_sun), -1.0, 1.0)};
+                      std::clamp(glm::dot(up, light_.to_sun_for_air), -1.0, 1.0)};
   return light_.on_terrain->On(at);
 }
 

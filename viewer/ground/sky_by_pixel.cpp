@@ -116,7 +116,7 @@ void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky)
 }
 
 SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
-                                    const glm::dvec3& to_disk, const SkyTilt& now) const {
+                                    const glm::dvec3& to_sun_for_air, const SkyTilt& now) const {
   const OfSource& of = *of_source_[IndexOf(source)];
   const GroundSky& sky = *of.sky.sky;
   const LocalFrame& site = sky.site().ground().frame;
@@ -129,8 +129,8 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
     block.sky_moment[band] = light_then[i] > 0.0F ? light_now[i] / light_then[i] : 0.0F;
   }
   const OpenSky::Tables tables = sky.lighting().on_terrain->sky().tables();
-  const double mu_s_now = site.EnuFromEcef(eye.EcefFromEnu(Vector<Enu>{to_disk})).xyz.z;
-  const double moved = sky.lighting().to_sun.z - mu_s_now;
+  const double mu_s_now = site.EnuFromEcef(eye.EcefFromEnu(Vector<Enu>{to_sun_for_air})).xyz.z;
+  const double moved = sky.lighting().to_sun_for_air.z - mu_s_now;
   block.sky_place = {-tables.lowest_m / kMetresPerKilometre,
                      kMetresPerKilometre / (tables.highest_m - tables.lowest_m),
                      moved - tables.first_mu_s,

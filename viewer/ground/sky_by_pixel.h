@@ -38,7 +38,7 @@ class SkyByPixel {
   /// A source's, which it must have. @param eye  the frame that pixels are in; to_disk: of the source, in it.
   /// @param now  the open sky's light of the moment, at the altitude of that which Use was given.
   [[nodiscard]] SkyByPixelBlock BlockOf(LightSource source, const LocalFrame& eye,
-                                        const glm::dvec3& to_disk, const SkyTilt& now) const;
+                                        const glm::dvec3& to_sun_for_air, const SkyTilt& now) const;
 
   /// Binds four textures, from this unit on, and the samplers of a program to them.
   static constexpr int kUnits = 4;

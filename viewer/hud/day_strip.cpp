@@ -32,11 +32,17 @@ class Sky {
   /// @param elevation_deg  over the edge of the sea.
   [[nodiscard]] std::array<double, 3> LinearSrgb(double elevation_deg,
                                                  const SunPosition& sun) const {
-    const ViewRay ray = RayFromAngles(altitude_m_, horizon_rad_ / kRadiansPerDegree - elevation_deg,
-                                      0.0, 90.0 - sun.elevation_rad / kRadiansPerDegree);
+    const double zenith_deg = horizon_rad_ / kRadiansPerDegree - elevation_deg;
+    const auto under = [&](const SunPosition& at) {
+      return RayFromAngles(altitude_m_, zenith_deg, 0.0,
+                           90.0 - at.elevation_rad / kRadiansPerDegree);
+    };
+    const ViewRay ray = under(SunForAir(sun));
+    const double nu_seen = under(sun).nu;
     const RaySamples<float> samples = request_.air->Sample(ray, {.dark_samples = true});
-    const Bands<float> once = request_.air->Inscatter(request_.air->Scatter(samples), ray.nu);
-    const Bands<float> more = request_.diffuse->InscatterAlong(samples, ray.nu);
+    const Bands<float> once = request_.air->Inscatter(request_.air->Scatter(samples), nu_seen);
+    const Bands<float> more =
+        request_.diffuse->InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpen);
     std::vector<double> radiance(once.count);
     for (std::size_t band = 0; band < once.count; ++band) {
       radiance[band] = static_cast<double>(once[band] + more[band]) *

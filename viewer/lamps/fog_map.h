@@ -38,7 +38,9 @@ inline constexpr FogMapSize kFineFog{192, 24, 16};
 /// Sun and eye, east, north and up at the eye, on the sphere of the air's medium.
 struct FogView {
   double altitude_m = 0.0;
-  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit
+  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit, to where it is seen
+  glm::dvec3 to_sun_for_air{0.0, 0.0,
+                            1.0};  // unit, to where it lights the sky from (SunForAir of sun.h)
   double sun_radius_rad = 0.0046;
 };
 

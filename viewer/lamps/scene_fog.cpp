@@ -9,8 +9,10 @@ namespace alpenglow {
 namespace {
 
 FogView FogViewOf(const Eye& eye, const SunPosition& sun) {
-  return {eye.place.height_m, DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-          sun.angular_radius_rad};
+  const auto towards = [](const SunPosition& at) {
+    return DirectionFromAngles(at.elevation_rad, at.azimuth_rad).xyz;
+  };
+  return {eye.place.height_m, towards(sun), towards(SunForAir(sun)), sun.angular_radius_rad};
 }
 
 }  // namespace

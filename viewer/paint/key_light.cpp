@@ -28,9 +28,10 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
 }
 
 // Of unit irradiance above the air, on a level place.
-BandLight LevelLight(const SolvedAir& air, double altitude_m, double elevation_rad) {
-  const double mu = std::sin(elevation_rad);
-  const BandLight sky = air.diffuse.SkyIrradiance(altitude_m, mu);
+BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition& disk) {
+  const double mu = std::sin(disk.elevation_rad);
+  const BandLight sky =
+      air.diffuse.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
   if (mu <= 0.0) return sky;
   const AirIntegrator<float> integrator(air.medium);
   return sky + static_cast<float>(mu) * integrator.TransmittanceToSpace(altitude_m, mu);
@@ -47,7 +48,11 @@ KeyLight BesideMoon(const KeyLight& sun, const GeodeticPosition& eye, const UtcI
 
 SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
   SunPosition position{};
-  position.elevation_rad = std::asin(std::clamp(moon.to_light.z, -1.0, 1.0));
+  const auto elevation = [](const glm::dvec3& to) {
+    return std::asin(std::clamp(to.z, -1.0, 1.0));
+  };
+  position.elevation_rad = elevation(moon.to_light);
+  position.lower_for_air_rad = position.elevation_rad - elevation(moon.to_light_for_air);
   position.azimuth_rad = std::atan2(moon.to_light.x, moon.to_light.y);
   if (position.azimuth_rad < 0.0) position.azimuth_rad += 2.0 * kPi;
   position.distance_au = earth_sun_au;
@@ -81,8 +86,8 @@ LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
   const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
   const auto brings = [&](const KeyLight& key) {
     return static_cast<double>(key.irradiance[green]) *
-           static_cast<double>(LevelLight(air, altitude_m,
-                                          key.disk.elevation_rad)[static_cast<std::size_t>(green)]);
+           static_cast<double>(
+               LevelLight(air, altitude_m, key.disk)[static_cast<std::size_t>(green)]);
   };
   const double of_sun = brings(by_sun), of_moon = brings(by_moon);
   if (of_moon <= kUnseenShare * of_sun) return {by_sun, std::nullopt};
@@ -93,7 +98,7 @@ LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
 
 double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
                         const BandColour& colour) {
-  BandLight light = LevelLight(air, altitude_m, key.disk.elevation_rad);
+  BandLight light = LevelLight(air, altitude_m, key.disk);
   for (std::size_t band = 0; band < light.count; ++band)
     light[band] *= key.irradiance[static_cast<glm::length_t>(band)];
   return colour.Xyz(InDouble(light))[1];

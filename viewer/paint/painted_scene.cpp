@@ -53,7 +53,9 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
 }
 
 AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
-  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, DirectionToSun(sun)};
+  return {std::max(eye.place.height_m, 0.0),
+          eye.place.latitude_rad,
+          {DirectionToSun(sun), DirectionToSun(SunForAir(sun))}};
 }
 
 }  // namespace
@@ -170,7 +172,7 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
     const KeyLight* light = OfSource(lights, source);
     if (light == nullptr) continue;
-    const double elevation_rad = light->disk.elevation_rad;
+    const double elevation_rad = SunForAir(light->disk).elevation_rad;
     std::optional<OpenSkyOf>& sky = open_skies_[IndexOf(source)];
     const double left_rad = pace == Pace::kSettle ? 0.0 : kLeft_rad;
     if (sky && sky->air == known_air_ && sky->altitude_m == altitude_m &&

@@ -105,6 +105,7 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
   block.view_up = {glm::vec3(axes.up), 0.0F};
   block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)};
   block.sun = {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad};
+  block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(key.disk))), 0.0F};
   block.sun_irradiance = key.irradiance;
   block.eye = {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)};
   SetBend(block, BendOf(view, medium, scene.land().farthest_m()));
@@ -121,9 +122,9 @@ void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedVie
   const SkyByPixel* sky = scene.sky_by_pixel(light.source());
   if (sky == nullptr) return;
   const LocalFrame eye(scene.ellipsoid(), view.eye.place);
-  Upload(
-      sky_by_pixel_, kSkyByPixelBinding,
-      sky->BlockOf(light.source(), eye, DirectionToSun(light.disk), scene.OpenSky(light.source())));
+  Upload(sky_by_pixel_, kSkyByPixelBinding,
+         sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
+                      scene.OpenSky(light.source())));
 }
 
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {

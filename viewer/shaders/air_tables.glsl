@@ -5,7 +5,8 @@
 
 // AirTablesBlock of air_textures.h.
 layout(std140) uniform AirTables {
-  vec4 air_sun;       // unit vector to the sun
+  vec4 air_sun;       // unit vector to the sun that lights the air
+  vec4 air_sun_seen;  // and to where it is seen: there aureoles are
   vec4 air_frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
   vec4 air_shell;     // altitude that tables are for, ceiling of land, top of the air, radius [km]
   vec4 air_ranges;    // tangents of half the ranges of rows: sky, ways above the horizon, below
@@ -36,9 +37,9 @@ struct AirTo {
   vec4 transmittance;
 };
 
-// sin^2 of half the angle to the sun.
+// sin^2 of half the angle to the sun that is seen.
 float HalfSineSquared(vec3 direction) {
-  vec3 between = direction - air_sun.xyz;
+  vec3 between = direction - air_sun_seen.xyz;
   return min(0.25 * dot(between, between), 1.0);
 }
 
@@ -70,8 +71,8 @@ float RowOf(float half_tangent, float sky_range, vec4 rows) {
 }
 
 // What texels are divided by, at distance d of a ray.
-float TwilightAt(float half_sine_squared, float d) {
-  return AirTwilight(air_shell.x, air_sun.z, 1.0 - 2.0 * half_sine_squared, d, air_crowding.z,
+float TwilightAt(vec3 direction, float d) {
+  return AirTwilight(air_shell.x, air_sun.z, dot(direction, air_sun.xyz), d, air_crowding.z,
                      air_crowding.w, air_shell.w);
 }
 
@@ -86,7 +87,8 @@ vec4 SkyRadiance(vec3 direction) {
   float h2 = HalfSineSquared(direction);
   vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] +
                 AerosolPhaseOfSky(h2) * air_sky_mix[1] + air_sky_mix[2];
-  phases *= TwilightAt(h2, AirFoot(air_shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_shell.w));
+  float foot = AirFoot(air_shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_shell.w);
+  phases *= TwilightAt(direction, foot);
   return AboveAir(rise) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
 }
 
@@ -112,7 +114,7 @@ struct AirWay {
   vec3 at;  // in the 3-D tables
   vec4 transmittance;
   vec4 scattered;           // by what texels are to be multiplied
-  float half_sine_squared;  // of the angle to the sun
+  float half_sine_squared;  // of the angle to the sun that is seen
 };
 
 AirWay WayTo(vec3 direction, float distance_km) {
@@ -136,8 +138,7 @@ AirWay WayTo(vec3 direction, float distance_km) {
                 RowOf(rise, air_ranges.y, air_way_rows), distances.x);
   way.half_sine_squared = HalfSineSquared(direction);
   way.transmittance = exp(-tau);
-  way.scattered =
-      (1.0 - way.transmittance) * TwilightAt(way.half_sine_squared, near + 0.5 * beyond);
+  way.scattered = (1.0 - way.transmittance) * TwilightAt(direction, near + 0.5 * beyond);
   return way;
 }
 

@@ -39,7 +39,7 @@ vec3 ReflectionAngles(vec3 normal, vec3 to_light, vec3 to_eye) {
               clamp(dot(to_light, to_eye), -1.0, 1.0));
 }
 
-// Irradiance of the sky on a level at altitude 0, per unit solar irradiance.
+// Irradiance of the sky on a level at altitude 0, per unit solar irradiance. @param mu_s  of sun_for_air.
 vec4 LevelSky(float mu_s) {
   float x = (AngleOfSine(clamp(mu_s, -1.0, 1.0)) - LEVEL_SKY_LOWEST) / LEVEL_SKY_RANGE;
   return texture(level_sky, vec2(TexelFromUnit(clamp(x, 0.0, 1.0), LEVEL_SKY_NODES), 0.5));
@@ -55,9 +55,9 @@ vec4 WaterBrdf(vec3 angles, float variance) {
 // What waves show of the sky [1/sr].
 vec4 SkyInWater(vec3 up, vec3 to_eye) {
   float mu_eye = clamp(dot(up, to_eye), 0.0, 1.0);
-  float mu_s = dot(up, sun.xyz);
+  float mu_s = dot(up, sun_for_air.xyz);
   vec3 flat_eye = to_eye - mu_eye * up;
-  vec3 flat_sun = sun.xyz - mu_s * up;
+  vec3 flat_sun = sun_for_air.xyz - mu_s * up;
   float lengths = max(length(flat_eye) * length(flat_sun), 1e-9);
   float apart = clamp(dot(flat_eye, flat_sun) / lengths, -1.0, 1.0);  // eye and sun: opposite, 1
   vec2 unit = vec2(sqrt(0.5 * (1.0 + apart)), sqrt(mu_eye));

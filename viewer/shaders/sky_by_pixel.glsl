@@ -60,7 +60,7 @@ vec4 SkyAtPixel(GroundPlace at, vec3 point, vec3 normal) {
   vec2 slope_place = vec2(dot(slope_u, place), dot(slope_v, place));
   float altitude = clamp((at.altitude + sky_place.x) * sky_place.y, 0.0, 1.0);
   float nearest_level = floor(altitude * (SKY_LEVELS - 1.0) + 0.5);
-  float sun_node = AmongNodes((dot(at.up, sun.xyz) + sky_place.z) * sky_place.w, SKY_SUNS);
+  float sun_node = AmongNodes((dot(at.up, sun_for_air.xyz) + sky_place.z) * sky_place.w, SKY_SUNS);
   float up = dot(normal, at.up);
   vec2 aside = normal.xy - up * at.up.xy;
   const float sector = 2.0 * 3.14159265359 / float(SKY_AZIMUTHS);

@@ -30,12 +30,12 @@ static_assert(offsetof(AirBlock, wavelengths) == 11 * sizeof(glm::vec4));
 /// `block View` of view_block.glsl.
 struct ViewBlock {
   glm::vec4 view_right, view_up, view_forward;
-  glm::vec4 sun, sun_irradiance;
+  glm::vec4 sun, sun_for_air, sun_irradiance;
   glm::vec4 bend, bend_slopes, bend_falls;
   glm::vec4 eye;
 };
-static_assert(sizeof(ViewBlock) == 9 * sizeof(glm::vec4));
-static_assert(offsetof(ViewBlock, eye) == 8 * sizeof(glm::vec4));
+static_assert(sizeof(ViewBlock) == 10 * sizeof(glm::vec4));
+static_assert(offsetof(ViewBlock, eye) == 9 * sizeof(glm::vec4));
 
 /// `block Ground` of ground.glsl.
 struct GroundBlock {

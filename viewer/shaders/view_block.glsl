@@ -6,6 +6,7 @@ layout(std140) uniform View {
   vec4 view_up;         // times the tangent of half its height
   vec4 view_forward;    // unit; angle between rays, of all that a pixel has [rad]
   vec4 sun;             // unit vector to the apparent sun; angular radius [rad]
+  vec4 sun_for_air;     // unit vector to the sun whose straight rays light the air (SunForAir of sun.h)
   vec4 sun_irradiance;  // above the air, one value a band [W m^-2 nm^-1]
   vec4 bend;         // of refraction (bent_sight.glsl): radius of the planet that this one looks as,
                      // altitude above which rays are straight [km]; usual curvature [1/km], 0: none

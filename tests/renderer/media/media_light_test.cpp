@@ -49,7 +49,7 @@ struct Stage {
     SunPosition sun;
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, medium);
-    at.to_sun = kToSun;
+    at.to_sun = at.to_sun_for_air = kToSun;
     at.sun_radius_rad = 0.00465;
     return at;
   }();
@@ -93,7 +93,7 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   const glm::dvec3 look(0.0, 1.0, 0.0);
   const MarchedLight light = lit.Along(kEye, look, INFINITY, nullptr);
   const glm::dvec3 there(0.0, 300.0, 50.0);
-  const LocalSun sun = LocalSunAt(stage.geometry, there, kToSun, stage.light.sun_radius_rad);
+  const LocalSun sun = LocalSunAt(stage.geometry, there, stage.light.Sun());
   const BandLight direct = stage.air.air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
   ViewRay to;
   to.altitude_m = 50.0;
@@ -157,8 +157,7 @@ TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
       const SunlitPath dark;
       const MarchedLight all = lit.Along(kEye, look, 1e4, nullptr);
       const MarchedLight shaded = lit.Along(kEye, look, 1e4, &dark);
-      const LocalSun sun =
-          LocalSunAt(stage.geometry, {0.0, 300.0, 50.0}, kToSun, stage.light.sun_radius_rad);
+      const LocalSun sun = LocalSunAt(stage.geometry, {0.0, 300.0, 50.0}, stage.light.Sun());
       const BandLight direct =
           stage.air.air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
       ViewRay to;
@@ -247,7 +246,7 @@ TEST(MediaLight, LampsLightAVolumeAsTheyLightHomogeneousAir) {
   lamp.intensity_cd = 100.0;
   stage.scene.lights.push_back(lamp);
   const LampLight lamps(stage.scene, stage.ground, stage.medium, stage.colour);
-  stage.light.to_sun = {0.0, 0.6, -0.8};
+  stage.light.to_sun = stage.light.to_sun_for_air = {0.0, 0.6, -0.8};
   const MediumOptics optics = Optics(0.01, 0.8);
   const MediaLight lit(LocalMedia({Box({0.0, 0.0, -200.0}, {500.0, 500.0, 500.0}, optics)}, 3),
                        stage.geometry, stage.air.air, stage.air.diffuse, stage.light, &lamps);

@@ -27,7 +27,8 @@ const std::shared_ptr<const SolvedAir>& Earth() {
 
 AirView ViewAt(double altitude_m, double elevation_deg) {
   const double e = elevation_deg * kRadiansPerDegree;
-  return {altitude_m, 0.8, {0.0, std::cos(e), std::sin(e)}};
+  const glm::dvec3 sun(0.0, std::cos(e), std::sin(e));
+  return {altitude_m, 0.8, {sun, sun}};
 }
 
 // Frames with the same view until the tables shown are for it, or a hundred.
@@ -72,7 +73,7 @@ TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     follower.Follow(now, 0.04);
   }
-  EXPECT_LT(follower.eye().mu_s, now.sun.z) << "lower, for the sun sinks";
+  EXPECT_LT(follower.eye().mu_s, now.sun.for_air.z) << "lower, for the sun sinks";
 }
 
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {

@@ -32,7 +32,8 @@ struct BothTables {
     textures.Upload(medium);
     textures.Upload(tables);
     const double sine = std::sqrt((1.0 - mu_s) * (1.0 + mu_s));
-    textures.SetView(altitude_m, {-0.6 * sine, -0.8 * sine, mu_s});
+    const glm::dvec3 sun(-0.6 * sine, -0.8 * sine, mu_s);
+    textures.SetView(altitude_m, {sun, sun});
   }
 
   /// Unit vector, by the angle over the horizon and the azimuth from the sun's.
@@ -101,6 +102,7 @@ TEST_F(AirTexturesOnGpu, BlockLiesWhereTheDriverLooks) {
   EXPECT_EQ(size, static_cast<GLint>(sizeof(AirTablesBlock)));
   const std::vector<std::pair<const char*, std::size_t>> members{
       {"air_sun", offsetof(AirTablesBlock, sun)},
+      {"air_sun_seen", offsetof(AirTablesBlock, sun_seen)},
       {"air_frame", offsetof(AirTablesBlock, frame)},
       {"air_shell", offsetof(AirTablesBlock, shell)},
       {"air_ranges", offsetof(AirTablesBlock, ranges)},
@@ -184,7 +186,8 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
   BothTables both(1500.0, 0.1);
   const AirEye moved{1600.0, 0.08};
   const double sine = std::sqrt((1.0 - moved.mu_s) * (1.0 + moved.mu_s));
-  both.textures.SetView(moved.altitude_m, {-0.6 * sine, -0.8 * sine, moved.mu_s});
+  const glm::dvec3 sun(-0.6 * sine, -0.8 * sine, moved.mu_s);
+  both.textures.SetView(moved.altitude_m, {sun, sun});
   const tests::AirReading reading(both.tables, both.medium, moved);
   const AirMap map(tests::Earth().medium, moved.altitude_m, moved.ceiling_m,
                    both.tables.map.twilight_fall);

@@ -77,6 +77,7 @@ class Blocks {
     Bind(program, "Air", 0, air_, AirBlockOf(site.medium()));
     ViewBlock view{};
     view.sun = {glm::vec3(light.to_sun), light.sun_radius_rad};
+    view.sun_for_air = {glm::vec3(light.to_sun_for_air), 0.0F};
     view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
     const GroundPoint origin = site.geometry().GroundAt({0.0, 0.0, 0.0}, 0.0);

@@ -43,7 +43,7 @@ struct Stage {
     SunPosition sun;
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, scene.medium);
-    at.to_sun = to_sun;
+    at.to_sun = at.to_sun_for_air = to_sun;
     at.sun_radius_rad = kFogSunRadius_rad;
     return at;
   }
@@ -71,7 +71,7 @@ struct BothFogs {
         light(TheStage().Under(to_sun)),
         renderer(media, TheStage().geometry, TheStage().air, TheStage().diffuse, light),
         map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air, TheStage().diffuse,
-                       {eye_m, to_sun, kFogSunRadius_rad})),
+                       {eye_m, to_sun, to_sun, kFogSunRadius_rad})),
         painter({}) {
     painter.Upload(map);
   }
@@ -211,11 +211,12 @@ TEST(FogFollower, MakesANewMapWhenTheEyeHasRisenAndKeepsItWhileItStands) {
   FogFollower follower([&](const FogView& view) {
     return MakeFogMap(fog, 0.0, TheStage().air, TheStage().diffuse, view, {4, 3, 3});
   });
-  const FogView low{10.0, kToSun, kFogSunRadius_rad}, high{100.0, kToSun, kFogSunRadius_rad};
+  const FogView low{10.0, kToSun, kToSun, kFogSunRadius_rad},
+      high{100.0, kToSun, kToSun, kFogSunRadius_rad};
   follower.Wait(low);
   ASSERT_TRUE(follower.map());
   EXPECT_FALSE(follower.Follow(low)) << "it serves";
-  EXPECT_TRUE(Serves(*follower.map(), {12.0, kToSun, kFogSunRadius_rad}));
+  EXPECT_TRUE(Serves(*follower.map(), {12.0, kToSun, kToSun, kFogSunRadius_rad}));
   EXPECT_FALSE(Serves(*follower.map(), high));
   follower.Wait(high);
   EXPECT_EQ(follower.map()->view.altitude_m, 100.0);

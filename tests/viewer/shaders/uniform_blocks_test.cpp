@@ -75,6 +75,7 @@ TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
                           {"view_up", offsetof(ViewBlock, view_up)},
                           {"view_forward", offsetof(ViewBlock, view_forward)},
                           {"sun", offsetof(ViewBlock, sun)},
+                          {"sun_for_air", offsetof(ViewBlock, sun_for_air)},
                           {"sun_irradiance", offsetof(ViewBlock, sun_irradiance)},
                           {"bend", offsetof(ViewBlock, bend)},
                           {"bend_slopes", offsetof(ViewBlock, bend_slopes)},
