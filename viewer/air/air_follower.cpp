@@ -15,7 +15,13 @@ constexpr double kGreatChange = 5e-3;  // that does not wait
 constexpr double kJump = 0.1;          // that is not shown: small tables are made at once
 constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
 
-AirEye EyeOf(const AirView& view) { return {view.altitude_m, view.sun.for_air.z, view.ceiling_m}; }
+AirEye EyeOf(const AirView& view) {
+  const auto elevation = [](const glm::dvec3& to) {
+    return std::asin(std::clamp(to.z, -1.0, 1.0));
+  };
+  return {view.altitude_m, view.sun.for_air.z, view.ceiling_m,
+          elevation(view.sun.seen) - elevation(view.sun.for_air)};
+}
 
 AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
   const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));

@@ -21,13 +21,14 @@ constexpr int kSunCosines = 256, kSunAltitudes = 64;
 // azimuth that is nearest to it and sees air. Where that is dark, each as much as the others.
 std::array<glm::vec4, 3> SkyMix(const AirIntegrator<float>& air, const SkyView& view,
                                 const AirMap& map, const AirPhases& phases, const AirEye& eye) {
-  const double sun = std::acos(std::clamp(eye.mu_s, -1.0, 1.0));
+  const double sun = eye.zenith_angle_seen_rad();
   const double horizon = view.map().horizon_zenith_angle_rad();
   const double margin = std::min(0.02, 0.05 * map.sky_range);
   const double zenith = std::clamp(
       sun, horizon - map.sky_range + (map.altitude > map.top ? margin : 0.0), horizon - margin);
   const double nu = std::cos(zenith - sun);
-  const ViewRay ray{eye.altitude_m, std::cos(zenith), eye.mu_s, nu};
+  const ViewRay ray{eye.altitude_m, std::cos(zenith), eye.mu_s,
+                    std::cos(zenith - sun - eye.lower_for_air_rad)};
   const ScatteredOnce<float> once = air.Scatter(air.Sample(ray, {}));
   const glm::vec4 aerosol = phases.OfAerosol(nu);
   std::array<glm::vec4, 3> mix{Vec4Of(once.rayleigh), Vec4Of(once.mie),
@@ -70,15 +71,18 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
   const SkyAzimuths prepared(view, azimuths);
   std::vector<float> radiance(azimuths.size() * view.stride());
   AirTexels texels(size.sky_columns, size.sky_rows + size.sky_ground_rows);
+  const double mu_s_seen = std::cos(eye.zenith_angle_seen_rad());
   int y = 0;
   for (const AirRow& row : RowsOf(map, size.sky_rows, map.sky_range, size.sky_ground_rows)) {
     view.FillRow(row.zenith_angle, prepared, radiance);
     for (int x = 0; x < size.sky_columns; ++x) {
       const float* light = &radiance[static_cast<std::size_t>(x) * view.stride()];
-      const double nu = SunCosineOf(row, eye.mu_s, azimuths[static_cast<std::size_t>(x)]);
-      texels.At(x, y) = Quotient(
-          glm::vec4{light[0], light[1], light[2], light[3]} / TwilightAtFoot(map, eye, row, nu),
-          AirPhases::OfMolecules(nu) * mix[0] + phases.OfAerosol(nu) * mix[1] + mix[2]);
+      const double azimuth = azimuths[static_cast<std::size_t>(x)];
+      const double nu = SunCosineOf(row, mu_s_seen, azimuth);
+      texels.At(x, y) =
+          Quotient(glm::vec4{light[0], light[1], light[2], light[3]} /
+                       TwilightAtFoot(map, eye, row, SunCosineOf(row, eye.mu_s, azimuth)),
+                   AirPhases::OfMolecules(nu) * mix[0] + phases.OfAerosol(nu) * mix[1] + mix[2]);
     }
     ++y;
   }
@@ -90,7 +94,8 @@ SkyView ViewOf(const AirIntegrator<float>& air, const DiffuseLight& diffuse, con
   SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s);
   for (int* nodes : {&size.sky_rows, &size.ground_rows, &size.azimuths})
     *nodes = static_cast<int>(std::lround(fineness * *nodes));
-  return SkyView(air, diffuse, eye.altitude_m, eye.mu_s, size);
+  return SkyView(air, diffuse, eye.altitude_m, eye.mu_s, size)
+      .WithSunSeenAt(eye.zenith_angle_seen_rad());
 }
 
 AirTexels ThroughTexels(const AirIntegrator<float>& air, const AirMap& map, const AirEye& eye,
@@ -121,6 +126,10 @@ std::array<glm::vec4, 2> SingleMix(const AirIntegrator<float>& air, const AirMap
 }
 
 }  // namespace
+
+double AirEye::zenith_angle_seen_rad() const {
+  return std::acos(std::clamp(mu_s, -1.0, 1.0)) - lower_for_air_rad;
+}
 
 void RequireFourBands(const Medium& medium) {
   RequireInRange(static_cast<double>(medium.wavelengths_nm.size()), 1.0,

@@ -8,7 +8,7 @@
 //
 //   L(direction) = sky(direction) [p_R(nu) m_R + p_M(nu) m_M + m_0],
 //
-// so that an aureole is as sharp as the phase function at the pixel; p_M has with it the glow of light that
+// nu the cosine of the angle to where the sun is seen, so that an aureole is as sharp as the phase function at the pixel; p_M has with it the glow of light that
 // aerosol scatters more than once. Light on the way to a point is
 // divided by 1 - T as well, T the transmittance on that way: a mean source, which hardly changes
 // with distance,
@@ -69,9 +69,13 @@ struct AirTexels {
 
 /// Eye and sun that tables are for.
 struct AirEye {
-  double altitude_m = 0.0;    // below 0: as at 0
-  double mu_s = 1.0;          // cosine of the sun's zenith angle at the eye
-  double ceiling_m = 9000.0;  // no land is higher
+  double altitude_m = 0.0;  // below 0: as at 0
+  double mu_s = 1.0;        // cosine of the zenith angle at the eye of the sun that lights the air
+  double ceiling_m = 9000.0;       // no land is higher
+  double lower_for_air_rad = 0.0;  // by how much that sun stands lower than where it is seen
+
+  /// Of where it is seen: there aureoles are.
+  [[nodiscard]] double zenith_angle_seen_rad() const;
 };
 
 /// Plain data; never changed once made.

@@ -182,16 +182,17 @@ class SingleOfRow {
               const AirMap& map, const Reach& reach, const RowOfRays& rays)
       : air_(air), phases_(phases), eye_(eye), map_(map), reach_(reach), rays_(rays) {}
 
-  [[nodiscard]] std::vector<glm::vec4> Along(double nu) const {
+  /// @param nu_seen  of where the sun is seen.
+  [[nodiscard]] std::vector<glm::vec4> Along(double nu, double nu_seen) const {
     const ViewRay ray{eye_.altitude_m, reach_.row.mu, eye_.mu_s, nu};
     const RayExtent extent{reach_.begin_m, reach_.end_m, RayEnd::kLength};
     const ShadowSpan shadow = PlanetShadow(ray, extent, air_.medium().planet_radius_m);
     if (shadow.dark_begin_m == shadow.dark_end_m)
-      return Gathered(rays_.samples(), rays_.ends(), SunOf(rays_.samples(), nu), nu);
+      return Gathered(rays_.samples(), rays_.ends(), SunOf(rays_.samples(), nu), nu_seen);
     const PieceNodes nodes = LitNodesOf(reach_, shadow);
     const RaySamples<float> samples =
         air_.SampleAt(ray, extent, {}, nodes.node, ViewColumns::kFromSpace);
-    return Gathered(samples, nodes.end, SunOf(samples), nu);
+    return Gathered(samples, nodes.end, SunOf(samples), nu_seen);
   }
 
  private:
@@ -223,13 +224,13 @@ class SingleOfRow {
 
   [[nodiscard]] std::vector<glm::vec4> Gathered(const RaySamples<float>& samples,
                                                 const std::vector<std::size_t>& ends,
-                                                const SunColumns& sun, double nu) const {
+                                                const SunColumns& sun, double nu_seen) const {
     const AirConstants<float>& air = air_.constants();
     glm::vec4 molecules = Vec4Of(air.rayleigh, air.bands);
-    const std::vector<double> phase = RayleighPhaseValues(air_.medium(), nu);
+    const std::vector<double> phase = RayleighPhaseValues(air_.medium(), nu_seen);
     for (std::size_t band = 0; band < air.bands; ++band)
       molecules[static_cast<glm::length_t>(band)] *= static_cast<float>(phase[band]);
-    const glm::vec4 aerosol = phases_.OfAerosol(nu) * Vec4Of(air.mie_scattering, air.bands);
+    const glm::vec4 aerosol = phases_.OfAerosol(nu_seen) * Vec4Of(air.mie_scattering, air.bands);
     std::vector<glm::vec4> light;
     glm::vec4 sum(0.0F);
     std::size_t s = 0;
@@ -284,14 +285,16 @@ class WayBuilder {
     const RowOfRays rays(air_, tables_.eye, tables_.map, reach, NodesOf(reach));
     std::vector<glm::vec4> absorbed = rays.OpticalDepths();
     for (glm::vec4& share : absorbed) share = Absorbed(share);
+    const double mu_s_seen = std::cos(tables_.eye.zenith_angle_seen_rad());
     std::vector<double> nus;
     for (const double azimuth : azimuths_)
       nus.push_back(SunCosineOf(reach.row, tables_.eye.mu_s, azimuth));
     const SingleOfRow single(air_, phases_, tables_.eye, tables_.map, reach, rays);
     for (std::size_t x = 0; x < nus.size(); ++x) {
-      const glm::vec4 mix = AirPhases::OfMolecules(nus[x]) * tables_.single_mix[0] +
-                            phases_.OfAerosol(nus[x]) * tables_.single_mix[1];
-      const std::vector<glm::vec4> light = single.Along(nus[x]);
+      const double nu_seen = SunCosineOf(reach.row, mu_s_seen, azimuths_[x]);
+      const glm::vec4 mix = AirPhases::OfMolecules(nu_seen) * tables_.single_mix[0] +
+                            phases_.OfAerosol(nu_seen) * tables_.single_mix[1];
+      const std::vector<glm::vec4> light = single.Along(nus[x], nu_seen);
       for (std::size_t j = 0; j < light.size(); ++j)
         Texel(tables_.single, x, y, j) = Quotient(light[j], absorbed[j] * mix);
     }

@@ -24,7 +24,8 @@ class AirJudge {
 
   /// Of the whole ray; in the band.
   [[nodiscard]] Bands<double> Sky(const AirMap& map, double angle, double azimuth) const {
-    return sky_.Radiance(RayOf(map, angle, azimuth));
+    const ViewRay ray = RayOf(map, angle, azimuth);
+    return sky_.Radiance(ray, SeenCosineOf(ray.mu, azimuth));
   }
 
   /// From the eye to a distance.
@@ -32,10 +33,12 @@ class AirJudge {
                               double distance_km) const {
     ViewRay ray = RayOf(map, angle, azimuth);
     ray.length_m = 1000.0 * distance_km;
+    const double nu_seen = SeenCosineOf(ray.mu, azimuth);
     const Bands<double> single = exact_.Inscatter(
-        exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), ray.nu);
-    const Bands<float> diffuse = air_.diffuse.InscatterAlong(
-        air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}), ray.nu);
+        exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), nu_seen);
+    const Bands<float> diffuse =
+        air_.diffuse.InscatterAlong(air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}),
+                                    ray.nu, nu_seen, SegmentEnd::kOpen);
     const Bands<double> left = exact_.TransmittanceAlong(ray);
     AirToPoint to{glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(1.0)};
     for (std::size_t band = 0; band < left.count; ++band) {
@@ -50,9 +53,14 @@ class AirJudge {
  private:
   [[nodiscard]] ViewRay RayOf(const AirMap& map, double angle, double azimuth) const {
     const double mu = std::sin(angle - map.horizon_dip);
-    const double sines = std::sqrt((1.0 - mu) * (1.0 + mu) * (1.0 - eye_.mu_s) * (1.0 + eye_.mu_s));
-    const double nu = std::clamp(mu * eye_.mu_s + sines * std::cos(azimuth), -1.0, 1.0);
-    return {eye_.altitude_m, mu, eye_.mu_s, nu};
+    return {eye_.altitude_m, mu, eye_.mu_s, CosineOf(mu, eye_.mu_s, azimuth)};
+  }
+  [[nodiscard]] double SeenCosineOf(double mu, double azimuth) const {
+    return CosineOf(mu, std::cos(eye_.zenith_angle_seen_rad()), azimuth);
+  }
+  [[nodiscard]] static double CosineOf(double mu, double mu_s, double azimuth) {
+    const double sines = std::sqrt((1.0 - mu) * (1.0 + mu) * (1.0 - mu_s) * (1.0 + mu_s));
+    return std::clamp(mu * mu_s + sines * std::cos(azimuth), -1.0, 1.0);
   }
 
   AirIntegrator<double> exact_;
@@ -86,9 +94,9 @@ inline std::vector<LandPoint> LandPoints(const AirMap& map, int count) {
 
 /// Of the light of all orders in all bands.
 inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
-                           int count) {
+                           const std::vector<LandPoint>& points) {
   AirErrors errors;
-  for (const LandPoint& point : LandPoints(map, count)) {
+  for (const LandPoint& point : points) {
     const AirToPoint exact = judge.To(map, point.angle, point.azimuth, point.distance_km);
     const AirToPoint read = reading.To(point.angle, point.azimuth, point.distance_km);
     for (glm::length_t band = 0; band < 4; ++band) {
@@ -99,6 +107,11 @@ inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, con
   }
   std::sort(errors.sorted.begin(), errors.sorted.end());
   return errors;
+}
+
+inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
+                           int count) {
+  return WayErrors(judge, reading, map, LandPoints(map, count));
 }
 
 /// Of transmittance, absolute.

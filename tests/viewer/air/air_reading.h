@@ -49,6 +49,7 @@ class AirReading {
         medium_(medium),
         mu_s_(eye.mu_s),
         sun_(std::acos(std::clamp(eye.mu_s, -1.0, 1.0))),
+        sun_seen_(eye.zenith_angle_seen_rad()),
         dip_(-std::asin(shared::HorizonCosine<double>(std::max(eye.altitude_m, 0.0) / 1000.0,
                                                       tables.map.radius))) {}
 
@@ -113,21 +114,22 @@ class AirReading {
     const double v = shared::AirRow<double>(std::tan(0.5 * std::abs(angle)), std::tan(0.5 * range));
     return angle < 0.0 ? sky + v * (ground - 1) : v * (sky - 1);
   }
-  [[nodiscard]] double SunCosine(double angle, double azimuth) const {
+  [[nodiscard]] double SunCosine(double angle, double azimuth, double sun) const {
     const double zenith = 0.5 * kPi + dip_ - angle;
     return std::clamp(
-        std::cos(zenith) * std::cos(sun_) + std::sin(zenith) * std::sin(sun_) * std::cos(azimuth),
+        std::cos(zenith) * std::cos(sun) + std::sin(zenith) * std::sin(sun) * std::cos(azimuth),
         -1.0, 1.0);
   }
   [[nodiscard]] double Twilight(double angle, double azimuth, double distance_km) const {
     const AirMap& map = tables_.map;
-    return shared::AirTwilight<double>(map.altitude, mu_s_, SunCosine(angle, azimuth), distance_km,
-                                       map.twilight_fall, map.twilight_reference, map.radius);
+    return shared::AirTwilight<double>(map.altitude, mu_s_, SunCosine(angle, azimuth, sun_),
+                                       distance_km, map.twilight_fall, map.twilight_reference,
+                                       map.radius);
   }
   /// @param phase  of the aerosol; mix: of molecules, aerosol and the rest.
   [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const AirTexels& phase,
                                const std::array<glm::vec4, 3>& mix) const {
-    const double nu = SunCosine(angle, azimuth);
+    const double nu = SunCosine(angle, azimuth, sun_seen_);
     const double node =
         shared::PhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (phase.width - 1);
     return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(mix[0]) +
@@ -136,7 +138,7 @@ class AirReading {
 
   const AirTables& tables_;
   const MediumTables& medium_;
-  double mu_s_, sun_, dip_;
+  double mu_s_, sun_, sun_seen_, dip_;
 };
 
 }  // namespace alpenglow::tests

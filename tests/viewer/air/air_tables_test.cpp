@@ -68,6 +68,38 @@ TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -10.0), AirQuality::kHigh, {4e-4, 2.5e-3, 2e-5});
 }
 
+// From 2500 m, where a setting sun is seen on the horizon, low air about it is dark and high air is not:
+// tables whose aureole is elsewhere than the one that shaders put on them have a dark spot and a bright.
+TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
+  AirEye eye = EyeUnder(2500.0, -1.8);
+  eye.lower_for_air_rad = 0.5 * kRadiansPerDegree;
+  const MediumTables medium = MakeMediumTables(tests::Earth().air);
+  const tests::AirJudge judge(tests::Earth(), eye);
+  // Largest error of the sky within two degrees of the sun and of the horizon.
+  const auto worst_of = [&](const AirTables& tables) {
+    const tests::AirReading reading(tables, medium, eye);
+    double worst = 0.0;
+    for (const double angle_deg : {-1.5, -0.7, -0.3, -0.1, 0.1, 0.4, 0.8, 1.5}) {
+      for (const double azimuth_deg : {0.0, 0.3, 0.8, 2.0}) {
+        const double angle = angle_deg * kRadiansPerDegree,
+                     azimuth = azimuth_deg * kRadiansPerDegree;
+        const Bands<double> exact = judge.Sky(tables.map, angle, azimuth);
+        const glm::dvec4 read = reading.Sky(angle, azimuth);
+        for (std::size_t band = 0; band < exact.count; ++band)
+          worst =
+              std::max(worst, std::abs(read[static_cast<glm::length_t>(band)] / exact[band] - 1.0));
+      }
+    }
+    return worst;
+  };
+  EXPECT_LT(worst_of(TablesOf(tests::Earth(), eye, AirQuality::kHigh)), 0.01)
+      << "half as much again as measured, where red dies within a degree";
+  AirEye elsewhere = eye;
+  elsewhere.lower_for_air_rad = 0.0;
+  EXPECT_GT(worst_of(TablesOf(tests::Earth(), elsewhere, AirQuality::kHigh)), 0.1)
+      << "tables of an aureole that is elsewhere have a spot";
+}
+
 TEST(AirTables, OfGreatHeightsAreThoseOfTheIntegrator) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 30.0), AirQuality::kHigh, {1.6e-4, 8e-4, 3e-4});
   ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, -4.0), AirQuality::kHigh, {2.1e-3, 1.6e-3, 3e-4});
