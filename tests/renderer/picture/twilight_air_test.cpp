@@ -49,7 +49,7 @@ TEST(TwilightAir, TheAureoleIsAboutTheDiskThatIsSeen) {
     settings.effects = settings.effects.Without(effect);
   const Image image = renderer.Render(evening, settings);
   EXPECT_NEAR(MiddleOfAureole(image, kFov_deg * kRadiansPerDegree / settings.width), 0.0,
-              0.5 * kMinuteOfArc)
+              0.1 * kMinuteOfArc)
       << "rays of a pixel fall on different places of it";
 }
 
