@@ -157,6 +157,8 @@ void OfDegree(std::size_t degree, const Run& run) {
       return run(std::integral_constant<std::size_t, 4>{});
     case 6:
       return run(std::integral_constant<std::size_t, 6>{});
+    case 8:
+      return run(std::integral_constant<std::size_t, 8>{});
     default:
       return run(std::integral_constant<std::size_t, kLargestDegree>{});
   }

@@ -20,7 +20,7 @@ namespace alpenglow {
 
 inline constexpr int kMaxDegree = 12;
 /// The degrees that light may have. Every kernel of diffuse light is compiled for each of them.
-inline constexpr std::array kDegrees{2, 4, 6, kMaxDegree};
+inline constexpr std::array kDegrees{2, 4, 6, 8, kMaxDegree};
 /// Throws InputError, which lists the degrees, when this is none of them.
 void RequireDegree(int degree);
 

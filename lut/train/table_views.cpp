@@ -18,12 +18,12 @@ namespace {
 
 constexpr DiffuseLightOptions kFinest{.altitudes = 40,
                                       .sun_angles = 80,
-                                      .degree = 6,
+                                      .degree = 8,
                                       .zenith_nodes = 16,
                                       .azimuth_nodes = 12,
                                       .ray_nodes = 14,
                                       .later_zenith_nodes = 10,
-                                      .later_azimuth_nodes = 8,
+                                      .later_azimuth_nodes = 10,
                                       .later_ray_nodes = 10};
 // Along the rays of truths.
 constexpr Sampling kFinestSampling{.nodes = 32, .split_ozone = true, .dark_samples = true};
@@ -133,7 +133,7 @@ DiffuseLight FinestDiffuseLight(const Medium& medium) {
   const DiffuseLightOptions needed = OptionsFor(medium);
   DiffuseLightOptions options = kFinest;
   options.forward_peak = needed.forward_peak;
-  options.degree = needed.degree;
+  options.degree = std::max(options.degree, needed.degree);
   options.azimuth_nodes = std::max(options.azimuth_nodes, needed.azimuth_nodes);
   options.later_zenith_nodes = std::max(options.later_zenith_nodes, needed.later_zenith_nodes);
   options.later_azimuth_nodes = std::max(options.later_azimuth_nodes, needed.later_azimuth_nodes);

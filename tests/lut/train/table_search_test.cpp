@@ -111,7 +111,7 @@ TEST_P(SmallestTables, AreUnderTheBoundOnViewsThatTheSearchDidNotSee) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, SmallestTables,
-                         testing::Values(0.02, tests::ScaledDown(0.007, 0.04)));
+                         testing::Values(0.02, tests::ScaledDown(0.005, 0.04)));
 
 TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViewsToo) {
   constexpr double kMaxError = 0.02;
