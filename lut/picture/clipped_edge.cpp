@@ -21,7 +21,7 @@ constexpr int kToLimb2 = 5, kToLight2 = 20;
 // the nearer ones it grows by a factor, and on to the pixel by about its square. More than kSteepest
 // is the edge of something else.
 constexpr int kToFar2 = 10;
-constexpr float kSteepest = 1.3F;
+constexpr float kSteepest = 1.6F;
 // The far ends of a filter let a pixel that is not clipped have a little of the light, too: there it
 // is so much brighter than what lies behind.
 constexpr float kTouched = 1.25F;
