@@ -17,6 +17,22 @@ double OverGround(const BendingAir& air, double height_m) {
          air.planet_radius_m * air.refractivity * less;
 }
 
+struct ValueAndSlope {
+  double value, per_m;
+};
+
+/// Both have the same exponentials. Layers without a share are left out: few airs have all.
+ValueAndSlope RefractivityAndSlopeAt(const BendingAir& air, double height_m) {
+  double sum = 0.0, slope_sum = 0.0;
+  for (const auto& [share, scale_height_m] : air.layers) {
+    if (share == 0.0) continue;
+    const double fall = std::exp(-height_m / scale_height_m);
+    sum += share * fall;
+    slope_sum += share / scale_height_m * fall;
+  }
+  return {air.refractivity * sum, -air.refractivity * slope_sum};
+}
+
 }  // namespace
 
 double RefractivityAtSeaLevel(double wavelength_nm) {
@@ -25,31 +41,17 @@ double RefractivityAtSeaLevel(double wavelength_nm) {
   return 1e-8 * (5792105.0 / (238.0185 - square) + 167917.0 / (57.362 - square));
 }
 
-// Layers without a share are left out: few airs have all.
 double RefractivityAt(const BendingAir& air, double height_m) {
-  double sum = 0.0;
-  for (const auto& [share, scale_height_m] : air.layers)
-    if (share != 0.0) sum += share * std::exp(-height_m / scale_height_m);
-  return air.refractivity * sum;
+  return RefractivityAndSlopeAt(air, height_m).value;
 }
 
 double RefractivitySlopeAt(const BendingAir& air, double height_m) {
-  double sum = 0.0;
-  for (const auto& [share, scale_height_m] : air.layers)
-    if (share != 0.0) sum += share / scale_height_m * std::exp(-height_m / scale_height_m);
-  return -air.refractivity * sum;
+  return RefractivityAndSlopeAt(air, height_m).per_m;
 }
 
-// The exponentials of both sums are the same.
 double CurvaturePerMetreAt(const BendingAir& air, double height_m) {
-  double sum = 0.0, slope_sum = 0.0;
-  for (const auto& [share, scale_height_m] : air.layers) {
-    if (share == 0.0) continue;
-    const double part = share * std::exp(-height_m / scale_height_m);
-    sum += part;
-    slope_sum += part / scale_height_m;
-  }
-  return -air.refractivity * slope_sum / (1.0 + air.refractivity * sum);
+  const ValueAndSlope refractivity = RefractivityAndSlopeAt(air, height_m);
+  return refractivity.per_m / (1.0 + refractivity.value);
 }
 
 bool GentlyBends(const BendingAir& air) {
@@ -85,11 +87,10 @@ double BentRay::HeightWhere(double elevation_rad) const {
   const double over_radius_m = q - air_.planet_radius_m;
   double height_m = over_radius_m;
   for (int step = 0; step < 20; ++step) {
-    const double refractivity = RefractivityAt(air_, height_m);
+    const auto [refractivity, per_m] = RefractivityAndSlopeAt(air_, height_m);
     const double radius_m = air_.planet_radius_m + height_m;
     const double excess_m = (height_m - over_radius_m) + refractivity * radius_m;
-    const double correction_m =
-        excess_m / (1.0 + refractivity + RefractivitySlopeAt(air_, height_m) * radius_m);
+    const double correction_m = excess_m / (1.0 + refractivity + per_m * radius_m);
     height_m -= correction_m;
     if (std::abs(correction_m) < 1e-6) break;
   }
@@ -107,17 +108,16 @@ double BentRay::Bending(double low_rad, double high_rad) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double height_m = HeightWhere(low_rad + (high_rad - low_rad) * rule.node[i]);
-    const double slope =
-        RefractivitySlopeAt(air_, height_m) * (air_.planet_radius_m + height_m);  // r n'
-    sum += rule.weight[i] * -slope / (1.0 + RefractivityAt(air_, height_m) + slope);
+    const auto [refractivity, per_m] = RefractivityAndSlopeAt(air_, height_m);
+    const double slope = per_m * (air_.planet_radius_m + height_m);  // r n'
+    sum += rule.weight[i] * -slope / (1.0 + refractivity + slope);
   }
   return sum * (high_rad - low_rad);
 }
 
-double BentRay::MetresPerRadian(double elevation_rad) const {
-  const double height_m = HeightWhere(elevation_rad);
-  const double growth = 1.0 + RefractivityAt(air_, height_m) +
-                        RefractivitySlopeAt(air_, height_m) * (air_.planet_radius_m + height_m);
+double BentRay::MetresPerRadian(double elevation_rad, double height_m) const {
+  const auto [refractivity, per_m] = RefractivityAndSlopeAt(air_, height_m);
+  const double growth = 1.0 + refractivity + per_m * (air_.planet_radius_m + height_m);
   const double cosine = std::cos(elevation_rad);
   return invariant_m_ / (cosine * cosine * growth);
 }

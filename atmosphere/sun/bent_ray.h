@@ -93,19 +93,21 @@ class BentRay {
     return sum;
   }
 
-  /// Column on that way [m], of what has a density relative to somewhere: double(double height_m).
-  /// Of molecules within 2e-3 of the ray equation's from the horizon to 6 degrees over it.
+  /// Column on that way [m], of what has a density relative to somewhere, or of several: a number or
+  /// a vector of height_m. Of molecules within 2e-3 of the ray equation's from the horizon to 6
+  /// degrees over it.
   template <typename Density>
-  [[nodiscard]] double ColumnToSpace(const Density& density) const {
-    double sum = 0.0;
+  [[nodiscard]] auto ColumnToSpace(const Density& density) const {
+    auto sum = 0.0 * density(height_m_);
     const GaussRule& rule = GaussLegendre(64);
     VisitParts([&](double low_rad, double high_rad) {
       for (std::size_t i = 0; i < rule.node.size(); ++i) {
         // Nodes crowd where the ray is low and most of the air is.
         const double t = rule.node[i];
         const double elevation = low_rad + (high_rad - low_rad) * t * t;
-        sum += rule.weight[i] * 2.0 * t * (high_rad - low_rad) * density(HeightWhere(elevation)) *
-               MetresPerRadian(elevation);
+        const double height_m = HeightWhere(elevation);
+        sum += rule.weight[i] * 2.0 * t * (high_rad - low_rad) *
+               MetresPerRadian(elevation, height_m) * density(height_m);
       }
     });
     return sum;
@@ -128,7 +130,8 @@ class BentRay {
     visit(0.0, exit_rad);
     visit(0.0, height_m_ < air_.top_m ? -elevation_rad_ : exit_rad);
   }
-  [[nodiscard]] double MetresPerRadian(double elevation_rad) const;
+  /// @param height_m  where it has the elevation.
+  [[nodiscard]] double MetresPerRadian(double elevation_rad, double height_m) const;
   /// n r at a height, less the ray's invariant [m], without cancelling.
   [[nodiscard]] double OverInvariant(double height_m) const;
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Light of twilight that bent rays of the sun bring (tests/fixtures/bent_twilight.h), against what
 // straight rays bring from a sun that is lifted by a share of its refraction (LiftForAir), and against
-// what they bring from where it is seen. Last, light of the sun on the ground by the straight ray along
-// which it is seen.
+// what they bring from where it is seen. Last, light of the sun on the ground by BentBeam and by the
+// straight ray along which the sun is seen.
 #include <fmt/core.h>
 
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/ray/bent_beam.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 #include "tests/fixtures/bent_twilight.h"
@@ -85,16 +85,22 @@ void CompareRules(const BentTwilight& twilight, double height_m, double elevatio
   fmt::print("\n");
 }
 
-/// Light on a level place at sea level by the straight ray of the apparent elevation, over that of the
-/// bent one.
-void CompareGround(const Medium& medium, const BentTwilight& twilight, double apparent_deg) {
-  const double apparent_rad = apparent_deg * kRadiansPerDegree;
-  const BandValues bent = twilight.OnLevelPlace(apparent_rad);
-  const Bands<double> straight =
-      AirIntegrator<double>(medium).TransmittanceToSpace(0.0, std::sin(apparent_rad));
-  fmt::print("sun seen at {:4.1f} deg, light on level ground:", apparent_deg);
+/// Light of the sun on a place where it is seen at an elevation, over that of the bent ray: by the
+/// straight ray of that elevation, and by BentBeam.
+void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
+  const double apparent_rad = apparent_deg * kRadiansPerDegree, mu = std::sin(apparent_rad);
+  const BandValues bent = BentTwilight(medium, height_m).Beam(apparent_rad, height_m);
+  static const AirIntegrator<float> kAir(medium);
+  static const BentBeam kBeam(medium);
+  const Bands<float> straight = kAir.TransmittanceToSpace(height_m, mu);
+  const Bands<float> beam = kBeam.Left(kAir, height_m, mu);
+  const auto error = [&](const Bands<float>& light, std::size_t band) {
+    return 100.0 * (static_cast<double>(light[band]) / bent[band] - 1.0);
+  };
+  fmt::print("place at {:4.0f} m, sun seen at {:4.1f} deg, straight ray / BentBeam:", height_m,
+             apparent_deg);
   for (std::size_t band = 0; band < bent.size(); ++band)
-    fmt::print("  {:+.1f} %", 100.0 * (straight[band] * std::sin(apparent_rad) / bent[band] - 1.0));
+    fmt::print("  {:+.1f} / {:+.1f} %", error(straight, band), error(beam, band));
   fmt::print("\n");
 }
 
@@ -107,7 +113,7 @@ int main() {
     for (const double elevation_deg : kElevations_deg)
       CompareRules(twilight, height_m, elevation_deg);
   }
-  const BentTwilight twilight(medium);
-  for (const double apparent_deg : {0.1, 0.5, 1.0, 2.0, 5.0, 10.0})
-    CompareGround(medium, twilight, apparent_deg);
+  for (const double height_m : {0.0, 3000.0, 8000.0})
+    for (const double apparent_deg : {0.1, 0.5, 1.0, 2.0, 5.0, 10.0})
+      CompareBeam(medium, height_m, apparent_deg);
 }
