@@ -84,14 +84,15 @@ struct MediaLight::State {
   LocalMedia media;
   const SceneGeometry& geometry;
   const AirIntegrator<float>& air;
+  const BentBeam& beam;
   const DiffuseLight& diffuse;
   const LampLight* lamps;
   DistantLight sun;
   std::vector<LitVolume> volumes;
   std::optional<FogLight> fog;
 
-  State(LocalMedia of, const SceneGeometry& over, const AirIntegrator<float>& in,
-        const DiffuseLight& sky, const Lighting& light, const LampLight* with);
+  State(LocalMedia of, const SceneGeometry& over, const SunlitAir& in, const Lighting& light,
+        const LampLight* with);
 
   [[nodiscard]] std::size_t bands() const { return media.bands(); }
   [[nodiscard]] const FogLayer& fog_layer() const { return *media.fog()->fog(); }
@@ -112,9 +113,15 @@ struct MediaLight::State {
                                                 const SkyMoments& sky) const;
 };
 
-MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const AirIntegrator<float>& in,
-                         const DiffuseLight& sky, const Lighting& light, const LampLight* with)
-    : media(std::move(of)), geometry(over), air(in), diffuse(sky), lamps(with), sun(light.Sun()) {
+MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SunlitAir& in,
+                         const Lighting& light, const LampLight* with)
+    : media(std::move(of)),
+      geometry(over),
+      air(in.air),
+      beam(in.beam),
+      diffuse(in.diffuse),
+      lamps(with),
+      sun(light.Sun()) {
   for (const LocalMedium& medium : media.all()) {
     if (medium.volume() != nullptr) volumes.push_back(Light(medium));
   }
@@ -130,7 +137,7 @@ BandLight MediaLight::State::SunInAir(const glm::dvec3& point) const {
   const LocalSun here = LocalSunAt(geometry, point, sun);
   if (here.visible_fraction <= 0.0) return BandLight(bands());
   return static_cast<float>(here.visible_fraction) *
-         air.TransmittanceToSpace(here.altitude_m, here.mu_s_effective);
+         beam.Left(air, here.altitude_m, here.mu_s_effective);
 }
 
 LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
@@ -405,10 +412,9 @@ class Sources {
 
 }  // namespace
 
-MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry,
-                       const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry, const SunlitAir& air,
                        const Lighting& light, const LampLight* lamps)
-    : state_(std::make_unique<State>(std::move(media), geometry, air, diffuse, light, lamps)) {}
+    : state_(std::make_unique<State>(std::move(media), geometry, air, light, lamps)) {}
 MediaLight::~MediaLight() = default;
 
 const LocalMedia& MediaLight::media() const { return state_->media; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light of sun and sky in local media, and what they leave of it.
 //
-// In volumes light is scattered once: that of the sun, through the air, terrain's shadow, and every
+// In volumes light is scattered once: that of the sun, through the air (BentBeam), terrain's shadow, and every
 // volume and the fog on its way; that of the sky by its moments (DiffuseLight) with the phase
 // function, dimmed by the mean over 26 directions of what volumes leave of it. Light that a volume
 // scatters again is left out. Columns towards the sun through a gridded volume
@@ -20,10 +20,9 @@
 #include <glm/vec3.hpp>
 #include <memory>
 
-#include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
+#include "renderer/light/sunlit_air.h"
 #include "renderer/media/local_media.h"
 #include "renderer/media/media_march.h"
 #include "renderer/shadow/sunlit_path.h"
@@ -41,8 +40,8 @@ struct SkyThroughFog {
 class MediaLight {
  public:
   /// @param lamps  that light volumes; null: none.
-  MediaLight(LocalMedia media, const SceneGeometry& geometry, const AirIntegrator<float>& air,
-             const DiffuseLight& diffuse, const Lighting& light, const LampLight* lamps = nullptr);
+  MediaLight(LocalMedia media, const SceneGeometry& geometry, const SunlitAir& air,
+             const Lighting& light, const LampLight* lamps = nullptr);
   ~MediaLight();
 
   [[nodiscard]] const LocalMedia& media() const;

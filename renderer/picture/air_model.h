@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "atmosphere/ray/bent_beam.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "renderer/effect/effects.h"
@@ -18,11 +19,17 @@ namespace alpenglow {
 struct AirModel {
   AirModel(const Medium& medium, const GroundParts& parts)
       : air(medium),
+        beam(medium),
         diffuse(medium, OptionsFor(medium)),
         aerial(air, diffuse),
-        ground_light(parts, air, diffuse) {}
+        ground_light(parts, sunlit()) {}
+  AirModel(const AirModel&) = delete;
+  AirModel& operator=(const AirModel&) = delete;
+
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
 
   AirIntegrator<float> air;
+  BentBeam beam;
   DiffuseLight diffuse;
   AerialPerspective aerial;
   GroundLight ground_light;

@@ -28,9 +28,8 @@ bool SeesTerrain(const Hit& hit, const Lighting& light) {
 
 }  // namespace
 
-GroundLight::GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
-                         const DiffuseLight& diffuse)
-    : parts_(parts), air_(air), diffuse_(diffuse) {}
+GroundLight::GroundLight(const GroundParts& parts, const SunlitAir& air)
+    : parts_(parts), air_(air.air), beam_(air.beam), diffuse_(air.diffuse) {}
 
 std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& from) const {
   const Lighting& light = from.light;
@@ -144,7 +143,7 @@ std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Ground
   const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
   const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
-                          air_.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+                          beam_.Left(air_, sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;
   return clear * from.media->SunLeft(hit.point, to_disk);
 }

@@ -8,13 +8,13 @@
 #include <memory>
 #include <optional>
 
-#include "lut/diffuse/multiple_scattering.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/ground_material.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
 #include "renderer/light/picture_stokes.h"
+#include "renderer/light/sunlit_air.h"
 #include "renderer/light/terrain_light.h"
 #include "renderer/media/media_light.h"
 
@@ -53,8 +53,7 @@ struct GroundSources {
 /// Immutable, safe to share between threads. Refers to what it was made from.
 class GroundLight {
  public:
-  GroundLight(const GroundParts& parts, const AirIntegrator<float>& air,
-              const DiffuseLight& diffuse);
+  GroundLight(const GroundParts& parts, const SunlitAir& air);
 
   /// What terrain makes of the light of sky and sun, as far as the effects of the light say; null
   /// where it makes nothing of it.
@@ -110,6 +109,7 @@ class GroundLight {
 
   GroundParts parts_;
   const AirIntegrator<float>& air_;
+  const BentBeam& beam_;
   const DiffuseLight& diffuse_;
 };
 

@@ -39,7 +39,7 @@ double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& e
   const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
-      direct * models.whole().air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective) +
+      direct * models.whole().sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective) +
       models.whole().diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
   return colour.Xyz(InDouble(source.irradiance * irradiance))[1];
 }
@@ -246,14 +246,14 @@ void SceneState::LightMedia(PictureFrame& frame) const {
   frame.media = here.IsNothing()
                     ? nullptr
                     : std::make_shared<MediaLight>(
-                          std::move(here), geometry, frame.model->air, frame.model->diffuse,
-                          frame.light, frame.Has(Effect::kLights) ? frame.lamps.get() : nullptr);
+                          std::move(here), geometry, frame.model->sunlit(), frame.light,
+                          frame.Has(Effect::kLights) ? frame.lamps.get() : nullptr);
   if (frame.moonlit) {
     SecondLight moon = *frame.moonlit;
-    moon.media = frame.media ? std::make_shared<MediaLight>(frame.media->media().WithoutGlow(),
-                                                            geometry, frame.model->air,
-                                                            frame.model->diffuse, moon.light)
-                             : nullptr;
+    moon.media = frame.media
+                     ? std::make_shared<MediaLight>(frame.media->media().WithoutGlow(), geometry,
+                                                    frame.model->sunlit(), moon.light)
+                     : nullptr;
     frame.moonlit = std::make_shared<SecondLight>(std::move(moon));
   }
 }

@@ -22,7 +22,7 @@ namespace {
 using tests::Earth;
 
 const MediumTables& Phases() {
-  static const MediumTables tables = MakeMediumTables(Earth().air);
+  static const MediumTables tables = MakeMediumTables(Earth().air, Earth().beam);
   return tables;
 }
 
@@ -61,7 +61,7 @@ void SolvingOfAir(benchmark::State& state) {
 BENCHMARK(SolvingOfAir)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void MakingOfMediumTables(benchmark::State& state) {
-  for (auto unused : state) benchmark::DoNotOptimize(MakeMediumTables(Earth().air));
+  for (auto unused : state) benchmark::DoNotOptimize(MakeMediumTables(Earth().air, Earth().beam));
 }
 BENCHMARK(MakingOfMediumTables)->Unit(benchmark::kMillisecond);
 
@@ -76,7 +76,7 @@ BENCHMARK(MakingOfIntegrator)->Unit(benchmark::kMillisecond);
 void Pass(benchmark::State& state, const std::string& statement, int width, int height) {
   const HeadlessContext context;
   AirTextures textures;
-  textures.Upload(MakeMediumTables(Earth().air));
+  textures.Upload(MakeMediumTables(Earth().air, Earth().beam));
   textures.Upload(Tables(static_cast<AirQuality>(state.range(0)), 1500.0));
   const glm::dvec3 sun(0.0, std::sqrt(1.0 - 0.09), 0.3);
   textures.SetView(1500.0, {sun, sun});

@@ -21,7 +21,7 @@ std::string TextOf(const tests::AirErrors& errors) {
 }
 
 void Study(const tests::LitAir& air, AirQuality quality, const AirEye& eye) {
-  const MediumTables medium = MakeMediumTables(air.air);
+  const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTablesSize size = AirTablesSizeOf(quality, eye.altitude_m);
   const auto start = std::chrono::steady_clock::now();
   const AirTables tables = MakeAirTables(air.air, air.diffuse, medium, eye, size);

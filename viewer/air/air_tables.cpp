@@ -197,10 +197,10 @@ AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& dif
   return tables;
 }
 
-MediumTables MakeMediumTables(const AirIntegrator<float>& air) {
+MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& beam) {
   using namespace shared;
   RequireFourBands(air.medium());
-  MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, kSunAltitudes)};
+  MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, 2 * kSunAltitudes)};
   for (int k = 0; k < kPhaseNodes; ++k) {
     const std::vector<double> phase = MiePhaseValues(air.medium(), CosineOfPhaseNode(k));
     for (std::size_t band = 0; band < phase.size(); ++band)
@@ -214,7 +214,9 @@ MediumTables MakeMediumTables(const AirIntegrator<float>& air) {
     for (int x = 0; x < kSunCosines; ++x) {
       const double mu = std::max(SkyCosineFromUnit<double>(Unit(x, kSunCosines), h, top, radius),
                                  HorizonCosine<double>(h, radius) + kHair);
-      tables.to_sun.At(x, y) = Vec4Of(air.TransmittanceToSpace(kMetresPerKilometre * h, mu));
+      const double altitude_m = kMetresPerKilometre * h;
+      tables.to_sun.At(x, y) = Vec4Of(air.TransmittanceToSpace(altitude_m, mu));
+      tables.to_sun.At(x, kSunAltitudes + y) = Vec4Of(beam.Left(air, altitude_m, mu));
     }
   }
   return tables;

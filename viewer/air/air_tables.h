@@ -24,6 +24,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "atmosphere/ray/bent_beam.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "viewer/air/air_map.h"
@@ -101,11 +102,14 @@ void RequireFourBands(const Medium& medium);
 struct MediumTables {
   /// Phase function of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
   AirTexels phase;
-  /// Transmittance to space, [zenith cosine, altitude] on the map of transmittance_map.glsl.
+  /// On the map of transmittance_map.glsl, [zenith cosine, altitude]: transmittance of straight rays
+  /// to space, by which air is lit, and over it what is left of the beam of a disk on ground and fog
+  /// (BentBeam::Left).
   AirTexels to_sun;
 };
 
-[[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air);
+/// @param beam  of the medium of `air`.
+[[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& beam);
 
 /// On the calling thread alone. `air`, `diffuse` and `medium` must be of one medium; neither is
 /// kept. Throws InputError for a medium of more than four bands.

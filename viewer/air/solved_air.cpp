@@ -3,6 +3,8 @@
 
 #include <tbb/task_arena.h>
 
+#include <utility>
+
 namespace alpenglow {
 
 std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
@@ -11,10 +13,12 @@ std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solu
   const AirIntegrator<float> air(medium);
   tbb::task_arena one_thread(1);
   return one_thread.execute([&] {
+    BentBeam beam(medium);
+    MediumTables tables = MakeMediumTables(air, beam);
     return std::make_shared<const SolvedAir>(SolvedAir{
-        medium, solution,
+        medium, solution, std::move(beam),
         DiffuseLight(medium, solution == AirSolution::kDraft ? kDraft : DiffuseLightOptions{}),
-        MakeMediumTables(air)});
+        std::move(tables)});
   });
 }
 

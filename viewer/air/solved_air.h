@@ -16,6 +16,7 @@ enum class AirSolution { kDraft, kFull };
 struct SolvedAir {
   Medium medium;
   AirSolution solution;
+  BentBeam beam;
   DiffuseLight diffuse;
   MediumTables tables;
 };

@@ -177,6 +177,7 @@ class GroundFollower::Maker {
     foot.height_m = 0.0;
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
     const SiteAir air{std::make_shared<const AirIntegrator<float>>(medium),
+                      std::shared_ptr<const BentBeam>(request.air, &request.air->beam),
                       std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // nothing is loaded there yet

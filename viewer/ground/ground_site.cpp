@@ -39,8 +39,8 @@ GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
       no_lamps_(NoLamps(ground_, medium())),
       horizons_(ground_, medium()),
       heights_(TerrainOf(ground_).mesh()),
-      light_({ground_, geometry_, no_lamps_, horizons_, material_}, *air_.integrator,
-             *air_.diffuse) {
+      light_({ground_, geometry_, no_lamps_, horizons_, material_},
+             {*air_.integrator, *air_.beam, *air_.diffuse}) {
   ALPENGLOW_ENSURE(ground_.is_one_surface, ==, true);
   OnThisThread([&] { (void)horizons_.Get(); });
 }

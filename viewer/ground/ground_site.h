@@ -21,9 +21,10 @@
 
 namespace alpenglow {
 
-/// The air over the land: both of one medium on the sphere of the site.
+/// The air over the land: all of one medium on the sphere of the site.
 struct SiteAir {
   std::shared_ptr<const AirIntegrator<float>> integrator;
+  std::shared_ptr<const BentBeam> beam;
   std::shared_ptr<const DiffuseLight> diffuse;
 };
 

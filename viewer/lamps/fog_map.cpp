@@ -30,15 +30,14 @@ using Sums = std::array<glm::vec4, kQuantities>;
 
 class FogMarch {
  public:
-  FogMarch(const LocalMedium& fog, double bottom_m, const AirIntegrator<float>& air,
-           const DiffuseLight& diffuse, const FogView& view)
+  FogMarch(const LocalMedium& fog, double bottom_m, const SunlitAir& air, const FogView& view)
       : fog_(fog),
         layer_(*fog.fog()),
         air_(air),
         view_(view),
-        radius_m_(air.medium().planet_radius_m),
+        radius_m_(air.air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
-        light_(fog, diffuse, {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))},
+        light_(fog, air.diffuse, {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))},
                bottom_m) {}
 
   [[nodiscard]] const FogLight& light() const { return light_; }
@@ -92,9 +91,8 @@ class FogMarch {
     const double mu_s = std::clamp(glm::dot(up, view_.to_sun), -1.0, 1.0);
     const VisibleDisk disk =
         DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), view_.sun_radius_rad);
-    if (disk.fraction <= 0.0) return BandLight(air_.bands());
-    return static_cast<float>(disk.fraction) *
-           air_.TransmittanceToSpace(altitude, disk.mu_s_effective);
+    if (disk.fraction <= 0.0) return BandLight(air_.air.bands());
+    return static_cast<float>(disk.fraction) * air_.BeamLeft(altitude, disk.mu_s_effective);
   }
 
   [[nodiscard]] double EndOf(const glm::dvec3& direction) const {
@@ -152,7 +150,7 @@ class FogMarch {
         static_cast<float>(fog_.optics.scattering_per_m[0] / fog_.optics.extinction_per_m[0]);
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
-    const BandLight left = scattered * air_.TransmittanceAlong(ray);
+    const BandLight left = scattered * air_.air.TransmittanceAlong(ray);
     return {InFloats(direct * (left * sun)),
             InFloats((light_.BeamLeft(slant) - direct) * (left * sun)),
             InFloats(left * glow.of_sun), InFloats(left * glow.of_sky)};
@@ -160,7 +158,7 @@ class FogMarch {
 
   const LocalMedium& fog_;
   const FogLayer& layer_;
-  const AirIntegrator<float>& air_;
+  SunlitAir air_;
   FogView view_;
   double radius_m_;
   glm::dvec3 eye_;
@@ -216,11 +214,11 @@ void AddSurfaces(const FogMarch& march, const FogLayer& layer, FogMap& map) {
 
 }  // namespace
 
-FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const AirIntegrator<float>& air,
-                  const DiffuseLight& diffuse, const FogView& view, const FogMapSize& size) {
-  ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
+FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
+                  const FogView& view, const FogMapSize& size) {
+  ALPENGLOW_ENSURE(air.air.bands(), <=, std::size_t{4});
   const FogLayer& layer = *fog.fog();
-  const FogMarch march(fog, bottom_m, air, diffuse, view);
+  const FogMarch march(fog, bottom_m, air, view);
   const std::vector<double> chi = LegendreCoefficients(fog.optics.phase, 2);
   FogMap map;
   map.view = view;
@@ -228,8 +226,8 @@ FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const AirIntegrator<f
   map.extinction_per_m = fog.optics.extinction_per_m[0];
   map.scale_height_m = layer.scale_height_m();
   map.base_m = layer.base_m();
-  map.top_m = air.medium().atmosphere_height_m;
-  map.radius_m = air.medium().planet_radius_m;
+  map.top_m = air.air.medium().atmosphere_height_m;
+  map.radius_m = air.air.medium().planet_radius_m;
   map.depth = map.extinction_per_m * layer.ColumnAbove(bottom_m);
   map.peak_scale = -std::log(static_cast<double>(march.light().BeamLeft(1.0)));
   map.phase = fog.optics.phase;

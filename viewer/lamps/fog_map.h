@@ -16,8 +16,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "renderer/light/sunlit_air.h"
 #include "renderer/media/local_media.h"
 
 namespace alpenglow {
@@ -64,10 +63,9 @@ struct FogMap {
 };
 
 /// @param fog  of LocalMedia; bottom_m: altitude of the ground under it.
-/// @param air, diffuse  of one medium; at most four bands.
+/// @param air  of at most four bands.
 /// Errors of rays against MediaLight: tests/viewer/lamps/fog_map_test.cpp.
-[[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m,
-                                const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+[[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
                                 const FogView& view, const FogMapSize& size = {});
 
 }  // namespace alpenglow

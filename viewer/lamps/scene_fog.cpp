@@ -33,8 +33,8 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
     tbb::task_arena alone(1);
     return alone.execute([&] {
       const AirIntegrator<float> integrator(OnOsculatingSphere(air->medium, latitude_rad));
-      return MakeFogMap(*media->fog(), media->fog_bottom_m(), integrator, air->diffuse, wanted,
-                        size);
+      return MakeFogMap(*media->fog(), media->fog_bottom_m(), {integrator, air->beam, air->diffuse},
+                        wanted, size);
     });
   });
 }

@@ -34,7 +34,7 @@ BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition&
       air.diffuse.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
   if (mu <= 0.0) return sky;
   const AirIntegrator<float> integrator(air.medium);
-  return sky + static_cast<float>(mu) * integrator.TransmittanceToSpace(altitude_m, mu);
+  return sky + static_cast<float>(mu) * air.beam.Left(integrator, altitude_m, mu);
 }
 
 // What the moon leaves of the sun.

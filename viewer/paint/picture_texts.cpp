@@ -43,9 +43,8 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());
   // What fog leaves of the sun on the ground is part of what the air leaves.
   if (kind.fog) {
-    texts.push_back({"fog on the ground",
-                     "#define TransmittanceToSun(h, mu) "
-                     "(TransmittanceToSun(h, mu) * FogSunLeft(h, mu))\n"});
+    texts.push_back(
+        {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
                             "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));

@@ -29,7 +29,7 @@ uniform sampler2D air_extinction;
 uniform sampler3D air_single;
 uniform sampler3D air_diffuse;
 uniform sampler2D air_phase;  // of the aerosol; with the glow about the sun
-uniform sampler2D air_to_sun;
+uniform sampler2D air_to_sun;  // of straight rays; over it that of the beam on ground and fog
 
 struct AirTo {
   vec4 single;   // sunlight scattered once, terrain left out
@@ -99,15 +99,23 @@ vec4 TransmittanceToSpace(vec3 direction) {
   return AboveAir(rise) ? vec4(1.0) : textureLod(air_through, at, 0.0);
 }
 
-// From a point at or above the ground [km] towards a sun that the planet does not hide.
-vec4 TransmittanceToSun(float altitude_km, float mu_s) {
+// @param beam  0: straight rays; 1: beam.
+vec4 ToSun(float altitude_km, float mu_s, float beam) {
   float h = clamp(altitude_km, 0.0, air_shell.z);
   float x =
       UnitFromSkyCosine(h, max(mu_s, HorizonCosine(h, air_shell.w)), air_shell.z, air_shell.w);
   float y = UnitFromAltitude(h, air_shell.z, air_shell.w);
-  vec2 size = vec2(textureSize(air_to_sun, 0));
-  return textureLod(air_to_sun, vec2(TexelFromUnit(x, size.x), TexelFromUnit(y, size.y)), 0.0);
+  vec2 size = vec2(textureSize(air_to_sun, 0)) * vec2(1.0, 0.5);
+  vec2 at = vec2(TexelFromUnit(x, size.x), 0.5 * (TexelFromUnit(y, size.y) + beam));
+  return textureLod(air_to_sun, at, 0.0);
 }
+
+// By straight rays from a point at or above the ground [km] towards a sun that the planet does not
+// hide, which air and bare ground of the sky's table are lit by.
+vec4 TransmittanceToSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 0.0); }
+
+// What is left there across the beams of a disk that is seen: BentBeam of atmosphere/ray/bent_beam.h.
+vec4 BeamOfSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 1.0); }
 
 // Where a point lies in the tables of ways, and what reaches the eye from there.
 struct AirWay {

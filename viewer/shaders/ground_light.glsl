@@ -32,18 +32,17 @@ GroundPlace GroundPlaceAt(vec3 point) {
                           dot(point, mesh_up.xyz)));
 }
 
-// Of a sun on a level across its beams: what of the disk stands over the planet's horizon, over
-// terrain and over the plane of the mesh there, through the air.
-vec4 AcrossBeamsOf(vec3 to_sun, GroundPlace at, vec3 mesh_normal, float sun_x) {
-  vec2 disk = DiskOverHorizon(clamp(dot(at.up, to_sun), -1.0, 1.0),
-                              HorizonCosine(at.altitude, RADIUS), sun.w);
-  float over_plane = dot(mesh_normal, to_sun) / sun.w;
-  float seen = disk.x * SunlightOverEdge(min(sun_x, over_plane));
-  return seen * TransmittanceToSun(at.altitude, disk.y);
+vec2 DiskOver(GroundPlace at, vec3 to_sun) {
+  return DiskOverHorizon(clamp(dot(at.up, to_sun), -1.0, 1.0), HorizonCosine(at.altitude, RADIUS),
+                         sun.w);
 }
 
+// Light of the sun on a level across its beams: what of the disk stands over the planet's horizon,
+// over terrain and over the plane of the mesh there, through the air.
 vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
-  return AcrossBeamsOf(sun.xyz, at, mesh_normal, sun_x);
+  vec2 disk = DiskOver(at, sun.xyz);
+  float over_plane = dot(mesh_normal, sun.xyz) / sun.w;
+  return disk.x * SunlightOverEdge(min(sun_x, over_plane)) * BeamOfSun(at.altitude, disk.y);
 }
 
 // The normal that light falls on: with the relief that the mesh does not have, where there is any.
@@ -162,7 +161,9 @@ vec4 PlanetBeyondEven(vec3 point_m, vec3 to_eye) {
   SeenGround seen = PlanetSeen(point_m, to_eye);
   vec4 sky = SkyOnPlanet(seen);
   float mu_s = max(dot(seen.at.up, sun_for_air.xyz), 0.0);
-  vec4 across = AcrossBeamsOf(sun_for_air.xyz, seen.at, seen.at.up, kNoEdge);
+  vec2 disk = DiskOver(seen.at, sun_for_air.xyz);
+  vec4 across = disk.x * SunlightOverEdge(dot(seen.at.up, sun_for_air.xyz) / sun.w) *
+                TransmittanceToSun(seen.at.altitude, disk.y);
   vec4 even = (mu_s * across + sky) * ground_albedo / 3.14159265359;
   return SentOn(seen, kNoEdge, sky, to_eye) - even;
 }

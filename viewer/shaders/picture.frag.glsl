@@ -165,7 +165,7 @@ void main() {
 #endif
 #if PASS == SKY_PASS && !PLANET_IS_PLAIN
   if (planet) radiance = PlanetThroughAir(direction);
-#elif PASS == SKY_PASS && PLANET_IS_LAND
+#elif PASS == SKY_PASS
   if (planet) {
     vec4 beyond = PlanetBeyondEven(PlanetPlace(direction, PlanetDistance(direction)), -direction);
     radiance = max(radiance + TransmittanceToSpace(straight) * beyond, vec4(0.0));

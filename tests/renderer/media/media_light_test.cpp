@@ -27,8 +27,11 @@ const glm::dvec3 kToSun(0.6 * std::cos(kSunElevation), 0.8 * std::cos(kSunElevat
 
 /// Air, solved.
 struct SolvedAir {
-  explicit SolvedAir(const Medium& medium) : air(medium), diffuse(medium) {}
+  explicit SolvedAir(const Medium& medium) : air(medium), beam(medium), diffuse(medium) {}
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
+
   AirIntegrator<float> air;
+  BentBeam beam;
   DiffuseLight diffuse;
 };
 
@@ -55,7 +58,7 @@ struct Stage {
   }();
 
   [[nodiscard]] MediaLight Lit(const std::vector<LocalMedium>& media) const {
-    return {LocalMedia(media, 3), geometry, air.air, air.diffuse, light};
+    return {LocalMedia(media, 3), geometry, air.sunlit(), light};
   }
 };
 
@@ -94,7 +97,7 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   const MarchedLight light = lit.Along(kEye, look, INFINITY, nullptr);
   const glm::dvec3 there(0.0, 300.0, 50.0);
   const LocalSun sun = LocalSunAt(stage.geometry, there, stage.light.Sun());
-  const BandLight direct = stage.air.air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+  const BandLight direct = stage.air.sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective);
   ViewRay to;
   to.altitude_m = 50.0;
   to.mu = 0.0;
@@ -158,8 +161,7 @@ TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
       const MarchedLight all = lit.Along(kEye, look, 1e4, nullptr);
       const MarchedLight shaded = lit.Along(kEye, look, 1e4, &dark);
       const LocalSun sun = LocalSunAt(stage.geometry, {0.0, 300.0, 50.0}, stage.light.Sun());
-      const BandLight direct =
-          stage.air.air.TransmittanceToSpace(sun.altitude_m, sun.mu_s_effective);
+      const BandLight direct = stage.air.sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective);
       ViewRay to;
       to.altitude_m = 50.0;
       to.mu = look.z;
@@ -220,10 +222,10 @@ TEST(MediaLight, WhiteFogOverBlackGroundKeepsTheEnergyOfSunAndSky) {
   Stage stage;
   stage.medium.ground_albedo.assign(3, 0.0);
   const SolvedAir air(stage.medium);
-  const MediaLight lit(LocalMedia({FogOf(0.02, 60.0)}, 3), stage.geometry, air.air, air.diffuse,
+  const MediaLight lit(LocalMedia({FogOf(0.02, 60.0)}, 3), stage.geometry, air.sunlit(),
                        stage.light);
   const double mu_s = kToSun.z;
-  const BandLight sun = air.air.TransmittanceToSpace(60.0, mu_s);
+  const BandLight sun = air.sunlit().BeamLeft(60.0, mu_s);
   const BandLight sky = air.diffuse.SkyIrradiance(0.0, mu_s);
   const SkyThroughFog below = lit.SkyOnSurface(0.0, 1.0);
   const SkyThroughFog above = lit.SkyOnSurface(5e4, -1.0);
@@ -249,7 +251,7 @@ TEST(MediaLight, LampsLightAVolumeAsTheyLightHomogeneousAir) {
   stage.light.to_sun = stage.light.to_sun_for_air = {0.0, 0.6, -0.8};
   const MediumOptics optics = Optics(0.01, 0.8);
   const MediaLight lit(LocalMedia({Box({0.0, 0.0, -200.0}, {500.0, 500.0, 500.0}, optics)}, 3),
-                       stage.geometry, stage.air.air, stage.air.diffuse, stage.light, &lamps);
+                       stage.geometry, stage.air.sunlit(), stage.light, &lamps);
   for (const double rise : {-0.05, 0.0, 0.03, 0.4}) {
     const glm::dvec3 look = glm::normalize(glm::dvec3(0.02, 1.0, rise));
     const MarchedLight light = lit.Along(kEye, look, 150.0, nullptr);

@@ -105,7 +105,7 @@ TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
 /// Tables made for one eye, as another sees them: root mean square of relative errors of the sky.
 double ErrorOfOld(const AirEye& made, const AirEye& now) {
   const tests::LitAir& air = tests::Earth();
-  const MediumTables medium = MakeMediumTables(air.air);
+  const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTablesSize size = AirTablesSizeOf(AirQuality::kHigh, now.altitude_m);
   const AirTables old = MakeAirTables(air.air, air.diffuse, medium, made, size);
   const AirMap map(air.medium, now.altitude_m, now.ceiling_m,

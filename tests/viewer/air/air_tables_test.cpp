@@ -27,7 +27,7 @@ AirEye EyeUnder(double altitude_m, double elevation_deg) {
 }
 
 AirTables TablesOf(const tests::LitAir& air, const AirEye& eye, AirQuality quality) {
-  return MakeAirTables(air.air, air.diffuse, MakeMediumTables(air.air), eye,
+  return MakeAirTables(air.air, air.diffuse, MakeMediumTables(air.air, air.beam), eye,
                        AirTablesSizeOf(quality, eye.altitude_m));
 }
 
@@ -40,7 +40,7 @@ void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality q
                        const Bounds& bounds) {
   SCOPED_TRACE(fmt::format("{}, {} m, sine of the sun's elevation {}", air.medium.name,
                            eye.altitude_m, eye.mu_s));
-  const MediumTables medium = MakeMediumTables(air.air);
+  const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTables tables = TablesOf(air, eye, quality);
   const tests::AirReading reading(tables, medium);
   const tests::AirJudge judge(air, eye);
@@ -73,7 +73,7 @@ TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
 TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
   AirEye eye = EyeUnder(2500.0, -1.8);
   eye.lower_for_air_rad = 0.5 * kRadiansPerDegree;
-  const MediumTables medium = MakeMediumTables(tests::Earth().air);
+  const MediumTables medium = MakeMediumTables(tests::Earth().air, tests::Earth().beam);
   const tests::AirJudge judge(tests::Earth(), eye);
   // Largest error of the sky within two degrees of the sun and of the horizon.
   const auto worst_of = [&](const AirTables& tables) {
@@ -128,7 +128,7 @@ TEST(AirTables, OfLowQualityAreGoodToAPercent) {
 TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   const tests::LitAir dusty(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
   const AirEye eye = EyeUnder(300.0, 20.0);
-  const MediumTables medium = MakeMediumTables(dusty.air);
+  const MediumTables medium = MakeMediumTables(dusty.air, dusty.beam);
   const AirTables tables = TablesOf(dusty, eye, AirQuality::kLow);
   const tests::AirReading reading(tables, medium);
   const tests::AirJudge judge(dusty, eye);

@@ -25,7 +25,7 @@ constexpr GLuint kBinding = 5;
 /// Tables on both processors, and an eye whose sun stands in the south west.
 struct BothTables {
   BothTables(double altitude_m, double mu_s)
-      : medium(MakeMediumTables(tests::Earth().air)),
+      : medium(MakeMediumTables(tests::Earth().air, tests::Earth().beam)),
         tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, medium, {altitude_m, mu_s},
                              AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables, medium) {
@@ -209,19 +209,37 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
   }
 }
 
-TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
-  const BothTables both(0.0, 0.5);
+/// Altitudes [km] up to 9 km and zenith cosines from the horizon up, most of them near it.
+std::vector<tests::Arguments<float>> PlacesUnderTheSun(double radius_km) {
   std::vector<tests::Arguments<float>> points;
   for (int i = 1; i <= 300; ++i) {
     const double h = 9.0 * Halton(i, 2);
-    const double least = shared::HorizonCosine<double>(h, both.tables.map.radius);
+    const double least = shared::HorizonCosine<double>(h, radius_km);
     points.push_back({static_cast<float>(h),
                       static_cast<float>(least + (1.0 - least) * std::pow(Halton(i, 3), 3.0))});
   }
+  return points;
+}
+
+TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
+  const BothTables both(0.0, 0.5);
+  const auto points = PlacesUnderTheSun(both.tables.map.radius);
   const auto on_gpu = both.OnGpu("TransmittanceToSun(a[0], a[1]).y", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Bands<float> exact = tests::Earth().air.TransmittanceToSpace(
         1000.0 * static_cast<double>(points[i][0]), static_cast<double>(points[i][1]));
+    EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];
+  }
+}
+
+TEST_F(AirTexturesOnGpu, BeamOfTheSunIsThatOfBentBeam) {
+  const BothTables both(0.0, 0.5);
+  const auto points = PlacesUnderTheSun(both.tables.map.radius);
+  const auto on_gpu = both.OnGpu("BeamOfSun(a[0], a[1]).y", points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& earth = tests::Earth();
+    const Bands<float> exact = earth.beam.Left(
+        earth.air, 1000.0 * static_cast<double>(points[i][0]), static_cast<double>(points[i][1]));
     EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];
   }
 }

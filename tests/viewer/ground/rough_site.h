@@ -16,7 +16,13 @@ namespace alpenglow::tests {
 inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree,
                                               0.0};
 
-/// 7.7 km of RoughLand.
+/// The medium without the molecules, which bend rays.
+inline Medium Unbending(Medium medium) {
+  medium.rayleigh_scattering_per_m.assign(medium.wavelengths_nm.size(), 0.0);
+  return medium;
+}
+
+/// 7.7 km of RoughLand. The sun's beam on it comes along straight rays, as SunInClosedForm has it.
 /// @param colours, land_cover  a picture over it, or nothing.
 inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {},
                                                    const std::filesystem::path& colours = {},
@@ -24,6 +30,7 @@ inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
   SiteAir air;
   air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
+  air.beam = std::make_shared<const BentBeam>(Unbending(medium));
   air.diffuse = std::make_shared<const DiffuseLight>(medium, kSmallLight);
   SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,
                      "", true};

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
-// TransmittanceToSun without the tables of the air: so that the ground can be tested alone.
+// Light of the sun through the air without the tables of it, along straight rays: so that the ground
+// can be tested alone.
 #pragma once
 
 #include "viewer/gl/shader.h"
 
 namespace alpenglow::tests {
 
-/// After air_block.glsl; stands for the function of air_tables.glsl.
+/// After air_block.glsl; stands for the functions of air_tables.glsl.
 inline ShaderPiece SunInClosedForm() {
   return {"sun in closed form",
           "vec4 TransmittanceToSun(float altitude_km, float mu_s) {\n"
-          "  return exp(-OpticalDepth(ColumnsToSun(altitude_km, mu_s)));\n}\n"};
+          "  return exp(-OpticalDepth(ColumnsToSun(altitude_km, mu_s)));\n}\n"
+          "vec4 BeamOfSun(float altitude_km, float mu_s) {\n"
+          "  return TransmittanceToSun(altitude_km, mu_s);\n}\n"};
 }
 
 }  // namespace alpenglow::tests

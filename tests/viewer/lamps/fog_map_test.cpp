@@ -37,7 +37,10 @@ struct Stage {
   SceneGround ground = LoadGround(scene);
   SceneGeometry geometry{ground, scene.medium, false};
   AirIntegrator<float> air{scene.medium};
+  BentBeam beam{scene.medium};
   DiffuseLight diffuse{scene.medium};
+
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
 
   [[nodiscard]] Lighting Under(const glm::dvec3& to_sun) const {
     SunPosition sun;
@@ -69,8 +72,8 @@ struct BothFogs {
       : eye(0.0, 0.0, eye_m),
         media({fog}, 3),
         light(TheStage().Under(to_sun)),
-        renderer(media, TheStage().geometry, TheStage().air, TheStage().diffuse, light),
-        map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air, TheStage().diffuse,
+        renderer(media, TheStage().geometry, TheStage().sunlit(), light),
+        map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().sunlit(),
                        {eye_m, to_sun, to_sun, kFogSunRadius_rad})),
         painter({}) {
     painter.Upload(map);
@@ -209,7 +212,7 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
 TEST(FogFollower, MakesANewMapWhenTheEyeHasRisenAndKeepsItWhileItStands) {
   const LocalMedium fog = FogOf(0.02, 60.0, 0.0);
   FogFollower follower([&](const FogView& view) {
-    return MakeFogMap(fog, 0.0, TheStage().air, TheStage().diffuse, view, {4, 3, 3});
+    return MakeFogMap(fog, 0.0, TheStage().sunlit(), view, {4, 3, 3});
   });
   const FogView low{10.0, kToSun, kToSun, kFogSunRadius_rad},
       high{100.0, kToSun, kToSun, kFogSunRadius_rad};
