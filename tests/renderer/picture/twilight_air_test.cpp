@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The air of a low sun: lit by straight rays of a lower one, about the disk that is seen.
+// Light of a low sun: in the air by straight rays of a lower one, about the disk that is seen; on the
+// ground by bent rays.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,6 +9,7 @@
 #include "atmosphere/sun/refraction.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/bent_twilight.h"
 #include "tests/fixtures/luminance.h"
 
 namespace alpenglow {
@@ -83,6 +85,28 @@ TEST(TwilightAir, DarkensWithoutAStepWhileTheSunSets) {
     EXPECT_GT(fall[i], 0.0) << i;
     EXPECT_NEAR(fall[i], fall[i - 1], 0.02)
         << i << ": a step of a minute is at most a fiftieth of the light";
+  }
+}
+
+TEST(LowSun, LightsLevelGroundByItsBentBeam) {
+  const SceneRenderer renderer(BareScene(2.0, 0.0, -90.0, 1.0));
+  const Medium& medium = renderer.medium();
+  const BandColour colour(medium.wavelengths_nm);
+  const tests::BentTwilight rays(medium);
+  RenderSettings settings{.width = 1, .height = 1, .samples_per_pixel = 16, .layers = {}};
+  settings.effects = settings.effects.Without(Effect::kSkylight).Without(Effect::kNightSky);
+  for (const char* time :
+       {"2026-06-21T18:30:00Z", "2026-06-21T19:00:00Z", "2026-06-21T19:12:00Z"}) {
+    const UtcInstant evening = ParseInstant(time);
+    const SunPosition sun = renderer.ApparentSun(evening);
+    std::vector<double> sent = rays.Beam(sun.elevation_rad, 0.0);
+    for (std::size_t band = 0; band < sent.size(); ++band)
+      sent[band] *= medium.solar_irradiance[band] / (sun.distance_au * sun.distance_au) *
+                    std::sin(sun.elevation_rad) * medium.ground_albedo[band] / kPi;
+    EXPECT_NEAR(tests::Luminance(renderer.Render(evening, settings).at(0, 0)) / colour.Xyz(sent)[1],
+                1.0, 0.03)
+        << "BentBeam is within 2 %; 16 places of the disk stand for it; at "
+        << sun.elevation_rad / kRadiansPerDegree << " degrees";
   }
 }
 
