@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/ray/bent_beam.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -51,10 +53,11 @@ BentBeam::BentBeam(const Medium& medium)
   const BendingAir air = GentleAirOf(medium);
   if (air.refractivity == 0.0) return;
   const AirIntegrator<double> straight(medium);
-  for (int i = 0; i < kHeights; ++i) {
+  rows_.resize(kHeights);
+  oneapi::tbb::parallel_for(0, kHeights, [&](int i) {
     const double share = static_cast<double>(i) / (kHeights - 1);
-    rows_.push_back(RowAt(straight, air, share * share * top_m_));
-  }
+    rows_[static_cast<std::size_t>(i)] = RowAt(straight, air, share * share * top_m_);
+  });
 }
 
 BentBeam::Row BentBeam::RowAt(const AirIntegrator<double>& straight, const BendingAir& air,
