@@ -46,7 +46,7 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
   return sun;
 }
 
-// Where refraction shows it, and the air lit, as in the pictures of skyseries.
+// The sun stands where refraction shows it, and lights the air as in the pictures of skyseries.
 PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
                         const Medium& medium) {
   const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));

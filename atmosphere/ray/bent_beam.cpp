@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kHeights = 18, kElevations = 40;
 constexpr double kTop_m = 40e3;  // the beam from over it has hardly met any air
-/// Over which light changes about the horizon: what 10 km of air at 1900 km look like, or more.
+/// Light about the horizon changes over this angle: 10 km of air at 1900 km look as high.
 constexpr double kScale = 0.3 * kRadiansPerDegree;
-/// Next to the zenith: in it itself cosines of elevations are 0.
+/// The last node lies beside the zenith, where the cosine of the elevation is 0.
 constexpr double kHighest_rad = 89.9 * kRadiansPerDegree;
 
 double PlaceOf(double mu, double horizon_mu) {
@@ -27,14 +27,14 @@ double MuOf(double place, double horizon_mu) {
   return horizon_mu + kScale * std::expm1(place * std::log1p((1.0 - horizon_mu) / kScale));
 }
 
-/// Between which nodes a place in [0, 1] lies: the lower one, and the share of the upper.
+/// Returns the nodes between which a place in [0, 1] lies: the lower one, and the share of the upper.
 std::pair<std::size_t, double> BetweenNodes(double place, int nodes) {
   const double at = place * (nodes - 1);
   const int below = std::clamp(static_cast<int>(at), 0, nodes - 2);
   return {static_cast<std::size_t>(below), std::clamp(at - below, 0.0, 1.0)};
 }
 
-/// Of the solid angle of a small disk that is seen at an elevation, over that which it has truly.
+/// Returns the logarithm of the solid angle of a small disk that is seen at an elevation, over that which it has truly.
 double LogSpread(const BendingAir& air, double elevation_rad, double height_m) {
   constexpr double kStep_rad = 1e-5;
   const double refraction = RefractionSeenAt(air, elevation_rad, height_m);

@@ -27,16 +27,16 @@ namespace alpenglow {
 /// For one medium, at any height. Immutable.
 class BentBeam {
  public:
-  /// Nothing bends in a medium whose air does not bend gently (GentleAirOf of bent_view.h).
+  /// The beam is that of straight rays in a medium whose air does not bend gently (GentleAirOf of bent_view.h).
   explicit BentBeam(const Medium& medium);
 
-  /// F, by band. Under the horizon it is that on it, above the air that at its top.
+  /// Returns F, by band. Under the horizon it is that on it, above the air that at its top.
   /// Light of the beam is within 2 % of an integration along bent rays from 0.1 degrees up at 0, 3
   /// and 8 km, and within 3 % from 0.3 degrees over the horizon between the table's heights
   /// (tests/atmosphere/ray/bent_beam_test.cpp).
   [[nodiscard]] Bands<float> OverStraight(double altitude_m, double mu) const;
 
-  /// What is left of sunlight of the irradiance 1 across its beams.
+  /// Returns the irradiance across the beams of a sun whose irradiance above the air is 1.
   /// @param air  of the medium. @param mu  zenith cosine of where the disk is seen, not behind the
   ///     planet.
   [[nodiscard]] Bands<float> Left(const AirIntegrator<float>& air, double altitude_m,

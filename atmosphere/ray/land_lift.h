@@ -35,8 +35,8 @@ struct LandBend {
 [[nodiscard]] double LiftOfLand(const LandBend& bend, double eye_m, double place_m,
                                 double distance_m);
 
-/// By how much air moves what an eye sees of a planet at most [rad]: its horizon, or land at its radius as far
-/// away as the farthest.
+/// Returns the largest lift [rad] of anything that an eye sees of a planet: of its horizon, or of land at its radius
+/// as far away as the farthest.
 [[nodiscard]] double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land_m);
 
 }  // namespace alpenglow

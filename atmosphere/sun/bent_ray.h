@@ -64,7 +64,7 @@ struct BendingAir {
 [[nodiscard]] double RefractivityAt(const BendingAir& air, double height_m);
 [[nodiscard]] double RefractivitySlopeAt(const BendingAir& air, double height_m);
 
-/// n' / n [1/m], by which a level ray turns upwards: negative where it bends towards the ground.
+/// Returns n' / n [1/m], the curvature of a level ray: negative where it bends towards the ground.
 [[nodiscard]] double CurvaturePerMetreAt(const BendingAir& air, double height_m);
 
 /// Whether n r grows with height by at least a fifth of r everywhere: where it falls, air traps

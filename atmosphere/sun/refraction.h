@@ -44,8 +44,8 @@ struct SeaHorizon {
 [[nodiscard]] double RefractionFromHeight(const BendingAir& air, double true_elevation_rad,
                                           double height_m);
 
-/// By how much a sun or moon [rad] of a *true* elevation has to be lifted for its straight rays to light
-/// the air about as bent rays do: a fifth of the refraction seen from sea level, 7' from the horizon
+/// Returns the lift [rad] of a sun or moon of a *true* elevation with which its straight rays light the
+/// air about as bent rays do: a fifth of the refraction seen from sea level, 7' from the horizon
 /// down, whatever the height of the eye.
 ///
 /// A bent ray that grazes the planet arrives higher than a straight one, but it stays low for longer,

@@ -18,7 +18,7 @@ struct SunPosition {
   double distance_au;         // from the place
   double angular_radius_rad;  // of the disk
   Vector<Ecef> direction;     // unit vector from the place to the sun
-  /// By how much lower the sun stands whose straight rays light the air (SunForAir).
+  /// The sun whose straight rays light the air stands lower by this (SunForAir).
   double lower_for_air_rad = 0.0;
 };
 

@@ -108,8 +108,8 @@ class DiffuseLight {
                                             SegmentEnd end = SegmentEnd::kOpen) const {
     return InscatterAlong(samples, nu, nu, end);
   }
-  /// The same under a sun that is seen elsewhere than the one that lights the air (SunForAir of sun.h).
-  /// @param nu_seen  of what is seen: what aerosol throws forward lies about it.
+  /// Returns the light under a sun that is seen elsewhere than the one that lights the air (SunForAir of sun.h).
+  /// @param nu_seen  cosine between the ray and the sun that is seen: light that aerosol throws forward lies about it.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
                                             double nu_seen, SegmentEnd end) const;
 

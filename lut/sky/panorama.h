@@ -46,7 +46,7 @@ struct PanoramaSun {
   double angular_radius_rad = kSunAngularRadius_rad;
   double lower_for_air_rad = 0.0;  // as of SunPosition (sun.h)
 
-  /// Of the sun that lights the air.
+  /// Returns the elevation [rad] of the sun that lights the air.
   [[nodiscard]] double elevation_for_air_rad() const { return elevation_rad - lower_for_air_rad; }
 };
 

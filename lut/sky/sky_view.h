@@ -75,7 +75,7 @@ class SkyView {
   SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
           double mu_s);
 
-  /// The same sky under a sun that is seen elsewhere than the one that lights the air (SunForAir of
+  /// Returns the sky under a sun that is seen elsewhere than the one that lights the air (SunForAir of
   /// sun.h), a degree from it at most: the aureole lies about what is seen.
   [[nodiscard]] SkyView WithSunSeenAt(double zenith_angle_rad) && {
     sun_zenith_angle_rad_ = zenith_angle_rad;

@@ -39,7 +39,7 @@ class FanRay {
   [[nodiscard]] glm::dvec3 At(double along_m) const;
   [[nodiscard]] const BentFan& fan() const { return *fan_; }
   [[nodiscard]] const glm::dvec3& direction() const { return direction_; }
-  /// Sine of the elevation at the eye.
+  /// Returns the sine of the elevation at the eye.
   [[nodiscard]] double sine() const { return sine_; }
 
  private:
@@ -57,7 +57,7 @@ class BentFan {
   /// @param eye, up  in the frame; up: unit. @param reach_m  > 0: points are asked for up to there.
   BentFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m);
 
-  /// Length of the longest chord from a distance on that is seen so near to the ray.
+  /// Returns the length of the longest chord from a distance on that is seen so near to the ray.
   [[nodiscard]] double ChordFrom(double along_m, double off_rad) const;
   /// How near to the end of a chord, of whatever length, places on it are seen so near to the ray:
   /// c d (D - d) / 2 = off d.
@@ -65,7 +65,7 @@ class BentFan {
   /// A distance along a ray at which it is below a height [m over the sphere], and from which on the
   /// ray does not come back to it before it has been lower; infinite where there is none.
   [[nodiscard]] double SinksBelow(const FanRay& ray, double height_m) const;
-  /// From which on a ray is above a height; infinite where it is not known to be.
+  /// Returns a distance from which on a ray is above a height; infinite where none is known.
   [[nodiscard]] double RisesAbove(const FanRay& ray, double height_m) const;
 
   [[nodiscard]] double height_m() const { return height_m_; }

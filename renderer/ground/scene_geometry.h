@@ -66,9 +66,9 @@ class SceneGeometry {
  private:
   /// Not farther than anything of the terrain [m].
   [[nodiscard]] double NearestTo(const glm::dvec3& point) const;
-  /// From the eye on, beyond which no terrain stands on a ray [m].
+  /// Returns the distance [m] from the eye beyond which no terrain stands on a ray.
   [[nodiscard]] double EndOf(const FanRay& ray) const;
-  /// What stands on the chord of a ray between two distances.
+  /// Finds the terrain on the chord of a ray between two distances.
   struct OnChord {
     glm::dvec3 begin, direction;
     double length_m;

@@ -17,7 +17,7 @@ namespace alpenglow {
 /// Immutable, safe to share between threads.
 class Skyline {
  public:
-  /// Azimuths in the frame, from x over y.
+  /// The arc is of azimuths in the frame, from x over y.
   struct Arc {
     double first_rad, width_rad;  // a whole turn at most
   };
@@ -27,9 +27,9 @@ class Skyline {
   ///     found, > 0. @param sees_sky  safe to ask from many threads.
   Skyline(const glm::dvec3& up, const Arc& arc, double step_rad, const SeesSky& sees_sky);
 
-  /// Azimuth of a direction as of an Arc.
+  /// Returns the azimuth of a direction as an Arc has it.
   [[nodiscard]] static double AzimuthOf(const glm::dvec3& direction, const glm::dvec3& up);
-  /// Whether all directions within an angle of one are over the skyline. False where it is not known.
+  /// Returns whether all directions within an angle of one are over the skyline; false where that is not known.
   [[nodiscard]] bool IsBelow(const glm::dvec3& direction, double around_rad) const;
 
  private:

@@ -14,7 +14,7 @@ struct SunlitAir {
   const BentBeam& beam;         // of sun and moon themselves
   const DiffuseLight& diffuse;  // of the sky
 
-  /// What is left across the beams of a disk of the irradiance 1. @param mu  see BentBeam::Left.
+  /// Returns the irradiance across the beams of a disk whose irradiance above the air is 1. @param mu  see BentBeam::Left.
   [[nodiscard]] Bands<float> BeamLeft(double altitude_m, double mu) const {
     return beam.Left(air, altitude_m, mu);
   }

@@ -19,14 +19,14 @@ struct SceneState;
 /// Immutable, safe to share between threads. Refers to the frame.
 class OpenSkyPixels {
  public:
-  /// None where sky may be seen under ground, a lens blurs what is seen, or the camera moves.
+  /// No pixel is of open sky where sky may be seen under ground, a lens blurs, or the camera moves.
   OpenSkyPixels(const SceneState& scene, const PictureFrame& frame);
 
-  /// Whether all rays that count for a pixel see the sky, and no disk in it.
+  /// Returns whether all rays that count for a pixel see the sky, and no disk in it.
   [[nodiscard]] bool Has(int x, int y) const;
 
  private:
-  /// Azimuths of the eye's vertical planes that the picture shows, and that lie around it.
+  /// Returns the azimuths of the eye's vertical planes that the picture shows, and that lie around it.
   [[nodiscard]] Skyline::Arc ArcAround(const glm::dvec3& up) const;
 
   const PictureFrame& frame_;

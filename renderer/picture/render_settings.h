@@ -35,7 +35,7 @@ struct RenderSettings {
   bool share_air = true;  // between rays of a pixel; false for comparison
   /// With noise between pixels, too, where it is smooth (air_lattice.h); false for comparison.
   bool share_air_of_pixels = true;
-  /// With noise one ray for pixels that see nothing but sky; false for comparison.
+  /// With noise, pixels that see nothing but sky take one ray; false is for comparison.
   bool skips_open_sky = true;
   std::vector<PictureLayer> layers;
   LampSettings lamps = {};

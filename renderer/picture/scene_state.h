@@ -89,7 +89,7 @@ struct SceneState {
   /// What a bent ray meets. Terrain is seen within 0.1' of where the ray equation has it.
   [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame,
                               double expected_m) const;
-  /// By how much air lifts terrain and the horizon at most [rad].
+  /// Returns the largest lift [rad] of terrain and the horizon.
   [[nodiscard]] double MostLift(const PictureFrame& frame, double eye_height_m) const;
   /// Where it moves something in the picture by more than half a pixel; else null.
   [[nodiscard]] std::shared_ptr<const BentSight> BentSightOf(const PictureFrame& frame,

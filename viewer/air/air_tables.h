@@ -75,7 +75,7 @@ struct AirEye {
   double ceiling_m = 9000.0;       // no land is higher
   double lower_for_air_rad = 0.0;  // by how much that sun stands lower than where it is seen
 
-  /// Of where it is seen: there aureoles are.
+  /// This cosine is of the sun where it is seen: aureoles are about it.
   [[nodiscard]] double zenith_angle_seen_rad() const;
 };
 
