@@ -3,11 +3,12 @@
 // --max-error` makes.
 //
 // The error of each kind of view (table_views.h) is the rms over its views against the truth there,
-// and what that truth itself misses of a few path-traced views; both together must lie under the
-// bound for every kind. Moments are taken from one fine solution, so that a table is only as coarse
-// as its grid; the number of ray nodes is the smallest whose own error is half of the bound. Tables
-// of transmittance and of single scattering are made only when all are asked for, for programs that
-// want them: closed forms and nodes along the ray need no memory.
+// with three standard errors of such a sample, and what that truth itself misses of a few
+// path-traced views; both together must lie under the bound for every kind. Moments are taken from
+// one fine solution, so that a table is only as coarse as its grid; the number of ray nodes is the
+// smallest whose own error is half of the bound. Tables of transmittance and of single scattering
+// are made only when all are asked for, for programs that want them: closed forms and nodes along
+// the ray need no memory.
 #pragma once
 
 #include <cstdint>

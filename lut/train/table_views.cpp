@@ -153,6 +153,20 @@ JudgedViews::JudgedViews(const Medium& medium, const DiffuseLight& finest,
   ThrowIfInterrupted();
 }
 
+ViewErrors ErrorsOfViews(std::vector<double> errors) {
+  std::sort(errors.begin(), errors.end());
+  const auto count = static_cast<double>(errors.size());
+  double squares = 0.0, fourths = 0.0;
+  for (const double error : errors) {
+    squares += error * error / count;
+    fourths += error * error * error * error / count;
+  }
+  const double standard_error = std::sqrt(std::max(fourths - squares * squares, 0.0) / count);
+  return {.rms = std::sqrt(squares),
+          .rms_at_most = std::sqrt(squares + 3.0 * standard_error),
+          .percentile_99 = errors[static_cast<std::size_t>(std::ceil(0.99 * (count - 1.0)))]};
+}
+
 ViewErrors JudgedViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const {
   std::vector<const JudgedView*> views;
   for (const JudgedView& view : views_) {
@@ -161,9 +175,7 @@ ViewErrors JudgedViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const
   std::vector<double> errors(views.size());
   tbb::parallel_for(std::size_t{0}, views.size(),
                     [&](std::size_t i) { errors[i] = ErrorOf(tables, *views[i]); });
-  std::sort(errors.begin(), errors.end());
-  const auto last = static_cast<double>(errors.size() - 1);
-  return {RmsOf(errors), errors[static_cast<std::size_t>(std::ceil(0.99 * last))]};
+  return ErrorsOfViews(std::move(errors));
 }
 
 double JudgedViews::PathCheck::Unexplained() const {

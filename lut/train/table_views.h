@@ -38,9 +38,14 @@ struct JudgedView {
 
 /// The errors of the views of one kind.
 struct ViewErrors {
-  double rms = 0.0;
+  double rms = 0.0;  // of these views
+  /// The root of the mean square plus three standard errors of it. Of 160 errors, the rms of the
+  /// whole kind lies below this in 99 % of samples of a normal and 97 % of an exponential law.
+  double rms_at_most = 0.0;
   double percentile_99 = 0.0;
 };
+/// @param errors  relative errors of single views, in any order; one at least.
+[[nodiscard]] ViewErrors ErrorsOfViews(std::vector<double> errors);
 
 /// Truths for a set of views; the same for any number of threads.
 class JudgedViews {
