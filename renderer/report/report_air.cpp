@@ -116,7 +116,7 @@ class Topic : public TopicWork {
   void AddPanels(const std::string& parameter, const AerialPerspective::Nodes& nodes,
                  bool in_summary) {
     AddRow(
-        {.series = "Gauss panels",
+        {.series = "direct integration",
          .parameter = parameter,
          .style = kAirPanels,
          .in_summary = in_summary},

@@ -11,6 +11,7 @@ columns are written anew. A row that no report has is an error. Plots are copied
 the tables, such as the bullets of README.md, are left to whoever runs this.
 """
 import argparse
+import csv
 import pathlib
 import re
 import shutil
@@ -24,19 +25,23 @@ TOPICS = {  # as ACCURACY.md calls them: as the reports do
     "many lamps in fog": "Many lamps in fog", "a picture": "Whole pictures"}
 # Rows of README.md: the names of a topic and air, and the methods of the four columns.
 README_ROWS = {
-    "single scattering, clear": ("single scattering, earth", "Gauss, 8 nodes",
+    "single scattering, clear": ("single scattering, earth",
+                                 "direct integration, normal, 14 nodes a panel",
                                  "direct integration, fast, 7 nodes a panel",
                                  "4-D table (Bruneton), 32 x 128 x 32 x 8", None),
-    "all orders, clear": ("all orders, earth", "moments to degree 6, 18 x 32",
+    "all orders, clear": ("all orders, earth", "moments on direct nodes, normal",
                           "moments on direct nodes, fast", None,
                           "isotropic table (Hillaire 2020), 32 x 32, 64 directions"),
     "all orders, hazy": ("all orders, hazy", "moments to degree 12, forward peak apart, 18 x 32", None,
                          None, "isotropic table (Hillaire 2020), 32 x 32, 64 directions"),
     "sky around one camera, clear": ("panorama, earth", "sky view, in rows, size chosen", None, None,
                                      None),
-    "air before a mountain, clear": ("air before a mountain, earth", "Gauss panels, automatic", None,
-                                     "two look-ups (Bruneton), 32 x 128 x 32 x 8",
+    "air before a mountain, clear": ("air before a mountain, earth", "direct integration, automatic",
+                                     None, "two look-ups (Bruneton), 32 x 128 x 32 x 8",
                                      "froxels (Hillaire 2020), 32 x 32 x 32")}
+README_REGIMES = ("day", "sunset", "twilight")
+CSV_FILES = {"single scattering": "single_scattering", "all orders": "all_orders", "panorama": "panoramas",
+             "air before a mountain": "aerial_perspective"}
 PLOTS = (("report", "single_scattering.earth.svg", "lut/single_scattering.svg"),
          ("pictures", "shafts.*.svg", "renderer/shafts.svg"))
 
@@ -68,9 +73,34 @@ class Summary:
         return None
 
 
+def times_of(folder):
+    """Seconds of an answer by (atmosphere, method, regime)."""
+    times = {}
+    for file in folder.glob("*.csv"):
+        with file.open(encoding="utf-8", newline="") as lines:
+            for row in csv.DictReader(lines):
+                if row.get("time_s"):
+                    method = ", ".join(filter(None, (row["series"], row["parameter"])))
+                    times[file.stem, row["atmosphere"], method, row["regime"]] = float(row["time_s"])
+    return times
+
+
+def time_text(seconds):
+    """Two digits, in ns or µs."""
+    value, unit = (seconds * 1e9, "ns") if seconds < 9.95e-7 else (seconds * 1e6, "µs")
+    return f"{float(f'{value:.2g}'):g} {unit}"
+
+
 class Reports:
     def __init__(self, folders):
         self.summaries = [Summary(folder) for folder in folders]
+        self.times = {key: time for folder in folders for key, time in times_of(folder).items()}
+
+    def slowest(self, what, method):
+        """Time of an answer in the slowest of the regimes that README.md shows."""
+        topic, _, air = what.partition(", ")
+        found = [self.times[CSV_FILES[topic], air, method, regime] for regime in README_REGIMES]
+        return time_text(max(found))
 
     def row(self, what, method):
         topic, _, air = what.partition(", ")
@@ -130,7 +160,7 @@ def readme_cell(reports, what, method):
         return ""
     _, row = reports.row(what, method)
     rms = [value.partition(" % /")[0] if value else "-" for value in row[4:7]]
-    parts = [" / ".join(rms) + " %", row[3]] + ([row[1]] if row[1] != "-" else [])
+    parts = [" / ".join(rms) + " %", reports.slowest(what, method)] + ([row[1]] if row[1] != "-" else [])
     return ", ".join(parts)
 
 
@@ -138,7 +168,7 @@ def readme(text, reports):
     def make(cells):
         what, *methods = README_ROWS[cells[0]]
         return (cells[0], *(readme_cell(reports, what, method) for method in methods))
-    return with_rows(text, "| quantity | Alpenglow | direct integration | Bruneton 2017 | Hillaire 2020 |", make)
+    return with_rows(text, "| quantity | Alpenglow | Alpenglow, fast | Bruneton 2017 | Hillaire 2020 |", make)
 
 
 def main():

@@ -92,8 +92,8 @@ TEST_F(PictureReportFiles, ThePageHoldsEverySectionAndNoOtherFile) {
 }
 
 TEST(PictureReport, MoreEffortIsLessError) {
-  ExpectLessErrorEverywhere("aerial_perspective", "Gauss panels, automatic",
-                            "Gauss panels, at most 2");
+  ExpectLessErrorEverywhere("aerial_perspective", "direct integration, automatic",
+                            "direct integration, at most 2");
   ExpectLessErrorEverywhere("aerial_perspective", "uniform march, 128 steps",
                             "uniform march, 8 steps");
   ExpectLessErrorEverywhere("aerial_perspective", "quadratic march, 128 steps",
@@ -109,7 +109,7 @@ TEST(PictureReport, MoreEffortIsLessError) {
 }
 
 TEST(PictureReport, AirBeforeMountainsKeepsItsErrorAtEverySun) {
-  for (const RegimeResult& at : RowOf("aerial_perspective", "Gauss panels, automatic").at) {
+  for (const RegimeResult& at : RowOf("aerial_perspective", "direct integration, automatic").at) {
     EXPECT_LT(at.error.rms, 1e-3) << "to 100 km in clear air";
     EXPECT_LT(at.error.percentile_99, 5e-3);
   }
