@@ -35,7 +35,7 @@ ${rows}  };
   for (const auto& [key, text] : rows) {
     if (key == name) return text;
   }
-  throw InternalError(\"no embedded text \" + std::string(name));
+  throw atmosphere::InternalError(\"no embedded text \" + std::string(name));
 }
 }  // namespace alpenglow::${FOLDER}
 ")

@@ -15,7 +15,7 @@
 #include "lut/store/table_folder.h"
 #include "lut/train/table_search.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct BuildOptions {
@@ -190,4 +190,4 @@ Subcommand AddBuildCommand(CLI::App& app) {
   return [options](const CommonOptions& common) { Build(*options, common); };
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -9,7 +9,7 @@
 #include "lut/program/output_name.h"
 #include "lut/report/report.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct ReportCommandOptions {
@@ -49,4 +49,4 @@ Subcommand AddReportCommand(CLI::App& app) {
   return [options](const CommonOptions& common) { WriteMeasuredReport(*options, common); };
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

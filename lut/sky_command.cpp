@@ -17,7 +17,7 @@
 #include "lut/program/output_name.h"
 #include "lut/sky/panorama.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct SkyOptions {
@@ -272,4 +272,4 @@ Subcommand AddSkyCommand(CLI::App& app) {
   return [options](const CommonOptions& common) { MakeSky(*options, common); };
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -4,9 +4,9 @@
 
 #include "lut/program/command_line.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Adds the subcommand; what runs it once the whole command line is parsed.
 [[nodiscard]] Subcommand AddSkyCommand(CLI::App& app);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -17,7 +17,7 @@
 #include "lut/store/exchange_check.h"
 #include "lut/store/table_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct Options {
@@ -166,8 +166,8 @@ int Run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut
 
 int main(int argc, char** argv) {
-  return alpenglow::RunProgram("skylut", [&] { return alpenglow::Run(argc, argv); });
+  return alpenglow::lut::RunProgram("skylut", [&] { return alpenglow::lut::Run(argc, argv); });
 }

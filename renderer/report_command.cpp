@@ -9,7 +9,7 @@
 #include "lut/program/output_name.h"
 #include "renderer/report/report.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct PictureReportOptions {
@@ -51,4 +51,4 @@ std::function<void()> AddPictureReportCommand(CLI::App& app) {
   return [options] { WriteMeasuredReport(*options); };
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -19,7 +19,7 @@
 #include "renderer/skyseries_options.h"
 #include "renderer/times_command.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 bool IsTrack(const std::filesystem::path& file) {
@@ -273,8 +273,9 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer
 
 int main(int argc, char** argv) {
-  return alpenglow::RunProgram("skyseries", [&] { return alpenglow::Main(argc, argv); });
+  return alpenglow::renderer::RunProgram("skyseries",
+                                         [&] { return alpenglow::renderer::Main(argc, argv); });
 }

@@ -20,7 +20,7 @@
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 inline constexpr char kSkyseriesFooter[] =
     "A time is an instant (2026-06-21T04:00:00Z, with an offset, or local with --zone), a clock "
@@ -325,4 +325,4 @@ inline void AddSkyseriesOptions(CLI::App& app, SkyseriesOptions& options) {
   app.footer(kSkyseriesFooter);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

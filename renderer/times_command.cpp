@@ -20,7 +20,7 @@
 #include "renderer/series/day_plot.h"
 #include "renderer/series/day_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct TimesOptions {
@@ -144,4 +144,4 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   return [options] { WriteTimes(*options); };
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

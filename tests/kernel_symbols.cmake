@@ -10,7 +10,7 @@ foreach(object ${OBJECTS})
   set(tables 0)
   foreach(symbol ${symbols})
     if(symbol MATCHES "DW.ref.__gxx_personality_v0")  # data: where the handler of exceptions is
-    elseif(symbol MATCHES "KernelOf<")
+    elseif(symbol MATCHES "KernelOf\\(")
       math(EXPR tables "${tables} + 1")
     elseif(NOT symbol MATCHES "xsimd::([a-z0-9]+<)?${OWN}")
       message(SEND_ERROR "${object} defines ${symbol}")

@@ -7,7 +7,7 @@
 #include "atmosphere/ray/shell.h"
 #include "tests/fixtures/shared_text_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // Hard case 9.
@@ -44,4 +44,4 @@ TEST(Readings, TheNaiveFormulaOfTheAltitudeFails) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 double Seconds(std::chrono::steady_clock::duration duration) {
@@ -116,4 +116,4 @@ ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin, double el
   return {elapsed_s, eye, AddSeconds(begin, Benchmark::kTimeRate * elapsed_s)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

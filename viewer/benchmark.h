@@ -15,7 +15,7 @@
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/gl/pass_timer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Times that half of all, 95 % and 99 % do not exceed.
 struct Percentiles {
@@ -76,4 +76,4 @@ class Benchmark {
 [[nodiscard]] ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin,
                                           double elapsed_s);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,7 +14,7 @@
 #include "viewer/paint/enlarger.h"
 #include "viewer/paint/view_difference.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kSamples = 16;
@@ -152,4 +152,4 @@ std::string ExplainView(Flythrough& flight, const ImageSize& size) {
   return scale < 1.0 ? text + FewerRays(flight, view, judge.layers, scale) : text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

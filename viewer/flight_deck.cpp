@@ -21,7 +21,7 @@
 #include "viewer/paint/picture_units.h"
 #include "viewer/window_controls.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kMessage_s = 8.0;
@@ -210,7 +210,7 @@ void FlightDeck::FinishWithoutWindow() {
 
 void FlightDeck::SayOutcomes() {
   for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
-    alpenglow::Say(fmt::format("skyview: {}\n", TextOf(outcome)));
+    lut::Say(fmt::format("skyview: {}\n", TextOf(outcome)));
 }
 
 void FlightDeck::Say(const std::string& text, bool is_warning) {
@@ -532,4 +532,4 @@ void FlightDeck::Paint(const Developer::Screen& screen, double seconds) {
   flight_.painter().EndTime();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include "viewer/picture_queue.h"
 #include "viewer/window_events.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class FlightDeck {
  public:
@@ -102,4 +102,4 @@ class FlightDeck {
   PictureQueue pictures_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -17,7 +17,7 @@
 #include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // The renderer's picture is begun when the eye has stood for so long.
@@ -457,4 +457,4 @@ void Flythrough::Expose(const MeterReading& metered, double seconds) {
   darkroom_.developer().Use(shown);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -22,7 +22,7 @@
 #include "viewer/paint/sky_painter.h"
 #include "viewer/paint/spot_meter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Exposure that follows the meter like an eye: half
 /// way in 0.3 s. A first exposure is the metered one.
@@ -263,4 +263,4 @@ class Flythrough {
   double still_s_ = 0.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

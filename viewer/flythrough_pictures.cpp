@@ -13,7 +13,7 @@
 #include "viewer/flythrough.h"
 #include "viewer/gl/picture_tiles.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kPictureSamples = 4;
@@ -204,4 +204,4 @@ Scene Flythrough::SceneSeen() const {
   return seen;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// Ends a picture that is not wanted any more.
@@ -203,4 +203,4 @@ void PictureQueue::Run(const std::stop_token& stop) {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -23,7 +23,7 @@
 
 #include "viewer/flythrough.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A picture that is asked for.
 struct PictureRequest {
@@ -107,4 +107,4 @@ class PictureQueue {
   std::jthread thread_;  // last: it uses all above
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -25,7 +25,7 @@
 #include "viewer/skyview_options.h"
 #include "viewer/window.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 LandSource LandOf(const SkyviewOptions& options, const Scene& scene) {
@@ -324,8 +324,9 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer
 
 int main(int argc, char** argv) {
-  return alpenglow::RunProgram("skyview", [&] { return alpenglow::Main(argc, argv); });
+  return alpenglow::viewer::RunProgram("skyview",
+                                       [&] { return alpenglow::viewer::Main(argc, argv); });
 }

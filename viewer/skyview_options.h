@@ -10,8 +10,9 @@
 #include "lut/picture/picture_text.h"
 #include "lut/program/command_line.h"
 #include "renderer/scene/scene_options.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 inline constexpr char kSkyviewFooter[] =
     "Keys: ? shows them all. W A S D fly along and across the view, R F up and down, arrows turn, "
@@ -180,4 +181,4 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
   app.footer(kSkyviewFooter);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

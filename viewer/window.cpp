@@ -13,9 +13,10 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/messages.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/layer.h"
 #include "viewer/window_icon.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kWait_s = 0.1;  // for events, while nothing is seen
@@ -343,4 +344,4 @@ void Window::AtLostDisplay(std::function<void()> last) {
   state_->at_lost_display = std::move(last);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

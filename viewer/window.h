@@ -7,7 +7,7 @@
 
 #include "viewer/window_events.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Where a window begins.
 struct WindowSettings {
@@ -54,4 +54,4 @@ class Window {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 #include "viewer/input/controls.h"
 #include "viewer/window_events.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What the panels under the pointer, or the text that is being typed, keep for themselves.
 struct TakenByPanels {
@@ -36,4 +36,4 @@ inline void Tell(const WindowEvents& events, int width, int height, const TakenB
   return GamepadState{events.gamepad->buttons, events.gamepad->axes};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A key that went up (0), went down (1) or repeats (2).
 struct KeyEvent {
@@ -45,4 +45,4 @@ struct WindowEvents {
   bool close = false;      // was asked to
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // x to the right, y upwards, both in [0, 1]; sRGB.
@@ -50,4 +50,4 @@ std::vector<std::uint8_t> WindowIcon(int side) {
   return bytes;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

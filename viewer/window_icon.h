@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// side x side pixels, red, green, blue and alpha of a byte each, row 0 at the top. side >= 1.
 [[nodiscard]] std::vector<std::uint8_t> WindowIcon(int side);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,7 +14,7 @@
 #include "atmosphere/text/embedded_table.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr std::string_view kOpticsFile = "atmosphere/data/opac_aerosol_80rh.csv";
@@ -208,4 +208,4 @@ double CornetteShanksG(double mean_cosine) {
   return 0.5 * (low + high);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

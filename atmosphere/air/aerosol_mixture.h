@@ -12,7 +12,7 @@
 
 #include "atmosphere/air/phase.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// An aerosol in one exponential layer, on a wavelength set; at altitude 0.
 struct AerosolOptics {
@@ -45,4 +45,4 @@ struct AerosolOptics {
 /// The g for which the phase function of Cornette and Shanks has this mean cosine, in [0, 1).
 [[nodiscard]] double CornetteShanksG(double mean_cosine);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -17,7 +17,7 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -605,4 +605,4 @@ Medium ReadMedium(const std::filesystem::path& file) {
   return MediumFromToml(ReadTextFile(file), file.string());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

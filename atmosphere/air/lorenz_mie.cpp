@@ -8,7 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Complex = std::complex<double>;
@@ -164,4 +164,4 @@ SphereScattering ScatterBySpheres(std::complex<double> index, const SizeDistribu
   return all;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

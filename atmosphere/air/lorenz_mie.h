@@ -11,7 +11,7 @@
 
 #include "atmosphere/air/scattering_matrix.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// One sphere, or many: efficiencies are cross sections over the (mean) area of the shadow.
 struct SphereScattering {
@@ -40,4 +40,4 @@ struct SizeDistribution {
                                                 const SizeDistribution& sizes, double wavelength_nm,
                                                 const std::vector<double>& angle_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -13,7 +13,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Fault = std::optional<MediumFault>;
@@ -346,4 +346,4 @@ Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
   return medium;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

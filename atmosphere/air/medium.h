@@ -19,7 +19,7 @@
 
 #include "atmosphere/air/phase.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// What a single exponential has too much of near the ground, relative to the density there: air
 /// that cools upwards, as below 11 km on Earth, thins out more slowly than the air above it.
@@ -181,4 +181,4 @@ inline constexpr double kLastPresetWavelength_nm = 830.0;
 /// As ReadMedium, from text; `origin` stands in messages where the file's name would.
 [[nodiscard]] Medium MediumFromToml(std::string_view text, const std::string& origin);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Row = std::vector<double> Medium::*;
@@ -87,4 +87,4 @@ std::optional<Medium> OnBands(const Medium& medium, int bands) {
   return result;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

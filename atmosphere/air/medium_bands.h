@@ -6,7 +6,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The medium on WavelengthSet(bands): the preset that it was made from (Medium::name) there, times
 /// what the medium differs from that preset by, linear between its wavelengths. Exact for a preset,
@@ -14,4 +14,4 @@ namespace alpenglow {
 /// Nothing where the preset is not known, has no values there, or has none of what the medium has.
 [[nodiscard]] std::optional<Medium> OnBands(const Medium& medium, int bands);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

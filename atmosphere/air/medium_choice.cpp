@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 bool LooksLikeFile(const std::string& text) {
@@ -35,4 +35,4 @@ Medium MediumFromChoice(const std::string& preset_or_file, const std::filesystem
                                        : fmt::format("presets are {}", fmt::join(presets, ", "))));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

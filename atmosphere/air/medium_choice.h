@@ -7,7 +7,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// MediumPreset of a name that is one of MediumPresetNames, else ReadMedium of the file, whose name
 /// is relative to `folder`. Throws InputError as they do; for a word that is neither it names the
@@ -15,4 +15,4 @@ namespace alpenglow {
 [[nodiscard]] Medium MediumFromChoice(const std::string& preset_or_file,
                                       const std::filesystem::path& folder = {});
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -22,7 +22,7 @@
 #include "atmosphere/text/embedded_table.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 template <typename Function>
@@ -272,4 +272,4 @@ Medium MediumPreset(std::string_view name, const std::vector<double>& wavelength
   return medium;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -6,7 +6,7 @@
 
 #include "atmosphere/air/scattering_matrix.h"
 
-namespace alpenglow::ranges {
+namespace alpenglow::atmosphere::ranges {
 
 struct Range {
   double low, high;
@@ -50,4 +50,4 @@ inline constexpr double kEndOfDeficit = 8.0;
 /// Most bands of a medium: one each nanometre from 360 to 830 nm, and some.
 inline constexpr std::size_t kMostWavelengths = 512;
 
-}  // namespace alpenglow::ranges
+}  // namespace alpenglow::atmosphere::ranges

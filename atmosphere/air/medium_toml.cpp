@@ -6,7 +6,7 @@
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 std::string ListOf(const std::vector<double>& values) {
@@ -88,4 +88,4 @@ std::string TomlFromMedium(const Medium& medium) {
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

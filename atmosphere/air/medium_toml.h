@@ -6,7 +6,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Every parameter, in the shortest digits that give the same double back:
 /// MediumHash(MediumFromToml(TomlFromMedium(m), "")) == MediumHash(m). The name is not in it.
@@ -14,4 +14,4 @@ namespace alpenglow {
 /// function does not have).
 [[nodiscard]] std::string TomlFromMedium(const Medium& medium);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -5,7 +5,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Absorption coefficient at the peak of the layer [1/m] when its column is
 /// `column_dobson` (1 DU = 2.6867811e20 molecules per m^2): column times cross section
@@ -14,4 +14,4 @@ namespace alpenglow {
 [[nodiscard]] double OzoneAbsorptionAtPeak(double column_dobson, const OzoneLayer& layer,
                                            double wavelength_nm);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

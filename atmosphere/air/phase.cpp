@@ -13,7 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, PhaseKind>, 8> kPhaseNames{{
@@ -245,4 +245,4 @@ void Validate(const PhaseFunction& phase, const std::string& prefix) {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 class PhaseTable;
 
@@ -73,4 +73,4 @@ inline constexpr double kLargestDroplet_um = 50.0;
 /// Throws InputError naming `prefix`.g and so on when a parameter is out of its range.
 void Validate(const PhaseFunction& phase, const std::string& prefix);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

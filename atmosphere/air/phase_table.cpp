@@ -15,7 +15,7 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kLastNode = static_cast<double>(PhaseTable::kNodes - 1);
@@ -303,4 +303,4 @@ SpectralPhase ReadSpectralPhase(const std::filesystem::path& file) {
   return PhaseFileReader(file).Read();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Immutable; shared between phase functions and threads.
 class PhaseTable {
@@ -92,4 +92,4 @@ struct SpectralPhase {
 /// "file:line: ..." or "file: ...".
 [[nodiscard]] SpectralPhase ReadSpectralPhase(const std::filesystem::path& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

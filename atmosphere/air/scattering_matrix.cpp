@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 ScatteringMatrix RayleighMatrix(double depolarisation, double cos_scattering) {
   const double c = cos_scattering;
@@ -57,4 +57,4 @@ ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
   return matrix;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -14,7 +14,7 @@
 
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 struct ScatteringMatrix {
   double a1 = 0.0, a2 = 0.0, a3 = 0.0, a4 = 0.0, b1 = 0.0, b2 = 0.0;  // [1/sr]
@@ -51,4 +51,4 @@ struct SphereRatios {
 [[nodiscard]] ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
                                             double cos_scattering);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -22,7 +22,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -286,4 +286,4 @@ double BandColour::ScotopicLuminance(std::span<const double> radiance) const {
   return Dot(scotopic_, radiance);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 double BlackBodyRadiance(double wavelength_nm, double temperature_k) {
   constexpr double kC1_w_m2_per_sr = 1.191042972397188e-16;  // 2 h c^2
@@ -14,4 +14,4 @@ double BlackBodyRadiance(double wavelength_nm, double temperature_k) {
   return 1e-9 * per_metre;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

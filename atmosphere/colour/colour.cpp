@@ -8,7 +8,7 @@
 #include "atmosphere/colour/trained_bands.h"
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -257,4 +257,4 @@ double Ciede2000(const std::array<double, 3>& xyz_a, const std::array<double, 3>
   return Ciede2000(LabFromXyz(xyz_a, white), LabFromXyz(xyz_b, white));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -4,9 +4,9 @@
 
 #include "atmosphere/colour/spectrum.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// ASTM G173-03, extraterrestrial [W m^-2 nm^-1], 300 to 900 nm in steps of 0.5 and 1 nm.
 [[nodiscard]] const SampledFunction& SolarTable();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

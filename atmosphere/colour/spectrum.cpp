@@ -14,7 +14,7 @@
 #include "atmosphere/text/embedded_table.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // Column `column` over column 0 of an embedded table.
@@ -123,4 +123,4 @@ double ScotopicEfficiency(double wavelength_nm) {
   return ValueInside(table, 380.0, 780.0, wavelength_nm);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

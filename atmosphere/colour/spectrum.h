@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A published table: y over x, linear between its points.
 class SampledFunction {
@@ -122,4 +122,4 @@ class BandColour {
                                const std::array<double, 3>& xyz_b,
                                const std::array<double, 3>& white);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

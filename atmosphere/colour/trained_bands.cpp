@@ -5,7 +5,7 @@
 
 #include "atmosphere/text/embedded_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // The file has seven decimals.
@@ -47,4 +47,4 @@ const TrainedBands* FindTrainedBands(std::span<const double> wavelengths_nm) {
   return nullptr;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 struct TrainedBands {
   std::vector<double> wavelengths_nm;        // ascending
@@ -22,4 +22,4 @@ struct TrainedBands {
 /// The trained set of exactly these wavelengths; null if there is none.
 [[nodiscard]] const TrainedBands* FindTrainedBands(std::span<const double> wavelengths_nm);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -8,7 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/embedded_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 SampledFunction Column(int column) {
@@ -32,4 +32,4 @@ double IceAbsorption(double wavelength_nm) {
   return 4.0 * kPi * table(wavelength_nm) / (1e-9 * wavelength_nm);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -2,7 +2,7 @@
 // What water and ice do to light inside them.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Absorption coefficient of pure water [1/m]: Pope, Fry (1997), Appl. Opt. 36, 8710, and from
 /// 730 nm Smith, Baker (1981), Appl. Opt. 20, 177; linear in a 10 nm table from 380 to 750 nm, its
@@ -18,4 +18,4 @@ namespace alpenglow {
 /// Res. 113, D14220; k linear in a 10 nm table from 380 to 750 nm, its end values beyond.
 [[nodiscard]] double IceAbsorption(double wavelength_nm);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

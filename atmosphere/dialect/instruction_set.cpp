@@ -10,7 +10,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 std::vector<InstructionSet> FindAvailable() {
@@ -99,4 +99,4 @@ InstructionSetScope::InstructionSetScope(InstructionSet set) : before_(CurrentIn
 
 InstructionSetScope::~InstructionSetScope() { Current().store(before_); }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,8 +9,7 @@
 //     Arguments are plain data: arrays, pointers, aggregates; no class with functions of its own.
 //  2. name_kernel.cpp includes atmosphere/ray/batch.h, keeps all of its functions in an unnamed
 //     namespace inside alpenglow, and ends with
-//       template <>
-//       const LightKernel& KernelOf<LightKernel, kThisSet>() {
+//       const LightKernel& KernelOf(KernelName<LightKernel, kThisSet>) {
 //         static constexpr LightKernel kernel{Scatter};
 //         return kernel;
 //       }
@@ -26,7 +25,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Scalar kernels compute with one number at a time, so that tests can compare the others with them.
 /// Baseline is what the compiler assumes of every processor: SSE2 on x86-64, NEON on AArch64; where
@@ -58,26 +57,20 @@ class InstructionSetScope {
   InstructionSet before_;
 };
 
-/// The table of one set; specialised by the file of the kernel.
+/// Names the table of one set in overloads of KernelOf, which the file of the kernel defines.
 template <typename Table, InstructionSet set>
-[[nodiscard]] const Table& KernelOf();
+struct KernelName {};
 
 #ifdef ALPENGLOW_X86_KERNELS
-#define ALPENGLOW_DECLARE_KERNEL(Table)                      \
-  template <>                                                \
-  const Table& KernelOf<Table, InstructionSet::kScalar>();   \
-  template <>                                                \
-  const Table& KernelOf<Table, InstructionSet::kBaseline>(); \
-  template <>                                                \
-  const Table& KernelOf<Table, InstructionSet::kAvx2>();     \
-  template <>                                                \
-  const Table& KernelOf<Table, InstructionSet::kAvx512>()
+#define ALPENGLOW_DECLARE_KERNEL(Table)                                                   \
+  [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kScalar> name);   \
+  [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kBaseline> name); \
+  [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kAvx2> name);     \
+  [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kAvx512> name)
 #else
-#define ALPENGLOW_DECLARE_KERNEL(Table)                    \
-  template <>                                              \
-  const Table& KernelOf<Table, InstructionSet::kScalar>(); \
-  template <>                                              \
-  const Table& KernelOf<Table, InstructionSet::kBaseline>()
+#define ALPENGLOW_DECLARE_KERNEL(Table)                                                 \
+  [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kScalar> name); \
+  [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kBaseline> name)
 #endif
 
 /// The table of the current set.
@@ -86,16 +79,16 @@ template <typename Table>
   switch (CurrentInstructionSet()) {
 #ifdef ALPENGLOW_X86_KERNELS
     case InstructionSet::kAvx512:
-      return KernelOf<Table, InstructionSet::kAvx512>();
+      return KernelOf(KernelName<Table, InstructionSet::kAvx512>{});
     case InstructionSet::kAvx2:
-      return KernelOf<Table, InstructionSet::kAvx2>();
+      return KernelOf(KernelName<Table, InstructionSet::kAvx2>{});
 #endif
     case InstructionSet::kScalar:
-      return KernelOf<Table, InstructionSet::kScalar>();
+      return KernelOf(KernelName<Table, InstructionSet::kScalar>{});
     default:
       break;
   }
-  return KernelOf<Table, InstructionSet::kBaseline>();
+  return KernelOf(KernelName<Table, InstructionSet::kBaseline>{});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

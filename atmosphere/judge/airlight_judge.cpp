@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 using Extended = long double;
@@ -160,4 +160,4 @@ LampLight AirlightAlong(const LampAir& air, const Lamp& lamp, const LampSegment&
   return {found.value, found.error, found.error < 1e-9};
 }
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

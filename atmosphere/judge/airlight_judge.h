@@ -8,7 +8,7 @@
 
 #include "atmosphere/lamp/airlight.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 struct LampLight {
   std::vector<double> radiance;  // for unit intensity [sr^-1 m^-2], a value a band
@@ -21,4 +21,4 @@ struct LampLight {
 [[nodiscard]] LampLight AirlightAlong(const LampAir& air, const Lamp& lamp,
                                       const LampSegment& segment);
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

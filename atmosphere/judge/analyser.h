@@ -15,7 +15,7 @@
 
 #include "atmosphere/air/scattering_matrix.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 inline constexpr std::size_t kStokes = 3;  // that an observer measures
 
@@ -58,4 +58,4 @@ struct PlaneTurn {
   return before;
 }
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

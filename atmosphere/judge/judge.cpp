@@ -10,7 +10,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 using Extended = long double;
@@ -250,4 +250,4 @@ std::vector<double> SunIrradiance(const Medium& medium, double altitude_m, doubl
   return irradiance;
 }
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

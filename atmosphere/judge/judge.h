@@ -12,7 +12,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 /// Optical depth at every wavelength, from the observer to the end of the
 /// ray (ray.length_m, ground or top). Relative error below 1e-10
@@ -43,4 +43,4 @@ struct SingleScattering {
 [[nodiscard]] std::vector<double> SunIrradiance(const Medium& medium, double altitude_m,
                                                 double mu_s);
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

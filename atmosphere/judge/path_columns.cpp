@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 struct Cubic {
@@ -181,4 +181,4 @@ AirColumns ColumnTable::ToSpace(double perigee_radius_m, double s0_m) const {
   return Difference(s0_m, Primitive(line, s0_m), s1, Primitive(line, s1), at_perigee);
 }
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

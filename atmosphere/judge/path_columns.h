@@ -21,7 +21,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 /// Column at relative density 1 [m].
 struct AirColumns {
@@ -79,4 +79,4 @@ class ColumnTable {
   Layer deficit_;  // without a share: empty
 };
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

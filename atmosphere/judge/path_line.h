@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 struct DistanceMap {
   double begin_m = 0.0;
@@ -62,4 +62,4 @@ class DistanceMaps {
   std::size_t count_ = 0;
 };
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 inline constexpr std::size_t kPathsPerBatch = 251;
 
@@ -55,4 +55,4 @@ class PathRandom {
   std::uint64_t drawn_ = 0;
 };
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

@@ -19,7 +19,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 using Vector = glm::dvec3;
@@ -923,4 +923,4 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
           estimate.converged};
 }
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

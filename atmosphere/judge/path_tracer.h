@@ -26,7 +26,7 @@
 #include "atmosphere/air/scattering_matrix.h"
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 struct PathOptions {
   std::uint64_t seed = 1;
@@ -97,4 +97,4 @@ struct PathTracedIrradiance {
                                                    double mu_s, PlaneSide side,
                                                    const PathOptions& options = {});
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

@@ -6,7 +6,7 @@
 
 #include "atmosphere/sun/bent_ray.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 using State = RayEquation::State;
@@ -101,4 +101,4 @@ RayEquation::State RayEquation::Stepped(const State& at, double step_m) const {
              k4);
 }
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

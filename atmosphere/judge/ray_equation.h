@@ -6,7 +6,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 
 /// n - 1 of air of 15 C and 1013.25 hPa. Peck and Reeder (1972), J. Opt. Soc. Am. 62, 958-962,
 /// equation 2.
@@ -48,4 +48,4 @@ class RayEquation {
   double refractivity_;
 };
 
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

@@ -10,7 +10,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kSmallestApproach_m = 1e-12;
@@ -625,4 +625,4 @@ double AirlightOfSun2005(double scattering_per_m, double extinction_per_m, doubl
          (SunFunction(u, v_end) - SunFunction(u, 0.5 * gamma));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -28,7 +28,7 @@
 
 #include "atmosphere/lamp/lamp.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A piece of a view ray. Transmittance counts from the origin, not from begin_m.
 struct LampSegment {
@@ -80,4 +80,4 @@ struct AirlightEffort {
 [[nodiscard]] double AirlightOfSun2005(double scattering_per_m, double extinction_per_m,
                                        double length_m, double along_m, double across_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

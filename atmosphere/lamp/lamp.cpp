@@ -11,7 +11,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// Where a value lies between the ascending points of a table.
@@ -164,4 +164,4 @@ Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
   return tau;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -20,7 +20,7 @@
 #include "atmosphere/air/phase.h"
 #include "atmosphere/ray/single_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Intensity measured over two angles, relative: gamma from the lamp's axis, C around it from its
 /// side vector towards side x axis: counterclockwise on a plan, that is for a lamp that shines down
@@ -111,4 +111,4 @@ struct LampAir {
 [[nodiscard]] double ExponentialColumn(double length_m, double rho_a, double rho_b,
                                        double rise_over_h);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -5,7 +5,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 std::vector<double> SolvePositiveDefinite(std::vector<double> matrix,
                                           std::vector<double> right_side) {
@@ -32,4 +32,4 @@ std::vector<double> SolvePositiveDefinite(std::vector<double> matrix,
   return x;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Solves a symmetric positive definite system by Cholesky's factorisation. Throws InternalError
 /// when a pivot is not positive.
@@ -12,4 +12,4 @@ namespace alpenglow {
 [[nodiscard]] std::vector<double> SolvePositiveDefinite(std::vector<double> matrix,
                                                         std::vector<double> right_side);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kRadiansPerDegree = kPi / 180.0;
@@ -35,4 +35,4 @@ inline constexpr double kScotopicEfficacy_lm_per_W = 1700.0;
 /// visibility times the extinction. Koschmieder (1924), Beitr. Phys. freien Atm. 12, 33.
 inline constexpr double kOpticalDepthOfVisibility = 3.912;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

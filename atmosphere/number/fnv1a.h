@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 class Fnv1a {
  public:
@@ -32,4 +32,4 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

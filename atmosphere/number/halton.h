@@ -3,7 +3,7 @@
 // 84-90. Coordinates of a point in more dimensions are sequences of different prime bases.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Point number i >= 0 of the sequence of a base >= 2:
 /// the digits of i mirrored at the point, in [0, 1).
@@ -13,4 +13,4 @@ namespace alpenglow {
   return value;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

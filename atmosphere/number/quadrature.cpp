@@ -5,7 +5,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 GaussRule ComputeRule(int n) {
@@ -48,4 +48,4 @@ const GaussRule& GaussLegendre(int n) {
   return rules[static_cast<std::size_t>(n - 1)];
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Nodes and weights on [0, 1]; integrates polynomials up to degree 2 n - 1 exactly.
 struct GaussRule {
@@ -102,4 +102,4 @@ template <typename Function>
   return result;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A point within `tolerance` of a root of f in [low, high]; f(low) and f(high) have different
 /// signs or are 0. The tolerance must be larger than the rounding of the bounds. False position
@@ -41,4 +41,4 @@ template <typename Function>
   return 0.5 * (low + high);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -23,7 +23,7 @@
 
 #include "atmosphere/dialect/instruction_set.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 inline constexpr InstructionSet kThisSet = InstructionSet::ALPENGLOW_KERNEL_SET;
@@ -74,4 +74,4 @@ namespace shared {
 }  // namespace shared
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -8,7 +8,7 @@
 
 #include "atmosphere/ray/bent_view.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr int kHeights = 18, kElevations = 40;
@@ -111,4 +111,4 @@ Bands<float> BentBeam::Left(const AirIntegrator<float>& air, double altitude_m, 
   return left;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

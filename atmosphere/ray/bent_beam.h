@@ -22,7 +22,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/bent_ray.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// For one medium, at any height. Immutable.
 class BentBeam {
@@ -61,4 +61,4 @@ class BentBeam {
   std::vector<Row> rows_;                                // none: nothing bends
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/root.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kHorizontal = 0.5 * kPi;
@@ -162,4 +162,4 @@ std::optional<BentGroundRay> BentView::ToGround(double elevation_rad) const {
   return BentGroundRay{-elevation_rad - at_ground + bending, at_ground};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

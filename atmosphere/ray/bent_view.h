@@ -15,7 +15,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/sun/bent_ray.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 [[nodiscard]] BendingAir BendingAirOf(const Medium& medium, double wavelength_nm);
 
@@ -90,4 +90,4 @@ class BentView {
   std::vector<double> bending_;  // over log(1 + elevation at the ground / ground_scale_rad_)
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kLog2OfE = 1.4426950408889634;
@@ -173,4 +173,4 @@ DirectAir DirectAirOf(const Medium& medium) {
   return air;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

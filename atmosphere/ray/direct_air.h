@@ -14,7 +14,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray_samples.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// An exponential layer of scale height H over a planet of radius R.
 struct DirectLayer {
@@ -55,4 +55,4 @@ struct DirectAir {
 /// Takes 0.1 ms for a smooth layer of ozone.
 [[nodiscard]] DirectAir DirectAirOf(const Medium& medium);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -3,7 +3,7 @@
 
 #include "atmosphere/ray/direct_nodes.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// A group of `count` lanes in vectors.
@@ -298,9 +298,6 @@ constexpr DirectKernel kDirectKernel{Scatter, Sample, Along};
 
 }  // namespace
 
-template <>
-const DirectKernel& KernelOf<DirectKernel, kThisSet>() {
-  return kDirectKernel;
-}
+const DirectKernel& KernelOf(KernelName<DirectKernel, kThisSet> /*name*/) { return kDirectKernel; }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

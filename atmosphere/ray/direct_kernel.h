@@ -11,7 +11,7 @@
 #include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/ray/ray_samples.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A Gauss rule of n nodes over the lanes of a group, and at each node the Legendre polynomial P_(n-1),
 /// which turns the rule into one that gives 0 for polynomials of degree n - 2 and less.
@@ -48,4 +48,4 @@ struct DirectKernel {
 
 ALPENGLOW_DECLARE_KERNEL(DirectKernel);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

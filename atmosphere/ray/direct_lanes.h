@@ -9,7 +9,7 @@
 
 #include "atmosphere/ray/batch.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// Bands that are summed over lanes together; kMaxBands is a multiple.
@@ -103,4 +103,4 @@ T PowerOfTwo(const T& x) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -6,7 +6,7 @@
 #include "atmosphere/ray/direct_kernel.h"
 #include "atmosphere/ray/direct_lanes.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 namespace shared {
@@ -293,4 +293,4 @@ NodeAir<T> AirAt(const DirectAir& air, const NodePlaces<T>& at) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

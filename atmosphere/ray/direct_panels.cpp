@@ -9,7 +9,7 @@
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// A ray from where it enters the air [km].
@@ -193,4 +193,4 @@ DirectRay DirectRayOf(const DirectAir& air, const ViewRay& ray, DirectMode mode,
   return placed;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

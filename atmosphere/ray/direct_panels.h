@@ -17,7 +17,7 @@
 #include "atmosphere/ray/direct_air.h"
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A fast ray takes 7 nodes a panel, or fewer (DirectRay::few_nodes), 14 in hard ones; a normal ray
 /// takes 14 in all.
@@ -102,4 +102,4 @@ void VisitPanels(const DirectRay& ray, const Visit& visit) {
 [[nodiscard]] DirectRay DirectRayOf(const DirectAir& air, const ViewRay& ray, DirectMode mode,
                                     bool dark);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

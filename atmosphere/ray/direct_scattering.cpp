@@ -8,7 +8,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/direct_kernel.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // P_degree(x), by the three-term recurrence.
@@ -148,4 +148,4 @@ ColumnSet<float> DirectScattering::ColumnsAlong(const DirectRay& placed) const {
   return Kernel<DirectKernel>().along(air_, Rules(), placed);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

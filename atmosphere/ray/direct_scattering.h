@@ -28,7 +28,7 @@
 #include "atmosphere/ray/ray_samples.h"
 #include "atmosphere/ray/single_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 struct DirectSampling {
   DirectMode mode = DirectMode::kNormal;
@@ -88,4 +88,4 @@ class DirectScattering {
   DirectAir air_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

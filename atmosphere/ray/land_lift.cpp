@@ -6,14 +6,15 @@
 
 #include "atmosphere/ray/shell.h"
 
-namespace alpenglow {
-namespace shared {
+namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/dialect/shared_begin.h"
 #include "atmosphere/ray/land_lift.glsl"
 #include "atmosphere/dialect/shared_end.h"
 // clang-format on
-}  // namespace shared
+}  // namespace alpenglow::shared
+
+namespace alpenglow::atmosphere {
 
 namespace {
 
@@ -68,4 +69,4 @@ double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land
   return std::max(horizon_rad, LiftOfLand(bend, eye_m, 0.0, farthest_land_m));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

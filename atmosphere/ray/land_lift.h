@@ -10,7 +10,7 @@
 
 #include "atmosphere/sun/bent_ray.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Bending of rays by the air as an eye at one height sees it; kilometres.
 struct LandBend {
@@ -39,4 +39,4 @@ struct LandBend {
 /// as far away as the farthest.
 [[nodiscard]] double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -6,7 +6,7 @@
 
 #include "atmosphere/air/medium.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Columns of molecules, aerosol and ozone: densities relative to where extinctions are given,
 /// integrated along a way [km or m].
@@ -37,4 +37,4 @@ template <typename T>
          extinction.ozone * columns.ozone;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

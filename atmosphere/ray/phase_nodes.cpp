@@ -7,7 +7,7 @@
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // PhaseTable::Position in float, by the sine of half the angle from the nearer end, which keeps small angles
@@ -41,4 +41,4 @@ Bands<float> PhaseNodes::At(double nu) const {
   return values;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray_samples.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 class PhaseNodes {
  public:
@@ -29,4 +29,4 @@ class PhaseNodes {
   std::vector<float> value_;  // [node * bands + band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

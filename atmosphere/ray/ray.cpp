@@ -11,7 +11,7 @@
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Extended = long double;
@@ -120,4 +120,4 @@ ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double plan
   return {static_cast<double>(begin), static_cast<double>(end)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 struct ViewRay {
   double altitude_m = 0.0;  // of the observer; may lie above the top of the atmosphere
@@ -49,4 +49,4 @@ struct ShadowSpan {
 [[nodiscard]] ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent,
                                       double planet_radius_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -3,7 +3,7 @@
 
 #include "atmosphere/ray/batch.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// The lengths of AirConstants, spread over lanes.
@@ -302,14 +302,12 @@ constexpr RayKernel<Real> kRayKernel{BatchOf<Real>::kLanes, Place<Real>,   Fill<
 
 }  // namespace
 
-template <>
-const RayKernel<float>& KernelOf<RayKernel<float>, kThisSet>() {
+const RayKernel<float>& KernelOf(KernelName<RayKernel<float>, kThisSet> /*name*/) {
   return kRayKernel<float>;
 }
 
-template <>
-const RayKernel<double>& KernelOf<RayKernel<double>, kThisSet>() {
+const RayKernel<double>& KernelOf(KernelName<RayKernel<double>, kThisSet> /*name*/) {
   return kRayKernel<double>;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include "atmosphere/ray/optical_depth.h"
 #include "atmosphere/ray/ray_samples.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A medium as kernels read it: lengths in km, coefficients per km.
 template <typename Real>
@@ -73,4 +73,4 @@ struct RayKernel {
 ALPENGLOW_DECLARE_KERNEL(RayKernel<float>);
 ALPENGLOW_DECLARE_KERNEL(RayKernel<double>);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// Distances at which a ray is cut, in any order.
@@ -215,4 +215,4 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
   return panels;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -14,7 +14,7 @@
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_kernel.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 [[nodiscard]] inline double Kilometres(double metres) { return metres / kMetresPerKilometre; }
 
@@ -56,4 +56,4 @@ struct LineCrossings {
 };
 [[nodiscard]] LineCrossings CrossingsOf(double h, double mu, double z, double radius);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 inline constexpr std::size_t kMaxBands = 40;
 /// Panels of a ray cut at the six edges of the tent, six edges in the sunbeams, the perigee, both
@@ -94,4 +94,4 @@ struct ScatteredOnce {
   Bands<Real> rayleigh, mie;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

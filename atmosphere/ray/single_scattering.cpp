@@ -13,7 +13,7 @@
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 std::size_t RoundUp(std::size_t count, std::size_t lanes) {
@@ -410,4 +410,4 @@ Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered,
 template class AirIntegrator<float>;
 template class AirIntegrator<double>;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

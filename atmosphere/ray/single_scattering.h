@@ -22,7 +22,7 @@
 #include "atmosphere/ray/ray_kernel.h"
 #include "atmosphere/ray/ray_samples.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A medium made ready for evaluation in Real = float
 /// or double. Immutable, safe to share between threads.
@@ -89,4 +89,4 @@ class AirIntegrator {
 extern template class AirIntegrator<float>;
 extern template class AirIntegrator<double>;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kModifiedJulianEpoch = 2400000.5;
@@ -101,4 +101,4 @@ ApparentPlace SeenFrom(const GeodeticPosition& place, const glm::dmat3& ecef_fro
           direction};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// WGS84, NIMA TR8350.2 table 3.1.
 inline constexpr double kEarthRotation_rad_per_s = 7.292115e-5;
@@ -52,4 +52,4 @@ struct TerrestrialTime {
 };
 [[nodiscard]] TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

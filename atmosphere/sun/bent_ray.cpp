@@ -5,7 +5,7 @@
 
 #include "atmosphere/number/root.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// n r less that at the ground [m].
@@ -154,4 +154,4 @@ std::optional<double> ApparentElevation(const BendingAir& air, double true_eleva
   return BracketedRoot(error, low, true_elevation_rad + largest + 1e-9, 1e-12);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

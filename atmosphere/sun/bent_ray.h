@@ -21,7 +21,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Where most of the light is that eyes see, and the horizon therefore.
 inline constexpr double kHorizonWavelength_nm = 550.0;
@@ -153,4 +153,4 @@ class BentRay {
 [[nodiscard]] std::optional<double> ApparentElevation(const BendingAir& air,
                                                       double true_elevation_rad, double height_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/sun/time.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr int kFirstDayOfUtc = 36934;          // 1960-01-01
@@ -89,4 +89,4 @@ double DeltaT(const UtcInstant& instant) {
   return EspenakMeeus(year) + share * gap_s;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -12,7 +12,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kHour_s = 3600.0;
@@ -202,4 +202,4 @@ std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& ecli
   throw InternalError("unknown event of an eclipse");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

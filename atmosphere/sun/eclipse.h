@@ -19,7 +19,7 @@
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/sun/time.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The moon before the sun.
 struct EclipsedDisk {
@@ -87,4 +87,4 @@ enum class EclipseEvent { kFirstContact, kSecondContact, kMaximum, kThirdContact
 /// Nothing for the inner contacts of a partial eclipse.
 [[nodiscard]] std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& eclipse);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// Sine and cosine of both angles, exact at multiples of 90 degrees, so that a pole lies on the
@@ -133,4 +133,4 @@ GeodeticPosition LocalFrame::GeodeticFromEnu(const Point<Enu>& point) const {
   return GeodeticFromEcef(ellipsoid_, EcefFromEnu(point));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 struct Ecef {};  // x to longitude 0, z to the north pole
 struct Enu {};   // x east, y north, z up, at the origin of a LocalFrame
@@ -93,4 +93,4 @@ class LocalFrame {
   glm::dvec3 east_, north_, up_;  // in ECEF
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

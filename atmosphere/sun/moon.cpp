@@ -12,7 +12,7 @@
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // Geometric, as bodies move about the barycentre.
@@ -189,4 +189,4 @@ std::optional<UtcInstant> NextMoonEvent(MoonEvent event, const GeodeticPosition&
   throw InternalError("unknown event of the moon");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Mean radius of the moon, IAU working group on cartographic coordinates (Archinal et al. 2018).
 inline constexpr double kMoonRadius_m = 1737400.0;
@@ -71,4 +71,4 @@ enum class MoonEvent { kMoonrise, kMoonset, kMoonTransit };
                                                       const GeodeticPosition& place,
                                                       const UtcInstant& after);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

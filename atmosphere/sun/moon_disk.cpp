@@ -10,7 +10,7 @@
 #include "atmosphere/sun/moon_reflectance.h"
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kWavelength_nm = 550.0;
@@ -85,4 +85,4 @@ double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {
          moon.earthshine_per_irradiance;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -16,7 +16,7 @@
 
 #include "atmosphere/sun/moon.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Directions in any one frame.
 struct MoonDisk {
@@ -48,4 +48,4 @@ struct MoonDisk {
 [[nodiscard]] double MoonIrradiance(const MoonPosition& moon, double earth_sun_au,
                                     double wavelength_nm);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/embedded_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
@@ -159,4 +159,4 @@ BodyState MoonFromEarth(const TerrestrialTime& time) {
   return {position, (PositionAt(centuries(kMinute)) - position) / kMinute};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 
 #include "atmosphere/sun/apparent_place.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Geometric, from the centre of the earth, in the axes of the GCRS. 1950-2100: within 0.6
 /// arcseconds of direction and 3 km of distance of all terms (those are a few hundredths of an
@@ -17,4 +17,4 @@ namespace alpenglow {
 /// @param time  TT, of which TDB differs by 2 ms, 0.001 arcseconds.
 [[nodiscard]] BodyState MoonFromEarth(const TerrestrialTime& time);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 struct Filter {
@@ -53,4 +53,4 @@ double MoonReflectance(double phase_angle_rad, double wavelength_nm) {
          share * std::exp(LogReflectance(*above, angle_rad));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

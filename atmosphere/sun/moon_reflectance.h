@@ -12,11 +12,11 @@
 // and maria east or west of the terminator, change (6 % in the quarters) is left out.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Measured from 1.55 to 97 degrees; beyond, the same curve, within 12 % of that of Krisciunas
 /// and Schaefer (1991) from 7 to 145 degrees; it ends at 150.
 /// @param wavelength_nm  in [350, 1060], linear between nine filters; beyond as at the ends.
 [[nodiscard]] double MoonReflectance(double phase_angle_rad, double wavelength_nm);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kLayer_m = 90e3;
@@ -161,4 +161,4 @@ NightRadiance NightSky::Towards(const glm::dvec3& direction, const glm::dvec3& u
           kS10_cd_per_m2 * Starlight(galactic.longitude_rad, galactic.latitude_rad)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -24,7 +24,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Light of V magnitudes a square arcsecond [cd/m^2]: 10.8e4 10^(-0.4 V).
 [[nodiscard]] double LuminanceOfSurfaceBrightness(double magnitudes);
@@ -77,4 +77,4 @@ class NightSky {
   double sun_longitude_rad_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/apparent_place.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 struct Planet {
@@ -73,4 +73,4 @@ std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place, const UtcInst
   return lights;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -13,7 +13,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A point of light in the sky.
 struct PointLight {
@@ -27,4 +27,4 @@ struct PointLight {
 [[nodiscard]] std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place,
                                                   const UtcInstant& instant);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -3,7 +3,7 @@
 
 #include "atmosphere/text/text_cursor.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using std::chrono::seconds;
@@ -92,4 +92,4 @@ seconds OffsetAt(const PosixZoneRule& rule, std::chrono::sys_seconds instant) {
   return is_daylight ? rule.daylight->offset : rule.standard_offset;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// A change every year: the `week`-th `weekday` (0 Sunday) of `month`,
 /// 5 meaning the last, at `time` after midnight of local time as it
@@ -38,4 +38,4 @@ struct PosixZoneRule {
 [[nodiscard]] std::chrono::seconds OffsetAt(const PosixZoneRule& rule,
                                             std::chrono::sys_seconds instant);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

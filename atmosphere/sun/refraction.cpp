@@ -8,7 +8,7 @@
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 struct ValueAndSlope {
@@ -110,4 +110,4 @@ double Refraction(double true_elevation_rad, const AirAtObserver& air) {
   return relative_density * StandardRefraction(true_elevation_rad).value;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -13,7 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/bent_ray.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The air of almanacs at kHorizonWavelength_nm.
 [[nodiscard]] BendingAir AlmanacAir(double earth_radius_m = kEarthMeanRadius_m);
@@ -34,7 +34,7 @@ struct SeaHorizon {
 [[nodiscard]] SeaHorizon SeaHorizonFrom(double height_m,
                                         double earth_radius_m = kEarthMeanRadius_m);
 
-/// Refraction [rad] of the *true* elevation, seen from `height_m`: as alpenglow::Refraction, for an
+/// Refraction [rad] of the *true* elevation, seen from `height_m`: as atmosphere::Refraction, for an
 /// observer on a mountain, in an aeroplane or in orbit. Below the sea horizon, where only sunlit peaks
 /// show where the sun is, the refraction on it fades to 0 within 3 degrees. Some ten microseconds a
 /// call.
@@ -57,4 +57,4 @@ struct SeaHorizon {
 /// tests/bench/bent_twilight.cpp compares shares.
 [[nodiscard]] double LiftForAir(const BendingAir& air, double true_elevation_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

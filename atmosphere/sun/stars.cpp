@@ -8,7 +8,7 @@
 #include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/text/embedded_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kOfMagnitude0_lux = 2.54e-6;
@@ -72,4 +72,4 @@ double TemperatureOf(double colour_index) {
   return 4600.0 * (1.0 / (scaled + 1.7) + 1.0 / (scaled + 0.62));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

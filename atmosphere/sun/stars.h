@@ -13,7 +13,7 @@
 
 #include "atmosphere/sun/planets.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// Stars up to a magnitude, brightest first, without refraction. The catalogue is read when it is
 /// first asked for.
@@ -28,4 +28,4 @@ namespace alpenglow {
 /// Temperature [K] of a black body of the colour B - V, in [-0.4, 3].
 [[nodiscard]] double TemperatureOf(double colour_index);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 #include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/sun/refraction.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant) {
   return SunAt(place, instant, DeltaT(instant));
@@ -46,4 +46,4 @@ Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {
            std::sin(elevation_rad)}};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The sun seen from a place, without refraction (topocentric, apparent) unless a function says so.
 struct SunPosition {
@@ -83,4 +83,4 @@ enum class SunEvent {
 [[nodiscard]] std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& place,
                                                      const UtcInstant& around);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

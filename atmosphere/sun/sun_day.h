@@ -4,7 +4,7 @@
 
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// True if the sun stands above the height at which it rises and sets, or begins and ends a
 /// twilight (FindSunEvent); an event other than noon. On a day without the event it does so all
@@ -12,4 +12,4 @@ namespace alpenglow {
 [[nodiscard]] bool IsAboveEvent(SunEvent event, const GeodeticPosition& place,
                                 const UtcInstant& instant);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

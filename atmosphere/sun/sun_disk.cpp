@@ -7,7 +7,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/disk_light.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad) {
   const double elevation = std::asin(std::clamp(mu_s, -1.0, 1.0));
@@ -48,4 +48,4 @@ double CircleOfLight(double share) {
   return std::sqrt(std::max(1.0 - mu * mu, 0.0));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

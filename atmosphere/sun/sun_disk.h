@@ -2,7 +2,7 @@
 // The sun as a disk: how much of it stands over the horizon, and how bright it is.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The part of a disk that stands over the geometric horizon.
 struct VisibleDisk {
@@ -33,4 +33,4 @@ struct VisibleDisk {
 /// @param share  in [0, 1].
 [[nodiscard]] double CircleOfLight(double share);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -14,7 +14,7 @@
 #include "atmosphere/sun/sun_day.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kEventStep_s = 1800.0;
@@ -181,4 +181,4 @@ bool IsAboveEvent(SunEvent event, const GeodeticPosition& place, const UtcInstan
   return HeightOver(CrossingOf(event, place), place, instant) >= 0.0;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -16,7 +16,7 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/text_cursor.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using std::chrono::days;
@@ -292,4 +292,4 @@ double ParseDuration(std::string_view text) {
   return negative ? -total_s : total_s;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// An instant of UTC as a day and the second in it.
 /// Second 86400.x exists on days with a leap second.
@@ -55,4 +55,4 @@ struct UtcInstant {
 /// from the polynomial model of Espenak and Meeus (2006), joined continuously.
 [[nodiscard]] double DeltaT(const UtcInstant& instant);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using std::chrono::seconds;
@@ -51,7 +51,7 @@ seconds TimeZone::OffsetAt(sys_seconds instant) const {
   // The library says "for ever" by an end in the year 32767.
   const bool is_last =
       info.end > sys_seconds(std::chrono::sys_days(std::chrono::year(3000) / 1 / 1));
-  return is_last && last_rule_ ? alpenglow::OffsetAt(*last_rule_, instant) : info.offset;
+  return is_last && last_rule_ ? atmosphere::OffsetAt(*last_rule_, instant) : info.offset;
 }
 
 std::vector<seconds> TimeZone::OffsetsOf(sys_seconds local) const {
@@ -69,4 +69,4 @@ std::vector<seconds> TimeZone::OffsetsOf(sys_seconds local) const {
   return found;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -13,7 +13,7 @@ namespace date {
 class time_zone;
 }
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 class TimeZone {
  public:
@@ -32,4 +32,4 @@ class TimeZone {
   std::optional<PosixZoneRule> last_rule_;  // after the last tabulated change
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <system_error>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 void RefuseFile(const std::filesystem::path& file, std::string_view fault) {
   throw InputError(fmt::format("{}: {}", file.string(), fault));
@@ -31,4 +31,4 @@ void FailEnsured(const char* file, int line, const char* claim, const std::strin
       fmt::format("{}:{}: expected {}, got {} and {}", file, line, claim, left, right));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

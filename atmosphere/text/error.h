@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The input is wrong. The message is one line: file,
 /// line or key, value, allowed range. Exit status 3.
@@ -71,17 +71,17 @@ template <typename Value>
 [[noreturn]] void FailEnsured(const char* file, int line, const char* claim,
                               const std::string& left, const std::string& right);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere
 
 /// ALPENGLOW_ENSURE(row.size(), ==, width): throws
 /// InternalError with both values when it does not hold.
-#define ALPENGLOW_ENSURE(left, op, right)                                    \
-  do {                                                                       \
-    const auto& ensure_left = (left);                                        \
-    const auto& ensure_right = (right);                                      \
-    if (!(ensure_left op ensure_right)) {                                    \
-      ::alpenglow::FailEnsured(__FILE__, __LINE__, #left " " #op " " #right, \
-                               ::alpenglow::EnsuredText(ensure_left),        \
-                               ::alpenglow::EnsuredText(ensure_right));      \
-    }                                                                        \
+#define ALPENGLOW_ENSURE(left, op, right)                                                       \
+  do {                                                                                          \
+    const auto& ensure_left = (left);                                                           \
+    const auto& ensure_right = (right);                                                         \
+    if (!(ensure_left op ensure_right)) {                                                       \
+      ::alpenglow::atmosphere::FailEnsured(__FILE__, __LINE__, #left " " #op " " #right,        \
+                                           ::alpenglow::atmosphere::EnsuredText(ensure_left),   \
+                                           ::alpenglow::atmosphere::EnsuredText(ensure_right)); \
+    }                                                                                           \
   } while (false)

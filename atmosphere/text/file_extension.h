@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// True if a name ends in an extension such as ".gpx", in whatever case: cameras and recorders
 /// write ".GPX" and ".TIF" too.
@@ -22,4 +22,4 @@ namespace alpenglow {
       });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 class TextCursor {
  public:
@@ -47,4 +47,4 @@ class TextCursor {
   std::string_view rest_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

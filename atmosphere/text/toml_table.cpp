@@ -12,7 +12,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ std::vector<TomlTable> TomlTable::Tables(const std::string& key) const {
   return tables;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

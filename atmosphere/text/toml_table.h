@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 
 /// The content of a text file. Throws InputError when it cannot be read or is over 16 MiB.
 [[nodiscard]] std::string ReadTextFile(const std::filesystem::path& file);
@@ -55,4 +55,4 @@ class TomlTable {
   std::shared_ptr<const Level> level_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "lut/diffuse/spherical_harmonics.h"
 #include "lut/table/cubic_taps.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::size_t kLanes = 4;
@@ -178,4 +178,4 @@ std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, 
   return all;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -14,7 +14,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 class DiffuseFan {
  public:
@@ -46,4 +46,4 @@ class DiffuseFan {
   std::vector<float> sun_sine_;          // of the nodes' zenith angles
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -4,7 +4,7 @@
 #include "atmosphere/ray/batch.h"
 #include "lut/diffuse/tensor_moments.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Four = float __attribute__((vector_size(16)));
@@ -106,10 +106,9 @@ void Gather(const FanGathering& work) {
 
 }  // namespace
 
-template <>
-const DiffuseFanKernel& KernelOf<DiffuseFanKernel, kThisSet>() {
+const DiffuseFanKernel& KernelOf(KernelName<DiffuseFanKernel, kThisSet> /*name*/) {
   static constexpr DiffuseFanKernel kernel{Contract, FindSuns, Gather};
   return kernel;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

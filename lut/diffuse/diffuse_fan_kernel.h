@@ -6,8 +6,9 @@
 #include <cstdint>
 
 #include "atmosphere/dialect/instruction_set.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Moments of four bands at one sample, altitude interpolated and degree summed, for `suns`
 /// consecutive nodes of the sun's angle.
@@ -60,4 +61,4 @@ struct DiffuseFanKernel {
 
 ALPENGLOW_DECLARE_KERNEL(DiffuseFanKernel);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

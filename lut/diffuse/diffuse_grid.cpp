@@ -6,7 +6,7 @@
 
 #include "atmosphere/air/phase_text.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
   const SunAxis& sun = DiffuseLight::SunNodes();
@@ -70,4 +70,4 @@ std::vector<float> TwilightAtNodes(const DiffuseGrid& grid) {
   return twilight;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,7 +8,7 @@
 #include "lut/diffuse/tensor_moments.h"
 #include "lut/table/cubic_taps.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 [[nodiscard]] DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options);
 
@@ -52,4 +52,4 @@ namespace alpenglow {
   return PackedTensorIndex(degree, 3);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 #include "lut/diffuse/diffuse_lanes.h"
 #include "lut/diffuse/march_lanes.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 /// A few samples of a ray, ready for the table: [.][sample].
@@ -495,11 +495,10 @@ void Irradiance(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t 
 
 }  // namespace
 
-template <>
-const DiffuseKernel& KernelOf<DiffuseKernel, kThisSet>() {
+const DiffuseKernel& KernelOf(KernelName<DiffuseKernel, kThisSet> /*name*/) {
   static constexpr DiffuseKernel kernel{Arrive,  ArrivePolarised, Place,
                                         Scatter, Inscatter,       Irradiance};
   return kernel;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

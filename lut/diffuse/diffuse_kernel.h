@@ -13,8 +13,9 @@
 
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/ray/ray_samples.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 inline constexpr std::size_t kBlockBands = 4;
 inline constexpr std::size_t kLargestDegree = 12;
@@ -168,4 +169,4 @@ struct DiffuseKernel {
 
 ALPENGLOW_DECLARE_KERNEL(DiffuseKernel);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

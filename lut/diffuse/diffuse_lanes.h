@@ -10,7 +10,7 @@
 #include "atmosphere/ray/batch.h"
 #include "lut/diffuse/diffuse_kernel.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Lanes of work that comes by eights: at most eight, fewer where the processor has fewer.
@@ -91,6 +91,7 @@ struct Weights {
 };
 
 namespace shared {
+using namespace atmosphere::shared;
 // clang-format off
 #include "atmosphere/dialect/shared_begin.h"
 #include "lut/table/cubic_taps.glsl"
@@ -165,4 +166,4 @@ void OfDegree(std::size_t degree, const Run& run) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

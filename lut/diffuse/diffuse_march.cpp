@@ -11,7 +11,7 @@
 #include "atmosphere/ray/shell.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Whether aerosol scatters less than 3e-4 of what molecules do, in every band: it then needs no
@@ -156,4 +156,4 @@ void DiffuseMarches::AddGround(std::size_t altitude, March& march) const {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

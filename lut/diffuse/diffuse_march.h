@@ -8,7 +8,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/diffuse_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// One direction at one altitude, all suns and azimuths.
 struct March {
@@ -72,4 +72,4 @@ class DiffuseMarches {
   std::vector<std::vector<March>> marches_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 #include "atmosphere/ray/ray_panels.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::size_t kOrderLanes = 16;
@@ -230,4 +230,4 @@ SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches, std::size_t
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

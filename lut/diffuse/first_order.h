@@ -7,7 +7,7 @@
 
 #include "lut/diffuse/diffuse_march.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Per unit solar irradiance along one march: [(band * suns + sun) * azimuths + azimuth].
 struct SunlightOfMarch {
@@ -19,4 +19,4 @@ struct SunlightOfMarch {
                                                     std::size_t altitude, const March& march,
                                                     const DiffuseLightOptions& options);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

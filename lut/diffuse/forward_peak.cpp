@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Beyond it the peak of any dust or haze is narrower than half a degree of arc times its share.
@@ -279,4 +279,4 @@ ForwardPeak::Way ForwardPeak::WayTo(const RaySamples<float>& samples) const {
   return way;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -33,8 +33,9 @@
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The air that delta-M leaves.
 struct AirWithoutPeak {
@@ -107,4 +108,4 @@ class ForwardPeak {
   std::vector<PeakShape> shapes_;  // one, or one a band
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -10,7 +10,7 @@
 #include "lut/diffuse/diffuse_lanes.h"
 #include "lut/diffuse/tensor_moments.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Source of a march point per cos(m phi) at every sun node, altitude and degree summed: row
@@ -393,4 +393,4 @@ void Scatter(const LitPieces& pieces, const LitPoints& points, const ColumnPoint
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

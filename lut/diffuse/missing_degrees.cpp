@@ -7,7 +7,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Beyond it the peak of any dust or haze is narrower than half a degree of arc times its share.
@@ -73,4 +73,4 @@ double MissingDegrees::AlongBand(const AirConstants<float>& air, std::size_t ban
   return std::abs(sum) + envelope;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

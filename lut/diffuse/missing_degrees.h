@@ -19,8 +19,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray_kernel.h"
 #include "atmosphere/ray/ray_samples.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 class MissingDegrees {
  public:
@@ -41,4 +42,4 @@ class MissingDegrees {
   std::vector<double> chi_;  // [l * bands + band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -15,7 +15,7 @@
 #include "lut/diffuse/successive_orders.h"
 #include "lut/table/cubic_taps.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 const SunAxis& DiffuseLight::SunNodes() {
   static const SunAxis axis(-0.05, 0.10, -0.55);
@@ -484,4 +484,4 @@ PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples,
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

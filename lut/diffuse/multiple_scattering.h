@@ -37,7 +37,7 @@
 #include "lut/diffuse/tensor_moments.h"
 #include "lut/table/sun_axis.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct DiffuseLightOptions {
   int altitudes = 18;     // nodes, quadratic in altitude, >= 4
@@ -194,4 +194,4 @@ class DiffuseLight {
   std::vector<float> packed_sky_;  // and SkyIrradiance
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/diffuse_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
   const double sines = SineOf(mu) * SineOf(mu_s);
@@ -30,4 +30,4 @@ PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& o
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

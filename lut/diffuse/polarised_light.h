@@ -5,8 +5,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_samples.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Stokes parameters of light along a ray [1/sr]. Q > 0 vibrates in the vertical plane of the view;
 /// U > 0 from the upper right to the lower left as the eye sees it where the sun is to the left of
@@ -24,4 +25,4 @@ struct PolarisedLight {
 /// Cosine of the azimuth between a direction and the sun; 1 where one of them is vertical.
 [[nodiscard]] double AzimuthCosineOrAhead(double mu, double mu_s, double nu);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -13,7 +13,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct HarmonicNorms {
@@ -211,4 +211,4 @@ std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree) {
   return chi;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

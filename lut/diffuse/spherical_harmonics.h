@@ -15,8 +15,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/air/phase.h"
 #include "atmosphere/number/constants.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 inline constexpr int kMaxDegree = 12;
 /// The degrees that light may have. Every kernel of diffuse light is compiled for each of them.
@@ -76,4 +77,4 @@ inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{kPi,
 /// The same of the medium's aerosol at every wavelength: chi_l of a band at [l * bands + band].
 [[nodiscard]] std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

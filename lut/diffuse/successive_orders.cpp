@@ -12,7 +12,7 @@
 #include "lut/diffuse/first_order.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Light = glm::vec4;  // one value per band of a block
@@ -572,4 +572,4 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptio
   return solved;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

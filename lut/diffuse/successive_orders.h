@@ -11,10 +11,10 @@
 
 #include "lut/diffuse/multiple_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Deterministic for any number of threads.
 [[nodiscard]] SolvedOrders SolveSuccessiveOrders(const Medium& medium,
                                                  const DiffuseLightOptions& options);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

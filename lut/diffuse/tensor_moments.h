@@ -33,7 +33,7 @@
 
 #include <cstddef>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Zenith cosine of the last sun of polarised tables.
 inline constexpr double kHighestPolarisedSun = 0.9999;
@@ -62,4 +62,4 @@ template <typename Number>
   return m == 0 ? 1.0F : m == 1 ? sine : sine * sine;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -10,7 +10,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 enum Column : std::size_t { kId, kQuantity, kAltitude, kView, kAzimuth, kSun, kDistance };
@@ -66,4 +66,4 @@ std::optional<Case> CaseReader::Next() {
   return result;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -17,9 +17,10 @@
 #include <string>
 
 #include "atmosphere/ray/ray.h"
+#include "lut/layer.h"
 #include "lut/program/csv_reader.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class Quantity {
   kTransmittance,    // of the ray [1]
@@ -62,4 +63,4 @@ class CaseReader {
   CsvReader lines_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -20,7 +20,7 @@
 #include "lut/program/program.h"
 #include "lut/program/progress.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// "id,wavelength,value,error" and a line end; the error to three digits, rounded up.
 [[nodiscard]] inline std::string ResultLine(std::string_view id, std::string_view wavelength_nm,
@@ -73,4 +73,4 @@ void WriteCaseResults(Reader& reader, const std::filesystem::path& results, Prog
       reader, results, style, [](const auto&) {}, lines);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

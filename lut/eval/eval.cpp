@@ -12,7 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/eval/case_results.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 std::string Lines(const Case& work, const Medium& medium, const Estimates& estimates) {
@@ -96,4 +96,4 @@ void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::pat
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

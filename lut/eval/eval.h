@@ -34,7 +34,7 @@
 #include "lut/program/progress.h"
 #include "lut/store/table_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// A value and the method's own estimate of its error, in the same unit.
 struct Estimate {
@@ -127,4 +127,4 @@ class Evaluator {
 void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
                   Evaluator& evaluator, ProgressStyle style);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -13,7 +13,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/eval/eval.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // What closed forms leave in light scattered once, twice the worst stored case: for smaller errors
@@ -331,4 +331,4 @@ std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
   return std::make_unique<IntegralEvaluator>(medium, options);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -15,7 +15,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/eval/case_results.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::array<std::string_view, 16> kLampColumnNames{
@@ -172,4 +172,4 @@ void EvaluateLampFile(const std::filesystem::path& cases, const std::filesystem:
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

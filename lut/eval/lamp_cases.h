@@ -22,7 +22,7 @@
 #include "lut/eval/eval.h"
 #include "lut/program/csv_reader.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct LampCase {
   std::string id;
@@ -63,4 +63,4 @@ class LampCaseReader {
 void EvaluateLampFile(const std::filesystem::path& cases, const std::filesystem::path& results,
                       const IntegralOptions& options, ProgressStyle style);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

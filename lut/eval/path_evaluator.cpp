@@ -7,7 +7,7 @@
 #include "lut/eval/eval.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 Estimates WithErrors(const std::vector<double>& values, const std::vector<double>& errors) {
@@ -90,4 +90,4 @@ std::unique_ptr<Evaluator> MakePathTraceEvaluator(const Medium& medium,
   return std::make_unique<PathEvaluator>(medium, options);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

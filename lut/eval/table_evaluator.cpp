@@ -6,7 +6,7 @@
 #include "lut/eval/eval.h"
 #include "lut/store/table_lookup.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 class TableEvaluator final : public Evaluator {
@@ -106,4 +106,4 @@ std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables) {
   return std::make_unique<TableEvaluator>(std::move(tables));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

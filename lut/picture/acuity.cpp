@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Plane = std::vector<std::array<float, 3>>;
@@ -120,4 +120,4 @@ Image WithAcuityOfNight(Image image, double pixel_rad) {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

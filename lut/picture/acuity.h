@@ -15,7 +15,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The finest grating [cycles a degree]; below 1e-6 cd/m^2 as there. @param luminance_cd_per_m2 >= 0.
 [[nodiscard]] double AcuityAt(double luminance_cd_per_m2);
@@ -28,4 +28,4 @@ namespace alpenglow {
 /// @param pixel_rad  angle between neighbouring pixels in the middle, > 0.
 [[nodiscard]] Image WithAcuityOfNight(Image image, double pixel_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -5,8 +5,9 @@
 #include <fmt/ranges.h>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct NamedLook {
@@ -50,4 +51,4 @@ std::vector<std::string> AgxLookNames() {
   return names;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -34,7 +34,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class AgxLook { kPhoto, kNone, kPunchy, kMedium, kHigh };
 
@@ -59,4 +59,4 @@ struct AgxGrade {
 [[nodiscard]] std::string NameOf(AgxLook look);
 [[nodiscard]] std::vector<std::string> AgxLookNames();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

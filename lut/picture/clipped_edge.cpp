@@ -6,7 +6,7 @@
 
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // of white
@@ -171,4 +171,4 @@ std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float
                      seen * std::min(stops / std::log2(kFullLight / kLeastLight), 1.0F)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

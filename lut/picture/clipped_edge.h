@@ -21,7 +21,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// What a pixel on the edge of a clipped light is a mixture of.
 struct ClippedEdge {
@@ -41,4 +41,4 @@ struct ClippedEdge {
 [[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y,
                                                        float white);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -13,7 +13,7 @@
 #include "lut/picture/look.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 void RequireFinite(const std::array<float, 3>& pixel, int x, int y) {
@@ -76,4 +76,4 @@ DisplayImage Develop(const Image& seen, double ev100, const Look& look) {
   return display;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

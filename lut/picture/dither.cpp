@@ -8,7 +8,7 @@
 
 #include "lut/picture/dither_text.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr int kSize = kDitherTileSize;
@@ -155,4 +155,4 @@ std::uint8_t DitheredCode(float code, float noise) {
   return static_cast<std::uint8_t>(std::lround(shared::DitheredValue(code, noise)));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 inline constexpr int kDitherTileSize = 64;
 
@@ -32,4 +32,4 @@ struct DitherShift {
 /// what they are: within half a code of the ends the noise is reduced.
 [[nodiscard]] std::uint8_t DitheredCode(float code, float noise);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -14,7 +14,7 @@
 #include "lut/picture/light_meter.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Rows of a sky share a bin and leave it together: 0.3 % of light.
@@ -159,4 +159,4 @@ std::array<double, 3> MeteredColour(const Image& image, double ignore_above_cd_p
   return sum;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -19,11 +19,12 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/picture/exr_header.h"
 #include "lut/picture/image.h"
 #include "lut/program/atomic_file.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,4 +210,4 @@ Metadata ReadExrMetadata(const fs::path& file) {
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

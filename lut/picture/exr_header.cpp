@@ -9,8 +9,9 @@
 #include <string>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::uint32_t kMagic = 20000630;
@@ -82,4 +83,4 @@ class HeaderReader {
 
 void RequireBoundedExrHeader(const std::filesystem::path& file) { HeaderReader(file).Check(); }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

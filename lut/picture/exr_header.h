@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Throws InputError naming the file when an attribute of its headers claims to reach beyond its
 /// end, or when a header has none. Says nothing about anything else: the library does.
@@ -16,4 +16,4 @@ namespace alpenglow {
 /// header; in files of several parts headers follow each other, and another 0 ends them.
 void RequireBoundedExrHeader(const std::filesystem::path& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 double EyeAdaptation::Follow(double metered_ev100, double seconds) {
   const double regenerated = kRegenerated_ev_per_min * std::abs(seconds) / 60.0;
@@ -13,4 +13,4 @@ double EyeAdaptation::Follow(double metered_ev100, double seconds) {
   return std::max(metered_ev100, *pigment_ev100_ - kAtOnce_ev);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

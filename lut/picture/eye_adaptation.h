@@ -10,7 +10,7 @@
 
 #include <optional>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 class EyeAdaptation {
  public:
@@ -25,4 +25,4 @@ class EyeAdaptation {
   std::optional<double> pigment_ev100_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,8 +11,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Complex = std::complex<double>;
@@ -123,4 +124,4 @@ Image WithGlareOfEye(Image image, double pixel_rad) {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -17,7 +17,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The point spread function above [1/sr]. @param angle_rad  >= 0.
 [[nodiscard]] double GlareOfEye(double angle_rad);
@@ -27,4 +27,4 @@ namespace alpenglow {
 /// @param pixel_rad  angle between neighbouring pixels in the middle, > 0.
 [[nodiscard]] Image WithGlareOfEye(Image image, double pixel_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

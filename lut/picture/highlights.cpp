@@ -7,7 +7,7 @@
 
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 Image WithHighlightsRolledOff(Image image, double ev100) {
   const auto grey = static_cast<float>(kMeterConstant / 100.0 * std::exp2(ev100));
@@ -22,4 +22,4 @@ Image WithHighlightsRolledOff(Image image, double ev100) {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,9 +11,9 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// @param ev100  the exposure that prints 12.5 / 100 2^ev100 cd/m^2 as middle grey.
 [[nodiscard]] Image WithHighlightsRolledOff(Image image, double ev100);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

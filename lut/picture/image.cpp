@@ -8,8 +8,9 @@
 #include <string_view>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 std::string FaultAt(const Image& image, std::size_t pixel, std::string_view of, float value) {
@@ -49,4 +50,4 @@ std::optional<std::string> FaultyValue(const Image& image) {
   return std::nullopt;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Pixels along one side of a picture, at most.
 inline constexpr int kLargestImageSide = 32768;
@@ -116,4 +116,4 @@ void WritePng(const std::filesystem::path& file, const DisplayImage& image,
 /// The text chunks before the pixels. Throws InputError.
 [[nodiscard]] Metadata ReadPngMetadata(const std::filesystem::path& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -22,7 +22,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The rule in words, for the files that it was used for.
 [[nodiscard]] std::string MeterRule();
@@ -32,4 +32,4 @@ namespace alpenglow {
 [[nodiscard]] std::array<double, 3> MeteredColour(const Image& image, double ignore_above_cd_per_m2,
                                                   Projection projection = Projection::kCamera);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

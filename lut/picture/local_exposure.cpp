@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // log2 luminance; pixels without light have the darkest of the others, so that the base is smooth.
@@ -181,4 +181,4 @@ Image LocallyExposed(const Image& image, double ev100, const LocalExposureOption
   return exposed;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

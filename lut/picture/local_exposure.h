@@ -11,7 +11,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct LocalExposureOptions {
   double base_range_stops = 5.0;  // what the base's range is compressed to; never stretched
@@ -24,4 +24,4 @@ struct LocalExposureOptions {
 [[nodiscard]] Image LocallyExposed(const Image& image, double ev100,
                                    const LocalExposureOptions& options = {});
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

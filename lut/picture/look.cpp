@@ -14,7 +14,7 @@
 #include "lut/picture/picture_text.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 Look LookFromName(const std::string& name) {
   if (name == "local") return {.curve = ToneCurve::kAgx, .local_exposure = true};
@@ -149,4 +149,4 @@ double IncidentEv100(double illuminance_lux) {
                     kBrightestEv100);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

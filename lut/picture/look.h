@@ -9,7 +9,7 @@
 #include "lut/picture/image.h"
 #include "lut/picture/white_balance.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct Look {
   ToneCurve curve = ToneCurve::kAgx;
@@ -100,4 +100,4 @@ struct ExposureRule {
 /// @param illuminance_lux  on a horizontal plane, >= 0. Within [kDarkestEv100, kBrightestEv100].
 [[nodiscard]] double IncidentEv100(double illuminance_lux);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

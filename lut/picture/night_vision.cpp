@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kRodEfficiency = kLuminousEfficacy_lm_per_W / kScotopicEfficacy_lm_per_W;
@@ -79,4 +79,4 @@ Image SeenByNight(Image image) {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

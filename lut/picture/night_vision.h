@@ -17,7 +17,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The layer of scotopic luminance [scotopic cd/m^2] that a picture for the night needs.
 inline constexpr const char* kScotopicChannel = "scotopic.Y";
@@ -37,4 +37,4 @@ struct MesopicLight {
 /// picture. Throws InputError for one without kScotopicChannel.
 [[nodiscard]] Image SeenByNight(Image image);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 template <typename Real>
 struct Oklab {
@@ -42,4 +42,4 @@ template <typename Real>
           Real(-0.0041960863) * l - Real(0.7034186147) * m + Real(1.7076147010) * s};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

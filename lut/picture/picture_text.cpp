@@ -6,8 +6,9 @@
 #include <charconv>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 /// Calls `refuse` unless the whole text is a number.
@@ -72,4 +73,4 @@ std::string NameOf(ToneCurve curve) {
   throw InternalError("unknown tone curve");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct ImageSize {
   int width = 1280;
@@ -24,4 +24,4 @@ struct ImageSize {
 [[nodiscard]] ToneCurve ToneCurveFromName(const std::string& name);
 [[nodiscard]] std::string NameOf(ToneCurve curve);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -12,10 +12,11 @@
 #include <memory>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/picture/image.h"
 #include "lut/program/atomic_file.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -184,4 +185,4 @@ Metadata ReadPngMetadata(const fs::path& file) {
   return metadata;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,8 +8,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 std::string NameOf(StokesLayer layer) {
   switch (layer) {
@@ -44,4 +45,4 @@ std::array<float, 2> DegreeAndAngle(double luminance, double q, double u) {
           static_cast<float>(0.5 * std::atan2(u, q) / kRadiansPerDegree)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class StokesLayer {
   kQ,             // stokes_q.R, .G, .B: linear sRGB [cd/m^2], of either sign
@@ -31,4 +31,4 @@ inline constexpr std::array<StokesLayer, 3> kStokesLayers{StokesLayer::kQ, Stoke
 /// @param luminance, q, u  in one unit.
 [[nodiscard]] std::array<float, 2> DegreeAndAngle(double luminance, double q, double u);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/dialect/shared_math.h"
+#include "lut/layer.h"
 #include "lut/picture/agx_look.h"
 #include "lut/picture/image.h"
 #include "lut/picture/oklab.h"
@@ -19,7 +20,7 @@ namespace alpenglow::shared {
 // clang-format on
 }  // namespace alpenglow::shared
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 template <typename Real>
 using Rgb = std::array<Real, 3>;
@@ -209,4 +210,4 @@ template <typename Real>
   return AgxLight(printed, look);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -12,7 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/light_meter.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -171,4 +171,4 @@ Image Balanced(Image image, const WhiteBalance& white) {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -22,9 +22,10 @@
 #include <string>
 
 #include "atmosphere/colour/spectrum.h"
+#include "lut/layer.h"
 #include "lut/picture/image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct WhiteBalance {
   enum class Kind { kDaylight, kAuto, kKelvin, kCamera };
@@ -70,4 +71,4 @@ inline constexpr double kCoolestWhite_k = 25000.0;
 /// The picture, balanced; its layers are as they were. Of daylight the same picture.
 [[nodiscard]] Image Balanced(Image image, const WhiteBalance& white);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -17,9 +17,10 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/program/descriptor.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +184,4 @@ std::size_t RemoveAbandonedTemporaries(const fs::path& folder) {
   return removed;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

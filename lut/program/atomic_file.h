@@ -7,7 +7,7 @@
 #include <functional>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Writes a file whole or not at all: `write` gets the name of an empty temporary in the target's
 /// folder (mode from the umask, a name that no other process uses), which is flushed to the disk
@@ -35,4 +35,4 @@ void RequireWritable(const std::filesystem::path& target);
 /// they are done. File systems without locks keep theirs. Returns how many were removed.
 std::size_t RemoveAbandonedTemporaries(const std::filesystem::path& folder);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -9,8 +9,9 @@
 #include <system_error>
 
 #include "atmosphere/text/toml_table.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 /// A single letter stands for the options that begin with it.
@@ -51,4 +52,4 @@ std::string FaultOfUnknownOption(const std::string& option, const std::vector<st
   return fmt::format("unknown option {}; did you mean --{}?", typed, fmt::join(like, " or --"));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Describes the fault of a word that stands where a command or the name of a file may: it is
 /// neither, but nearly a command, or one that other programs have as a command ("help"). Empty for
@@ -18,4 +18,4 @@ namespace alpenglow {
 [[nodiscard]] std::string FaultOfUnknownOption(const std::string& option,
                                                const std::vector<std::string>& known);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

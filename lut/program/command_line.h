@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/program/command_hints.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct CommonOptions {
   int threads = 0;
@@ -109,4 +110,4 @@ inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv)
   return 2;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,8 +7,9 @@
 #include <charconv>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Longer lines are not cases: a binary file, say, whose first line could be all of it.
@@ -146,4 +147,4 @@ double CsvReader::Number(std::size_t column, double low, double high) const {
   return value;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

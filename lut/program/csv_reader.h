@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Where a file names a column in its header; nothing is said about the rest. Throws InputError
 /// for a file that cannot be read or is empty.
@@ -73,4 +73,4 @@ class CsvReader {
   std::vector<std::size_t> position_;     // of each column in the file; columns_.size(): none
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// A descriptor that is closed whatever happens; a negative number is none.
 class Descriptor {
@@ -28,4 +28,4 @@ class Descriptor {
   int number_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,9 +11,10 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/program/atomic_file.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -100,4 +101,4 @@ void GrowingFile::Finish() {
   if (error) Fail(fmt::format("cannot be renamed to {}: {}", target_.string(), error.message()));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -12,7 +12,7 @@
 
 #include "lut/program/descriptor.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Appended to and finished by one thread; another one may Sync.
 class GrowingFile {
@@ -52,4 +52,4 @@ class GrowingFile {
   long long bytes_ = 0;  // of whole lines
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 std::string JsonString(std::string_view text) {
   std::string quoted = "\"";
@@ -18,4 +18,4 @@ std::string JsonString(std::string_view text) {
   return quoted + '"';
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

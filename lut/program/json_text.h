@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// In quotes; quotes, backslashes and control characters are escaped.
 [[nodiscard]] std::string JsonString(std::string_view text);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

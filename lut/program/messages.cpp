@@ -11,8 +11,9 @@
 #include <system_error>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Of standard output: the first fault's number, 0 for none.
@@ -54,4 +55,4 @@ void OccupyStandardDescriptors() noexcept {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

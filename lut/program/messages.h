@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Writes to standard error, as it stands; a line ends with its own line end.
 void Say(std::string_view text) noexcept;
@@ -21,4 +21,4 @@ void FlushStandardOutput();
 /// next file that is opened would get its number, and messages would go into that file.
 void OccupyStandardDescriptors() noexcept;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -9,8 +9,9 @@
 
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/file_extension.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,4 +47,4 @@ std::string FaultOfFolderName(std::string_view name) {
   return fmt::format("\"{}\" is no name of a folder, which files are written into", name);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// A file and what the user calls it: "--cases", "terrain.colour".
 struct NamedFile {
@@ -27,4 +27,4 @@ void RequireNoInput(const NamedFile& output, const std::vector<NamedFile>& input
 /// or a table file is no folder's, "-" is no folder's.
 [[nodiscard]] std::string FaultOfFolderName(std::string_view name);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

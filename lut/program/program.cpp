@@ -14,9 +14,10 @@
 
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/version.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // What a signal handler may touch: a lock-free atomic.
@@ -124,4 +125,4 @@ ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>()) {
 
 ThreadLimit::~ThreadLimit() = default;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 #include "lut/program/messages.h"
 #include "lut/program/progress.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Runs `body` and maps failures to exit statuses, one line on standard error each: OptionError 2,
 /// InputError 3, OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else
@@ -46,4 +46,4 @@ class ThreadLimit {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -12,10 +12,11 @@
 #include <set>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/program/json_text.h"
 #include "lut/program/messages.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -195,4 +196,4 @@ void Progress::Part(double share) {
   state_->SetPart(share);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class ProgressStyle { kAuto, kPlain, kJson, kQuiet };
 
@@ -53,4 +53,4 @@ void Prepare(Progress* progress, std::string_view step);
 /// "45s", "3m20s", "2h05m": a duration as people read it. @param seconds not negative.
 [[nodiscard]] std::string DurationText(double seconds);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -19,7 +19,7 @@
 #include "lut/report/report_measure.h"
 #include "lut/version.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 /// Value of the first line of /proc/cpuinfo with this key; "unknown" where there is none.
@@ -140,4 +140,4 @@ Report MeasureReport(const ReportOptions& options) {
   return MeasureTopics(Words(), options.quick, options.progress, topics);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -21,10 +21,11 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "lut/layer.h"
 #include "lut/program/progress.h"
 #include "lut/report/svg_plot.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// A range of the sun's elevation [degrees].
 struct SunRange {
@@ -178,4 +179,4 @@ using MeasureTopic = std::function<ReportTopic()>;
 /// SVG a plot. Every file is written whole or not at all, index.html last. Throws OutputError.
 void WriteReport(const Report& report, const std::filesystem::path& folder);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

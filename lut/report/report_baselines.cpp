@@ -15,7 +15,7 @@
 #include "lut/eval/eval.h"
 #include "lut/table/table_size.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
@@ -240,4 +240,4 @@ Bands<float> IsotropicTable::InscatterAlong(const RaySamples<float>& samples) co
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

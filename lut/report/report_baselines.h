@@ -12,8 +12,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Rules that march along a ray in steps.
 enum class MarchRule {
@@ -83,4 +84,4 @@ class IsotropicTable {
   std::vector<float> texels_;  // [(altitude * side + sun) * bands + band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

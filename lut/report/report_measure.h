@@ -16,7 +16,7 @@
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_rays.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// How much care a report takes.
 struct ReportEffort {
@@ -163,4 +163,4 @@ class TopicWork {
 [[nodiscard]] ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 #include "lut/report/report_measure.h"
 #include "lut/store/table_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Lines of the plot.
@@ -225,4 +225,4 @@ ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort) {
   return std::move(topic).Finished(WordsOfAllOrders());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

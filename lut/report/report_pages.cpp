@@ -12,7 +12,7 @@
 #include "lut/program/atomic_file.h"
 #include "lut/report/report.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -484,4 +484,4 @@ void WriteReport(const Report& report, const fs::path& folder) {
   WriteTextAtomically(folder / "index.html", PageOf(report));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -14,7 +14,7 @@
 #include "lut/sky/panorama.h"
 #include "lut/sky/sky_view.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Lines of the plot.
@@ -355,4 +355,4 @@ ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
        .cost = CostAxis::kTimeOfAnswer});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

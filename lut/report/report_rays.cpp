@@ -15,7 +15,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 /// Calls use(ray, band, scale) for every ray and wavelength; errors are divided by the scale.
@@ -275,4 +275,4 @@ ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise) {
   return result;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

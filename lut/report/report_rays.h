@@ -33,7 +33,7 @@
 #include "atmosphere/ray/ray.h"
 #include "lut/report/report.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Part of the zenith's radiance below which errors are relative to that part.
 inline constexpr double kDarkestPart = 0.01;
@@ -105,4 +105,4 @@ using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 /// Rms of the judge's standard errors over rays and wavelengths, as StatisticsOf counts errors.
 [[nodiscard]] double NoiseOf(const std::vector<JudgedRay>& rays, ErrorKind kind);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

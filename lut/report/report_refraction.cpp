@@ -13,7 +13,7 @@
 #include "atmosphere/ray/bent_view.h"
 #include "lut/report/report_measure.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Lines of the plot.
@@ -183,4 +183,4 @@ ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort) 
   return std::move(topic).Finished();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,7 +8,7 @@
 #include "lut/store/table_folder.h"
 #include "lut/table/scattering_table.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Lines of the plot.
@@ -120,4 +120,4 @@ ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& ef
        .cost = CostAxis::kTimeOfAnswer});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

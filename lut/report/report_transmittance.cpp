@@ -10,7 +10,7 @@
 #include "lut/report/report_measure.h"
 #include "lut/table/transmittance_table.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Lines of the plot.
@@ -156,4 +156,4 @@ ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effor
        .cost = CostAxis::kTimeOfAnswer});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -9,8 +9,9 @@
 #include <limits>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kWidth = 1080.0;
@@ -454,4 +455,4 @@ std::string SvgOfPlot(const Plot& plot) {
   return text + "</svg>\n";
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

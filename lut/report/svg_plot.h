@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct PlotPoint {
   double x = 0.0, y = 0.0;  // > 0
@@ -63,4 +63,4 @@ struct Plot {
 /// The plot as one <svg> element, 1080 wide. Points that are not positive and finite are left out.
 [[nodiscard]] std::string SvgOfPlot(const Plot& plot);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

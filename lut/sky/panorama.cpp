@@ -16,7 +16,7 @@
 #include "lut/program/program.h"
 #include "lut/sky/polarised_row.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::array<std::pair<PanoramaOrientation, const char*>, 6> kNames{{
@@ -307,4 +307,4 @@ double HorizontalIlluminance(const AirIntegrator<float>& air, const DiffuseLight
   return BandColour(medium.wavelengths_nm).Xyz(light)[1];
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

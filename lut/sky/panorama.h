@@ -27,7 +27,7 @@
 #include "lut/picture/stokes_layer.h"
 #include "lut/sky/sky_view.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class PanoramaOrientation { kNorth, kBlender, kOpenExr, kThree, kUnity, kGodot };
 /// "north" (or "geographic"), "blender", "openexr", "three", "unity", "godot"; throws InputError
@@ -81,4 +81,4 @@ struct PanoramaSettings {
                                            const DiffuseLight& diffuse, double altitude_m,
                                            const PanoramaSun& sun);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

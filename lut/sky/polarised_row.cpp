@@ -8,7 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr int kSteps = 48;  // over half a turn
@@ -65,4 +65,4 @@ PolarisedLight PolarisedRow::At(double azimuth_rad) const {
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/diffuse/polarised_light.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Of light between an observer and the end of a view, all orders, per unit solar irradiance
 /// [1/sr]; the ground's is not polarised. U is positive from the lower left to the upper right, on
@@ -31,4 +31,4 @@ class PolarisedRow {
   std::vector<PolarisedLight> nodes_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

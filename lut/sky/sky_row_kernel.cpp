@@ -3,7 +3,7 @@
 
 #include "atmosphere/ray/batch.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::size_t kAtOnce = 64;
@@ -91,10 +91,9 @@ void Blend(const SkyBlendWork& work) {
 
 }  // namespace
 
-template <>
-const SkyRowKernel& KernelOf<SkyRowKernel, kThisSet>() {
+const SkyRowKernel& KernelOf(KernelName<SkyRowKernel, kThisSet> /*name*/) {
   static constexpr SkyRowKernel kernel{Fill, Blend};
   return kernel;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

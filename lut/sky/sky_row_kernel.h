@@ -6,8 +6,9 @@
 #include <cstdint>
 
 #include "atmosphere/dialect/instruction_set.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Coefficients of one node: R, M and D of four bands.
 inline constexpr std::size_t kSkyNodeFloats = 12;
@@ -42,4 +43,4 @@ struct SkyRowKernel {
 
 ALPENGLOW_DECLARE_KERNEL(SkyRowKernel);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

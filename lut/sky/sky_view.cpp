@@ -16,7 +16,7 @@
 #include "lut/sky/sky_row_kernel.h"
 #include "lut/table/cubic_taps.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::size_t kViewLanes = 4;
@@ -471,4 +471,4 @@ Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) cons
   return radiance;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -27,7 +27,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/sky/sky_view_map.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct SkyViewSize {
   int sky_rows = 40;     // from the horizon to the zenith or the air's upper edge, >= 5
@@ -124,4 +124,4 @@ class SkyView {
 /// horizon.
 [[nodiscard]] float GlowColumn_km(const AirIntegrator<float>& air, double altitude_m, double mu_s);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

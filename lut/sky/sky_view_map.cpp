@@ -6,7 +6,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Angle by which the horizontal is above the line that touches a sphere of radius r - depth.
@@ -115,4 +115,4 @@ double SkyViewMap::Azimuth(double x) const {
   return 0.5 * (low + high);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

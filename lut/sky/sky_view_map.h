@@ -23,8 +23,9 @@
 #pragma once
 
 #include "atmosphere/air/medium.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Where columns crowd: strength A, azimuth p_t and width w [rad].
 struct AzimuthCrowd {
@@ -69,4 +70,4 @@ class SkyViewMap {
   double half_turn_integral_ = 0.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -20,7 +20,7 @@
 #include "lut/store/table_image.h"
 #include "lut/table/transmittance_table.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -443,4 +443,4 @@ std::string DescriptionText(const fs::path& folder, const ExchangeDescription& d
   return text + "  every texel is finite and in its range\n";
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

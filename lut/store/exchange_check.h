@@ -11,7 +11,7 @@
 #include "atmosphere/air/medium.h"
 #include "lut/store/exchange_tables.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The folder of a set that this is, or is a texture of; nothing when it is neither. A set is known
 /// by its scattering.exr, .bin or .dat, none of which is a native table.
@@ -53,4 +53,4 @@ struct ExchangeDescription {
 [[nodiscard]] std::string DescriptionText(const std::filesystem::path& folder,
                                           const ExchangeDescription& description);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -20,7 +20,7 @@
 #include "lut/store/table_folder.h"
 #include "lut/table/transmittance_table.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -337,4 +337,4 @@ void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Med
   WriteTextAtomically(folder / kMediumFileName, MediumText(medium, options));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

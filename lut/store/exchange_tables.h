@@ -40,7 +40,7 @@
 #include "lut/store/table_image.h"
 #include "lut/table/scattering_table.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Beside the tables: the medium that they were made for.
 inline constexpr const char* kMediumFileName = "atmosphere.toml";
@@ -123,4 +123,4 @@ struct ExchangeTexture {
 void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Medium& medium,
                          const ExchangeOptions& options, const std::filesystem::path& folder);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -15,7 +15,7 @@
 #include "lut/program/program.h"
 #include "lut/store/table_image.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -476,4 +476,4 @@ std::string DescriptionText(const fs::path& file, const TableDescription& descri
                             description.highest);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

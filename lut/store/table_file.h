@@ -31,7 +31,7 @@
 #include "lut/table/scattering_table.h"
 #include "lut/table/transmittance_table.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Versions of the maps of transmittance_map.glsl and scattering_map.glsl, and of the nodes of
 /// DiffuseLight: a table of another is refused.
@@ -96,4 +96,4 @@ struct TableDescription {
 [[nodiscard]] std::string DescriptionText(const std::filesystem::path& file,
                                           const TableDescription& description);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

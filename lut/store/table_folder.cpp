@@ -7,7 +7,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 namespace fs = std::filesystem;
 
@@ -114,4 +114,4 @@ std::string DescribeTables(const fs::path& file_or_folder) {
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

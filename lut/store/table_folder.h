@@ -11,7 +11,7 @@
 #include "lut/program/progress.h"
 #include "lut/store/table_file.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// How fine the tables are. Sizes and build times: skylut build --help.
 struct TableQuality {
@@ -53,4 +53,4 @@ struct TableFolder {
 /// DescriptionText of a table, or of every table in a folder. Throws InputError when there is none.
 [[nodiscard]] std::string DescribeTables(const std::filesystem::path& file_or_folder);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

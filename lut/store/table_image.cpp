@@ -25,7 +25,7 @@
 #include "lut/program/atomic_file.h"
 #include "lut/table/table_size.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -233,4 +233,4 @@ std::vector<float> TableImageReader::Values(const std::vector<std::string>& chan
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

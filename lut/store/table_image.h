@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 using TextAttributes = std::map<std::string, std::string>;
 
@@ -63,4 +63,4 @@ class TableImageReader {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 TableLookup::TableLookup(TableFolder tables) : tables_(std::move(tables)), air_(tables_.medium) {
   const auto require_medium = [this](const auto& table) {
@@ -96,4 +96,4 @@ Bands<float> TableLookup::SkyIrradiance(double altitude_m, double mu_s) const {
   return diffuse().SkyIrradiance(altitude_m, mu_s);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 
 #include "lut/store/table_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Safe from many threads.
 class TableLookup {
@@ -47,4 +47,4 @@ class TableLookup {
   AirIntegrator<float> air_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

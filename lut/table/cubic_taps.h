@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "atmosphere/dialect/shared_math.h"
+#include "lut/layer.h"
 
 namespace alpenglow::shared {
 // clang-format off
@@ -16,7 +17,7 @@ namespace alpenglow::shared {
 // clang-format on
 }  // namespace alpenglow::shared
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// The neighbours of a position; at the ends of the grid the missing neighbour continues the parabola
 /// through the last three (BeyondEnd), and has weight 0 here.
@@ -58,4 +59,4 @@ struct CubicTaps {
   return taps;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

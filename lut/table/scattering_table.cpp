@@ -16,7 +16,7 @@
 #include "lut/table/sun_axis.h"
 #include "lut/table/table_size.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // Of the texels: errors of the integral stay far below those of the interpolation.
@@ -299,4 +299,4 @@ ScatteredOnce<float> ScatteringTable::LookupSegment(const ViewRay& ray,
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -29,7 +29,7 @@
 #include "lut/program/progress.h"
 #include "lut/table/table_size.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct ScatteringTableSize {
   std::size_t nu = 8;          // >= 2
@@ -138,4 +138,4 @@ class ScatteringTable {
   std::vector<float> texels_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

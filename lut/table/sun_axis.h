@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 class SunAxis {
  public:
@@ -36,4 +36,4 @@ class SunAxis {
   double centre_, width_, low_, high_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,7 +8,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 std::uint64_t RequireTableSize(std::string_view table, const std::vector<TableAxis>& axes,
                                std::size_t values_per_texel, const Medium& medium) {
@@ -37,4 +37,4 @@ std::uint64_t RequireTableSize(std::string_view table, const std::vector<TableAx
   return static_cast<std::uint64_t>(bytes);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

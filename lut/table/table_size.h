@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// A table above this is refused: 4 GiB.
 inline constexpr std::uint64_t kLargestTable_bytes = std::uint64_t{1} << 32U;
@@ -50,4 +51,4 @@ struct AxisPosition {
   [[nodiscard]] float Weight(std::size_t up) const { return up == 1 ? fraction : 1.0F - fraction; }
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

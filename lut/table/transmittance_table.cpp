@@ -13,7 +13,7 @@
 #include "lut/table/table_size.h"
 #include "lut/table/transmittance_map.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 std::size_t RequireSize(const Medium& medium, const TransmittanceTableSize& size) {
@@ -134,4 +134,4 @@ Bands<float> TransmittanceTable::LookupAlong(const ViewRay& ray) const {
   return result;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -15,8 +15,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 struct TransmittanceTableSize {
   std::size_t mu = 256;        // >= 2
@@ -70,4 +71,4 @@ class TransmittanceTable {
   std::vector<float> texels_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 #include "atmosphere/number/cholesky.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using TrainedTriple = std::array<double, 3>;
@@ -309,4 +309,4 @@ std::vector<double> BandTrainer::Search(int bands, int step_nm) const {
   return wavelengths_nm;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

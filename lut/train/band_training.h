@@ -22,7 +22,7 @@
 
 #include "lut/train/sky_spectra.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Colour relative to the sun's from light relative to the sun. Rows sum to 1.
 struct BandShares {
@@ -83,4 +83,4 @@ class BandTrainer {
   double exact_ = 0.0;              // the exact rows times that
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -11,7 +11,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::size_t kFineCount = 80;
@@ -235,4 +235,4 @@ std::vector<SkySpectrum> DrawSkySpectra(const SkyDrawing& drawing) {
   return spectra;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

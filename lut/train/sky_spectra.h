@@ -15,7 +15,7 @@
 #include "atmosphere/air/medium.h"
 #include "lut/diffuse/multiple_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// 380, 385 ... 775 nm: the reference for colour. Every 10 nm is not enough: the table of ozone has
 /// its corners between, and a broken line through 40 bands misses by a CIEDE2000 of 0.08.
@@ -92,4 +92,4 @@ class SkySimulator {
 /// natural night sky (1e-9 of the sun's irradiance) are left out.
 [[nodiscard]] std::vector<SkySpectrum> DrawSkySpectra(const SkyDrawing& drawing);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

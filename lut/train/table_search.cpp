@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -306,4 +306,4 @@ void WriteTables(const TableChoice& choice, const fs::path& folder) {
               .single_scattering = tables.single_scattering.has_value()});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

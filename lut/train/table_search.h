@@ -17,7 +17,7 @@
 
 #include "lut/train/table_views.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class TablesWanted { kSmallest, kAll };
 
@@ -58,4 +58,4 @@ struct TableChoice {
 /// build left of those that are not there. Throws OutputError.
 void WriteTables(const TableChoice& choice, const std::filesystem::path& folder);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

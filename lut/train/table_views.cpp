@@ -13,7 +13,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr DiffuseLightOptions kFinest{.altitudes = 40,
@@ -213,4 +213,4 @@ JudgedViews::PathCheck JudgedViews::HeldAgainstPaths(const Medium& medium, ViewK
   return {RmsOf(errors), RmsOf(noises)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -19,7 +19,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/store/table_lookup.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 enum class ViewKind { kSky, kAerialPerspective, kTwilight, kIrradiance };
 inline constexpr std::array kViewKinds{ViewKind::kSky, ViewKind::kAerialPerspective,
@@ -72,4 +72,4 @@ class JudgedViews {
   std::vector<JudgedView> views_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

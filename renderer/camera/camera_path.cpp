@@ -14,7 +14,7 @@
 #include "lut/program/csv_reader.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 enum Column : std::size_t {
@@ -252,4 +252,4 @@ std::string TextOf(const CameraPath& path) {
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -34,8 +34,9 @@
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Where a camera is and looks. Angles as in Camera.
 struct CameraPose {
@@ -104,4 +105,4 @@ class CameraPath {
 [[nodiscard]] std::string HeaderOfCameraPath(bool has_utc);
 [[nodiscard]] std::string LineOf(const CameraPathPoint& point);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

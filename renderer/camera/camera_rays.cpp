@@ -8,7 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 CameraRays::CameraRays(const Camera& camera, int width, int height, const CameraStand& stand)
     : width_(width),
@@ -135,4 +135,4 @@ CameraRays Between(const CameraRays& from, const CameraRays& to, double share) {
   return between;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -27,7 +27,7 @@
 #include "renderer/camera/iris.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct CameraRay {
   glm::dvec3 eye{0.0};        // middle of the lens
@@ -121,4 +121,4 @@ class CameraRays {
   std::optional<double> polariser_rad_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

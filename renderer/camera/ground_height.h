@@ -5,10 +5,11 @@
 #include <functional>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Height of the ground [m] over the ellipsoid, under a place.
 using GroundHeight = std::function<double(const GeodeticPosition&)>;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 glm::dvec2 OnCircle(double angle) { return {std::cos(angle), std::sin(angle)}; }
@@ -38,4 +39,4 @@ double Iris::EdgeTowards(const glm::dvec2& direction) const {
   return std::cos(half) / std::cos(std::remainder(turn, 2.0 * half));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

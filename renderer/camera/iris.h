@@ -5,7 +5,7 @@
 #include <array>
 #include <glm/vec2.hpp>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A disk of radius 1, or a regular polygon inscribed in it.
 class Iris {
@@ -28,4 +28,4 @@ class Iris {
   double area_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 MovingCamera::MovingCamera(std::vector<CameraRays> steps) : steps_(std::move(steps)) {
   ALPENGLOW_ENSURE(steps_.size(), >=, std::size_t{1});
@@ -18,4 +18,4 @@ CameraRay MovingCamera::Ray(double x, double y, std::array<double, 2> lens, doub
   return Between(steps_[i], steps_[i + 1], at - static_cast<double>(i)).Ray(x, y, lens);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,7 +6,7 @@
 
 #include "renderer/camera/camera_rays.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 class MovingCamera {
  public:
@@ -27,4 +27,4 @@ class MovingCamera {
   std::vector<CameraRays> steps_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

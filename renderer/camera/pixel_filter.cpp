@@ -9,8 +9,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kGaussianRadius = 1.5;
@@ -105,4 +106,4 @@ std::string NameOf(PixelFilter::Kind kind) {
   return PixelFilterNames()[static_cast<std::size_t>(kind)];
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

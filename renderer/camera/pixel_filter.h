@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 class PixelFilter {
  public:
@@ -53,4 +53,4 @@ class PixelFilter {
 [[nodiscard]] std::string NameOf(PixelFilter::Kind kind);
 [[nodiscard]] const std::vector<std::string>& PixelFilterNames();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

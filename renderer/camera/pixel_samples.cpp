@@ -4,8 +4,9 @@
 #include <bit>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// The finaliser of MurmurHash3 (Appleby): every bit of the result depends on every bit.
@@ -77,4 +78,4 @@ std::array<double, 2> PixelSamples::Point(int sample, SampleOf decision) const {
           InUnit(Mirrored(ScrambledUpwards(MirroredSobolSecond(index), Mixed(seed + 2U))))};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

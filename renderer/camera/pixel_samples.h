@@ -16,7 +16,7 @@
 #include <array>
 #include <cstdint>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a pair of numbers decides.
 enum class SampleOf : std::uint32_t { kPixel, kLens, kSunDisk, kTime };
@@ -39,4 +39,4 @@ class PixelSamples {
   std::uint32_t first_;  // index of the pixel's first point
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/camera/way_length.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Of the chord that the camera looks along.
@@ -251,4 +251,4 @@ CameraPath PathAlong(const Track& track, const TrackStyle& style, const GroundHe
   return CameraPath(std::move(points));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "renderer/camera/ground_height.h"
 #include "renderer/camera/track_file.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct TrackStyle {
   double speed_m_per_s = 60.0;   // of a track without times
@@ -29,4 +29,4 @@ struct TrackStyle {
 [[nodiscard]] CameraPath PathAlong(const Track& track, const TrackStyle& style,
                                    const GroundHeight& ground);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "atmosphere/text/toml_table.h"
 #include "renderer/camera/track_record.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using tinyxml2::XMLElement;
@@ -316,4 +316,4 @@ Track ReadTrack(const std::filesystem::path& file) {
   return track;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

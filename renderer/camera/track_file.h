@@ -14,8 +14,9 @@
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct TrackPoint {
   GeodeticPosition place;  // its height is 0 where there is none
@@ -42,4 +43,4 @@ struct Track {
 /// cannot be read or is over 16 MiB.
 [[nodiscard]] Track ReadTrack(const std::filesystem::path& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

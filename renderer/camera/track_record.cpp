@@ -9,7 +9,7 @@
 
 #include "renderer/camera/way_length.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A point with its place, and the segment that it is of.
@@ -297,4 +297,4 @@ Track TrackOf(const std::vector<RecordedSegment>& segments, TrackHeights heights
   return track;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

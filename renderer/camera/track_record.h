@@ -12,7 +12,7 @@
 
 #include "renderer/camera/track_file.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct RecordedPoint {
   std::optional<GeodeticPosition> place;  // its height is 0; nothing: the fix was lost
@@ -40,4 +40,4 @@ using RecordedSegment = std::vector<RecordedPoint>;
 /// The note of the track counts all this in one line.
 [[nodiscard]] Track TrackOf(const std::vector<RecordedSegment>& segments, TrackHeights heights);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,8 +5,9 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Places that are closer are the same place: a receiver does not tell them apart.
 inline constexpr double kSamePlace_m = 0.5;
@@ -16,4 +17,4 @@ inline constexpr double kSamePlace_m = 0.5;
   return glm::length((EcefFromGeodetic(kWgs84, a) - EcefFromGeodetic(kWgs84, b)).xyz);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kPercentileFactor = 4.0;  // the 99th percentile may be so many times the budget
@@ -304,4 +304,4 @@ std::string ExplainText(const EffectChoice& choice) {
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

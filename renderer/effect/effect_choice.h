@@ -33,7 +33,7 @@
 #include "renderer/effect/effects.h"
 #include "renderer/effect/picture_change.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct PixelPlace {
   int x, y;
@@ -140,4 +140,4 @@ struct EffectChoice {
 /// What a file says of the choice: what is left out, and by how much that changes the picture.
 [[nodiscard]] Metadata NotesOn(const EffectChoice& choice);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,8 +9,9 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 #include "lut/program/program.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::array<EffectText, kEffects> kTexts{{
@@ -123,4 +124,4 @@ std::string NameOf(EffectSet effects) {
   return off.empty() ? "all" : "all," + Joined(off, "-");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// One line here and one in the table of effects.cpp make a new effect.
 enum class Effect : std::size_t {
@@ -109,4 +109,4 @@ class EffectSet {
 /// "all" or "all,-shafts,-ozone"; read back by EffectsFromText.
 [[nodiscard]] std::string NameOf(EffectSet effects);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,7 +6,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 double Norm(const std::array<float, 3>& rgb) {
@@ -63,4 +63,4 @@ ChangeEstimate ChangeEstimate::Of(std::vector<double> changes) {
            Quantile(changes, 0.99 + kStandardErrors * rank_error)}};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

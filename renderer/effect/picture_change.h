@@ -17,8 +17,9 @@
 #include <vector>
 
 #include "lut/picture/image.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct PictureChange {
   double rms = 0.0;            // root mean square of d
@@ -43,4 +44,4 @@ struct ChangeEstimate {
   [[nodiscard]] static ChangeEstimate Of(std::vector<double> changes);
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

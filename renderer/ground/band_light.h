@@ -8,8 +8,9 @@
 #include <span>
 
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Light, or a factor of light, in each band of a picture.
 using BandLight = Bands<float>;
@@ -45,4 +46,4 @@ class InDouble {
   std::size_t count_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

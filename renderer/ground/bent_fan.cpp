@@ -11,7 +11,7 @@
 
 #include "renderer/ground/scene_geometry.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Where air bends a ten-thousandth of what it does at the ground rays are straight.
@@ -181,4 +181,4 @@ glm::dvec3 FanRay::At(double along_m) const {
   return straight - in_air_m * in_air_m * static_cast<double>(g) * across_;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

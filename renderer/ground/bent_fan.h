@@ -25,8 +25,9 @@
 #include <vector>
 
 #include "atmosphere/sun/bent_ray.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 class BentFan;
 
@@ -88,4 +89,4 @@ class BentFan {
   std::vector<float> g_per_m_;   // a row of kDistances + 1 an elevation
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

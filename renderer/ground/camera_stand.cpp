@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/ground/ground_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 std::string TextOf(const GeodeticPosition& place) {
@@ -88,4 +88,4 @@ MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
   return MovingCamera(std::move(steps));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

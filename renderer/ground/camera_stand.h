@@ -8,7 +8,7 @@
 #include "renderer/camera/moving_camera.h"
 #include "renderer/ground/scene_ground.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The scene's own eye.
 [[nodiscard]] CameraStand StandOfScene(const SceneGround& ground);
@@ -25,4 +25,4 @@ namespace alpenglow {
 [[nodiscard]] MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
                                     std::span<const CameraPose> poses, int width, int height);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -16,7 +16,7 @@
 #include "renderer/ground/land_cover.h"
 #include "renderer/terrain/elevation_raster.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
@@ -378,4 +378,4 @@ std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, do
   return std::array<double, 3>{seen[0] / seen[3], seen[1] / seen[3], seen[2] / seen[3]};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

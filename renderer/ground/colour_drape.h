@@ -23,7 +23,7 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Spectral albedo from a colour of a picture, quick: AlbedoFromLinearSrgb, but for colours too
 /// saturated for it, which are clamped band by band.
@@ -92,4 +92,4 @@ class ColourDrape {
   bool is_land_cover_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

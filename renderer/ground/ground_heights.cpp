@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kReach_m = 20000.0;  // over any mountain, under any trench
@@ -57,4 +57,4 @@ std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& f
   return place.height_m + surface->height_m;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,9 +7,10 @@
 #include <optional>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/terrain.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Heights of the lowest and of the highest surface on one vertical.
 struct GroundHeights {
@@ -45,4 +46,4 @@ struct SurfaceUnder {
 [[nodiscard]] std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
                                                    const GeodeticPosition& place);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

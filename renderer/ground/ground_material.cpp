@@ -7,7 +7,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/ground/ground_cover.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Kind = GroundCover::Kind;
@@ -117,4 +117,4 @@ GroundPatch GroundMaterial::OfPlanet(const GroundPoint& at, const BandLight& pla
   return {*this, cover_.kind, albedo_};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

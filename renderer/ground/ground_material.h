@@ -13,7 +13,7 @@
 #include "renderer/ground/surface.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 class GroundMaterial;
 
@@ -103,4 +103,4 @@ class GroundMaterial {
   Snow snow_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/ground/land_cover.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 std::optional<std::array<double, 3>> CoverOfClass(int number) {
   switch (number) {
@@ -33,4 +33,4 @@ std::optional<std::array<double, 3>> CoverOfClass(int number) {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

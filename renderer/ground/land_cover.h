@@ -6,11 +6,11 @@
 #include <array>
 #include <optional>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a class is made of, as ground_cover.glsl takes it: shares of wood, stone and lasting snow,
 /// or the corners for water and for nothing known. Built-up land is half stone: gardens are between
 /// the houses. Nothing for a number that is no class.
 [[nodiscard]] std::optional<std::array<double, 3>> CoverOfClass(int number);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kEarth_m = 6.371e6;
@@ -99,4 +99,4 @@ ModelInSight ReadModelInSight(const Scene& scene) {
   return loaded;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,10 +6,11 @@
 #include <string>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/scene/scene.h"
 #include "renderer/terrain/elevation.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The angle of the horizon below the horizontal, which is also its distance on the earth's curve
 /// [radians], on a sphere without air.
@@ -31,4 +32,4 @@ struct ModelInSight {
 /// where there is no valid sample in sight.
 [[nodiscard]] ModelInSight ReadModelInSight(const Scene& scene);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Under all ground: there is none of it.
@@ -181,4 +181,4 @@ MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_d
           std::clamp(latitude_rad / kTropic_rad, -1.0, 1.0)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

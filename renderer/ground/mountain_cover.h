@@ -25,8 +25,9 @@
 #pragma once
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Where the materials of a mountain give way to one another.
 struct MountainCover {
@@ -70,4 +71,4 @@ struct MountainClimate {
 
 [[nodiscard]] MountainCover CoverInSeason(const GeodeticPosition& place, int modified_julian_day);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

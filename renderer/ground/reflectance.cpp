@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/ground/reflectance_text.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Axes around a normal, the first towards the eye's foot point.
@@ -370,4 +370,4 @@ Bands<float> Snow::SphericalAlbedo() const {
   return sent;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,8 +14,9 @@
 #include <span>
 
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Cosines that the reflection of an isotropic surface depends on.
 struct ReflectionAngles {
@@ -191,4 +192,4 @@ class Snow {
   Bands<float> y_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 // |p - c| - R without cancelling.
 double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
@@ -172,4 +172,4 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   return {HitKind::kPlanet, extent.end_m, up, up, up, point, point, extent.end_m * pixel_angle_rad};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

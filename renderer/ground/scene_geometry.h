@@ -14,7 +14,7 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Distance of a point from the sphere with its centre at
 /// (0, 0, -R) [m], to the rounding of its coordinates.
@@ -90,4 +90,4 @@ class SceneGeometry {
   double bottom_m_;  // below which there is none
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

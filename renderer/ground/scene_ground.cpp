@@ -14,7 +14,7 @@
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/obj_file.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct LoadedMesh {
@@ -176,4 +176,4 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
           loaded.is_whole && under_eye.has_value()};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,10 +6,11 @@
 #include <string>
 
 #include "lut/program/progress.h"
+#include "renderer/layer.h"
 #include "renderer/scene/scene.h"
 #include "renderer/terrain/terrain.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct SceneGround {
   LocalFrame frame;                // ENU at the foot of the eye on the ellipsoid
@@ -30,4 +31,4 @@ struct SceneGround {
 /// @param progress  told what is prepared, if not null.
 [[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

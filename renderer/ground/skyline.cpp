@@ -8,8 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kQuarter = 0.5 * kPi;
@@ -95,4 +96,4 @@ bool Skyline::IsBelow(const glm::dvec3& direction, double around_rad) const {
   return true;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

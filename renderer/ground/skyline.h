@@ -12,7 +12,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Immutable, safe to share between threads.
 class Skyline {
@@ -44,4 +44,4 @@ class Skyline {
   double highest_rad_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

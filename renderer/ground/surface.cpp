@@ -13,7 +13,7 @@
 #include "renderer/ground/reflectance.h"
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 Bands<float> AlbedoBands(const std::array<double, 3>& rgb, std::span<const double> wavelengths_nm) {
@@ -220,4 +220,4 @@ WavySurface WavesAt(const GroundPoint& point, double slope_variance) {
   return waves;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

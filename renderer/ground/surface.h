@@ -14,7 +14,7 @@
 #include "atmosphere/sun/time.h"
 #include "renderer/ground/mountain_cover.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A point of the ground as its material sees it.
 struct GroundPoint {
@@ -105,4 +105,4 @@ class MountainSurface {
   Materials materials_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

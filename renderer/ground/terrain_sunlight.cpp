@@ -5,7 +5,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 TerrainSunlight::TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_sun,
                                  double sun_radius_rad) {
@@ -31,4 +31,4 @@ SunlitPath TerrainSunlight::Along(const glm::dvec3& origin, const glm::dvec3& un
   return length_m > 0.0 ? SunlitPath{{0.0, length_m}} : SunlitPath{};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

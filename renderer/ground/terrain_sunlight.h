@@ -9,7 +9,7 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "renderer/shadow/sun_probes.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// For one position of the sun. ShadowHeights over ground that is one surface, SunProbes over
 /// meshes with overhangs; unbroken light without terrain, and with the sun so low that the beams
@@ -33,4 +33,4 @@ class TerrainSunlight {
   std::variant<Unbroken, ShadowHeights, SunProbes> method_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Columns = std::vector<std::pair<double, std::size_t>>;  // angle [degrees], measured plane
@@ -158,4 +158,4 @@ LampTable TableOf(const MeasuredAngles& measured) {
   return measured.type == PhotometricType::kC ? TypeC(measured) : SampledInTypeC(measured);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -17,8 +17,9 @@
 #include <vector>
 
 #include "atmosphere/lamp/lamp.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 enum class PhotometricType { kC = 1, kB = 2, kA = 3 };
 
@@ -39,4 +40,4 @@ struct MeasuredAngles {
 /// are sampled at steps of half their smallest, from 0.25 to 2.5 degrees.
 [[nodiscard]] LampTable TableOf(const MeasuredAngles& measured);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

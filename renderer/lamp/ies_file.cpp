@@ -15,7 +15,7 @@
 #include "atmosphere/text/toml_table.h"
 #include "renderer/lamp/ies_angles.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::size_t kMostAngles = 4096;
@@ -257,4 +257,4 @@ IesLamp ReadIes(const std::filesystem::path& file) {
   return IesFromText(ReadTextFile(file), file.string());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,8 +15,9 @@
 #include <vector>
 
 #include "atmosphere/lamp/lamp.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The change of a lamp's intensity while the luminaire is tilted from the attitude in which it was
 /// measured.
@@ -44,4 +45,4 @@ struct IesLamp {
 /// As ReadIes, from text; `origin` stands in messages where the file's name would.
 [[nodiscard]] IesLamp IesFromText(std::string_view text, const std::string& origin);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kDistances = 16;
@@ -199,4 +199,4 @@ Bands<double> LampGlow::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
   return irradiance;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -19,8 +19,9 @@
 
 #include "atmosphere/lamp/airlight.h"
 #include "lut/diffuse/spherical_harmonics.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Of an isotropic lamp of intensity 1 at one altitude. Immutable.
 class LampGlow {
@@ -56,4 +57,4 @@ class LampGlow {
   std::vector<Light> lights_;  // [(distance * elevations + elevation) * bands + band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -18,7 +18,7 @@
 #include "renderer/lamp/placed_lamp.h"
 #include "renderer/lamp/tile_cut.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 struct LampLight::State {
   LampStage stage;
   LampEye eye;
@@ -244,4 +244,4 @@ bool LampLight::State::AllLit(const LampNodes& members, const LampRayEnd& ray) c
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

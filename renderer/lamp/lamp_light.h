@@ -29,7 +29,7 @@
 #include "renderer/lamp/lamp_plan.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A surface point that lamps may light.
 struct LitPoint {
@@ -101,4 +101,4 @@ class LampLight {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

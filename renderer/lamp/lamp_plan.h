@@ -9,8 +9,9 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/camera/camera_rays.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct LampSettings {
   int nodes = 12;  // of Airlight, see there
@@ -55,4 +56,4 @@ struct LampRayEnd {
 /// Where a ray of the camera ends [m]; infinite in the sky.
 using RayTrace = std::function<double(const CameraRay& ray)>;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

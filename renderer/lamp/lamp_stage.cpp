@@ -7,7 +7,7 @@
 
 #include "renderer/ground/scene_geometry.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 Bands<double> InDoubles(const std::vector<double>& values, double scale) {
@@ -128,4 +128,4 @@ Bands<float> LampStage::FogTransmittance(const glm::dvec3& from, const glm::dvec
   return left;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

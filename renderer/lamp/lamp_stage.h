@@ -13,7 +13,7 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Immutable, safe to share between threads. Refers to the ground.
 class LampStage {
@@ -55,4 +55,4 @@ class LampStage {
   std::size_t bands_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

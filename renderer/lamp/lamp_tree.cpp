@@ -10,7 +10,7 @@
 
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 LampTree::LampTree(std::vector<PlacedLamp> lamps, const LampEye& eye, const LampStage& stage) {
   for (PlacedLamp& lamp : lamps) Add(ShiningOn(eye, stage, std::move(lamp)), stage);
@@ -121,4 +121,4 @@ void LampTree::MakeGlows(const LampStage& stage) {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 #include "renderer/lamp/lamp_plan.h"
 #include "renderer/lamp/placed_lamp.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A node of the tree: a lamp, or one that stands for others.
 struct LampNode {
@@ -60,4 +60,4 @@ class LampTree {
   std::vector<std::size_t> glow_of_node_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/number/halton.h"
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 double Logarithmic(double low, double high, double u) { return low * std::pow(high / low, u); }
@@ -150,4 +150,4 @@ double AirlightByRule(LampRule rule, const LampWork& work, int nodes) {
   return sum;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -4,8 +4,9 @@
 #pragma once
 
 #include "atmosphere/lamp/airlight.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What is the same for a set of works.
 struct LampWorkKind {
@@ -41,4 +42,4 @@ enum class LampRule {
 /// By a rule on the whole segment, which must end.
 [[nodiscard]] double AirlightByRule(LampRule rule, const LampWork& work, int nodes);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

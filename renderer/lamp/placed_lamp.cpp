@@ -13,7 +13,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 Bands<double> OneBand(const Bands<double>& all, std::size_t band) {
@@ -268,4 +268,4 @@ Bands<float> Scaled(const Bands<float>& intensity, const Bands<double>& factor, 
   return scaled;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -16,7 +16,7 @@
 #include "renderer/lamp/ies_file.h"
 #include "renderer/lamp/lamp_stage.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// From where lamps are seen.
 struct LampEye {
@@ -101,4 +101,4 @@ struct LampAlongRay {
 [[nodiscard]] Bands<float> Scaled(const Bands<float>& intensity, const Bands<double>& factor,
                                   double scale);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

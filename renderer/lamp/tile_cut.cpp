@@ -13,7 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/lamp/lamp_stage.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 TileRays::TileRays(const MovingCamera& moving, const PixelBox& box, const RayTrace& trace) {
   constexpr int kMoreRays = 8;
@@ -372,4 +372,4 @@ bool IsFar(const LampNode& node, const TileRays& tile, double pixel_angle_rad) {
          apart - tile.radius_rad > kSteps * LampPlan::kSpacing * pixel_angle_rad;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "renderer/lamp/lamp_plan.h"
 #include "renderer/lamp/lamp_tree.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Pixels [x0, x1) by [y0, y1).
 struct PixelBox {
@@ -64,4 +64,4 @@ struct TileRays {
 /// straight line misses 1/D by (h / D)^2 / 4.
 [[nodiscard]] bool IsFar(const LampNode& node, const TileRays& tile, double pixel_angle_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/light/shaft_weights.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A stretch of the ray where the integrand is smooth and altitude monotone. Distances from the eye
@@ -180,4 +180,4 @@ AirAlongRay AerialPerspective::Along(const ViewRay& ray, const SunlitPath& sunli
   return Sum(Sample(ray, &sunlit, nodes), ray, nodes);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

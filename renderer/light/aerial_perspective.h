@@ -22,10 +22,11 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
+#include "renderer/layer.h"
 #include "renderer/light/segment_air.h"
 #include "renderer/shadow/sunlit_path.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Air along a ray, per unit solar irradiance.
 struct AirAlongRay {
@@ -92,4 +93,4 @@ class AerialPerspective {
   double rayleigh_per_m_ = 0.0, mie_per_m_ = 0.0;  // largest extinction of any band at altitude 0
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 #include "atmosphere/sun/moon_reflectance.h"
 #include "atmosphere/sun/sun_disk.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
                     const GeodeticPosition& place, const Medium& medium, double wetness) {
@@ -97,4 +97,4 @@ LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
   return {altitude, up, cosine(sun.to_light_for_air), disk.fraction, disk.mu_s_effective};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

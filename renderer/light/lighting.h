@@ -23,7 +23,7 @@
 #include "renderer/light/night_light.h"
 #include "renderer/light/terrain_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A light so far away that it shines everywhere from one direction, and lights the air from another
 /// where refraction lifts it (SunForAir of sun.h).
@@ -113,4 +113,4 @@ struct LocalSun {
 [[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
                                   const DistantLight& sun);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -3,7 +3,7 @@
 
 #include "atmosphere/sun/moon.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
                         const UtcInstant& instant) {
@@ -12,4 +12,4 @@ glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition&
   return DirectionFromAngles(moon.elevation_rad + lift_rad, moon.azimuth_rad).xyz;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Light of a spectrum whose luminance is 1 cd/m^2.
@@ -99,4 +99,4 @@ BandLight NightLight::OnSurface(double cos_up) const {
   return static_cast<float>(0.5 * (1.0 + cos_up)) * level_;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -22,7 +22,7 @@
 #include "atmosphere/sun/night_sky.h"
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// At one eye. Immutable, safe to ask from many threads.
 class NightLight {
@@ -51,4 +51,4 @@ class NightLight {
   BandLight scattered_, level_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "renderer/camera/camera_rays.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 ShaftView ViewWithSun(double eye_height_m, double heading_deg, double sun_elevation_deg, int width,
                       int height) {
@@ -108,4 +108,4 @@ ScatteredOnce<float> MarchWithOcclusion(const AirIntegrator<float>& air, const S
   return air.Scatter(samples);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/terrain.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A sun, an eye over terrain and rays from it, in the frame of the terrain.
 struct ShaftView {
@@ -58,4 +59,4 @@ struct DiskPoint {
                                                       const Terrain& terrain, int count,
                                                       double offset = 0.5);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/sky/sky_view.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr float kSkySector = 2.0F * static_cast<float>(kPi) / static_cast<float>(kHorizonAzimuths);
@@ -302,4 +302,4 @@ Bands<float> OpenSky::Radiance(double altitude_m, double mu_s, const glm::dvec3&
   return radiance;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

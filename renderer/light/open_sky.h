@@ -21,9 +21,10 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
+#include "renderer/layer.h"
 #include "renderer/shadow/horizon_map.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Where the outer side of a surface looks, azimuth by azimuth.
 struct SurfaceSectors {
@@ -106,4 +107,4 @@ class OpenSky {
   std::vector<float> radiance_;  // the same, means between nodes: [level][azimuth][node][band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// The vertical across a view, and what is to the right of it. Straight up and down the view counts
@@ -61,4 +61,4 @@ PolarisedLight operator*(const BandLight& left, const PolarisedLight& light) {
   return {left * light.q, left * light.u};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// How much of Q and U vibrates along a unit vector p across the view: cos(2 a) and sin(2 a).
 struct Analyser {
@@ -38,4 +38,4 @@ struct Analyser {
 /// Behind what dims it.
 [[nodiscard]] PolarisedLight operator*(const BandLight& left, const PolarisedLight& light);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 #include "atmosphere/ray/direct_columns.h"
 #include "renderer/light/shaft_weights.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Beams that graze the planet light the end at its shadow by far less than the other.
@@ -173,4 +173,4 @@ SampledLight SegmentAir::Sample(const ViewRay& ray, const DirectRay& placed,
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,9 +9,10 @@
 #pragma once
 
 #include "atmosphere/ray/direct_scattering.h"
+#include "renderer/layer.h"
 #include "renderer/shadow/sunlit_path.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Immutable, safe to share between threads. Refers to what it was made from.
 class SegmentAir {
@@ -53,4 +54,4 @@ class SegmentAir {
   float rayleigh_height_km_, mie_height_km_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/light/shaft_weights.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// (2 n + 1) P_n at the nodes of a Gauss rule on [0, 1].
@@ -48,4 +48,4 @@ SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m) {
           piece.begin_x + slope * (end - piece.begin_m)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

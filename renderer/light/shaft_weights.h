@@ -15,9 +15,10 @@
 #include <cstddef>
 
 #include "atmosphere/number/quadrature.h"
+#include "renderer/layer.h"
 #include "renderer/shadow/sunlit_path.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 inline constexpr int kMostShaftNodes = 16;
 
@@ -85,4 +86,4 @@ template <typename Panel>
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

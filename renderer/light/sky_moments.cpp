@@ -9,7 +9,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Integrals of Y_l0 over the lower half of the sphere.
@@ -91,4 +91,4 @@ BandLight SkyMoments::At(const std::vector<BandLight>& of_altitudes, double alti
          static_cast<float>(share) * of_altitudes[high];
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

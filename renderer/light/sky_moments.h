@@ -11,7 +11,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Around one vertical, under one sun, at several altitudes. Per unit solar irradiance. Immutable.
 class SkyMoments {
@@ -42,4 +42,4 @@ class SkyMoments {
   std::vector<std::vector<float>> values_;  // [altitude][moment * bands + band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSector = 2.0 * kPi / static_cast<double>(kHorizonAzimuths);
@@ -275,4 +275,4 @@ BandLight SlopeLight::Radiance(const glm::dvec3& point, const BetweenAzimuths& a
   return 1.0F / (weight + missing) * (radiance + missing * beyond);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

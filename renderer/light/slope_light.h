@@ -25,7 +25,7 @@
 #include "renderer/shadow/horizon_map.h"
 #include "renderer/terrain/height_raster.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A node of the coarse grid as a place on the ground.
 struct SlopePlace {
@@ -108,4 +108,4 @@ class SlopeLight {
   std::vector<float> light_;  // weight times radiance: [node][azimuth][band]
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/sun/stars.h"
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 glm::dvec3 Refracted(const glm::dvec3& enu, const BentView& view) {
@@ -70,4 +70,4 @@ std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInst
   return lights;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "atmosphere/sun/time.h"
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A point of light as it arrives at the top of the air.
 struct StarLight {
@@ -49,4 +49,4 @@ inline constexpr double kDaylight_lux = 5000.0;
                                                     const BandColour& colour, double faintest,
                                                     const OpenShutter& shutter = {});
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

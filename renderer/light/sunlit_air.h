@@ -5,8 +5,9 @@
 #include "atmosphere/ray/bent_beam.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Refers to all three.
 struct SunlitAir {
@@ -20,4 +21,4 @@ struct SunlitAir {
   }
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::size_t kMostHorizonNodes = std::size_t{1} << 18;
@@ -102,4 +102,4 @@ BandLight TerrainLight::Radiance(const SlopePoint& at, const glm::dvec3& directi
   return (1.0F - ground) * sky + ground * slopes_->Radiance(at.point, azimuth, horizon, over_it);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

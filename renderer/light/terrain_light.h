@@ -12,7 +12,7 @@
 #include "renderer/light/slope_light.h"
 #include "renderer/shadow/horizon_map.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What terrain hides from its places, whatever shines. Immutable.
 class TerrainHorizons {
@@ -104,4 +104,4 @@ class TerrainLight {
   std::optional<SlopeLight> slopes_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/sun/night_sky.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Half sodium, half LED; the sum has a luminance of 1 cd/m^2.
@@ -39,4 +39,4 @@ BandLight TownLight(double zenith, double ground_m, const AirIntegrator<float>& 
   return static_cast<float>(wanted / colour.Xyz(InDouble(seen))[1]) * lamps;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

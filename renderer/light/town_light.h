@@ -19,7 +19,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// J [W m^-2 sr^-1 nm^-1].
 /// @param zenith  [V magnitudes a square arcsecond], nothing of towns where it is darker than
@@ -27,4 +27,4 @@ namespace alpenglow {
 [[nodiscard]] BandLight TownLight(double zenith, double ground_m, const AirIntegrator<float>& air,
                                   const BandColour& colour);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

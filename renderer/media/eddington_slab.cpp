@@ -6,8 +6,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 double SlabField::DownwardFlux() const { return kPi * (mean + 2.0 / 3.0 * slope); }
 double SlabField::UpwardFlux() const { return kPi * (mean - 2.0 / 3.0 * slope); }
@@ -61,4 +62,4 @@ SlabField EddingtonSlab::At(double depth) const {
 
 double EddingtonSlab::BeamLeft(double slant_depth) const { return std::exp(-scale_ * slant_depth); }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -22,7 +22,7 @@
 // approximation of what single scattering leaves out, where that is most of the light.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a layer scatters with.
 struct SlabScattering {
@@ -64,4 +64,4 @@ class EddingtonSlab {
   double falling_ = 0.0, rising_ = 0.0;  // of e^(-k tau) and e^(-k (depth - tau))
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

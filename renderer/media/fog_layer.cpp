@@ -10,7 +10,7 @@
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/media/fog_layer_text.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kThin = 1e-9;
@@ -82,4 +82,4 @@ double FogLayer::ColumnToSpace(const glm::dvec3& point, const glm::dvec3& direct
   return std::max(2.0 * upwards(perigee, 0.0) - upwards(altitude, -mu), 0.0);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 
 #include "renderer/scene/local_volume.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Immutable. Directions are unit vectors in the frame of SceneGround, whose sphere has its centre
 /// at (0, 0, -R).
@@ -43,4 +43,4 @@ class FogLayer {
   double thin_m_;  // altitude over which density is below 1e-9
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 #include "lut/diffuse/spherical_harmonics.h"
 #include "renderer/media/eddington_slab.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Sky light falls through fog as a beam of this zenith cosine would: the diffusivity factor 1.66
@@ -136,4 +136,4 @@ BandLight FogLight::OnSurface(double altitude_m, double cos_up) const {
   return irradiance;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -19,7 +19,7 @@
 #include "renderer/light/sky_moments.h"
 #include "renderer/media/local_media.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The sun over fog; directions as those of DistantLight (lighting.h).
 struct FogSun {
@@ -85,4 +85,4 @@ class FogLight {
   Glow of_sun_, of_sky_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

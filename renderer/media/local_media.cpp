@@ -12,7 +12,7 @@
 #include "atmosphere/colour/black_body.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kAboveMedia_m = 20000.0;
@@ -178,4 +178,4 @@ Bands<double> LocalMedia::OpticalDepthTowards(const glm::dvec3& point,
   return depth;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -17,7 +17,7 @@
 #include "renderer/scene/local_volume.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What density 1 does, band by band.
 struct MediumOptics {
@@ -78,4 +78,4 @@ class LocalMedia {
   double fog_bottom_m_ = 0.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

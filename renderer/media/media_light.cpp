@@ -14,7 +14,7 @@
 #include "lut/diffuse/spherical_harmonics.h"
 #include "renderer/media/fog_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -528,4 +528,4 @@ BandLight LeftByVolumes(const std::vector<MarchedPiece>& pieces, double distance
   return left;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

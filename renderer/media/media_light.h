@@ -27,7 +27,7 @@
 #include "renderer/media/media_march.h"
 #include "renderer/shadow/sunlit_path.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Sky light on a surface within or over fog.
 struct SkyThroughFog {
@@ -81,4 +81,4 @@ enum class Behind { kAll, kVolumes };
 [[nodiscard]] BandLight LeftByVolumes(const std::vector<MarchedPiece>& pieces, double distance_m,
                                       std::size_t bands);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::size_t kNodes = 7;
@@ -294,4 +294,4 @@ MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
   return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

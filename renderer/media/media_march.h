@@ -19,7 +19,7 @@
 #include "renderer/ground/band_light.h"
 #include "renderer/media/local_media.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A stretch of the ray, in order, without overlap; between them there is nothing.
 struct MarchedPiece {
@@ -55,4 +55,4 @@ inline constexpr double kMarchTolerance = 2e-3;
                                       const MediaSource& source, double tolerance = kMarchTolerance,
                                       std::span<const double> cuts_m = {});
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

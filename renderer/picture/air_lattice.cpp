@@ -8,7 +8,7 @@
 
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr float kSameLight = 2e-3F;  // of all that is seen there, and of transmittance
@@ -145,4 +145,4 @@ std::optional<AirAlongRay> AirLattice::Before(const SharedAir& rays) {
   return Between(column, row, x, y, rays.kind, rays.length_m());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -24,7 +24,7 @@
 
 #include "renderer/picture/shared_air.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct SceneState;
 
@@ -62,4 +62,4 @@ class AirLattice {
   std::vector<Cell> cells_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

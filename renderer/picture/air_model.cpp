@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/air_model.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr EffectSet kParts{Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
@@ -28,4 +28,4 @@ const AirModel& AirModels::With(EffectSet effects) const {
   return *partial;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/picture/ground_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Air and what its light reaches, of all orders as hazy and thick air needs it (OptionsFor). Refers to the parts of the ground.
 struct AirModel {
@@ -53,4 +53,4 @@ class AirModels {
   mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/sun/moon.h"
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// The direction in the same vertical plane that stands so high.
@@ -176,4 +176,4 @@ Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame,
           distance_m * frame.camera().PixelAngle()};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun_disk.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A direction to the sun's disk, as its light is distributed over it.
@@ -68,7 +68,7 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
 }
 
 LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
-  return alpenglow::LocalSunAt(parts_.geometry, point, light.Sun());
+  return renderer::LocalSunAt(parts_.geometry, point, light.Sun());
 }
 
 double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
@@ -219,4 +219,4 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
   return light.irradiance * sum;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

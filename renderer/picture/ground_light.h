@@ -18,7 +18,7 @@
 #include "renderer/light/terrain_light.h"
 #include "renderer/media/media_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A point of the ground as an eye meets it, whatever shines on it.
 struct SeenGround {
@@ -113,4 +113,4 @@ class GroundLight {
   const DiffuseLight& diffuse_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

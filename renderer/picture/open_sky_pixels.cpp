@@ -8,7 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // A ray counts for pixels up to a filter's width away; and two pixels for what stands between the
@@ -78,4 +78,4 @@ bool OpenSkyPixels::Has(int x, int y) const {
   return skyline_->IsBelow(middle, around_rad_);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 
 #include "renderer/ground/skyline.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct PictureFrame;
 struct SceneState;
@@ -34,4 +34,4 @@ class OpenSkyPixels {
   std::optional<Skyline> skyline_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "lut/picture/stokes_layer.h"
 #include "renderer/ground/scene_geometry.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 LayerValues Rgb(const BandColour& colour, const BandLight& light) {
@@ -158,4 +158,4 @@ std::vector<PictureLayer> LayersFromNames(const std::vector<std::string>& names)
   return layers;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/light/picture_stokes.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
-class BandColour;
 struct Hit;
 
 enum class PictureLayer {
@@ -87,4 +87,4 @@ struct LayerKind {
 
 [[nodiscard]] const LayerKind& KindOf(PictureLayer layer);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

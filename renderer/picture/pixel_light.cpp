@@ -7,7 +7,7 @@
 
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Lamps that no ray comes near.
@@ -101,4 +101,4 @@ void PixelLight::Add(const Ray& seen) {
   sum_.Add(shaded, !frame_->settings.layers.empty());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "renderer/picture/shared_air.h"
 #include "renderer/picture/shared_rays.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct SceneState;
 
@@ -75,4 +75,4 @@ class PixelLight {
   BandLight glow_;  // sum of what new_rays_ are without
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

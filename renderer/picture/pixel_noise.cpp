@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 // Welford (1962), Technometrics 4, 419: nothing large is subtracted.
 void RaySpread::Add(const std::array<double, 3>& rgb) {
@@ -42,4 +42,4 @@ int RaysForNoise(double relative_variance, double noise, int first, int most) {
   return rays;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

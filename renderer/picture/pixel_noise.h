@@ -24,7 +24,7 @@
 
 #include <array>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Mean and variance of the colours of a pixel's rays.
 class RaySpread {
@@ -49,4 +49,4 @@ class RaySpread {
 /// @param relative_variance  S^2. @param noise  e, > 0. @param most  at least first.
 [[nodiscard]] int RaysForNoise(double relative_variance, double noise, int first, int most);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 PixelWriter::PixelWriter(const BandColour& colour, int width, int height,
                          const std::vector<PictureLayer>& layers)
@@ -60,4 +60,4 @@ bool PixelWriter::AsksForMiddle() const {
 
 Image PixelWriter::Take() { return std::move(image_); }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/picture/picture_layers.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// How many rays the pixels of a picture took.
 struct RayCount {
@@ -56,4 +56,4 @@ class PixelWriter {
   std::atomic<std::uint64_t> rays_{0}, least_{~std::uint64_t{0}}, most_{0};
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 
 #include "renderer/effect/effect_choice.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 RecentSunlight::Made RecentSunlight::At(const glm::dvec3& to_sun, double sun_radius_rad) {
   constexpr std::size_t kMost = 2;
@@ -20,4 +20,4 @@ RecentSunlight::Made RecentSunlight::At(const glm::dvec3& to_sun, double sun_rad
   return kept_.back().made;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

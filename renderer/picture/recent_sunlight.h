@@ -10,7 +10,7 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/terrain_sunlight.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Keeps the last two that it has made: a frame of a series is metered small while the frame before
 /// it is developed, and drawn then. Safe to ask from many threads.
@@ -38,4 +38,4 @@ class RecentSunlight {
   std::deque<Kept> kept_;  // the oldest first
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -3,7 +3,7 @@
 
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
     : state_(std::make_unique<SceneState>(scene, progress)) {}
@@ -33,4 +33,4 @@ CountedPicture SceneRenderer::RenderCounted(const Shot& shot,
   return state.Picture(state.FrameAt(shot, settings));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

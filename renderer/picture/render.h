@@ -24,7 +24,7 @@
 #include "renderer/picture/render_settings.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct SceneGround;
 struct SceneState;
@@ -82,4 +82,4 @@ class SceneRenderer {
   std::unique_ptr<SceneState> state_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

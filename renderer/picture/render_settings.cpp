@@ -4,7 +4,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/camera/pixel_samples.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 void ValidateSettings(const RenderSettings& settings) {
   RequireInRange(settings.width, 1, 16384, "picture width");
@@ -18,4 +18,4 @@ void ValidateSettings(const RenderSettings& settings) {
   RequireInRange(settings.air_nodes, 2, 32, "air nodes");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 #include "renderer/lamp/lamp_plan.h"
 #include "renderer/picture/picture_layers.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Of a pixel, unless it begins with more.
 inline constexpr int kMostRaysForNoise = 256;
@@ -70,4 +70,4 @@ struct Shot {
 /// Throws InputError for what is out of range.
 void ValidateSettings(const RenderSettings& settings);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,7 +6,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 std::unique_ptr<SceneState> SceneState::OnOtherBands(int bands) const {
   const std::optional<Medium> other = OnBands(scene.medium, bands);
@@ -104,4 +104,4 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   return {std::move(picture.image), picture.rays, std::move(choice)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

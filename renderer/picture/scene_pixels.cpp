@@ -17,7 +17,7 @@
 #include "renderer/picture/pixel_writer.h"
 #include "renderer/picture/scene_state.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A square of pixels that one thread works on, within a picture.
@@ -429,4 +429,4 @@ void SceneState::Write(const PictureFrame& frame, int x, int y, const PixelLight
   writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

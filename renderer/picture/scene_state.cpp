@@ -14,7 +14,7 @@
 #include "renderer/light/moon_before_sun.h"
 #include "renderer/light/town_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 namespace {
 
@@ -288,4 +288,4 @@ PictureFrame SceneState::Reduced(PictureFrame frame, EffectSet effects) const {
   return frame;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

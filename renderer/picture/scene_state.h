@@ -25,7 +25,7 @@
 #include "renderer/picture/render_settings.h"
 #include "renderer/picture/shared_air.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 class OpenSkyPixels;
 
@@ -154,4 +154,4 @@ struct SceneState {
   mutable std::unique_ptr<SceneState> few_bands;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 
 #include "renderer/light/picture_stokes.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// The air along a ray as the effects of a picture have it.
@@ -176,4 +176,4 @@ void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays) {
   rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(rays.length_m()), Behind::kVolumes);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -21,7 +21,7 @@
 #include "renderer/picture/render_settings.h"
 #include "renderer/picture/star_pixels.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a light beside the sun makes of a picture, as if it were the sun.
 struct SecondLight {
@@ -108,4 +108,4 @@ void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medi
 /// fog leaves that only lamps light. After AddAir.
 void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

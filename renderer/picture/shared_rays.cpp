@@ -6,7 +6,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kRaySteps = 512;  // of the filter's half: off by 2e-5 of its peak between them
@@ -129,4 +129,4 @@ BandLight SharedRays::Light(int column, int row) const {
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

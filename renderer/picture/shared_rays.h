@@ -31,7 +31,7 @@
 #include "renderer/camera/pixel_filter.h"
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a ray saw, and where it went [pixels from the middle of its pixel].
 struct SeenRay {
@@ -85,4 +85,4 @@ class SharedRays {
   std::vector<std::optional<BandLight>> skies_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Of the pixel around a place of the picture.
@@ -125,4 +125,4 @@ const BandLight* StarPixels::At(int x, int y) const {
   return found == pixels_.end() ? nullptr : &found->second;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -19,7 +19,7 @@
 #include "renderer/ground/band_light.h"
 #include "renderer/light/star_lights.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 inline constexpr int kStarReach = 2;
 /// Shares of the pixels around the one that a place lies in, along one side; their sum is one.
@@ -63,4 +63,4 @@ class StarPixels {
   std::vector<glm::dvec3> directions_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

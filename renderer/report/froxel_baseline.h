@@ -12,7 +12,7 @@
 #include "lut/report/report_baselines.h"
 #include "renderer/light/aerial_perspective.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The slices of a volume of froxels that one ray goes through: what the air does up to each,
 /// linear between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched to from the eye in
@@ -63,4 +63,4 @@ class FroxelColumn {
   std::vector<AirAlongRay> slices_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -3,7 +3,7 @@
 
 #include "renderer/report/report_measure.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 ReportWords WordsOfReport() {
@@ -40,4 +40,4 @@ Report MeasurePictureReport(const ReportOptions& options) {
   return MeasureTopics(WordsOfReport(), options.quick, options.progress, topics);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,11 +7,12 @@
 #pragma once
 
 #include "lut/report/report.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Measures everything: a minute or two; `mediums` are those of the air before terrain. Stops
 /// between methods when the program is interrupted.
 [[nodiscard]] Report MeasurePictureReport(const ReportOptions& options);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -16,7 +16,7 @@
 #include "renderer/report/froxel_baseline.h"
 #include "renderer/report/report_measure.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Lines of the plots.
@@ -314,4 +314,4 @@ ReportTopic MeasureTransmittanceToTerrain(const Medium& medium, const ReportEffo
        .cost = CostAxis::kTimeOfAnswer});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

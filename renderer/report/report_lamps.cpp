@@ -17,7 +17,7 @@
 #include "renderer/lamp/lamp_works.h"
 #include "renderer/report/report_measure.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Lines of the plot of one lamp.
@@ -362,4 +362,4 @@ ReportTopic MeasureManyLamps(const ReportEffort& effort) {
   return std::move(topic).Finished();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -3,9 +3,10 @@
 #pragma once
 
 #include "lut/report/report_measure.h"
+#include "renderer/layer.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The air in front of terrain, in unbroken sunlight:
 /// light scattered on the way, and transmittance.
@@ -28,4 +29,4 @@ namespace alpenglow {
 /// it, and the landing lights of an aeroplane when `with_beam`.
 [[nodiscard]] Scene RunwayScene(int lamps, bool with_beam);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

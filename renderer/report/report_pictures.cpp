@@ -18,7 +18,7 @@
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Lines of the plot.
@@ -320,4 +320,4 @@ ReportTopic MeasurePictures(const ReportEffort& effort) {
   return std::move(topic).Finished();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -18,7 +18,7 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "renderer/shadow/sun_probes.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Lines of the plot.
@@ -287,4 +287,4 @@ ReportTopic MeasureShafts(const ReportEffort& effort) {
   return std::move(topic).Finished();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A line in the coordinates of the unit cube.
@@ -133,4 +133,4 @@ double LocalVolume::Column(const glm::dvec3& origin, const glm::dvec3& direction
                            DensityIn(line.origin + span->end_m * line.direction), rise);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

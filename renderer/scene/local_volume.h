@@ -15,9 +15,10 @@
 #include <vector>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/scene/volume_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Where a body stands, in the frame of SceneGround.
 struct VolumePlacement {
@@ -80,4 +81,4 @@ class LocalVolume {
   std::shared_ptr<const VolumeGrid> grid_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

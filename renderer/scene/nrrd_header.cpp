@@ -18,8 +18,9 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -332,4 +333,4 @@ NrrdHeader ReadNrrdHeader(const fs::path& file) {
   return HeaderReader(file, text).Header();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <filesystem>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct NrrdHeader {
   enum class Type { kFloat, kByte };
@@ -39,4 +39,4 @@ struct NrrdHeader {
 /// one number a sample.
 [[nodiscard]] NrrdHeader ReadNrrdHeader(const std::filesystem::path& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

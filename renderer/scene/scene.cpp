@@ -14,7 +14,7 @@
 #include "atmosphere/text/file_extension.h"
 #include "atmosphere/text/toml_table.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -545,4 +545,4 @@ Scene ReadScene(const fs::path& file) {
   return SceneFromToml(ReadTextFile(file), file.string(), file.parent_path());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

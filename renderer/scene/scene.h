@@ -17,7 +17,7 @@
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/up_axis.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A height over the ellipsoid or over the ground below.
 struct Height {
@@ -180,4 +180,4 @@ struct Scene {
 [[nodiscard]] Camera CameraFromDegrees(const Height& height, double heading, double pitch,
                                        double roll, double fov, const std::string& prefix = "");
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

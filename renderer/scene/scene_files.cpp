@@ -4,7 +4,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/scene/nrrd_header.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // The file that a grid's header names, or the grid itself.
@@ -37,4 +37,4 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
   return files;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct View {
@@ -106,4 +106,4 @@ Scene SceneFromOptions(const SceneOptions& options) {
   return scene;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

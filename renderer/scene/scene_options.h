@@ -7,7 +7,7 @@
 
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Latitude and longitude [degrees] where none are typed: of elevation models, and of the view of
 /// the built-in range that is centred there.
@@ -39,4 +39,4 @@ struct SceneOptions {
 /// none is given. Throws InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,8 +8,9 @@
 #include <limits>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kBlock = 4;  // samples a side
@@ -166,4 +167,4 @@ double VolumeGrid::Column(const glm::dvec3& origin, const glm::dvec3& direction,
   return sum;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -18,7 +18,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 inline constexpr int kMostGridSamples = 1024;  // along an axis
 
@@ -82,4 +82,4 @@ void CheckGridSize(const std::array<int, 3>& size);
 [[nodiscard]] VolumeGrid ReadRawGrid(const std::filesystem::path& file,
                                      const std::array<int, 3>& size);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 #include "renderer/scene/nrrd_header.h"
 #include "renderer/scene/volume_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -186,4 +187,4 @@ VolumeGrid ReadRawGrid(const fs::path& file, const std::array<int, 3>& size) {
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

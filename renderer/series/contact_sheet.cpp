@@ -7,7 +7,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kGap = 8;
@@ -153,4 +153,4 @@ DisplayImage ContactSheet(const std::vector<Thumbnail>& thumbnails) {
   return sheet.image();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "lut/picture/image.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 inline constexpr int kThumbnailWidth = 320;
 
@@ -23,4 +24,4 @@ struct Thumbnail {
 /// The thumbnails row by row, about as many columns as rows. All must have the same size.
 [[nodiscard]] DisplayImage ContactSheet(const std::vector<Thumbnail>& thumbnails);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/report/svg_plot.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kPlotGap = 34.0,
@@ -285,4 +285,4 @@ std::string SvgOfDay(const std::vector<PlottedMoment>& moments,
          "</svg>\n";
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

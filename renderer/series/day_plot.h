@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "atmosphere/sun/time.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a plot says of a frame.
 struct PlottedMoment {
@@ -37,4 +38,4 @@ struct LightLevel {
                                    const std::optional<std::string>& zone,
                                    const std::vector<LightLevel>& levels = {});
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

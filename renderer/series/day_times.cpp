@@ -10,7 +10,7 @@
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // In kTimesOfDay.
@@ -155,4 +155,4 @@ std::string CsvOf(const std::vector<DayTimes>& days) {
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/sun/eclipse.h"
 #include "renderer/series/time_text.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The events of a day in the order of its columns.
 inline constexpr std::array<const char*, 12> kTimesOfDay{
@@ -51,4 +51,4 @@ struct DayTimes {
 /// both at the deepest that is seen.
 [[nodiscard]] std::string CsvOf(const std::vector<DayTimes>& days);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

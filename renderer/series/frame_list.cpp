@@ -8,7 +8,7 @@
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 std::string LineOf(const Frame& frame, const FrameListing& listing) {
@@ -34,4 +34,4 @@ std::string ListOf(const std::vector<Frame>& frames, const FrameListing& listing
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

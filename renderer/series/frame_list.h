@@ -10,7 +10,7 @@
 #include "renderer/series/frame_name.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a list of frames is made from.
 struct FrameListing {
@@ -25,4 +25,4 @@ struct FrameListing {
 /// name).
 [[nodiscard]] std::string ListOf(const std::vector<Frame>& frames, const FrameListing& listing);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

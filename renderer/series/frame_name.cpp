@@ -5,8 +5,9 @@
 
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/file_extension.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 [[noreturn]] void Refuse(const std::string& pattern, const std::string& fault) {
@@ -83,4 +84,4 @@ std::filesystem::path FrameName::Folder() const {
   return std::filesystem::path(before_).parent_path();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A pattern with at most one integer conversion, %d, or %4d and %04d, which fill up with zeros as
 /// ffmpeg does; %% is a per cent sign.
@@ -32,4 +32,4 @@ class FrameName {
   int width_ = 0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// An instant at one end says of which day the event at the other end is.
@@ -225,4 +225,4 @@ std::vector<Frame> SelectFrames(const std::vector<Frame>& frames, std::string_vi
   return selected;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/sun/time.h"
 #include "renderer/series/time_text.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// One picture of a series. Numbers count from 0.
 struct Frame {
@@ -46,4 +46,4 @@ inline constexpr int kMostFrames = 1000000;
 [[nodiscard]] std::vector<Frame> SelectFrames(const std::vector<Frame>& frames,
                                               std::string_view ranges);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 void Keogram::Add(const DisplayImage& picture) {
   if (rgb_.empty()) height_ = picture.height;
@@ -30,4 +30,4 @@ DisplayImage Keogram::Image() const {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -4,8 +4,9 @@
 #pragma once
 
 #include "lut/picture/image.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Grows by a column a picture.
 class Keogram {
@@ -21,4 +22,4 @@ class Keogram {
   std::vector<std::uint8_t> rgb_;  // column by column
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 #include "lut/program/json_text.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 std::string StringOrNull(const std::string& text) {
@@ -66,4 +66,4 @@ std::string JsonOfManifest(const std::vector<ManifestEntry>& entries, const Meta
   return text + "]}\n";
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

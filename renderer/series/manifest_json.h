@@ -11,7 +11,7 @@
 #include "renderer/camera/camera_path.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What a manifest says of a frame.
 struct ManifestEntry {
@@ -34,4 +34,4 @@ struct ManifestEntry {
 [[nodiscard]] std::string JsonOfManifest(const std::vector<ManifestEntry>& entries,
                                          const Metadata& settings);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

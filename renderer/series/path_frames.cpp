@@ -8,7 +8,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/ground/camera_stand.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 double Positive(double value, const std::string& name) {
@@ -56,4 +56,4 @@ Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s) {
   return shot;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// How many frames, as typed: `every` (a duration of the path) or `count` (the path's ends
 /// included), else so many a second.
@@ -34,4 +34,4 @@ struct PathRate {
 /// The camera of a frame; with a shutter that is open for a time around it, its way in that time.
 [[nodiscard]] Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo).
@@ -173,4 +173,4 @@ std::string Fingerprint(const Metadata& metadata) {
   return hash.Text();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

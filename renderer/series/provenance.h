@@ -11,7 +11,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Program, air, place, camera, ground and lamps of a scene; numbers
 /// are written so that they read back exactly. The content of the
@@ -30,4 +30,4 @@ namespace alpenglow {
 /// 16 hexadecimal digits, FNV-1a over names and values: equal for equal metadata.
 [[nodiscard]] std::string Fingerprint(const Metadata& metadata);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

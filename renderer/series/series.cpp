@@ -27,7 +27,7 @@
 #include "renderer/series/smooth_meter.h"
 #include "renderer/series/video.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -568,4 +568,4 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   return summary;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

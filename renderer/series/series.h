@@ -18,7 +18,7 @@
 #include "renderer/series/frame_name.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A picture, and what was found out about it while it was made: not part of what its pixels depend
 /// on, written into its file beside that, and kept when the picture is developed again.
@@ -108,4 +108,4 @@ struct SeriesSummary {
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
                         const std::vector<Frame>& selected, const SeriesOutput& output);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

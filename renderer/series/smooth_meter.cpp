@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 double SecondsAfter(const Frame& first, const Frame& frame, bool on_path) {
@@ -75,4 +75,4 @@ std::string SmoothMeter::InWords() const {
       frames_per_node_, 2 * frames_per_node_, frames_.size(), FormatUtc(frames_.back().instant));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

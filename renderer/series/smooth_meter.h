@@ -17,7 +17,7 @@
 
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Frames from a node to the next: as many as two minutes of a day have, or, `on_path`, half a second
 /// of the path, and one at least. Nothing for less than three frames, those that are not evenly spaced,
@@ -48,4 +48,4 @@ class SmoothMeter {
   std::map<int, double> nodes_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

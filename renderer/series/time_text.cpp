@@ -17,7 +17,7 @@
 #include "atmosphere/text/error.h"
 #include "atmosphere/text/toml_table.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::size_t kDateLength = 10;  // "2026-06-21"
@@ -299,4 +299,4 @@ UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
   return *instant;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

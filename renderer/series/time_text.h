@@ -8,8 +8,9 @@
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Where, and on which day, "sunrise" and "18:30" are.
 struct EventDay {
@@ -63,4 +64,4 @@ struct TimeOfDay {
 /// Throws InputError for other texts, and for an event that does not happen that day.
 [[nodiscard]] UtcInstant InstantFromText(std::string_view text, const EventDay& day);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -30,7 +30,7 @@
 
 extern char** environ;
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -215,4 +215,4 @@ void WriteVideo(const fs::path& file, const VideoSettings& settings, int frames,
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

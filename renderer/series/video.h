@@ -6,8 +6,9 @@
 #include <functional>
 
 #include "lut/picture/image.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct VideoSettings {
   int width, height;    // pixels
@@ -26,4 +27,4 @@ void RequireVideo(const std::filesystem::path& file);
 void WriteVideo(const std::filesystem::path& file, const VideoSettings& settings, int frames,
                 const std::function<DisplayImage(int)>& frame);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

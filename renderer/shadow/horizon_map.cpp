@@ -8,7 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr float kSteps = 65535.0F;
@@ -198,4 +198,4 @@ Horizons HorizonMap::At(const glm::dvec3& point) const {
   return horizons;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -19,7 +19,7 @@
 
 #include "renderer/terrain/height_raster.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Directions around the vertical that horizons are kept for: counter-clockwise from east (x) in
 /// even steps, seen from above.
@@ -68,4 +68,4 @@ class HorizonMap {
   std::vector<std::uint16_t> sine_;  // kHorizonAzimuths a node
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Lower than any beam that terrain can cut off, and still finite: maps are interpolated.
@@ -432,4 +432,4 @@ SunlitPath ShadowHeights::Along(const glm::dvec3& origin, const glm::dvec3& unit
   return walk.builder.Take();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -33,7 +33,7 @@
 #include "renderer/shadow/sunlit_path.h"
 #include "renderer/terrain/mesh.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The sun's disk over the edge of terrain that cuts it, as a place of the ground sees it. Their
 /// ratio is the height of the disk's centre over that edge in radii of the disk, see
@@ -116,4 +116,4 @@ class ShadowHeights {
   std::vector<Level> levels_;            // of 2^(level + 1) cells a side
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kHalvings = 6;
@@ -143,4 +143,4 @@ bool IsOneSurface(const Terrain& terrain) {
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 #include "renderer/shadow/sunlit_path.h"
 #include "renderer/terrain/terrain.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Immutable; safe to ask from many threads. Refers to the terrain.
 class SunProbes {
@@ -47,4 +47,4 @@ class SunProbes {
 /// triangles face up, and nothing lies over or under any corner or middle of a triangle.
 [[nodiscard]] bool IsOneSurface(const Terrain& terrain);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 
 #include "renderer/shadow/sunlight_over_edge.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 double SunlightOverEdge(double x) {
   if (x >= 1.0) return 1.0;
@@ -70,4 +70,4 @@ SunlitPath SunlitPathBuilder::Take() {
   return std::exchange(path_, {});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

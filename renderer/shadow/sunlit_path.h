@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Sunlight that passes a straight edge which cuts the sun's disk, in [0, 1].
 /// @param x  height of the disk's centre over the edge in radii of the disk: 1 and more, all of the
@@ -50,4 +50,4 @@ class SunlitPathBuilder {
   double least_slope_ = 0.0, most_slope_ = 0.0;  // of lines that miss no joint of open_
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -26,7 +26,7 @@
 #include "renderer/terrain/lattice_noise.h"
 #include "renderer/terrain/range_shape.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // U / K [m^(2 m)] of a main chain: slope 1 where this area to the power 3/8 drains.
@@ -404,4 +404,4 @@ BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid
   return view;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The range of a seed, centred on a place (also one of CentreOfRangeSeenFrom): foreland in the
 /// north, valleys at 500-900 m, chains that rise southwards, one peak above all. Its heights are the
@@ -52,4 +53,4 @@ inline constexpr double kRangeViewGround_m = 2084.44;
 /// is then within 4 km of the place.
 [[nodiscard]] GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

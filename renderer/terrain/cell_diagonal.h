@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Heights [m] of the 4 x 4 samples around a cell, row by row from the north-west. The cell's own
 /// corners are 5 (north-west), 6, 9 and 10 (south-east).
@@ -45,4 +45,4 @@ using CellHeights = std::array<double, 16>;
   return height;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

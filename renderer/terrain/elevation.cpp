@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation_raster.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 bool ElevationGrid::ClosesAroundTheEarth() const {
   const double turn = columns * step_lon_rad;
@@ -166,4 +167,4 @@ ElevationGrid ReadElevationExtent(const std::filesystem::path& file) {
   return GeographicExtent(ReadElevationHeader(file), file.string());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

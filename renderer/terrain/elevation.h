@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Heights over a regular grid of geodetic coordinates. Row 0 is the northernmost. Longitudes may
 /// run past pi: column c lies at west_rad + c step_lon_rad, and places are compared modulo 2 pi.
@@ -89,4 +89,4 @@ struct ElevationModel {
 /// InputError as ReadElevation does, as far as it can tell without them.
 [[nodiscard]] ElevationGrid ReadElevationExtent(const std::filesystem::path& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,8 +14,9 @@
 #include <utility>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kDeepestGround_m = -12000.0;  // the Challenger Deep is at -10,935 m
@@ -301,4 +302,4 @@ ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
   return raster;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

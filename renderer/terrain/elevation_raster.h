@@ -15,7 +15,7 @@
 
 #include "renderer/terrain/elevation.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The most samples of a model: 1 GiB of heights.
 inline constexpr std::int64_t kMostElevationSamples = std::int64_t{1} << 28;
@@ -85,4 +85,4 @@ std::size_t FillVoids(std::vector<float>& height, int rows, int columns);
 [[nodiscard]] ElevationGrid GeographicExtent(const ElevationRaster& raster,
                                              const std::string& file);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr float kFillSlope_m = 1e-3F;  // sediment rises by this much from sample to sample
@@ -344,4 +344,4 @@ void FillValleys(Land& land, float floor_slope, const std::vector<float>& deepes
   land.height_m = std::move(floor);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -17,7 +17,7 @@
 
 #include "renderer/terrain/land.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// What drives and resists, one value a sample.
 struct Rock {
@@ -62,4 +62,4 @@ void ErodeOnce(Land& land, const Rock& rock, const ScatteredSamples& scattered);
 void FillValleys(Land& land, float floor_slope, const std::vector<float>& deepest_m,
                  const ScatteredSamples& scattered);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation_raster.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kSweeps = 40;
@@ -141,4 +142,4 @@ std::size_t FillVoids(std::vector<float>& height, int rows, int columns) {
   return filled;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation_raster.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -362,4 +363,4 @@ ElevationGrid GeographicExtent(const ElevationRaster& raster, const std::string&
   return BareGridAround(footprint, raster, source, file);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

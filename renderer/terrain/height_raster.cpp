@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct Corner {
@@ -116,4 +116,4 @@ HeightRaster RasterOf(const TriangleMesh& mesh, std::size_t most_nodes) {
   return raster;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

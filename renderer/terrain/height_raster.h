@@ -8,7 +8,7 @@
 
 #include "renderer/terrain/mesh.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Heights z [m] over (x, y) = (first_x_m + column cell_m, first_y_m + row cell_m).
 struct HeightRaster {
@@ -41,4 +41,4 @@ struct GridCell {
 /// than a 512th of its extent). The same for any number of threads.
 [[nodiscard]] HeightRaster RasterOf(const TriangleMesh& mesh, std::size_t most_nodes);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

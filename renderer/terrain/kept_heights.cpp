@@ -12,8 +12,9 @@
 #include "atmosphere/number/fnv1a.h"
 #include "atmosphere/text/error.h"
 #include "lut/program/atomic_file.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +93,4 @@ std::vector<float> KeptHeights(const WantedHeights& wanted,
   return made;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

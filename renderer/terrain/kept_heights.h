@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// FNV-1a, 64 bits, of the heights' bytes, little-endian.
 [[nodiscard]] std::uint64_t FingerprintOf(const std::vector<float>& height_m);
@@ -37,4 +37,4 @@ struct WantedHeights {
 [[nodiscard]] std::vector<float> KeptHeights(const WantedHeights& wanted,
                                              const std::function<std::vector<float>()>& make);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 std::array<double, 4> CubicWeights(double t) {
@@ -112,4 +112,4 @@ Land Bent(const Land& land, double samples, double wavelength_km, std::uint32_t 
   return bent;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

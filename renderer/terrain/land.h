@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Heights [m] on a square grid; row 0 is the northernmost.
 struct Land {
@@ -51,4 +51,4 @@ struct Land {
 /// Moves every sample sideways by up to a few samples, smoothly: straight rivers bend.
 [[nodiscard]] Land Bent(const Land& land, double samples, double wavelength_km, std::uint32_t seed);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

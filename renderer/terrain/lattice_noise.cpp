@@ -6,7 +6,7 @@
 
 #include "renderer/terrain/lattice_text.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A place in its cell of the lattice, and the hashes of the cell's corners.
@@ -91,4 +91,4 @@ double RidgedNoise(double x, double y, int octaves, std::uint32_t seed) {
   return sum / norm;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// A well-mixed 32-bit value of a lattice point and a seed.
 [[nodiscard]] std::uint32_t LatticeHash(std::int32_t x, std::int32_t y, std::uint32_t seed);
@@ -32,4 +32,4 @@ struct NoiseSlope {
 /// depressions, in [0, 1].
 [[nodiscard]] double RidgedNoise(double x, double y, int octaves, std::uint32_t seed);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "renderer/terrain/cell_diagonal.h"
 #include "renderer/terrain/smooth_normals.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
@@ -118,7 +118,7 @@ class MeshBuilder {
       for (int c = 0; c < 4; ++c)
         around[static_cast<std::size_t>(4 * r + c)] = HeightNear(row + r - 1, column + c - 1);
     }
-    return alpenglow::FallingDiagonalFits(around);
+    return renderer::FallingDiagonalFits(around);
   }
 
   // Left out: triangles at a void, and those that a row of samples at the pole has shrunk.
@@ -169,4 +169,4 @@ TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& fram
   return MeshBuilder(grid, frame).Build();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Triangles in the ENU frame of a LocalFrame [m], single precision: a position 100 km from the
 /// origin is rounded by up to 4 mm a coordinate.
@@ -30,4 +31,4 @@ struct TriangleMesh {
 /// that goes once around the earth is closed, and over a pole too.
 [[nodiscard]] TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

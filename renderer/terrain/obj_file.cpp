@@ -19,7 +19,7 @@
 #include "renderer/terrain/polygon_triangles.h"
 #include "renderer/terrain/smooth_normals.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 std::string ReadText(const std::filesystem::path& file) {
@@ -291,4 +291,4 @@ ObjMesh ReadObj(const std::filesystem::path& file, UpAxis up) {
   return ObjMesher(text, file.string()).Mesh();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/up_axis.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct ObjMesh {
   TriangleMesh mesh;
@@ -25,4 +25,4 @@ struct ObjMesh {
 /// no triangles, and as ParseObj.
 [[nodiscard]] ObjMesh ReadObj(const std::filesystem::path& file, UpAxis up = UpAxis::kZ);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,9 +9,10 @@
 #include <optional>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/polygon_triangles.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Words = std::vector<std::string_view>;
@@ -234,4 +235,4 @@ ObjText ParseObj(std::string_view text, const std::string& name) {
   return ObjParser(text, name).Parse();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

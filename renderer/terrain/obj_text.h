@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct ObjText {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -44,4 +44,4 @@ struct ObjText {
 /// @param name  of the file, for messages.
 [[nodiscard]] ObjText ParseObj(std::string_view text, const std::string& name);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

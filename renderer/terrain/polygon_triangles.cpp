@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// The sign of a b - c d without rounding: products are rounded in order, and where they are
@@ -243,4 +243,4 @@ bool IsWithoutArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
   return !(glm::length(glm::cross(u, v)) > kLeast * (glm::dot(u, u) + glm::dot(v, v)));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

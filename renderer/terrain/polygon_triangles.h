@@ -12,7 +12,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct PolygonTriangles {
   /// Indices of corners, wound as the polygon is. Triangles without area are left out; if all are,
@@ -34,4 +34,4 @@ inline constexpr std::size_t kMostPolygonCorners = 10000;
 /// A triangle has no area if it is thin for the length of its edges, whatever that length is.
 [[nodiscard]] bool IsWithoutArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // The chains strike east-north-east. `along` runs with them, `across` runs southwards over them.
@@ -167,4 +167,4 @@ double CrestUnderView(double x_km, double y_km) {
   return SmoothStep((kEnd_km - away_km) / (kEnd_km - kWhole_km));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

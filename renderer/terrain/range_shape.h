@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 inline constexpr double kRangeSpacing_km = 0.07;
 inline constexpr int kRangeSize = 1024;
@@ -37,4 +37,4 @@ inline constexpr double kRangeViewEast_m = 2000.0, kRangeViewNorth_m = 16560.0;
 /// How much a place belongs to the crest that the view stands on: 1 within 0.3 km, 0 from 6 km on.
 [[nodiscard]] double CrestUnderView(double x_km, double y_km);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

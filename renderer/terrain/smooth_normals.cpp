@@ -3,7 +3,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 std::vector<std::array<float, 3>> SmoothNormals(
     const std::vector<glm::dvec3>& positions,
@@ -27,4 +27,4 @@ std::vector<std::array<float, 3>> SmoothNormals(
   return normals;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,11 +7,11 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// Unit normals, one a position; (0, 0, 1) where a position belongs to no triangle.
 [[nodiscard]] std::vector<std::array<float, 3>> SmoothNormals(
     const std::vector<glm::dvec3>& positions,
     const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

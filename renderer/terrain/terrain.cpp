@@ -16,7 +16,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Half an ulp of 1 in float, and the bound of n roundings in a row (Higham 2002, section 3.1).
@@ -325,4 +325,4 @@ std::pair<glm::dvec3, glm::dvec3> Terrain::Bounds() const {
   return {scene_->bounds.low, scene_->bounds.high};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/mesh.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 struct TerrainHit {
   double distance_m;
@@ -55,4 +55,4 @@ class Terrain {
   std::unique_ptr<Scene> scene_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 
 /// The axis of a mesh's file that points up. Wavefront OBJ has no rule.
 enum class UpAxis {
@@ -9,4 +9,4 @@ enum class UpAxis {
   kY,  // x east, y up, z south
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

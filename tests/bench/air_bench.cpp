@@ -14,7 +14,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 ViewRay RayNumber(int i) { return RayFromAngles(1000.0, 20 + i % 69, i % 180, 60 + i % 29); }
@@ -170,4 +170,4 @@ void BuildOfDiffuseLight(benchmark::State& state) {
 BENCHMARK(BuildOfDiffuseLight)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

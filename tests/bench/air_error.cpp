@@ -7,17 +7,18 @@
 #include "tests/fixtures/direct_regimes.h"
 #include "tests/fixtures/ray_regimes.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 void PrintNodes() {
   fmt::print("| air | sun | ray | nodes | rms | 99 % | max |\n|---|---|---|---|---|---|---|\n");
   for (const char* name : {"earth", "hazy"}) {
     const Medium medium = MediumPreset(name);
-    for (const auto& sun : tests::kSunHeights) {
-      for (const auto& view : tests::kRayViews) {
+    for (const auto& sun : alpenglow::tests::kSunHeights) {
+      for (const auto& view : alpenglow::tests::kRayViews) {
         for (const int nodes : {8, 12}) {
-          const auto error = tests::ErrorOfRegime(medium, sun, view.view, {.nodes = nodes}, 600);
+          const auto error =
+              alpenglow::tests::ErrorOfRegime(medium, sun, view.view, {.nodes = nodes}, 600);
           fmt::print("| {} | {} | {} | {} | {:.1e} | {:.1e} | {:.1e} |\n", name, sun.name,
                      view.name, nodes, error.rms, error.percentile99, error.largest);
         }
@@ -26,12 +27,12 @@ void PrintNodes() {
   }
 }
 
-void PrintDirect(const Medium& medium, const tests::DirectRegime& regime) {
+void PrintDirect(const Medium& medium, const alpenglow::tests::DirectRegime& regime) {
   const DirectScattering direct(medium);
   const AirIntegrator<float>& air = direct.reference();
-  const tests::JudgedRays judged = tests::JudgedRaysOf(regime, medium, 20001, 1500);
+  const alpenglow::tests::JudgedRays judged = tests::JudgedRaysOf(regime, medium, 20001, 1500);
   const auto print = [&](const char* method, const auto& scatter) {
-    const auto error = tests::ErrorsOf(judged, air, scatter);
+    const auto error = alpenglow::tests::ErrorsOf(judged, air, scatter);
     fmt::print("| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} |\n", medium.name, regime.name, method,
                error.rms, error.percentile99, error.largest);
   };
@@ -41,14 +42,14 @@ void PrintDirect(const Medium& medium, const tests::DirectRegime& regime) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere
 
 int main() {
-  using namespace alpenglow;
+  using namespace alpenglow::atmosphere;
   PrintNodes();
   fmt::print("\n| air | regime | method | rms | 99 % | max |\n|---|---|---|---|---|---|\n");
   for (const std::string& preset : MediumPresetNames()) {
-    for (const tests::DirectRegime& regime : tests::DirectRegimes())
+    for (const alpenglow::tests::DirectRegime& regime : alpenglow::tests::DirectRegimes())
       PrintDirect(MediumPreset(preset), regime);
   }
 }

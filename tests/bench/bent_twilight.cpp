@@ -16,9 +16,9 @@
 
 namespace {
 
-using namespace alpenglow;
-using tests::BandValues;
-using tests::BentTwilight;
+using namespace alpenglow::atmosphere;
+using alpenglow::tests::BandValues;
+using alpenglow::tests::BentTwilight;
 
 struct View {
   const char* name;

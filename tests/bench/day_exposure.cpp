@@ -36,7 +36,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kTooLarge = 0.03, kSame = 1e-3;
@@ -225,7 +225,7 @@ void Run(const std::string& date, const std::string& name, double heading,
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer
 
 int main(int argc, char** argv) {
   const auto argument = [&](int index, const char* otherwise) {
@@ -234,7 +234,7 @@ int main(int argc, char** argv) {
   const auto number = [&](int index, const char* otherwise) {
     return std::atoi(argument(index, otherwise).c_str());
   };
-  alpenglow::Run(argument(1, "2026-06-15"), argument(2, "bare"), number(3, "0"),
-                 {number(4, "0"), number(5, "24")});
+  alpenglow::renderer::Run(argument(1, "2026-06-15"), argument(2, "bare"), number(3, "0"),
+                           {number(4, "0"), number(5, "24")});
   return 0;
 }

@@ -9,7 +9,7 @@
 
 #include "tests/fixtures/effect_scenes.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct Timed {
@@ -68,10 +68,10 @@ void Measure(const EffectScene& scene, RenderSettings settings) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer
 
 int main(int argc, char** argv) {
-  using namespace alpenglow;
+  using namespace alpenglow::renderer;
   RenderSettings settings;
   settings.width = argc > 2 ? std::atoi(argv[1]) : 320;
   settings.height = argc > 2 ? std::atoi(argv[2]) : 180;

@@ -18,9 +18,10 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/table/scattering_map.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Texels = std::vector<float>;  // RGBA
@@ -121,7 +122,7 @@ void CompareFolders(const std::string& ours, const std::string& stock, double lo
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut
 
 int main(int argc, char** argv) {
   if (argc < 3) {
@@ -129,7 +130,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    alpenglow::CompareFolders(argv[1], argv[2], argc > 3 ? std::atof(argv[3]) : 102.0);
+    alpenglow::lut::CompareFolders(argv[1], argv[2], argc > 3 ? std::atof(argv[3]) : 102.0);
   } catch (const std::exception& error) {
     fmt::print(stderr, "exchange_error: {}\n", error.what());
     return 3;

@@ -9,7 +9,7 @@
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/ground/lit_ground.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDegree, 0.0};
@@ -98,4 +98,4 @@ void VerticesLit(benchmark::State& state) {
 BENCHMARK(VerticesLit)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "atmosphere/lamp/airlight.h"
 #include "renderer/lamp/lamp_works.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Work = LampWork;
@@ -68,10 +68,10 @@ double Nanoseconds(const std::vector<Work>& works, const Rule& rule, int nodes) 
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer
 
 int main(int argc, char** argv) {
-  using namespace alpenglow;
+  using namespace alpenglow::renderer;
   const int cases = argc > 1 ? std::atoi(argv[1]) : 3000;
   struct Kind {
     const char* name;

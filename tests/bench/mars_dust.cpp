@@ -25,7 +25,7 @@
 
 namespace {
 
-using namespace alpenglow;
+using namespace alpenglow::atmosphere;
 
 constexpr SizeDistribution kSizes{.effective_radius_um = 1.7, .effective_variance = 0.25};
 constexpr double kRealIndex = 1.5;

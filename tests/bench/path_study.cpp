@@ -16,7 +16,7 @@
 #include "atmosphere/number/halton.h"
 #include "lut/eval/eval.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 void PrintTimes() {
@@ -163,11 +163,11 @@ void PrintErrors(bool every_ray) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut
 
 int main(int argc, char** argv) {
   const std::string_view part = argc > 1 ? argv[1] : "";
-  if (part == "" || part == "times") alpenglow::PrintTimes();
-  if (part == "" || part == "irradiance") alpenglow::PrintIrradiance();
-  if (part == "" || part == "errors" || part == "rays") alpenglow::PrintErrors(part == "rays");
+  if (part == "" || part == "times") alpenglow::lut::PrintTimes();
+  if (part == "" || part == "irradiance") alpenglow::lut::PrintIrradiance();
+  if (part == "" || part == "errors" || part == "rays") alpenglow::lut::PrintErrors(part == "rays");
 }

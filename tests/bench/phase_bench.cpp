@@ -5,7 +5,7 @@
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/ray/single_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr int kAngles = 1000;
@@ -54,4 +54,4 @@ void MakeATable(benchmark::State& state) {
 BENCHMARK(MakeATable)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

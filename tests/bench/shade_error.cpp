@@ -28,7 +28,7 @@
 #include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 720;
@@ -283,6 +283,6 @@ void Compare() {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer
 
-int main() { alpenglow::Compare(); }
+int main() { alpenglow::viewer::Compare(); }

@@ -7,7 +7,7 @@
 #include "renderer/shadow/sun_probes.h"
 #include "tests/fixtures/occlusion_march.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// The built-in range with everything that a picture of it needs.
@@ -130,4 +130,4 @@ void ShaftsBySunProbes(benchmark::State& state) {
 BENCHMARK(ShaftsBySunProbes)->Arg(15)->Arg(3)->ArgName("sun");
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,7 +8,7 @@
 #include "tests/fixtures/occlusion_march.h"
 
 int main(int argc, char** argv) {
-  using namespace alpenglow;
+  using namespace alpenglow::renderer;
   Scene scene;
   scene.place = {47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDegree, 0.0};
   scene.medium = MediumPreset("earth");

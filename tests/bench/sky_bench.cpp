@@ -10,7 +10,7 @@
 #include "lut/sky/sky_view.h"
 #include "tests/fixtures/lit_air.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using tests::Earth;
@@ -69,4 +69,4 @@ void Panorama(benchmark::State& state) {
 BENCHMARK(Panorama)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,7 +8,7 @@
 
 #include "tests/fixtures/sky_view_errors.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 void Row(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const DirectSky& direct,
@@ -27,10 +27,10 @@ void Row(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const Dir
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut
 
 int main(int argc, char** argv) {
-  using namespace alpenglow;
+  using namespace alpenglow::lut;
   SkyViewSize size;
   const bool fixed = argc > 4 && std::atoi(argv[1]) > 0;
   if (fixed) {

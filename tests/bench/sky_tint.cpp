@@ -27,7 +27,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/train/sky_spectra.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::array kElevations_deg{2.0, 5.0, 10.0, 20.0, 45.0, 90.0};
@@ -150,9 +150,9 @@ void Run() {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut
 
 int main() {
-  alpenglow::Run();
+  alpenglow::lut::Run();
   return 0;
 }

@@ -20,7 +20,7 @@
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// Of many differences.
@@ -253,12 +253,12 @@ void PrintTime() {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere
 
 int main(int argc, char** argv) {
   const std::string_view part = argc > 1 ? argv[1] : "";
-  if (part == "" || part == "slab") alpenglow::PrintSlab();
-  if (part == "" || part == "sphere") alpenglow::PrintSphere();
-  if (part == "" || part == "aerosol") alpenglow::PrintAerosol();
-  if (part == "" || part == "time") alpenglow::PrintTime();
+  if (part == "" || part == "slab") alpenglow::atmosphere::PrintSlab();
+  if (part == "" || part == "sphere") alpenglow::atmosphere::PrintSphere();
+  if (part == "" || part == "aerosol") alpenglow::atmosphere::PrintAerosol();
+  if (part == "" || part == "time") alpenglow::atmosphere::PrintTime();
 }

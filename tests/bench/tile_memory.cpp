@@ -19,7 +19,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Ranges up to 3 km high, as SRTM stores them: big-endian, row by row from the north.
@@ -71,6 +71,6 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer
 
-int main(int argc, char** argv) { return alpenglow::Main(argc, argv); }
+int main(int argc, char** argv) { return alpenglow::renderer::Main(argc, argv); }

@@ -17,7 +17,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/train/band_training.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 struct Options {
@@ -103,18 +103,18 @@ void Run(const Options& options, const std::string& command) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut
 
 int main(int argc, char** argv) {
-  alpenglow::Options options;
+  alpenglow::lut::Options options;
   CLI::App app("Trains wavelengths and colour matrices of bands on simulated skies");
-  alpenglow::AddOptions(app, options);
+  alpenglow::lut::AddOptions(app, options);
   CLI11_PARSE(app, argc, argv);
   std::string command = "train_bands";
   for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
   try {
-    alpenglow::Run(options, command);
-  } catch (const alpenglow::InputError& error) {
+    alpenglow::lut::Run(options, command);
+  } catch (const alpenglow::lut::InputError& error) {
     fmt::print(stderr, "train_bands: {}\n", error.what());
     return 3;
   }

@@ -16,7 +16,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/full_screen.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using tests::Earth;
@@ -132,4 +132,4 @@ void SkyAlone(benchmark::State& state) {
 BENCHMARK(SkyAlone)->Arg(3)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

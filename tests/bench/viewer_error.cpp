@@ -12,22 +12,22 @@
 
 #include "tests/viewer/air/air_judge.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
-std::string TextOf(const tests::AirErrors& errors) {
+std::string TextOf(const alpenglow::tests::AirErrors& errors) {
   return fmt::format("{:6.3f} {:6.3f} {:6.2f}", 100.0 * errors.Rms(),
                      100.0 * errors.Percentile(99.0), 100.0 * errors.Percentile(100.0));
 }
 
-void Study(const tests::LitAir& air, AirQuality quality, const AirEye& eye) {
+void Study(const alpenglow::tests::LitAir& air, AirQuality quality, const AirEye& eye) {
   const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTablesSize size = AirTablesSizeOf(quality, eye.altitude_m);
   const auto start = std::chrono::steady_clock::now();
   const AirTables tables = MakeAirTables(air.air, air.diffuse, medium, eye, size);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-  const tests::AirReading reading(tables, medium);
-  const tests::AirJudge judge(air, eye);
+  const alpenglow::tests::AirReading reading(tables, medium);
+  const alpenglow::tests::AirJudge judge(air, eye);
   constexpr int kRays = 1500;
   fmt::print("{:9.0f} {:6.1f} {:>3}x{}x{:<3} {:7.2f} | {} | {} | {}\n", eye.altitude_m,
              std::asin(eye.mu_s) / kRadiansPerDegree, size.columns, size.rows + size.ground_rows,
@@ -45,12 +45,12 @@ std::vector<double> NumbersOf(const char* text) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer
 
 int main(int argc, char** argv) {
-  using namespace alpenglow;
+  using namespace alpenglow::viewer;
   const auto quality = static_cast<AirQuality>(argc > 1 ? std::atoi(argv[1]) : 3);
-  const tests::LitAir air(MediumPreset(argc > 4 ? argv[4] : "earth"));
+  const alpenglow::tests::LitAir air(MediumPreset(argc > 4 ? argv[4] : "earth"));
   fmt::print(
       "errors in %: rms, 99 %, largest\n{:>9} {:>6} {:>10} {:>7} | {:^20} | {:^20} | {:^20}\n",
       "eye m", "sun", "size", "ms", "sky", "ways", "transmittance");

@@ -20,7 +20,7 @@
 #include "viewer/paint/sky_painter.h"
 #include "viewer/paint/view_difference.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// PixelChange of each pixel, in grey; those that are left out are blue.
@@ -92,20 +92,20 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer
 
 int main(int count, char** arguments) {
   if (count < 2) {
     fmt::print(stderr, "usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]\n");
     return 2;
   }
-  alpenglow::RenderSettings settings;
+  alpenglow::viewer::RenderSettings settings;
   settings.width = count > 3 ? std::atoi(arguments[2]) : 640;
   settings.height = count > 3 ? std::atoi(arguments[3]) : 360;
   settings.samples_per_pixel = count > 4 ? std::atoi(arguments[4]) : 64;
-  settings.filter = alpenglow::PixelFilter::Kind::kBox;
-  settings.layers = alpenglow::LayersOfEdges();
-  const alpenglow::HeadlessContext context;
-  alpenglow::Run(arguments[1], settings, count > 5 ? arguments[5] : "");
+  settings.filter = alpenglow::viewer::PixelFilter::Kind::kBox;
+  settings.layers = alpenglow::viewer::LayersOfEdges();
+  const alpenglow::viewer::HeadlessContext context;
+  alpenglow::viewer::Run(arguments[1], settings, count > 5 ? arguments[5] : "");
   return 0;
 }

@@ -21,7 +21,7 @@
 #include "viewer/paint/sky_painter.h"
 #include "viewer/shaders/full_screen.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
@@ -150,10 +150,10 @@ int Run() {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer
 
 int main() {
   // Of Mesa's software OpenGL: one thread, for vertices have one only, however many pixels have.
   setenv("LP_NUM_THREADS", "1", 1);
-  return alpenglow::Run();
+  return alpenglow::viewer::Run();
 }

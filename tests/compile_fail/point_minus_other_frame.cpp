@@ -4,12 +4,12 @@
 #include "atmosphere/sun/geodesy.h"
 
 #ifdef ALPENGLOW_CONTROL
-using OtherFrame = alpenglow::Ecef;
+using OtherFrame = alpenglow::atmosphere::Ecef;
 #else
-using OtherFrame = alpenglow::Enu;
+using OtherFrame = alpenglow::atmosphere::Enu;
 #endif
 
-auto Difference(const alpenglow::Point<alpenglow::Ecef>& to,
-                const alpenglow::Point<OtherFrame>& from) {
+auto Difference(const alpenglow::atmosphere::Point<alpenglow::atmosphere::Ecef>& to,
+                const alpenglow::atmosphere::Point<OtherFrame>& from) {
   return to - from;
 }

@@ -5,11 +5,12 @@
 #include <alpenglow/lut/picture/image.h>
 
 int main() {
-  const alpenglow::AirIntegrator<float> air(alpenglow::MediumPreset("earth"));
+  const alpenglow::atmosphere::AirIntegrator<float> air(
+      alpenglow::atmosphere::MediumPreset("earth"));
   const float zenith = air.TransmittanceToSpace(0.0, 1.0)[0];
-  const double rayleigh =
-      alpenglow::LegendreCoefficients({.kind = alpenglow::PhaseKind::kRayleigh}, 2)[2];
+  const double rayleigh = alpenglow::lut::LegendreCoefficients(
+      {.kind = alpenglow::atmosphere::PhaseKind::kRayleigh}, 2)[2];
   const bool sensible = zenith > 0.5F && zenith < 1.0F && rayleigh > 0.0999 && rayleigh < 0.1001 &&
-                        alpenglow::ExposureScale(15.0) > 0.0;
+                        alpenglow::lut::ExposureScale(15.0) > 0.0;
   return sensible ? 0 : 1;
 }

@@ -4,12 +4,14 @@
 
 #include <cstdio>
 
+using namespace alpenglow::lut;  // and with it alpenglow::atmosphere
+
 int main() {
-  const alpenglow::Medium earth = alpenglow::MediumPreset("earth");
-  const alpenglow::AirIntegrator<float> air(earth);  // single scattering
-  const alpenglow::DiffuseLight orders(earth);       // all higher orders, solved once
+  const Medium earth = MediumPreset("earth");
+  const AirIntegrator<float> air(earth);  // single scattering
+  const DiffuseLight orders(earth);       // all higher orders, solved once
   // From 2 m; view and sun are 80 and 60 degrees from the zenith, and 90 degrees apart in azimuth.
-  const alpenglow::ViewRay ray = alpenglow::RayFromAngles(2.0, 80.0, 90.0, 60.0);
+  const ViewRay ray = RayFromAngles(2.0, 80.0, 90.0, 60.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});
   const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
   const auto more = orders.InscatterAlong(samples, ray.nu);

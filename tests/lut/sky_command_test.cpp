@@ -13,7 +13,7 @@
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -154,4 +154,4 @@ TEST_F(SkylutSky, ProgressIsJsonLinesOnRequest) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

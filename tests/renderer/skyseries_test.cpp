@@ -18,7 +18,7 @@
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/places.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -575,4 +575,4 @@ TEST_F(Skyseries, TwoProcessesOnTheSameFramesBothSucceed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::ElementsAre;
@@ -75,4 +75,4 @@ TEST_F(Benchmarks, EveryPassHasALineAndTheFrameTheLastOne) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

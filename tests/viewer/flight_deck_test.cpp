@@ -13,7 +13,7 @@
 #include "tests/viewer/land/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -509,4 +509,4 @@ TEST_F(FlightDeckTest, MessagesGoAfterAWhile) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,7 +14,7 @@
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::ElementsAre;
@@ -276,4 +276,4 @@ TEST_F(PicturesInParts, AreExposedAsAWhole) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 
 #include "tests/viewer/land/headless_land.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -147,4 +147,4 @@ TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

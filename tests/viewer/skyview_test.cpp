@@ -14,7 +14,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/picture_tiles.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -445,4 +445,4 @@ TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

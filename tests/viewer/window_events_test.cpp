@@ -7,9 +7,10 @@
 #include <cstdlib>
 
 #include "atmosphere/text/error.h"
+#include "viewer/layer.h"
 #include "viewer/window.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 class WindowHears : public ::testing::Test {
@@ -109,4 +110,4 @@ TEST_F(WindowHears, AResetOfTheGraphicsCardIsADisplayThatIsLost) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 TEST(WindowIcons, ThePeakIsRedUnderASkyThatIsBlueAbove) {
@@ -22,4 +22,4 @@ TEST(WindowIcons, ThePeakIsRedUnderASkyThatIsBlueAbove) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

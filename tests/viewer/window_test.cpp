@@ -13,8 +13,9 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::ElementsAre;
@@ -200,4 +201,4 @@ TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

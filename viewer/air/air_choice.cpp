@@ -8,7 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kMostAerosol = 1000.0;
@@ -79,4 +79,4 @@ double OzoneDobson(const Medium& medium) {
   return dobson;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

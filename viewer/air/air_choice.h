@@ -5,8 +5,9 @@
 #include <optional>
 
 #include "atmosphere/air/medium.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Changes of a medium; what is left out stays.
 struct AirChoice {
@@ -28,4 +29,4 @@ struct AirChoice {
 /// Of the column, in the band that absorbs most; 0 without ozone.
 [[nodiscard]] double OzoneDobson(const Medium& medium);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

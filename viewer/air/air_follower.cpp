@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kMostChange = 1e-3;   // that is left alone while eye or sun move
@@ -164,4 +164,4 @@ void AirFollower::Settle(const AirView& view) {
   Follow(view);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

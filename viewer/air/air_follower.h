@@ -13,7 +13,7 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/job/latest_job.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What a frame sees of the air.
 struct AirView {
@@ -100,4 +100,4 @@ class AirFollower {
   LatestJob<Request, Made> maker_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

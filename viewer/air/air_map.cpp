@@ -6,7 +6,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Angle below the horizontal at which rays from altitude h touch the sphere of altitude z <= h.
@@ -35,4 +35,4 @@ AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m, double
   sky_crowding = ground_crowding = altitude > ceiling ? 0.0 : 6.0 / (1.0 + layers) - 2.0;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

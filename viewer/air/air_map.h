@@ -4,16 +4,17 @@
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/shell.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
-
-namespace shared {
+namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/dialect/shared_begin.h"
 #include "viewer/air/air_map.glsl"
 #include "atmosphere/dialect/shared_end.h"
 // clang-format on
-}  // namespace shared
+}  // namespace alpenglow::shared
+
+namespace alpenglow::viewer {
 
 /// The axes of one eye's tables. Angles in radians, lengths in km.
 struct AirMap {
@@ -30,4 +31,4 @@ struct AirMap {
   double sky_crowding, ground_crowding;  // of distances
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kHair_rad = 1e-9;  // off the horizon, to the side of it that a row belongs to
@@ -67,4 +67,4 @@ float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km) 
       map.altitude, mu_s, nu, distance_km, map.twilight_fall, map.twilight_reference, map.radius));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "viewer/air/air_map.h"
 #include "viewer/air/air_tables.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Node i of n over [0, 1].
 [[nodiscard]] inline double Unit(int i, int n) { return static_cast<double>(i) / (n - 1); }
@@ -61,4 +61,4 @@ class AirPhases {
 void FillWays(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
               AirTables& tables);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "lut/table/transmittance_map.h"
 #include "viewer/air/air_rows.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::size_t kBands = 4;
@@ -222,4 +222,4 @@ MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& b
   return tables;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

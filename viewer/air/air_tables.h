@@ -29,7 +29,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "viewer/air/air_map.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct AirTablesSize {
   int sky_columns, sky_rows, sky_ground_rows;  // of the sky
@@ -117,4 +117,4 @@ struct MediumTables {
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

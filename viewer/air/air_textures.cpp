@@ -11,7 +11,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 enum Table : std::size_t { kSky, kThrough, kExtinction, kSingle, kDiffuse, kPhase, kToSun };
@@ -152,4 +152,4 @@ void AirTextures::Bind(int first_unit, GLuint binding) const {
   glBufferData(GL_UNIFORM_BUFFER, sizeof(values_), &values_, GL_DYNAMIC_DRAW);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

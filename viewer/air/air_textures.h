@@ -12,7 +12,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Where a sun stands, as unit vectors in the frame of the eye, east, north, up, and where its straight
 /// rays light the air from (SunForAir of sun.h).
@@ -61,4 +61,4 @@ class AirTextures {
   AirTablesBlock values_{};
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

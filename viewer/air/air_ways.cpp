@@ -7,7 +7,7 @@
 #include "lut/diffuse/diffuse_fan.h"
 #include "viewer/air/air_rows.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// A row of rays: where they enter the air, where they may first meet land and where they may last
@@ -355,4 +355,4 @@ void FillWays(const AirIntegrator<float>& air, const DiffuseLight& diffuse, cons
   WayBuilder(air, diffuse, phases, tables).Fill();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

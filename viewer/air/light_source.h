@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class LightSource : std::size_t { kSun, kMoon };
 inline constexpr std::size_t kLightSources = 2;
@@ -16,4 +16,4 @@ inline constexpr std::size_t kLightSources = 2;
   return source == LightSource::kSun ? LightSource::kMoon : LightSource::kSun;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
   constexpr DiffuseLightOptions kDraft{
@@ -22,4 +22,4 @@ std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solu
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include "viewer/air/air_tables.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// How well: a draft takes a third of the time; irradiance from its sky is good to 3 % by day, 6 %
 /// in twilight.
@@ -26,4 +26,4 @@ struct SolvedAir {
 [[nodiscard]] std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium,
                                                         AirSolution solution = AirSolution::kFull);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

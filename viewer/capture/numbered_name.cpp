@@ -8,8 +8,9 @@
 #include <string>
 
 #include "lut/program/growing_file.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,4 +42,4 @@ fs::path NextFlight(const fs::path& folder) {
   return file;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

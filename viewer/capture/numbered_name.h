@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The next free of skyview-0001, skyview-0002, ... in the folder: with neither a .png nor an .exr,
 /// so that both of one frame have one number.
@@ -16,4 +16,4 @@ namespace alpenglow {
 /// The next free of flight-0001.csv, flight-0002.csv, ...: neither there nor being recorded into.
 [[nodiscard]] std::filesystem::path NextFlight(const std::filesystem::path& folder);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

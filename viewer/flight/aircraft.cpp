@@ -10,7 +10,7 @@
 #include "atmosphere/number/gravity.h"
 #include "viewer/flight/standard_air.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kWheels_m = 1.5;   // of the pilot's eye over the ground, standing
@@ -400,4 +400,4 @@ Eye EyeIn(const AircraftState& state, const AircraftKind& kind, const Ellipsoid&
   return eye;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

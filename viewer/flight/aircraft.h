@@ -28,7 +28,7 @@
 
 #include "viewer/flight/flight.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What kind of aircraft it is. Coefficients refer to the wing's area.
 struct AircraftKind {
@@ -136,4 +136,4 @@ struct AircraftReadout {
                         const Ellipsoid& ellipsoid, double look_right_rad, double look_up_rad,
                         double fov_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

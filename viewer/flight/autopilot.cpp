@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/gravity.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 double Toward(double value, double target, double most) {
@@ -136,4 +136,4 @@ Autopilot::Flown Autopilot::Fly(const AircraftState& state, const AircraftKind& 
   return flown;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

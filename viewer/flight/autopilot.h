@@ -16,7 +16,7 @@
 
 #include "viewer/flight/aircraft.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What is held; at most one of a heading and level wings, and of a height and a climb.
 struct AutopilotTargets {
@@ -57,4 +57,4 @@ class Autopilot {
   std::optional<double> speed_before_m_per_s_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

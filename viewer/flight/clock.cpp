@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/series/frame_times.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::array<double, 11> kTimeRates{-3600.0, -600.0, -60.0, -10.0, -1.0,  0.0,
@@ -118,4 +118,4 @@ void SceneClock::Type(const std::string& text, const GeodeticPosition& place,
   Set(InstantFromText(text, {place, zone, now_}));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

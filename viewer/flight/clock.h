@@ -9,8 +9,9 @@
 
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Seconds of the scene per second of the pilot, one step faster (+1) or slower (-1) than `rate`:
 /// ..., -60, -10, -1, 0, 1, 10, 60, ... up to 3600 either way.
@@ -67,4 +68,4 @@ class SceneClock {
   bool paused_ = false;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

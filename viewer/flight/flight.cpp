@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// Through a telescope the head turns slowly: 45 degrees a second in a view of 60 degrees.
@@ -116,4 +116,4 @@ Eye KeptAbove(const Eye& eye, double ground_m, double clearance_m) {
   return kept;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

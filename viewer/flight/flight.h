@@ -6,8 +6,9 @@
 
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/camera/ground_height.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Who moves the eye: the pilot freely, wings and engine, or a track that is followed.
 enum class FlightMode { kFree, kAircraft, kTrack };
@@ -74,4 +75,4 @@ struct ViewAxes {
 /// The eye lifted to at least `clearance_m` over ground of height `ground_m`.
 [[nodiscard]] Eye KeptAbove(const Eye& eye, double ground_m, double clearance_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -3,7 +3,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 std::vector<CameraPathPoint> EverySecond(const std::vector<CameraPathPoint>& points) {
@@ -33,4 +33,4 @@ CameraPath FlightLog::Path() const {
   return CameraPath(std::move(points));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "renderer/camera/camera_path.h"
 #include "viewer/flight/flight_recorder.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A flight in memory that does not grow without end: points as often as FlightRecorder has them,
 /// and every second one of them, from then on half as often, each time that there would be too
@@ -34,4 +34,4 @@ class FlightLog {
   bool has_flown_ = false;               // the eye has been anywhere but where it began
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

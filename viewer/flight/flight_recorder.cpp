@@ -10,7 +10,7 @@
 #include "renderer/series/frame_name.h"
 #include "viewer/job/latest_job.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 CameraPose PoseOf(const Eye& eye) {
   return {eye.place, eye.heading_rad, eye.pitch_rad, eye.roll_rad, eye.fov_rad};
@@ -133,4 +133,4 @@ std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern, in
   return files;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "renderer/camera/camera_path.h"
 #include "viewer/flight/flight.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 [[nodiscard]] CameraPose PoseOf(const Eye& eye);
 [[nodiscard]] Eye EyeOf(const CameraPose& pose);
@@ -75,4 +75,4 @@ struct ReplayFrame {
 [[nodiscard]] std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern,
                                                                 int count);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

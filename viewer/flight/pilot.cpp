@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "viewer/flight/flight_recorder.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kStep_s = 1.0 / 120.0;
@@ -231,4 +231,4 @@ FlightReadout Pilot::Readout(const GroundHeight& ground) const {
   return readout;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include "viewer/flight/flight.h"
 #include "viewer/flight/pilot_controls.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Where something flies to: heading clockwise from north, climb over the horizontal.
 struct Course {
@@ -123,4 +123,4 @@ class Pilot {
   double track_s_ = 0.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 #include "viewer/flight/aircraft.h"
 #include "viewer/flight/flight.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct PilotControls {
   Steering camera = {};  // the free camera
@@ -14,4 +14,4 @@ struct PilotControls {
   double look_right = 0.0, look_up = 0.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,7 +14,7 @@
 #include "atmosphere/text/toml_table.h"
 #include "viewer/embedded_text.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::size_t kFields = 9;
@@ -257,4 +257,4 @@ LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone) {
   return local;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

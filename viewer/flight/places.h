@@ -13,7 +13,7 @@
 #include "atmosphere/sun/time.h"
 #include "viewer/flight/flight.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class PlaceKind { kAirport, kPeak, kCity, kPole };
 
@@ -61,4 +61,4 @@ struct LocalTime {
 /// Throws InputError when there is no such zone.
 [[nodiscard]] LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "atmosphere/number/gravity.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kGasConstant_J_per_kmol_K = 8314.32;  // as the standard has it
@@ -68,4 +69,4 @@ StandardAir StandardAirAt(double height_m) {
   return {PressureIn(layer, geopotential_m - layer.base_m) / gas, std::sqrt(kHeatRatio * gas)};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 // Heights over the ellipsoid are taken for heights over the sea: the sea is within 110 m of it.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct StandardAir {
   double density_kg_per_m3;
@@ -20,4 +20,4 @@ struct StandardAir {
 /// sea the lowest layer is continued, above 86 km the density falls on with the last scale height.
 [[nodiscard]] StandardAir StandardAirAt(double height_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

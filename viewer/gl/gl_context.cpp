@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // libepoxy ends the process when it finds no libEGL; a missing library is the machine's condition.
@@ -139,4 +140,4 @@ void CheckGl(const char* where) {
   throw InternalError(fmt::format("{}: OpenGL error 0x{:04x}", where, error));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A version of OpenGL, as asked of a driver.
 struct GlVersion {
@@ -48,4 +48,4 @@ void RequireContext();
 /// DisplayError when that is a lack of memory or a lost context.
 void CheckGl(const char* where);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A name made by Kind::Make and given back by Kind::Free; moves, never copies.
 template <typename Kind>
@@ -89,4 +89,4 @@ using GlFramebuffer = GlObject<gl_kind::Framebuffer>;
 using GlQuery = GlObject<gl_kind::Query>;
 using GlProgram = GlObject<gl_kind::Program>;
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 double MillisecondsOfThisThread() {
@@ -85,4 +85,4 @@ std::vector<PassTime> PassTimer::TakeAll() {
   return Take();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -17,7 +17,7 @@
 
 #include "viewer/gl/gl_objects.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class PassClock {
   kNone,      // passes are not timed
@@ -73,4 +73,4 @@ class PassTimer {
   std::vector<GlQuery> free_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 int Parts(int whole, int part) { return (whole + part - 1) / part; }
@@ -135,4 +135,4 @@ void RequireMemoryFor(int width, int height, int bytes_per_pixel) {
                   width, height, 1e-9 * needed, 1e-9 * *spare));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "lut/picture/image.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A rectangle of a picture [pixels], row 0 at the top.
 struct PictureTile {
@@ -68,4 +69,4 @@ void RequireDrawable(int width, int height);
 /// for each pixel. Only where the system tells (Linux).
 void RequireMemoryFor(int width, int height, int bytes_per_pixel);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 
 #include "viewer/gl/gl_context.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 GLsizeiptr BytesOf(std::size_t pixels) {
@@ -45,4 +45,4 @@ std::optional<std::vector<std::array<float, 3>>> PixelReader::Take() {
   return rgb;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Reads one rectangle after the other. An OpenGL context must be current in all calls.
 class PixelReader {
@@ -39,4 +39,4 @@ class PixelReader {
   GLsync arrives_ = nullptr;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

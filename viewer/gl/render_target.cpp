@@ -9,7 +9,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/gl/gl_context.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 struct FormatRow {
@@ -140,4 +140,4 @@ DisplayImage RenderTarget::ReadBytes() const {
   return image;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,8 +8,9 @@
 
 #include "lut/picture/image.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What a pixel of a picture is made of; all of them can be drawn into by OpenGL 3.3.
 enum class PixelFormat {
@@ -82,4 +83,4 @@ inline void Fit(std::optional<RenderTarget>& target, int width, int height, Pixe
 /// Filtering of a bound texture: linear or none, clamped at the edges.
 void ClampAndFilter(GLenum target, bool linear);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -4,7 +4,7 @@
 
 #include <epoxy/gl.h>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Pixels from a lower left one on.
 struct PixelBox {
@@ -23,4 +23,4 @@ class Scissor {
   Scissor& operator=(const Scissor&) = delete;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,8 +11,9 @@
 #include "atmosphere/text/error.h"
 #include "lut/embedded_text.h"
 #include "renderer/embedded_text.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::size_t kLinesOfAPiece = 100000;  // more than any piece has
@@ -185,4 +186,4 @@ void ShaderProgram::BindSampler(const char* sampler, int unit) const {
   glUniform1i(Uniform(sampler), unit);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

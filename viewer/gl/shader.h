@@ -14,7 +14,7 @@
 
 #include "viewer/gl/gl_objects.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A text that becomes part of a shader, and the name it has in messages.
 struct ShaderPiece {
@@ -68,4 +68,4 @@ class ShaderProgram {
   GlProgram program_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

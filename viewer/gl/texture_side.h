@@ -4,7 +4,7 @@
 
 #include <bit>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// `side`, or one more where it is a power of two (but 1). Mesa's software driver compiles a program
 /// again when a side of a texture that it reads becomes a power of two, or ceases to be one: frames
@@ -14,4 +14,4 @@ namespace alpenglow {
   return side > 1 && std::has_single_bit(static_cast<unsigned>(side)) ? side + 1 : side;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

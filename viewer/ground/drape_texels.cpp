@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 FlatRectangle RectangleOf(const TriangleMesh& mesh) {
   double west = std::numeric_limits<double>::infinity(), south = west, east = -west, north = -west;
@@ -56,4 +56,4 @@ DrapeTexels::DrapeTexels(const ColourDrape& drape, const FlatRectangle& over, st
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

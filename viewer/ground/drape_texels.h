@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "renderer/ground/colour_drape.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// East and north in the frame of the ground [m].
 struct FlatRectangle {
@@ -32,4 +33,4 @@ struct DrapeTexels {
   DrapeTexels(const ColourDrape& drape, const FlatRectangle& over, std::size_t most);
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

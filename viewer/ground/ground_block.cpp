@@ -10,7 +10,7 @@
 #include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Lower than any ground.
@@ -137,4 +137,4 @@ void GroundTextures::Bind(const ShaderProgram& program, int first_unit, LightSou
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

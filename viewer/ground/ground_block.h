@@ -16,7 +16,7 @@
 #include "viewer/ground/sea_mirror.h"
 #include "viewer/ground/sky_tilt.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// `block GroundLight` of ground_light.glsl.
 struct GroundLightBlock {
@@ -80,4 +80,4 @@ class GroundTextures {
   std::array<GlTexture, kLightSources> sea_mirrors_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 
 #include "atmosphere/ray/single_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // How far the eye comes before other land is looked at, as a share of its half width.
@@ -320,4 +320,4 @@ std::optional<LightOfVertices> GroundFollower::Light() const {
   return LightOfVertices{at, to_disk};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

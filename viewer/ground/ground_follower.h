@@ -18,7 +18,7 @@
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shade_follower.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The land whose light is made: as much as stands over its own valleys, and from high up as far as
 /// an eye sees it well.
@@ -120,4 +120,4 @@ class GroundFollower {
 [[nodiscard]] GroundFollower::View Ahead(const GroundFollower::View& before,
                                          const GroundFollower::View& now, double steps);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/ground/on_this_thread.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 LampLight NoLamps(const SceneGround& ground, const Medium& medium) {
@@ -56,4 +56,4 @@ std::shared_ptr<const TerrainLight> GroundSite::Under(const Lighting& light) con
   return light_.OnTerrain({light, nullptr});
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -19,7 +19,7 @@
 #include "renderer/scene/scene.h"
 #include "viewer/ground/mesh_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The air over the land: all of one medium on the sphere of the site.
 struct SiteAir {
@@ -84,4 +84,4 @@ class GroundSite {
   GroundLight light_;  // refers to all above
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/ground/on_this_thread.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 std::array<float, 3> InFloats(const glm::dvec3& v) {
@@ -66,4 +66,4 @@ float LitGround::EdgeOver(const GroundVertex& vertex) const {
       shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

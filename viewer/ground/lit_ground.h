@@ -17,7 +17,7 @@
 #include "renderer/shadow/shadow_heights.h"
 #include "viewer/ground/ground_site.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What shines on it.
 struct LitVertex {
@@ -119,4 +119,4 @@ class LitGround {
   ShadowHeights shadow_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

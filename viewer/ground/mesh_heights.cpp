@@ -6,7 +6,7 @@
 
 #include "viewer/ground/drape_texels.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 template <typename Visit>
 void MeshHeights::VisitCells(const Visit& visit) const {
@@ -82,4 +82,4 @@ std::optional<double> MeshHeights::At(double x_m, double y_m) const {
   return std::nullopt;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "renderer/terrain/mesh.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Immutable; safe to ask from many threads. Refers to the mesh.
 class MeshHeights {
@@ -33,4 +34,4 @@ class MeshHeights {
   std::vector<std::uint32_t> triangles_;  // cell by cell
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

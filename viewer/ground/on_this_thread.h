@@ -4,7 +4,7 @@
 
 #include <tbb/task_arena.h>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 template <typename Work>
 auto OnThisThread(const Work& work) {
@@ -12,4 +12,4 @@ auto OnThisThread(const Work& work) {
   return alone.execute(work);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

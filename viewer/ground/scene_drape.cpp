@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 SceneDrape DrapeOf(const Scene& scene, const SceneGround& ground) {
   if (scene.terrain.Drape().empty()) return {};
@@ -26,4 +26,4 @@ DrapeTexels TexelsOf(const SceneDrape& drape) {
   return {*drape.colours, drape.place, texels};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

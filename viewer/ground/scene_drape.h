@@ -9,7 +9,7 @@
 #include "renderer/scene/scene.h"
 #include "viewer/ground/drape_texels.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct SceneDrape {
   std::shared_ptr<const ColourDrape> colours;  // null: the scene names none
@@ -23,4 +23,4 @@ struct SceneDrape {
 /// texels a side at most, which take 180 MB. Only where there are colours.
 [[nodiscard]] DrapeTexels TexelsOf(const SceneDrape& drape);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include "renderer/ground/band_light.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const glm::dvec3 kUp(0.0, 0.0, 1.0);
@@ -70,4 +70,4 @@ std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const DiffuseLight& dif
   return texels;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

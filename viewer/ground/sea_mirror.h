@@ -13,8 +13,9 @@
 
 #include "renderer/ground/reflectance.h"
 #include "renderer/light/open_sky.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// One value a band, the rest 0.
 using BandTexel = std::array<float, 4>;
@@ -40,4 +41,4 @@ struct SeaMirror {
                                                  const Water& water, const glm::dvec3& to_sun);
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "viewer/land/horizon_texture.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr auto kAzimuths = static_cast<GLsizei>(kHorizonAzimuths);
@@ -164,4 +164,4 @@ std::vector<ShaderPiece> SkyByPixelTexts() {
           ViewerPiece("viewer/shaders/sky_by_pixel.glsl")};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -17,7 +17,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_follower.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// `block SkyByPixel` of sky_by_pixel.glsl.
 struct SkyByPixelBlock {
@@ -60,4 +60,4 @@ class SkyByPixel {
 /// The text, to be read after that of the ground's light.
 [[nodiscard]] std::vector<ShaderPiece> SkyByPixelTexts();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/sky/sky_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // A coarse table of the sky: what is taken from it are means over half of it.
@@ -104,4 +104,4 @@ std::array<float, 4> SkyTilt::On(double n_up, double n_sunward) const {
   return light;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

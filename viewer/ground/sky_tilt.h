@@ -14,16 +14,17 @@
 
 #include "atmosphere/dialect/shared_math.h"
 #include "renderer/ground/band_light.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
-
-namespace shared {
+namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/dialect/shared_begin.h"
 #include "viewer/ground/sky_tilt.glsl"
 #include "atmosphere/dialect/shared_end.h"
 // clang-format on
-}  // namespace shared
+}  // namespace alpenglow::shared
+
+namespace alpenglow::viewer {
 
 struct SkyTilt {
   static constexpr std::size_t kColumns = 9, kRows = 5;
@@ -39,4 +40,4 @@ struct SkyTilt {
   [[nodiscard]] std::array<float, 4> On(double n_up, double n_sunward) const;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

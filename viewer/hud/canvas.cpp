@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kLineWidth = 2.0;    // units
@@ -113,4 +113,4 @@ Canvas::Clip::Clip(const Canvas& canvas, const glm::dvec2& from, const glm::dvec
   list_.PushClipRect(At(from), At(to), true);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

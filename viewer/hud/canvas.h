@@ -10,7 +10,7 @@
 
 #include "viewer/hud/hud_theme.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class HudAlign { kLeft, kMiddle, kRight };
 
@@ -72,4 +72,4 @@ class Canvas {
 /// The same, less opaque.
 [[nodiscard]] HudColour Faded(const HudColour& colour, double opacity);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,8 +7,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/hud_text.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -209,4 +210,4 @@ void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& m
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/instruments.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct CornerTexts {
   std::vector<std::string> upper_left, upper_right, lower_left, lower_right;
@@ -28,4 +28,4 @@ void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTe
 /// Messages, progress of loading and warnings, in the lower middle.
 void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

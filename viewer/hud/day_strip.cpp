@@ -13,7 +13,7 @@
 #include "lut/picture/tone_curve.h"
 #include "lut/sky/sky_view_map.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
@@ -130,4 +130,4 @@ const DayStrip* DayStrips::Newest() {
   return newest_ ? &*newest_ : nullptr;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -17,8 +17,9 @@
 #include "atmosphere/sun/time.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "viewer/job/latest_job.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct DayStripRequest {
   std::shared_ptr<const AirIntegrator<float>> air;  // not null; of one medium with `diffuse`
@@ -62,4 +63,4 @@ class DayStrips {
   LatestJob<DayStripRequest, DayStrip> job_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

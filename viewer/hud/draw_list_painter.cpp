@@ -8,7 +8,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr GLuint kPlace = 0, kAtlasPlace = 1, kColour = 2;
@@ -101,4 +101,4 @@ void DrawListPainter::PaintList(const ImDrawList& list, const ImDrawData& data) 
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

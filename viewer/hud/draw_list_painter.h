@@ -10,7 +10,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class DrawListPainter {
  public:
@@ -33,4 +33,4 @@ class DrawListPainter {
   GlBuffer corners_, order_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

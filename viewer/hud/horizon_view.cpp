@@ -5,7 +5,7 @@
 
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 Camera CameraOf(const HudFlight& flight) {
@@ -32,4 +32,4 @@ std::optional<glm::dvec2> HorizonView::PixelOf(const HudDirection& direction) co
   return pixel;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,8 +8,9 @@
 
 #include "renderer/camera/camera_rays.h"
 #include "viewer/hud/hud_model.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class HorizonView {
  public:
@@ -27,4 +28,4 @@ class HorizonView {
   glm::dvec2 middle_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

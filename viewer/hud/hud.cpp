@@ -11,7 +11,7 @@
 #include "viewer/hud/instruments.h"
 #include "viewer/hud/tell_input.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// What Dear ImGui remembers from frame to frame.
@@ -106,4 +106,4 @@ bool Hud::WantsKeyboard() const {
   return state_->laid_out && ImGui::GetIO().WantTextInput;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

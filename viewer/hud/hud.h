@@ -17,7 +17,7 @@
 #include "viewer/hud/hud_theme.h"
 #include "viewer/hud/panels.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct HudSettings {
   double scale = 1.0;  // pixels a unit, [0.5, 8]: 1 for 96 dots an inch
@@ -77,4 +77,4 @@ class Hud {
   bool visible_ = true;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,8 +8,9 @@
 #include <cmath>
 
 #include "atmosphere/text/error.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kLetterHeight = 14.0;  // units
@@ -53,4 +54,4 @@ void LoadFont(ImFontAtlas& atlas, double scale, const std::optional<std::filesys
   atlas.Build();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// DejaVu Sans where a package has put it (Debian: fonts-dejavu-core).
 [[nodiscard]] std::optional<std::filesystem::path> InstalledFont();
@@ -18,4 +18,4 @@ namespace alpenglow {
 /// @param scale  pixels a unit; letters are 14 units high.
 void LoadFont(ImFontAtlas& atlas, double scale, const std::optional<std::filesystem::path>& font);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

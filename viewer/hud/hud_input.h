@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Keys that edit text or walk through panels.
 enum class HudKey {
@@ -49,4 +49,4 @@ struct HudInput {
   std::string text;  // typed, UTF-8
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::pair<int, HudKey> kKeys[] = {{GLFW_KEY_TAB, HudKey::kTab},
@@ -58,4 +58,4 @@ HudInput HudKeys::Into(HudInput input) {
   return input;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include "viewer/hud/hud_input.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Which of the keys that panels know are held, or were pressed and let go since the last frame.
 class HudKeys {
@@ -25,4 +25,4 @@ class HudKeys {
   std::vector<int> pressed_;  // since the last frame
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Where the eye, or what carries it, is going.
 struct HudDirection {
@@ -139,4 +139,4 @@ struct HudChoices {
   std::vector<HudRow> tables;  // of the viewer: size, age, error
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

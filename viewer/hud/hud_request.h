@@ -9,7 +9,7 @@
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/hud_theme.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Degrees and metres as they were typed; the panel keeps them in range.
 struct HudPlaceRequest {
@@ -80,4 +80,4 @@ struct HudRequest {
   bool quit = false;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

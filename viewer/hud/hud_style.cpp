@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 ImVec4 Vec4(const HudColour& colour) { return {colour[0], colour[1], colour[2], colour[3]}; }
@@ -58,4 +58,4 @@ void ApplyStyle(HudTheme theme, double scale) {
   ImGui::GetStyle() = style;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

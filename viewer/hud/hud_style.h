@@ -4,9 +4,9 @@
 
 #include "viewer/hud/hud_theme.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// @param scale  pixels a unit.
 void ApplyStyle(HudTheme theme, double scale);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kMetresPerFoot = 0.3048;          // exact (international yard and pound, 1959)
@@ -85,4 +86,4 @@ std::string RateText(double rate, bool paused) {
   return paused ? "paused" : fmt::format("x{:g}", rate);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include "viewer/hud/hud_model.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// "46.5000° N", "8.0000° W".
 [[nodiscard]] std::string LatitudeText(double latitude_rad);
@@ -37,4 +37,4 @@ struct Quantity {
 /// "x1", "x-60", "x0.5", "paused".
 [[nodiscard]] std::string RateText(double rate, bool paused);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/hud/hud_theme.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 const HudColours& ColoursOf(HudTheme theme) {
   static constexpr HudColours kDay{
@@ -37,4 +37,4 @@ HudTheme ThemeFor(HudThemeChoice choice, double ev100, HudTheme before) {
   return ev100 > kDayAbove ? HudTheme::kDay : HudTheme::kNight;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

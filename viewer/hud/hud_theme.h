@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class HudTheme { kDay, kNight };
 enum class HudThemeChoice { kAuto, kDay, kNight };
@@ -26,4 +26,4 @@ struct HudColours {
 /// twilight, EV 1, and the day's again above EV 3, so that no dusk flickers.
 [[nodiscard]] HudTheme ThemeFor(HudThemeChoice choice, double ev100, HudTheme before);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

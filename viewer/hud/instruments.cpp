@@ -7,7 +7,7 @@
 #include "viewer/hud/pitch_ladder.h"
 #include "viewer/hud/tapes.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 bool IsSmall(const Canvas& canvas, const HudFrame& frame) {
@@ -39,4 +39,4 @@ void DrawInstruments(const Canvas& canvas, const HudFrame& frame, const HudModel
   DrawMessages(canvas, frame, model);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 #include "viewer/hud/canvas.h"
 #include "viewer/hud/hud_model.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The picture [pixels].
 struct HudFrame {
@@ -21,4 +21,4 @@ void DrawInstruments(const Canvas& canvas, const HudFrame& frame, const HudModel
 /// Height of the part of the picture that the clock needs, the menu's included [pixels].
 [[nodiscard]] int ClockHeight(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kColumnWidth = 400.0;  // units
@@ -84,4 +84,4 @@ void ShowKeyHelp(const PanelView& view) {
   }
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "viewer/hud/panel_contents.h"
 #include "viewer/input/action.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Draws them into the window of Dear ImGui that is begun, in as many columns as fit side by side.
 void ShowKeyHelp(const PanelView& view);
@@ -19,4 +19,4 @@ using HelpColumns = std::vector<std::vector<ActionSection>>;
 [[nodiscard]] HelpColumns InColumns(const std::vector<ActionSection>& sections,
                                     std::size_t most_columns);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -15,7 +15,7 @@
 #include "viewer/hud/panel_parts.h"
 #include "viewer/hud/place_search.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kItemWidth = 170.0;   // of sliders and lists [units]
@@ -276,4 +276,4 @@ HudRequest WithCapture(const PanelView& view, PanelTyping& typing, HudRequest re
   return request;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

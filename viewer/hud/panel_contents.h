@@ -10,7 +10,7 @@
 #include "viewer/hud/hud_request.h"
 #include "viewer/hud/hud_theme.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 inline constexpr double kPanelMargin = 10.0;  // to the edges of the picture [units]
 
@@ -46,4 +46,4 @@ struct PanelTyping {
 [[nodiscard]] HudRequest WithCapture(const PanelView& view, PanelTyping& typing,
                                      HudRequest request);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

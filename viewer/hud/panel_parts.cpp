@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 ImU32 Colour(const std::array<float, 3>& rgb, double brightness) {
@@ -144,4 +144,4 @@ std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction
   return is_held ? std::optional(share) : std::nullopt;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

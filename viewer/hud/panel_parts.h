@@ -8,7 +8,7 @@
 
 #include "viewer/hud/day_strip.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct SliderRange {
   double low, high;
@@ -37,4 +37,4 @@ struct StripLook {
 [[nodiscard]] std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction,
                                                     const StripLook& look);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

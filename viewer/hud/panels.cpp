@@ -8,7 +8,7 @@
 
 #include "viewer/hud/key_help.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// Where a panel appears: this share of what is free, the same share of the panel put there.
@@ -149,4 +149,4 @@ HudRequest Panels::Draw(const PanelView& view) {
   return request;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/hud/panel_contents.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class HudPanel {
   kPlaceAndTime,
@@ -50,4 +50,4 @@ class Panels {
   bool resized_ = false;          // since the last frame: panels are placed anew
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

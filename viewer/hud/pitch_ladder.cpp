@@ -11,7 +11,7 @@
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/horizon_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Lengths in units.
@@ -177,4 +177,4 @@ void DrawBankScale(const Canvas& canvas, const HudFrame& frame, const HudFlight&
                   at(up + half_width, foot), canvas.colours().text);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

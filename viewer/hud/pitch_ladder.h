@@ -6,7 +6,7 @@
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/instruments.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The line of the horizontal plane, with gaps; rungs above and below it, dashed below; where the
 /// edge of the sea is more than a few pixels below it, marks for that; and the direction of flight.
@@ -18,4 +18,4 @@ void DrawBankScale(const Canvas& canvas, const HudFrame& frame, const HudFlight&
 /// Degrees from rung to rung, so that they stand at least 80 units apart.
 [[nodiscard]] double RungStep_deg(double units_per_degree);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

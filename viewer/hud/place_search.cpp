@@ -6,7 +6,7 @@
 
 #include "viewer/flight/places.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // "Zürich Airport (LSZH, Kloten)": what it can be found by.
@@ -38,4 +38,4 @@ std::optional<std::string> PlaceSearch(std::array<char, 64>& typed, double width
   return chosen;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

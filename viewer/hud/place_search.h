@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A field for a part of a name and the list of places that have it, by name and best first
 /// (PlacesByName, places.h), into the window of Dear ImGui that is begun.
 /// @return  the name of the place that was clicked on, or of the first one when Enter was pressed.
 [[nodiscard]] std::optional<std::string> PlaceSearch(std::array<char, 64>& typed, double width_px);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

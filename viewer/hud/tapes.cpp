@@ -8,8 +8,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/hud_text.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Lengths in units.
@@ -229,4 +230,4 @@ void DrawSpeedAndHeightNumbers(const Canvas& canvas, const HudFrame& frame, cons
               Joined(ClimbText(model.flight.climb_m_per_s, model.units)), canvas.colours().quiet);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/instruments.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Heading over the middle of the upper edge, 60 degrees of it, with a bug where it is held, a disk
 /// where the sun stands and a ring where the moon does.
@@ -23,4 +23,4 @@ void DrawSpeedAndHeightNumbers(const Canvas& canvas, const HudFrame& frame, cons
 /// Distance of the marks of a scale around `value`: 1, 2 or 5 times a power of ten, at least `least`.
 [[nodiscard]] double MarkStep(double value, double least);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

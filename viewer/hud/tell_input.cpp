@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::pair<HudKey, int> kInputKeys[] = {{HudKey::kTab, ImGuiKey_Tab},
@@ -78,4 +78,4 @@ void TellInput(ImGuiIO& io, const HudInput& input) {
   io.AddInputCharactersUTF8(input.text.c_str());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,9 +6,9 @@
 
 #include "viewer/hud/hud_input.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Before each NewFrame.
 void TellInput(ImGuiIO& io, const HudInput& input);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
@@ -289,4 +289,4 @@ std::string ControlsMarkdown() {
   return text;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

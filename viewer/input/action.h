@@ -14,7 +14,7 @@
 
 #include "viewer/flight/flight.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 enum class Action {
   // Modes, and where the eye is.
@@ -168,4 +168,4 @@ struct KeyChord {
 /// The table for the manual.
 [[nodiscard]] std::string ControlsMarkdown();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kThousandFeet_m = 304.8;
@@ -232,4 +232,4 @@ std::optional<std::string> Cockpit::DoTime(Action action, const MoonEventAfter& 
   return fmt::format("time x{:.0f}", clock_.rate());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "viewer/flight/places.h"
 #include "viewer/input/action.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class Cockpit {
  public:
@@ -62,4 +62,4 @@ class Cockpit {
   std::optional<Pilot> waits_;  // to go on when FlyAgain has come to its end
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 static_assert(sizeof(GamepadState::buttons) == sizeof(GLFWgamepadstate::buttons) &&
@@ -265,4 +265,4 @@ Intent Controls::Take(FlightMode mode, double seconds, const std::optional<Gamep
   return intent;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -17,7 +17,7 @@
 #include "viewer/flight/pilot_controls.h"
 #include "viewer/input/action.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A drag with the left button looks around (kCursor); the mouse looks around without a button
 /// (kLook); the mouse is the stick, its middle the window's (kFly).
@@ -117,4 +117,4 @@ class Controls {
   std::array<double, 15> button_held_s_{};
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// One thread and its newest request. What was asked for and not begun when something newer is
 /// asked for is never made; what is finished waits until it is taken or something newer is
@@ -89,4 +89,4 @@ class LatestJob {
   std::jthread thread_;  // last: it uses all above
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

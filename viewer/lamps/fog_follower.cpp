@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 bool Serves(const FogMap& map, const FogView& view) {
   constexpr double kSun_rad = 0.1 * 3.14159265358979 / 180.0;
@@ -29,4 +29,4 @@ void FogFollower::Wait(const FogView& view) {
   if (std::optional<FogMap> made = job_.Take()) map_ = std::move(made);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

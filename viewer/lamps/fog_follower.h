@@ -8,7 +8,7 @@
 #include "viewer/job/latest_job.h"
 #include "viewer/lamps/fog_map.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Whether light around this eye and under this sun is that of the map, but for a few per cent: the
 /// eye within a tenth of the fog's scale height, the sun within a tenth of a degree. What falls off
@@ -32,4 +32,4 @@ class FogFollower {
   LatestJob<FogView, FogMap> job_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/media/fog_light.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 enum Quantity { kDirect, kBroad, kGlow, kSkyLight, kQuantities };
@@ -237,4 +237,4 @@ FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
   return map;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

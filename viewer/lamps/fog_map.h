@@ -18,8 +18,9 @@
 
 #include "renderer/light/sunlit_air.h"
 #include "renderer/media/local_media.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// How fine a map is. Off from MediaLight by 0.1 % in the mean by day and 0.5 % with the sun on the
 /// horizon, where light in fog falls by e every few metres (99 %: 2 % and 5 %; fine: half of all).
@@ -68,4 +69,4 @@ struct FogMap {
 [[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
                                 const FogView& view, const FogMapSize& size = {});
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "viewer/lamps/phase_macro.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kMetres = 1000.0;
@@ -72,4 +72,4 @@ void FogPainter::Bind(const FogMap& map, const FogView& now) const {
   glBindTexture(GL_TEXTURE_2D, surface_.id());
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/fog_map.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// `block Fog` of fog_light.glsl.
 struct FogBlock {
@@ -44,4 +44,4 @@ class FogPainter {
   GlTexture light_, surface_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "atmosphere/number/cholesky.h"
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kDark = 1e-30;  // m^-1, of which logarithms are taken at least
@@ -137,4 +137,4 @@ std::vector<glm::vec4> SampledGlow(const LampGlow& glow) {
   return texels;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

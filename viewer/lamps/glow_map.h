@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "renderer/lamp/lamp_glow.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Places of distances and rises are those of lamp_ray.glsl, each step of LampGlow in four.
 inline constexpr int kGlowDistances = 61;
@@ -27,4 +28,4 @@ inline constexpr int kGlowTerms = 6;
 /// ground dark and slopes alike. At most four bands.
 [[nodiscard]] std::vector<glm::vec4> SampledGlow(const LampGlow& glow);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/lamps/phase_macro.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 template <typename Values>
@@ -141,4 +141,4 @@ LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLay
   return block;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,8 +13,9 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/lamp/placed_lamp.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// As many as the smallest uniform block that every OpenGL has room for can hold, and a loop in a
 /// shader should.
@@ -69,4 +70,4 @@ struct ChosenLamp {
                                       const std::vector<LampLayer>& layers, const Medium& medium,
                                       const LampView& view, std::array<double, 2> core_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,7 +14,7 @@
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 enum LampUnit {
@@ -273,4 +273,4 @@ void LampPainter::PaintOver(double pixel_angle_rad) const {
   CheckGl("LampPainter::PaintOver");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

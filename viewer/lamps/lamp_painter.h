@@ -21,7 +21,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/scene_lamps.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct LampQuality {
   int nodes = 12;  // of the integral along a ray, [2, 32]
@@ -101,4 +101,4 @@ class LampPainter {
   int uploaded_layers_ = 0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// One level. Places are columns and rows of its nodes.
@@ -173,4 +173,4 @@ LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels) {
   return plan;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

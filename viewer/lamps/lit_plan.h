@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "renderer/lamp/lamp_stage.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Nodes of a side of a level; its middle one stands under the lamp.
 inline constexpr int kPlanSide = 512;
@@ -41,4 +42,4 @@ struct LitPlan {
 /// Takes 0.1 s a level: half a million rays where shade is intricate. `stage` has terrain.
 [[nodiscard]] LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 void LitPlanFollower::Follow() {
   if (plans_.size() == lamps_ || job_.Busy()) return;
@@ -15,4 +15,4 @@ void LitPlanFollower::Settle() {
   for (Follow(); plans_.size() < lamps_; Follow()) job_.Wait();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "viewer/job/latest_job.h"
 #include "viewer/lamps/lit_plan.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class LitPlanFollower {
  public:
@@ -30,4 +30,4 @@ class LitPlanFollower {
   LatestJob<std::size_t, LitPlan> job_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -3,7 +3,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 std::string PhaseExpression(PhaseKind kind) {
   switch (kind) {
@@ -31,4 +31,4 @@ glm::vec4 ParametersOf(const PhaseFunction& phase) {
   return {phase.g, phase.g_back, phase.back_weight, phase.alpha};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 FogView FogViewOf(const Eye& eye, const SunPosition& sun) {
@@ -61,4 +61,4 @@ void SceneFog::Bind(const Eye& eye, const SunPosition& sun) const {
   painter_.Bind(*follower_->map(), FogViewOf(eye, sun));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "viewer/lamps/fog_follower.h"
 #include "viewer/lamps/fog_painter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class SceneFog {
  public:
@@ -48,4 +48,4 @@ class SceneFog {
   std::optional<FogFollower> follower_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // What a lamp may add to a picture [cd/m^2]: its light in the air three degrees beside it, or on
@@ -167,7 +167,7 @@ PlacedLamp SceneLamps::Landing(const LampView& view) const {
                                    medium_.wavelengths_nm, colour_);
   // Of a cone, to a tenth: it is what its air, spread evenly, brings to the ground.
   placed.mean_share = 0.5 * (1.0 - std::cos(0.5 * (landing_->inner_rad + landing_->outer_rad)));
-  return alpenglow::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
+  return viewer::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
 }
 
 SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2> core_rad,
@@ -210,4 +210,4 @@ std::vector<float> SampledProfile(const LampProfile& profile) {
   return samples;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

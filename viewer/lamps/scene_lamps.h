@@ -16,7 +16,7 @@
 #include "viewer/lamps/lamp_block.h"
 #include "viewer/lamps/lit_plan_follower.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A spot that moves with the eye.
 struct LandingLight {
@@ -124,4 +124,4 @@ class SceneLamps {
 /// A measured profile at the angles of kLampGammas and kLampTurns, [turn * kLampGammas + gamma].
 [[nodiscard]] std::vector<float> SampledProfile(const LampProfile& profile);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

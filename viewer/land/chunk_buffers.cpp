@@ -5,7 +5,7 @@
 
 #include "viewer/land/land_pass.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr GLsizeiptr kVertexBytes = kChunkVertices * sizeof(ChunkVertex);
@@ -135,4 +135,4 @@ std::size_t ChunkBuffers::bytes() const {
                                   slots_ * (kVertexBytes + 2 * kLightBytes + kTriangleBytes));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

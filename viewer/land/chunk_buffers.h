@@ -9,7 +9,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/land/land_chunk.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Which of the two lights of a vertex.
 enum class LightSide { kFirst, kSecond };
@@ -58,4 +58,4 @@ class ChunkBuffers {
   GlVertexArray layout_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

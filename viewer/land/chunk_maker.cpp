@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 std::vector<ChunkLight> LightOf(const LandChunk& chunk, const ChunkOrder& order) {
@@ -37,4 +37,4 @@ MadeChunks MakeChunks(const ChunkOrder& order) {
   return made;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

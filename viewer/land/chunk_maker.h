@@ -9,7 +9,7 @@
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/loaded_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Chunks that are to be made or lit anew, the most urgent first.
 struct ChunkOrder {
@@ -39,4 +39,4 @@ struct MadeChunks {
 /// As many as take about 30 ms, so that what is asked for later need not wait for long.
 [[nodiscard]] MadeChunks MakeChunks(const ChunkOrder& order);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 const ChunkSet::Kept* ChunkSet::Find(const ChunkKey& key) const {
   const auto found = chunks_.find(key);
@@ -66,4 +66,4 @@ std::size_t ChunkSet::bytes() const {
   return sum;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "viewer/land/chunk_maker.h"
 #include "viewer/land/level_ranges.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class ChunkSet {
  public:
@@ -55,4 +55,4 @@ class ChunkSet {
   std::unordered_map<ChunkKey, Kept, ChunkKeyHash> chunks_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 bool IsWhole(float height_m) {
@@ -155,4 +155,4 @@ std::size_t HeightPyramid::BytesOf(const LatticeBox& box, int level) {
                                   std::pow(0.25, level));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 
 #include "viewer/land/land_lattice.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Heights [m]; NaN: none. Whole metres take two bytes a sample, others four.
 class HeightSamples {
@@ -81,4 +81,4 @@ class HeightPyramid {
   std::vector<std::shared_ptr<const HeightSamples>> levels_;  // [0] is finest_
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

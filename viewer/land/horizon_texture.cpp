@@ -6,7 +6,7 @@
 #include "atmosphere/number/constants.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 // Nodes are the middles of texels.
 PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
@@ -57,4 +57,4 @@ void HorizonTexture::Bind(int unit, const Vector<Ecef>& to_sun) {
     Upload(azimuth_rad);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,8 +12,9 @@
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/shadow/horizon_map.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Horizons around places of a frame.
 struct TerrainHorizon {
@@ -49,4 +50,4 @@ class HorizonTexture {
   GlTexture texture_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

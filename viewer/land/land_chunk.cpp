@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/terrain/cell_diagonal.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Vertices of a level with their normals. At level 0 these are the area-weighted means of the
@@ -410,4 +410,4 @@ std::vector<std::uint16_t> WithCoarseSides(std::span<const std::uint16_t> triang
   return kept;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

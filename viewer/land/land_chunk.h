@@ -28,7 +28,7 @@
 #include "atmosphere/sun/geodesy.h"
 #include "viewer/land/loaded_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 inline constexpr int kChunkCells = 16;
 inline constexpr int kChunkSide = kChunkCells + 1;  // vertices
@@ -144,4 +144,4 @@ enum ChunkSideBit : unsigned { kNorthSide = 1, kEastSide = 2, kSouthSide = 4, kW
                                                          std::span<const CoarseEnds> ends,
                                                          unsigned sides);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,8 +11,9 @@
 #include <numbers>
 
 #include "atmosphere/sun/geodesy.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// A rectangle of samples of level 0, both ends included.
 struct LatticeBox {
@@ -66,4 +67,4 @@ struct LandLattice {
   }
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

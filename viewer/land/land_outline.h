@@ -4,7 +4,7 @@
 
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Depth alone, as the depth of a SurfaceMap: 0 where there is no land.
 class LandOutline : public RenderTarget {
@@ -13,4 +13,4 @@ class LandOutline : public RenderTarget {
   LandOutline(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

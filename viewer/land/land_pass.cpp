@@ -9,7 +9,7 @@
 
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr GLuint kLandBinding = 8;
@@ -147,4 +147,4 @@ void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, G
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

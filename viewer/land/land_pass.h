@@ -16,7 +16,7 @@
 #include "viewer/land/horizon_texture.h"
 #include "viewer/land/light_fade.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What the eye sees, as in view_block.glsl: axes in its frame (east, north, up).
 struct LandView {
@@ -120,4 +120,4 @@ class LandPass {
 /// @param depth  LandPass::DepthText, or the other.
 [[nodiscard]] std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

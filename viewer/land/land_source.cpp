@@ -14,7 +14,7 @@
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/land/tile_pads.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -292,4 +292,4 @@ ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
           NoteOn(model, wanted.file.string())};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

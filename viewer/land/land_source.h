@@ -13,7 +13,7 @@
 #include "viewer/land/height_pyramid.h"
 #include "viewer/land/land_lattice.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct LandSource {
   /// Elevation models as ReadElevation reads them, and folders of such (.hgt, .tif, .tiff, .dem;
@@ -106,4 +106,4 @@ struct ReadTile {
 /// its pads. Throws InputError as ReadElevation does.
 [[nodiscard]] ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "lut/program/program.h"
 #include "viewer/land/seen_chunks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kReachTime_s = 0.7;  // that a level takes to come in
@@ -253,4 +253,4 @@ void Landscape::Draw(GLuint view_binding) { DrawAll(LandDrawn::kSurface, view_bi
 
 void Landscape::DrawOutline(GLuint view_binding) { DrawAll(LandDrawn::kOutline, view_binding); }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

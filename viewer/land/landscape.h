@@ -21,7 +21,7 @@
 #include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// How much land is drawn and kept.
 struct LandSize {
@@ -184,4 +184,4 @@ class Landscape {
   LatestJob<ChunkOrder, MadeChunks> worker_;  // last: it uses all above
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/land/landscape.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) const {
   if (mesh_) return mesh_->GroundUnder(place);
@@ -90,4 +90,4 @@ LandFigures Landscape::Figures() const {
   return figures;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

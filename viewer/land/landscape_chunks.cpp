@@ -7,7 +7,7 @@
 
 #include "viewer/land/landscape.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kAnchorReach_m = 100e3;
@@ -99,4 +99,4 @@ void Landscape::AskForLight() {
   if (!is_working_ && fade_.IsFilling()) Ask(*set_, {}, set_->NotLitBy(fade_.number()));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kAhead = 1.25;       // chunks are wanted before they are due
@@ -231,4 +231,4 @@ std::vector<DrawnChunk> DrawnChunks(const ChunkTree& tree, const LandEye& eye,
   return Drawing(tree, eye, ranges).Find(is_there);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -19,7 +19,7 @@
 
 #include "viewer/land/land_chunk.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The eye among the samples.
 struct LandEye {
@@ -98,4 +98,4 @@ struct DrawnChunk {
     const ChunkTree& tree, const LandEye& eye, const std::vector<LevelRange>& ranges,
     const std::function<bool(const ChunkKey&)>& is_there);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 
 #include "viewer/land/chunk_buffers.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Directions towards the disks before which vertices have their edges of shade, of the light that fades and
 /// of the one that is shown; nothing without such light.
@@ -76,4 +76,4 @@ class LightFade {
   double filled_in_s_ = 0.0;  // the last one
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

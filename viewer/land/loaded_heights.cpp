@@ -7,7 +7,7 @@
 
 #include "renderer/terrain/cell_diagonal.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
@@ -113,4 +113,4 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   return grid;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "viewer/land/height_pyramid.h"
 #include "viewer/land/land_source.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Heights [m] of vertices of one level, rows from the north; NaN: none.
 struct HeightBlock {
@@ -60,4 +60,4 @@ struct SampleSize {
 };
 [[nodiscard]] SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

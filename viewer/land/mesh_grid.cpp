@@ -9,7 +9,7 @@
 #include "renderer/ground/ground_heights.h"
 #include "viewer/land/loaded_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// A range to the east or to the north of a place [m].
@@ -95,4 +95,4 @@ std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain, const LocalFra
   return grid;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,8 +7,9 @@
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/terrain.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Heights of the mesh's highest surface. The grid covers the mesh; where the mesh is wider than
 /// the square around the place, the grid is as wide as the square and lies where the mesh comes
@@ -20,4 +21,4 @@ namespace alpenglow {
                                                         const GeodeticPosition& place,
                                                         double half_width_m, int most_samples);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "renderer/terrain/obj_file.h"
 #include "viewer/land/mesh_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 template <typename Row>
@@ -68,16 +68,16 @@ MeshLand::MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid)
 void MeshLand::Upload() {
   const TriangleMesh& mesh = terrain_->mesh();
   glBindVertexArray(layout_.id());
-  alpenglow::Upload(GL_ARRAY_BUFFER, positions_, mesh.positions);
-  alpenglow::Upload(GL_ARRAY_BUFFER, normals_, mesh.normals);
-  alpenglow::Upload(GL_ELEMENT_ARRAY_BUFFER, triangles_, mesh.triangles);
+  viewer::Upload(GL_ARRAY_BUFFER, positions_, mesh.positions);
+  viewer::Upload(GL_ARRAY_BUFFER, normals_, mesh.normals);
+  viewer::Upload(GL_ELEMENT_ARRAY_BUFFER, triangles_, mesh.triangles);
   DescribeVectors(0, positions_);
   DescribeVectors(1, positions_);
   DescribeVectors(3, normals_);
   DescribeVectors(4, normals_);
   const std::vector<ChunkLight> light(mesh.positions.size(), PackedLight({}));
-  alpenglow::Upload(GL_ARRAY_BUFFER, first_light_, light);
-  alpenglow::Upload(GL_ARRAY_BUFFER, second_light_, light);
+  viewer::Upload(GL_ARRAY_BUFFER, first_light_, light);
+  viewer::Upload(GL_ARRAY_BUFFER, second_light_, light);
 }
 
 void MeshLand::DescribeLight(const GlBuffer& buffer, GLuint first_location) const {
@@ -102,7 +102,7 @@ void MeshLand::Update(double seconds) {
   }
   if (!terrain_) return;
   const auto light = lighter_.Take();
-  if (light) alpenglow::Upload(GL_ARRAY_BUFFER, LightOn(fade_.from()), *light);
+  if (light) viewer::Upload(GL_ARRAY_BUFFER, LightOn(fade_.from()), *light);
   const int before = fade_.number();
   fade_.Advance(seconds, light.has_value());
   if (fade_.number() != before) lighter_.Ask({terrain_, fade_.light().value()});
@@ -149,4 +149,4 @@ std::size_t MeshLand::bytes() const {
          2 * sizeof(ChunkLight) * mesh.positions.size();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include "viewer/land/land_source.h"
 #include "viewer/land/light_fade.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class MeshLand {
  public:
@@ -37,7 +37,7 @@ class MeshLand {
   [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
 
-  /// alpenglow::GroundUnderEye, and the highest ground there.
+  /// viewer::GroundUnderEye, and the highest ground there.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
   [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
   /// GridOverMesh of what is read now; any thread may call it, as long as it likes.
@@ -72,4 +72,4 @@ class MeshLand {
   LatestJob<Order, std::vector<ChunkLight>> lighter_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 
 #include "viewer/land/skyline.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// No more than this rays of a curvature lift what stands at a distance [m].
@@ -143,4 +143,4 @@ double FarthestOf(const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnc
   return farthest_m;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include "viewer/land/chunk_buffers.h"
 #include "viewer/land/land_pass.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Those that may reach into the view, where they are or lifted by bent rays.
 [[nodiscard]] std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
@@ -22,4 +22,4 @@ namespace alpenglow {
 [[nodiscard]] double FarthestOf(const std::vector<ChunkBuffers::Drawn>& chunks,
                                 const EyeInAnchor& eye);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -126,4 +126,4 @@ bool Skyline::Hides(const glm::dvec3& point, double radius_m, double highest_m) 
   return true;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

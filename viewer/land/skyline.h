@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class Skyline {
  public:
@@ -55,4 +55,4 @@ class Skyline {
   std::priority_queue<Crest> waiting_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

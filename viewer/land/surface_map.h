@@ -5,7 +5,7 @@
 
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Its depth is 0 where there is no land.
 class SurfaceMap : public RenderTarget {
@@ -26,4 +26,4 @@ class SurfaceMap : public RenderTarget {
                      Depth::k32Bit) {}
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

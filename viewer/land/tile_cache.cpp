@@ -7,7 +7,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 TileCache::TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree,
                      std::size_t most_bytes)
@@ -189,4 +189,4 @@ std::size_t TileCache::bytes() const {
   return sum;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/loaded_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class TileCache {
  public:
@@ -85,4 +85,4 @@ class TileCache {
   LatestJob<Order, Reading> reader_;  // last: it uses the tiles
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
@@ -199,4 +199,4 @@ ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& gr
   return padded;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "viewer/land/land_lattice.h"
 #include "viewer/land/land_source.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The sides of tile `index` beyond which the lattice has samples that belong to no tile, although
 /// another tile begins within a step of it.
@@ -29,4 +29,4 @@ namespace alpenglow {
 /// files only rims are read, of files for which CanBeCut holds.
 [[nodiscard]] ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& grid);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,8 +7,9 @@
 #include <array>
 
 #include "atmosphere/text/error.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr std::array<const char*, 4> kNames{"low", "medium", "high", "reference"};
@@ -108,4 +109,4 @@ void AutoQuality::Note(double frame_s) {
   frames_s_.clear();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Sizes of tables, meshes and passes, smallest first; kReference is the renderer's own picture,
 /// made beside drawing while the eye stands still.
@@ -67,4 +67,4 @@ class AutoQuality {
   double wait_up_s_ = 2.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/ray/bent_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// Nodes reach so many radii from the middle of the disk, which may move by the rest.
@@ -69,4 +69,4 @@ const BentDisk* BentDiskFollower::Follow(const std::shared_ptr<const SolvedAir>&
   return made_->disk.Change() > half_pixel_rad ? &made_->disk : nullptr;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 
 #include "viewer/air/solved_air.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Values by band, node by node upwards.
 struct BentDisk {
@@ -48,4 +48,4 @@ class BentDiskFollower {
   std::optional<Made> made_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

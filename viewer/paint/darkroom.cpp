@@ -3,7 +3,7 @@
 
 #include "viewer/gl/scissor.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 PaintedView OnScreen(const PaintedView& view, const Developer::Screen& screen) {
@@ -63,4 +63,4 @@ void Darkroom::Print(SkyPainter& painter, const PaintedView& view, double ev100,
   painter.EndTime();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

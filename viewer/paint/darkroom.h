@@ -13,7 +13,7 @@
 #include "viewer/paint/enlarger.h"
 #include "viewer/paint/sky_painter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class Darkroom {
  public:
@@ -49,4 +49,4 @@ class Darkroom {
   int prints_ = 0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "viewer/paint/tone_table.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 enum DeveloperUnit { kPicture, kDither, kTable };
@@ -119,4 +119,4 @@ void Developer::DevelopSmall(const RenderTarget& picture, double ev100,
        whole_);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

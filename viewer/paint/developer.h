@@ -14,7 +14,7 @@
 #include "viewer/paint/tone_table.h"
 #include "viewer/shaders/full_screen.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// White balance, exposure, gamut, tone curve and dither, as Seen and Develop (look.h) do them; local
 /// exposure and night vision are left out.
@@ -68,4 +68,4 @@ class Developer {
 /// What develop.frag.glsl is put together with.
 [[nodiscard]] std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

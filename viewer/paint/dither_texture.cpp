@@ -6,7 +6,7 @@
 #include "lut/picture/dither.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 DitherTexture::DitherTexture() {
   std::vector<float> noise;
@@ -30,4 +30,4 @@ void DitherTexture::Bind(const ShaderProgram& program, int unit, int width, int 
               static_cast<float>(height));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

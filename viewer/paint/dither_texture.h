@@ -5,7 +5,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// DitherNoise (lut/picture/dither.h), four floats a pixel.
 class DitherTexture {
@@ -19,4 +19,4 @@ class DitherTexture {
   GlTexture noise_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "viewer/land/land_pass.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 enum EnlargerUnit { kSmall, kPrintDither, kOutline };
@@ -50,4 +50,4 @@ void Enlarger::Enlarge(const RenderTarget& small, const LandOutline& outline,
   CheckGl("Enlarger::Enlarge");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

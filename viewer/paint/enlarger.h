@@ -13,7 +13,7 @@
 #include "viewer/paint/dither_texture.h"
 #include "viewer/shaders/full_screen.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class Enlarger {
  public:
@@ -47,4 +47,4 @@ class Enlarger {
 [[nodiscard]] std::vector<ShaderPiece> EnlargerTexts(Enlarger::Shows shows,
                                                      const ShaderPiece& depth);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

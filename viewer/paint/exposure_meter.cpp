@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 MeterReading ReadingOf(const Image& picture, const Look& look) {
   const WhiteBalance white = Settled(look.white, picture, Projection::kCamera);
@@ -47,4 +47,4 @@ MeterReading ExposureMeter::Read(const RenderTarget& picture, const Look& look) 
   return ReadingOf(small_->Read(), look);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

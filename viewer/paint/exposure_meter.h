@@ -8,7 +8,7 @@
 #include "viewer/gl/pixel_reader.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What a picture says of its light.
 struct MeterReading {
@@ -38,4 +38,4 @@ class ExposureMeter {
   PixelReader reader_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "renderer/light/lighting.h"
 #include "viewer/shaders/uniform_blocks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Over this elevation the sun brings more than a thousand times what the brightest moon does.
@@ -104,4 +104,4 @@ double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitu
   return colour.Xyz(InDouble(light))[1];
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -15,7 +15,7 @@
 #include "viewer/air/light_source.h"
 #include "viewer/air/solved_air.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct KeyLight {
   SunPosition disk;      // where it is seen from the eye, and how wide
@@ -44,4 +44,4 @@ struct LightsOfSky {
 [[nodiscard]] double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
                                       const BandColour& colour);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

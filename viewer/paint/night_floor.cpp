@@ -11,7 +11,7 @@
 #include "viewer/paint/picture_units.h"
 #include "viewer/shaders/uniform_blocks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 void Upload(const GlTexture& map, int unit, int columns, int rows,
@@ -92,4 +92,4 @@ void NightFloorFollower::Bind(const ShaderProgram& program, int unit) const {
   glUniform4fv(program.Uniform("night_level"), 1, &level_.x);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include "viewer/job/latest_job.h"
 #include "viewer/paint/painted_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// One value a band.
 struct NightFloor {
@@ -68,4 +68,4 @@ class NightFloorFollower {
   LatestJob<Request, NightFloor> maker_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

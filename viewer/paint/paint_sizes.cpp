@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // At least two: with one, passes are left out and programs are others.
@@ -55,4 +55,4 @@ PaintSizes SizesOf(const PaintedQuality& painted) {
   return sizes;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "viewer/paint/auto_quality.h"
 #include "viewer/shade/shade_quality.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct PaintSizes {
   AirQuality air = AirQuality::kMedium;
@@ -31,4 +31,4 @@ struct PaintSizes {
 /// whatever scale light is painted.
 [[nodiscard]] PaintSizes SizesOf(const PaintedQuality& painted);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

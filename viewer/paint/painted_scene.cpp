@@ -11,7 +11,7 @@
 #include "renderer/media/local_media.h"
 #include "viewer/paint/picture_units.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kLong_s = 1e3;  // after which everything has faded in
@@ -251,4 +251,4 @@ std::optional<PhaseKind> PaintedScene::fog_phase() const {
   return scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -26,7 +26,7 @@
 #include "viewer/paint/painted_view.h"
 #include "viewer/shade/shade_follower.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// To be used on the thread of the context that is current when it is made.
 /// The air of a scene, as it is solved before there is a scene. Null: it is solved with it, in full.
@@ -155,4 +155,4 @@ class PaintedScene {
   bool awaits_land_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

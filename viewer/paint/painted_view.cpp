@@ -9,7 +9,7 @@
 #include "renderer/camera/pixel_samples.h"
 #include "viewer/air/air_rows.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Where a convex function is least between -1 and 1, to 1e-5: what it is there is then right to 1e-10
@@ -106,4 +106,4 @@ glm::dvec3 DirectionToSun(const SunPosition& sun) {
   return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

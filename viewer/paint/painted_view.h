@@ -13,7 +13,7 @@
 #include "viewer/gl/scissor.h"
 #include "viewer/land/land_pass.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// When and from where a picture is painted.
 struct PaintedView {
@@ -55,4 +55,4 @@ struct PixelRay {
 /// Unit vector to the sun: east, north, up where it is seen from.
 [[nodiscard]] glm::dvec3 DirectionToSun(const SunPosition& sun);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "viewer/paint/picture_units.h"
 #include "viewer/paint/view_bend.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 template <typename Block>
@@ -132,4 +132,4 @@ void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& v
   Upload(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

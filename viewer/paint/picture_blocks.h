@@ -14,7 +14,7 @@
 #include "viewer/paint/painted_view.h"
 #include "viewer/shaders/uniform_blocks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Each call fills blocks and binds them (PictureBinding).
 class PictureBlocks {
@@ -37,4 +37,4 @@ class PictureBlocks {
   AirBlock air_block_{};
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Fragments of depth 0 against that of the land: it is nearer, or there is none.
@@ -80,4 +80,4 @@ void PicturePrograms::ForgetThoseWithLamps() {
   std::erase_if(ready_, [](const PictureStage& stage) { return stage.has_lamps; });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -15,7 +15,7 @@
 #include "viewer/paint/picture_texts.h"
 #include "viewer/shade/shaft_pass.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class PicturePrograms {
  public:
@@ -49,4 +49,4 @@ class PicturePrograms {
   GlVertexArray no_vertices_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

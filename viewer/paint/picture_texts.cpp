@@ -12,7 +12,7 @@
 #include "viewer/shade/shaft_pass.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
@@ -57,4 +57,4 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   return texts;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

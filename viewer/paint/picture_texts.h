@@ -12,7 +12,7 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/lamp_painter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// One of the picture's programs. Sky is open above the horizon, see RowsOfPlanet.
 struct PictureStage {
@@ -39,4 +39,4 @@ struct PictureKind {
 /// Those that they begin with: the view and the air.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include "viewer/lamps/fog_painter.h"
 #include "viewer/lamps/lamp_painter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Of uniform blocks.
 enum PictureBinding : GLuint {
@@ -41,4 +41,4 @@ enum PictureUnit {
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
 inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

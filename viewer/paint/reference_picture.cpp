@@ -8,7 +8,7 @@
 
 #include "viewer/flight/flight_recorder.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 struct ReferenceStage {
@@ -89,4 +89,4 @@ std::optional<Image> ReferencePicture::Take() {
   return std::move((*taken)->image);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

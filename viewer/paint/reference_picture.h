@@ -13,7 +13,7 @@
 #include "viewer/flight/flight.h"
 #include "viewer/job/latest_job.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// What the renderer renders for a viewer.
 struct ReferenceScene {
@@ -72,4 +72,4 @@ class ReferencePicture {
   LatestJob<Request, std::optional<Made>> job_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

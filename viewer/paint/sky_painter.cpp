@@ -14,7 +14,7 @@
 #include "viewer/paint/picture_units.h"
 #include "viewer/paint/view_bend.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 ShaftPass ConnectedShafts(const PaintedScene& scene) {
@@ -428,4 +428,4 @@ void SkyPainter::Show(const Image& image) {
   picture_->Write(image);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

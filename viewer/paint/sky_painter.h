@@ -33,7 +33,7 @@
 #include "viewer/paint/star_painter.h"
 #include "viewer/shade/shaft_pass.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 class SkyPainter {
  public:
@@ -166,4 +166,4 @@ class SkyPainter {
   PassTimer* timer_ = nullptr;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

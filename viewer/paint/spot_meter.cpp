@@ -3,7 +3,7 @@
 
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 std::optional<double> SpotMeter::At(const RenderTarget& picture, double right, double down) {
   if (!reader_) reader_.emplace();
@@ -22,4 +22,4 @@ void SpotMeter::Leave() {
   luminance_.reset();
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

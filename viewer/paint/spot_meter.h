@@ -7,7 +7,7 @@
 #include "viewer/gl/pixel_reader.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Asked once a frame, it never waits for the graphics card: what it tells is a frame or two old.
 class SpotMeter {
@@ -23,4 +23,4 @@ class SpotMeter {
   std::optional<double> luminance_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,7 +14,7 @@
 #include "viewer/paint/picture_units.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Between two lists the sky turns as a whole, and the air is that of the list.
@@ -149,4 +149,4 @@ void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, Land land
   CheckGl("StarPainter::Paint");
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -21,7 +21,7 @@
 #include "viewer/paint/key_light.h"
 #include "viewer/paint/star_points.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// To be used on the thread of the context that is current when it is made.
 class StarPainter {
@@ -81,4 +81,4 @@ class StarPainter {
   LatestJob<Request, Made> maker_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "renderer/picture/star_pixels.h"
 #include "viewer/shaders/uniform_blocks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 glm::vec4 FirstFour(const StarBell& bell) { return {bell[0], bell[1], bell[2], bell[3]}; }
@@ -99,4 +99,4 @@ glm::dmat3 TurnOfSky(double latitude_rad, double seconds) {
   return turn;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

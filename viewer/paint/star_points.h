@@ -12,7 +12,7 @@
 #include "renderer/light/star_lights.h"
 #include "viewer/paint/painted_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// As star.vert.glsl reads it, once a star.
 struct StarPoint {
@@ -45,4 +45,4 @@ struct StarrySky {
 /// How the sky turns in a time: of directions east, north, up at a latitude.
 [[nodiscard]] glm::dmat3 TurnOfSky(double latitude_rad, double seconds);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

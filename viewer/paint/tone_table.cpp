@@ -8,7 +8,7 @@
 
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 std::vector<float> Nodes(int side) {
@@ -39,4 +39,4 @@ ToneTable::ToneTable(AgxLook look, int side) : side_(side) {
   });
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "lut/picture/agx_look.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Error of trilinear interpolation for colours whose channels lie within three stops of each other,
 /// in codes of 8 bits: of photo half below 0.06, all but one in a hundred below 0.25, all below 0.9;
@@ -36,4 +37,4 @@ class ToneTable {
   std::vector<std::array<float, 3>> codes_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -5,7 +5,7 @@
 
 #include "atmosphere/ray/bent_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
                                double farthest_land_m) {
@@ -18,4 +18,4 @@ std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
   return bend;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

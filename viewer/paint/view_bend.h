@@ -7,7 +7,7 @@
 #include "atmosphere/ray/land_lift.h"
 #include "viewer/paint/painted_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Returns how air bends the rays of a view; nothing where neither the farthest land nor the planet's
 /// horizon moves by more than half a pixel.
@@ -15,4 +15,4 @@ namespace alpenglow {
 [[nodiscard]] std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
                                              double farthest_land_m);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/effect/picture_change.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const std::vector<float>* FindLayer(const Image& image, const std::string& name) {
@@ -93,4 +93,4 @@ ViewDifference DifferenceOf(const Image& judge, const Image& painted) {
           1.0 - count / static_cast<double>(judge.rgb.size())};
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,8 +11,9 @@
 
 #include "lut/picture/image.h"
 #include "renderer/picture/picture_layers.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct ViewDifference {
   double mean = 0.0;
@@ -32,4 +33,4 @@ struct ViewDifference {
 ///     pictures that are nothing but edges.
 [[nodiscard]] ViewDifference DifferenceOf(const Image& judge, const Image& painted);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

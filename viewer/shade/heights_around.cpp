@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/terrain/cell_diagonal.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kStride = 16;  // nodes between places that are found exactly
@@ -132,4 +132,4 @@ HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame, d
   return raster;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

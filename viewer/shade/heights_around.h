@@ -5,8 +5,9 @@
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/height_raster.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The ground within `half_m` east, west, north and south of the frame's origin, side x side nodes,
 /// z in the frame: the curvature of the planet is in it. HeightRaster::kNothing where the grid has
@@ -17,4 +18,4 @@ namespace alpenglow {
 [[nodiscard]] HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame,
                                          double half_m, int side);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/shade/heights_around.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kSunStep = 0.2;     // of the disk's radius
@@ -146,4 +146,4 @@ glm::dmat4 ShadeFollower::MapFromEye(const GeodeticPosition& eye) const {
   return BetweenFrames(used_->frame, LocalFrame(ellipsoid_, eye));
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -20,7 +20,7 @@
 #include "viewer/shade/shade_map.h"
 #include "viewer/shade/shade_texture.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct ShadeSize {
   double half_width_m = 30e3;  // of the ground whose shade counts, around the eye
@@ -90,4 +90,4 @@ class ShadeFollower {
   LatestJob<Request, std::shared_ptr<const Made>> maker_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/gl/texture_side.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kLowestSun_rad = -3.0 * kRadiansPerDegree;
@@ -164,4 +164,4 @@ ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, doubl
   return map;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -19,8 +19,9 @@
 #include <vector>
 
 #include "renderer/terrain/height_raster.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Immutable once made. Lengths in metres, in the frame of the heights, z up.
 struct ShadeMap {
@@ -55,4 +56,4 @@ struct ShadeMap {
 [[nodiscard]] ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
                                   double radius_rad, int most_side);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -17,7 +17,7 @@
 #include "viewer/shade/shade_follower.h"
 #include "viewer/shade/shaft_pass.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 struct ShadeQuality {
   ShadeSize size;
@@ -30,4 +30,4 @@ inline constexpr ShaftDetail kCoarseShafts{8, {2, 5}};
 inline constexpr ShadeQuality kMediumShade{{30e3, 1024, 2, 1024}, {5, {3, 6}}};
 inline constexpr ShadeQuality kHighShade{{30e3, 1500, 3, 2048}, {2, {6, 8}}};
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

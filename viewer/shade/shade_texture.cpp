@@ -9,7 +9,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // The component of a place along an axis of the map's frame, scaled and shifted, for places in the
@@ -82,4 +82,4 @@ void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4
   glUniform1i(program.Uniform("shade_steps"), steps.steps);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

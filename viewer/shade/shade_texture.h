@@ -9,7 +9,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/shade/shade_map.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// How finely rays are stepped through: shade_march.glsl.
 struct ShadeSteps {
@@ -46,4 +46,4 @@ class ShadeTexture {
   int lines_sent_ = 0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_fog) {
   air.push_back(
@@ -61,4 +61,4 @@ void ShaftPass::Bind(const ShaderProgram& picture, int unit) const {
   glUniform2f(picture.Uniform("shaft_place"), step, -first * step);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

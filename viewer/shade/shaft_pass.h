@@ -17,7 +17,7 @@
 #include "viewer/gl/shader.h"
 #include "viewer/shade/shade_texture.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Sizes of the pass.
 struct ShaftDetail {
@@ -60,4 +60,4 @@ class ShaftPass {
 /// What the fragment shader of a picture needs to ask TakenByShade.
 [[nodiscard]] std::vector<ShaderPiece> ShaftTexts();
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

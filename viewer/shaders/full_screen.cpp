@@ -5,7 +5,7 @@
 
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr GLuint kSquare = 0;
@@ -52,4 +52,4 @@ void PassArea::Draw(const ShaderProgram& program) const {
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, *boxes_);
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "viewer/gl/scissor.h"
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// full_screen.vert.glsl and a fragment stage of these texts.
 [[nodiscard]] ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment);
@@ -32,4 +32,4 @@ class PassArea {
   GlVertexArray layout_, no_vertices_;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

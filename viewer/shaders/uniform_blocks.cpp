@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "renderer/ground/ground_cover.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
@@ -104,4 +104,4 @@ GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye
   return block;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,8 +11,9 @@
 #include "atmosphere/air/medium.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/surface.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// The viewer's bands: one component of a vec4 each. A medium may have fewer; the rest is dark.
 inline constexpr std::size_t kGpuBands = 4;
@@ -61,4 +62,4 @@ static_assert(offsetof(GroundBlock, mesh_up) == 78 * sizeof(glm::vec4));
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);
 [[nodiscard]] glm::vec4 GpuBandsOf(const BandLight& light);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

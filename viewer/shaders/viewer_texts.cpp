@@ -3,7 +3,7 @@
 
 #include "viewer/embedded_text.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 ShaderPiece ViewerPiece(const std::string& name) {
   return {name, std::string(viewer::EmbeddedText(name))};
@@ -15,4 +15,4 @@ std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
   return texts;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 [[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
 
@@ -15,4 +15,4 @@ namespace alpenglow {
 [[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
                                                         const std::vector<std::string>& names);
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(AerosolMixture, AtTheirOwnWavelengthTheyAreTheirTable) {
@@ -150,4 +150,4 @@ TEST(AerosolMixture, CornetteShanksOfAMeanCosineHasIt) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

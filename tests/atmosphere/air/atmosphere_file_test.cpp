@@ -14,7 +14,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using testing::HasSubstr;
@@ -511,4 +511,4 @@ TEST(AtmosphereFile, FilesAreReadAndNamedInFaults) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 std::vector<double> Angles(int steps) {
@@ -114,4 +114,4 @@ TEST(LorenzMie, SizesAndIndicesBeyondTheTheoryAreRefused) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

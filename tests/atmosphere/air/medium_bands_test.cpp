@@ -5,7 +5,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(MediumBands, OfAPresetAreThePresetThere) {
@@ -55,4 +55,4 @@ TEST(MediumBands, ThereAreNoneWhereNothingSaysWhatTheyAre) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -17,7 +17,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using testing::HasSubstr;
@@ -366,4 +366,4 @@ TEST(Medium, ScaleHeightsFromAHundredMetresToTwoHundredKilometresAreAllowed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

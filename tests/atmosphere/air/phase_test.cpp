@@ -17,7 +17,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 PhaseFunction Make(PhaseKind kind, double g = 0.0, double alpha = 1.0) {
@@ -302,4 +302,4 @@ TEST(Phase, ParametersOutOfRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

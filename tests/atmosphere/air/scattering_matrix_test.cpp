@@ -11,7 +11,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "atmosphere/text/embedded_table.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(ScatteringMatrix, RoundMoleculesHaveThePhaseFunctionOfRayleigh) {
@@ -85,4 +85,4 @@ TEST(ScatteringMatrix, OneSphereLeavesPolarisedLightPolarisedAndManyDoNot) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -18,7 +18,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -529,4 +529,4 @@ TEST(Albedo, OfGreyIsFlat) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

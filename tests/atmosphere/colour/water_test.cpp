@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(Water, IsClearestInTheVioletAsPopeAndFryFound) {
@@ -32,4 +32,4 @@ TEST(Ice, AbsorbsAThousandTimesMoreInDeepRedThanInViolet) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -15,7 +15,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 template <typename Real>
@@ -129,4 +129,4 @@ TEST(InstructionSetDeathTest, AnEmptyNameInTheEnvironmentIsAsIfItWereUnset) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

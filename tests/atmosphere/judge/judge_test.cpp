@@ -8,7 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 // One species, one band, nothing else in the air.
@@ -95,4 +95,4 @@ TEST(Judge, StoredSingleScatteringAgreesToOnePartInTenMillion) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

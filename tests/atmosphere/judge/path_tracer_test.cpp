@@ -16,7 +16,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 Medium WithoutAbsorption() {
@@ -293,4 +293,4 @@ TEST(PathTracer, AgreesWithStoredIrradiance) {
 }
 
 }  // namespace
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

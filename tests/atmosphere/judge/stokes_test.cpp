@@ -13,7 +13,7 @@
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow::judge {
+namespace alpenglow::atmosphere::judge {
 namespace {
 
 PolarisedScattering RoundMolecules(const Medium& medium) {
@@ -178,4 +178,4 @@ TEST(PathTracedStokes, AgreeWithStoredTwilightAndViewsFromSpace) {
 }
 
 }  // namespace
-}  // namespace alpenglow::judge
+}  // namespace alpenglow::atmosphere::judge

@@ -14,7 +14,7 @@
 #include "atmosphere/number/quadrature.h"
 #include "tests/fixtures/lamp_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -414,4 +414,4 @@ TEST(Lamp, AMeasuredTableGoesOnAroundItsAxis) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -13,7 +13,7 @@
 #include "atmosphere/judge/ray_equation.h"
 #include "tests/fixtures/bent_twilight.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr std::array kLitHeights_m{0.0, 3000.0, 8000.0};
@@ -137,4 +137,4 @@ TEST(BentBeam, StaysBelowThatOfStraightRaysAtAnyHeight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -9,7 +9,7 @@
 
 #include "atmosphere/judge/ray_equation.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using judge::PeckAndReeder;
@@ -138,4 +138,4 @@ TEST(BentView, AirThatWouldTrapRaysIsTakenToBendNone) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

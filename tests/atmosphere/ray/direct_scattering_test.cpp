@@ -17,7 +17,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/direct_regimes.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using tests::DirectRegime;
@@ -432,4 +432,4 @@ TEST(DirectAir, PolynomialsOfOzoneKeepThreeTenThousandthsOfAnOpticalDepth) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/ray/shell.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kMinuteOfArc = kRadiansPerDegree / 60.0;
@@ -113,4 +113,4 @@ TEST(LandLift, ThePlanetLooksAsWideAsBentRaysShowItsHorizon) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

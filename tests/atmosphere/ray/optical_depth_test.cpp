@@ -17,7 +17,7 @@
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using Columns = std::array<double, 3>;
@@ -326,4 +326,4 @@ TEST(OpticalDepth, AnObserverBelowTheSphereSeesTheSkyOfTheGround) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kRadius_m = 6.371e6;
@@ -168,4 +168,4 @@ TEST(PlanetShadow, OfASegmentOfAThousandKilometresIsTheOneStretchThatAScanFinds)
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/ray/ray.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kRadius_km = 6371.0;
@@ -247,4 +247,4 @@ TEST(Shadow, TowardsTheZenithAtTwilightEndsAtTheHeightOfElementaryGeometry) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -15,7 +15,7 @@
 #include "tests/fixtures/ray_regimes.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 template <typename Real>
@@ -625,4 +625,4 @@ TEST(SingleScattering, LayersBeyondThatAreRefusedWithTheRange) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -16,7 +16,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/sanitized.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kWavelength_nm = 550.0;
@@ -305,4 +305,4 @@ TEST(Eclipse, ARingStandsAroundTheMoonWhereItIsAnnular) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

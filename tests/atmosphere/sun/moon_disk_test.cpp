@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 /// The moon in the east, lit under a phase angle.
@@ -120,4 +120,4 @@ TEST(MoonDisk, NewMoonSendsNothingButEarthshine) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
@@ -84,4 +84,4 @@ TEST(MoonOrbit, ADayAndItsPartAreOneTime) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -12,7 +12,7 @@
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
@@ -142,4 +142,4 @@ TEST(Moon, StaysUpOrDownForDaysNearThePole) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
@@ -72,4 +72,4 @@ TEST(NightSky, ThereIsNoAirglowAboveItsLayer) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -11,7 +11,7 @@
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
@@ -246,4 +246,4 @@ TEST(ApparentSun, StandsHigherThanTheSunByTheRefractionFromTheEyesHeight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

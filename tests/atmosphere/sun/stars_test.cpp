@@ -10,7 +10,7 @@
 #include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 double AngleBetween(const Vector<Ecef>& a, const Vector<Ecef>& b) {
@@ -77,4 +77,4 @@ TEST(Planets, StandOnTheEclipticAsBrightAsAlmanacsSay) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kRadius_rad = 0.00465;
@@ -125,4 +125,4 @@ TEST(SunDisk, SolidAngleOfASmallDiskIsItsArea) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

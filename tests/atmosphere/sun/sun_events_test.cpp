@@ -9,7 +9,7 @@
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr std::array kInOrder = {
@@ -262,4 +262,4 @@ TEST(SunEvents, NamesAreThoseOfTheCommandLine) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

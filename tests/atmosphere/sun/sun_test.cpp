@@ -16,7 +16,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/places.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kSunArcsecond_rad = kRadiansPerDegree / 3600.0;
@@ -240,4 +240,4 @@ TEST(Sun, BadPlacesAreRefused) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

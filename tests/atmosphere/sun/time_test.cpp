@@ -13,7 +13,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 std::string FaultOf(std::string_view text, const std::optional<std::string>& zone = std::nullopt) {
@@ -294,4 +294,4 @@ TEST(Time, DeltaTHasNoJumpWhereModelsMeet) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

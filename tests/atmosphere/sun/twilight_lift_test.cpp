@@ -12,7 +12,7 @@
 #include "atmosphere/sun/sun.h"
 #include "tests/fixtures/bent_twilight.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr std::array kViews{std::array{90.0, 0.0}, std::array{45.0, 0.0}, std::array{45.0, 180.0},
@@ -123,4 +123,4 @@ TEST(SunForAir, IsRaisedByTheLiftForAirAtAnyHeight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

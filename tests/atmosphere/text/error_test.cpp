@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(Error, RangeMessageNamesKeyValueAndRange) {
@@ -33,4 +33,4 @@ TEST(Error, EnsurePrintsBothValues) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

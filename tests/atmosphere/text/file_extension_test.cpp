@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(FileExtension, IsTheSameInWhateverCase) {
@@ -17,4 +17,4 @@ TEST(FileExtension, IsTheSameInWhateverCase) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

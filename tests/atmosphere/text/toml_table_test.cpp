@@ -6,7 +6,7 @@
 
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::atmosphere {
 namespace {
 
 using tests::FaultOf;
@@ -110,4 +110,4 @@ TEST(TomlTable, FilesThatCannotBeReadAreNamed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::atmosphere

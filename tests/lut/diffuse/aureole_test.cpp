@@ -13,7 +13,7 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/small_light.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 /// A direction as high as the sun, some degrees beside it.
@@ -172,4 +172,4 @@ TEST(Aureole, OfHazeAgreesWithPathsByDayAndAtSunset) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr DiffuseLightOptions kSmall{.altitudes = 10,
@@ -71,4 +71,4 @@ TEST_P(DiffuseFanOf, BandsIsThePolarisedLightOfEveryAzimuth) {
 INSTANTIATE_TEST_SUITE_P(AnyNumber, DiffuseFanOf, testing::Values(3, 4, 6));
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

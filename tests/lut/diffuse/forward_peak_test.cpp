@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 Medium Haze(double scattering_per_m, double extinction_per_m) {
@@ -164,4 +164,4 @@ TEST(ForwardPeak, ComesBackFromStoredValues) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

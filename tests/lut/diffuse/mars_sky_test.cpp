@@ -11,7 +11,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/sky/sky_view.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 class MarsSky : public testing::Test {
@@ -71,4 +71,4 @@ TEST_F(MarsSky, TheGlowIsBrighterThanTheSkyAside) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -17,7 +17,7 @@
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 TEST(LegendreCoefficients, OfMoleculesAreOneZeroOneTenth) {
@@ -518,4 +518,4 @@ TEST(DiffuseLight, APeakNarrowerThanTheDirectionsStillLightsTheGround) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -16,7 +16,7 @@
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using slab::Stokes;
@@ -254,4 +254,4 @@ TEST(PolarisedLight, OfDirectIntegrationIsThatOfTheReference) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

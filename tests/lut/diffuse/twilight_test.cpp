@@ -22,7 +22,7 @@
 #include "lut/sky/panorama.h"
 #include "tests/fixtures/places.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kNightSky_lux = 0.0005;  // what the table adds (Janiczek, DeYoung 1987)
@@ -125,4 +125,4 @@ TEST(Twilight, OfOneExponentialOfEightKilometresIsTooBrightForItsAirIsTooDenseHi
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -18,7 +18,7 @@
 #include "tests/fixtures/stored_cases.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -696,4 +696,4 @@ TEST_F(StoredEval, PathsAgreeWithStoredSkyIrradiance) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

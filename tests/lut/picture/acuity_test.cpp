@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kPixel_rad = 0.05 * kRadiansPerDegree;
@@ -103,4 +103,4 @@ TEST(Acuity, PicturesOfOnePixelOrOneRowAreSeen) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

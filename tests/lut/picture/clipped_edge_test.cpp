@@ -7,7 +7,7 @@
 
 #include "lut/picture/look.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr std::array<float, 3> kSky{3000.0F, 6000.0F, 12000.0F};
@@ -193,4 +193,4 @@ TEST(ClippedEdge, ALightThatACurveHoldsIsLeftAsItIs) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -6,7 +6,7 @@
 #include "lut/picture/image.h"
 #include "lut/picture/light_meter.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kSunDisk_cd_per_m2 = 1.6e9;
@@ -205,4 +205,4 @@ TEST(Exposure, TheMeterHasLimits) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 TEST(EyeAdaptation, FollowsMoreLightAndDuskWithoutALag) {
@@ -31,4 +31,4 @@ TEST(EyeAdaptation, AGlanceIntoShadeIsSeenAtOnce) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

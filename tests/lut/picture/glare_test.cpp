@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
+#include "lut/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kGlarePixel_rad = 0.05 * kRadiansPerDegree;
@@ -71,4 +72,4 @@ TEST(Glare, LeavesDarknessDark) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 // What is so many stops over what EV 12 prints as grey.
@@ -38,4 +38,4 @@ TEST(Highlights, KeepTheirColour) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -14,10 +14,11 @@
 #include <limits>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/picture/dither.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -322,4 +323,4 @@ TEST_F(ExrFile, PicturesAreInFloatsAndHoldTheSunsDisk) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

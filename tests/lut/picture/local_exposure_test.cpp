@@ -8,7 +8,7 @@
 
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 float LuminanceAt(const Image& image, int x, int y) {
@@ -91,4 +91,4 @@ TEST(LocalExposure, DarknessStaysDarkAndFinite) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -13,7 +13,7 @@
 #include "lut/picture/night_vision.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 TEST(Look, NamesAreCurvesOrLocal) {
@@ -165,4 +165,4 @@ TEST(Look, PicturesOfOnePixelOneColumnAndOneLongRowAreDeveloped) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,7 +8,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kRodEfficiency = 683.002 / 1700.0;
@@ -115,4 +115,4 @@ TEST(NightVision, NeedsTheLightThatRodsSee) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

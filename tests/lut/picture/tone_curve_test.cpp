@@ -11,7 +11,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/picture/picture_text.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Color = Rgb<double>;
@@ -345,4 +345,4 @@ TEST(ToneCurves, NamesAreKnownAndOthersRefused) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

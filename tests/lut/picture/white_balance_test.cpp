@@ -10,7 +10,7 @@
 #include "lut/picture/look.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 WhiteBalance OfKelvin(double kelvin) { return {WhiteBalance::Kind::kKelvin, kelvin}; }
@@ -144,4 +144,4 @@ TEST(WhiteBalance, IsPartOfWhatIsSeen) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -8,10 +8,11 @@
 #include <csignal>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +104,4 @@ TEST_F(GrowingFiles, AFolderThatIsNotThereIsNamed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -19,10 +19,11 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "lut/layer.h"
 #include "lut/program/output_name.h"
 #include "tests/fixtures/lost_messages.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -469,4 +470,4 @@ TEST(Progress, DurationsReadAsPeopleSayThem) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -19,7 +19,7 @@
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,4 +273,4 @@ TEST(ReportBaselines, FiveHundredTrapezoidsKnowTheSameAir) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

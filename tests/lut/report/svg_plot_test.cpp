@@ -8,7 +8,7 @@
 #include <limits>
 #include <regex>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST(SvgPlot, MarksLieInsideTheSheet) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -17,7 +17,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kAzimuths_deg[] = {0.0, 40.0, 90.0, 200.0, 275.0, 359.0};
@@ -310,4 +310,4 @@ TEST(Panorama, OnePixelIsAPicture) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

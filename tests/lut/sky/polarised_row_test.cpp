@@ -12,7 +12,7 @@
 #include "atmosphere/number/halton.h"
 #include "tests/fixtures/lit_air.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using tests::LitAir;
@@ -146,4 +146,4 @@ TEST(PolarisedSky, IsMostPolarisedAtRightAnglesToTheSunAndLessInHaze) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

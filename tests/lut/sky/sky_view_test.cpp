@@ -12,7 +12,7 @@
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/fixtures/small_light.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kAltitudes_m[] = {0.0, 2.0, 1500.0, 10e3, 40e3, 400e3};
@@ -312,4 +312,4 @@ TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

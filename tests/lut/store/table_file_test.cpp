@@ -29,7 +29,7 @@
 #include "lut/store/table_image.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -567,4 +567,4 @@ TEST_F(TableFile, AFolderThatIsMissingIsAnOutputErrorNamingTheFile) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

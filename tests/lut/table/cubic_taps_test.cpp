@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 template <typename Function>
@@ -31,4 +31,4 @@ TEST(CubicTaps, BetweenTwoNodesAreALine) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -43,7 +43,7 @@ TEST(ScatteringMap, InverseReturnsTheRayToTheGroundOnADenseGrid) {
 
 TEST(ScatteringMap, InverseReturnsTheSunOnADenseGrid) {
   for (const double lowest_deg : {102.0, 120.0}) {
-    const double lowest = std::cos(lowest_deg * kRadiansPerDegree);
+    const double lowest = std::cos(lowest_deg * atmosphere::kRadiansPerDegree);
     for (double mu_s = lowest; mu_s <= 1.0; mu_s += 1e-4) {
       const double x = UnitFromSunCosine<double>(mu_s, lowest, kTop_km, kRadius_km);
       ASSERT_GE(x, 0.0);

@@ -12,7 +12,7 @@
 #include "lut/program/program.h"
 #include "tests/lut/table/table_errors.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 constexpr ScatteringTableSize kStandard{.nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
@@ -334,4 +334,4 @@ TEST(ScatteringTable, NoAirScattersNothing) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

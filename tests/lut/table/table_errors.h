@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 
 /// Differences between a method and the judge on the same work.
 class ErrorStatistics {
@@ -38,4 +38,4 @@ class ErrorStatistics {
   double truth_squares_ = 0.0;
 };
 
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -12,7 +12,7 @@
 #include "lut/program/program.h"
 #include "tests/lut/table/table_errors.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 double JudgedTransmittance(const Medium& medium, const ViewRay& ray, std::size_t band) {
@@ -181,4 +181,4 @@ TEST(TransmittanceTable, NonsenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -15,7 +15,7 @@
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -242,4 +242,4 @@ TEST(Albedo, KeepsItsColourThroughFourBandsAtSunsetAndInTwilight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

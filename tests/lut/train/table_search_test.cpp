@@ -10,7 +10,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace alpenglow {
+namespace alpenglow::lut {
 namespace {
 
 TEST(ErrorsOfViews, OfFourErrorsAreTheFormulas) {
@@ -40,4 +40,4 @@ TEST(ErrorsOfViews, TheRmsOfTheLawLiesUnderItsLimitAsOftenAsStated) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::lut

@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kTolerance = 1e-12;
@@ -190,4 +190,4 @@ TEST(CameraRays, ThePointOfTheLensThatSeesABlurredPointLooksThroughTheSamePointI
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -8,8 +8,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "renderer/camera/pixel_samples.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kRotation = 0.3;
@@ -58,4 +59,4 @@ TEST(Iris, ItsPointsFillItEvenly) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

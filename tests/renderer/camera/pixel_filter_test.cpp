@@ -8,8 +8,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Kind = PixelFilter::Kind;
@@ -103,4 +104,4 @@ TEST(PixelFilter, GaussianAliasesATenthOfTheBoxAndIsSofterStill) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Points = std::vector<std::array<double, 2>>;
@@ -158,4 +158,4 @@ TEST(PixelSamples, AreTheSameOnEveryMachine) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

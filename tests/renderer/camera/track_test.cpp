@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -301,4 +301,4 @@ TEST(TrackPath, IsAPathThatReplaysAndSeriesRead) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -171,4 +171,4 @@ TEST(PilotSpiral, StaysWithinItsRadiusAndThePicture) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

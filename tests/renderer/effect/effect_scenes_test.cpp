@@ -14,7 +14,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 RenderSettings SettingsOf(int width, int height) {
@@ -189,4 +189,4 @@ TEST_F(SceneNeeds, NoSkyBetweenTheWallsOfAValley) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -6,7 +6,7 @@
 
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -49,4 +49,4 @@ TEST(Effects, ANameThatIsNotKnownIsRefusedWithTheNearest) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

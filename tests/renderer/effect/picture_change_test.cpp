@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 Image Grey(float value) {
@@ -62,4 +62,4 @@ TEST(PictureChange, ASampleBoundsTheWholeThatItIsDrawnFrom) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

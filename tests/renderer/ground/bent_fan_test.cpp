@@ -10,7 +10,7 @@
 #include "atmosphere/judge/ray_equation.h"
 #include "atmosphere/ray/bent_view.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kMinute = kRadiansPerDegree / 60.0;
@@ -106,4 +106,4 @@ TEST(BentFan, RaysAreBelowAndAboveTheHeightsThatTheyAreSaidToBe) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -19,7 +19,7 @@
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -241,4 +241,4 @@ TEST(BandsOfColour, AreTheAlbedosOfColours) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

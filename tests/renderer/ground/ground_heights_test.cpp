@@ -5,7 +5,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Level squares around the origin of the frame, of a half width at a height.
@@ -67,4 +67,4 @@ TEST(GroundHeights, AlongAVerticalTheyAreOverThePoint) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

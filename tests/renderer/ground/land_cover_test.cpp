@@ -13,7 +13,7 @@
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST(CoverOfClass, SharesOfLandSumToOneAtMost) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

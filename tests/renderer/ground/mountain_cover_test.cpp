@@ -11,7 +11,7 @@
 #include "atmosphere/sun/time.h"
 #include "renderer/ground/surface.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 MountainCover On(const char* day, double latitude, double longitude) {
@@ -217,4 +217,4 @@ TEST(MountainCover, SnowUnderAWoodIsMostlyHidden) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "atmosphere/number/halton.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const std::vector<double> kWavelengths_nm{450.0, 500.0, 550.0, 600.0, 650.0};
@@ -341,4 +341,4 @@ TEST(Reflectance, RefusesWhatNoSurfaceIs) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

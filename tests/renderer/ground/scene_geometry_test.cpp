@@ -11,7 +11,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/terrain/mesh.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // Between neighbouring pixels of a picture that nobody has asked for a size or a view.
@@ -178,4 +178,4 @@ TEST(SceneGeometry, LongChordsOfBentRaysMeetWhatShortOnesMeet) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

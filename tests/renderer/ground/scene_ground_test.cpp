@@ -25,7 +25,7 @@
 #include "tests/fixtures/obj_texts.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -241,4 +241,4 @@ TEST(SceneGround, TellsThatTerrainIsMadeUp) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,8 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const glm::dvec3 kLeaningUp = glm::normalize(glm::dvec3(0.02, -0.01, 1.0));
@@ -76,4 +77,4 @@ TEST(Skyline, NothingIsKnownBesideItsArc) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

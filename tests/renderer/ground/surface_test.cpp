@@ -12,7 +12,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/ground/ground_cover.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct Spread {
@@ -335,4 +335,4 @@ TEST(Waves, MoveSmoothlyAfterYears) {
 TEST(Waves, ACalmSeaHasNone) { EXPECT_EQ(WavesSeen(0.003, 0.01, 1.0).resolved, 0.0); }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

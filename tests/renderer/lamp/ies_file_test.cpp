@@ -14,7 +14,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -252,4 +252,4 @@ TEST(IesFile, FaultsAreNamedByLine) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kEyeHeight_m = 40.0;
@@ -202,4 +202,4 @@ TEST(LampExtremes, AnEyeOverFogOfAHighBaseSeesNoLampUnderIt) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

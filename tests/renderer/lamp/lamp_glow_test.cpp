@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/number/quadrature.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// Fog over level ground at altitude 0, with the molecules of clear air.
@@ -137,4 +137,4 @@ TEST(LampGlow, IsFiniteEverywhere) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

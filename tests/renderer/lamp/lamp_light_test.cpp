@@ -17,7 +17,7 @@
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kLampEyeHeight_m = 40.0;
@@ -692,4 +692,4 @@ TEST_F(LampsAtTheEye, MakePicturesOfNumbersInFogAndThroughALens) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/ray_regimes.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 DiffuseLightOptions Coarse() {
@@ -312,4 +312,4 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

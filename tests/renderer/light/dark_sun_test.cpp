@@ -13,7 +13,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 struct Planet {
@@ -92,4 +92,4 @@ TEST(DarkSun, IsLeftOutOnlyWhereEveryPixelOfANightWithoutMoonHasLessOfItThanTheT
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "renderer/light/town_light.h"
 #include "tests/fixtures/lit_air.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kMaunaKea_m = 2800.0;
@@ -213,4 +213,4 @@ TEST(NightLight, RisesToTheHorizonBeforeTheAirTakesIt) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

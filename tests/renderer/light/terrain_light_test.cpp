@@ -19,7 +19,7 @@
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/rough_land.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const tests::LitAir& TheAir() {
@@ -371,4 +371,4 @@ TEST(TerrainLight, ASeaMirrorsAFarCoastWithoutEdges) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

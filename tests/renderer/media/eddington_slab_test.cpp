@@ -12,8 +12,9 @@
 #include "atmosphere/air/phase.h"
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/spherical_harmonics.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -227,4 +228,4 @@ TEST(EddingtonSlab, RadiancesAreThoseOfPaths) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

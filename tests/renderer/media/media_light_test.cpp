@@ -18,7 +18,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/noise_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSunElevation = 0.5;  // about 29 degrees
@@ -452,4 +452,4 @@ TEST(RenderMedia, FogGrowsOutOfClearAirWithoutAStep) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

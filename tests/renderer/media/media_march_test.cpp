@@ -8,7 +8,7 @@
 
 #include "tests/fixtures/noise_grid.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Shape = VolumePlacement::Shape;
@@ -226,4 +226,4 @@ TEST(MarchMedia, PiecesSayWhatIsLeftOfLight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

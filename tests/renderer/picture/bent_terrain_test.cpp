@@ -8,7 +8,7 @@
 #include "tests/fixtures/far_peak.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using tests::ElevationByEquation;
@@ -69,4 +69,4 @@ TEST_F(BentTerrain, PicturesInWhichItMovesLessThanHalfAPixelAreThoseOfStraightRa
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

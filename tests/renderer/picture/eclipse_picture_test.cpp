@@ -11,7 +11,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kEye_m = 2.0;
@@ -136,4 +136,4 @@ TEST(EclipsePicture, IlluminanceFallsToTheCoronasAndRisesAgain) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -16,7 +16,7 @@
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/report_files.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,4 +122,4 @@ TEST(GoldenTolerance, OtherSizesAndBrokenPixelsAreNamed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const RenderSettings kSmall{
@@ -124,4 +124,4 @@ TEST_F(Valley, IsTheSameBytesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 /// A small picture around a direction, of the sky at night.
@@ -79,4 +79,4 @@ TEST(MoonPicture, TheHalfMoonIsLitOnItsRightInTheEveningOfTheNorth) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const UtcInstant kMoonless = ParseInstant("2026-01-17T22:00:00Z");  // new moon: January 18, 19:52
@@ -209,4 +209,4 @@ TEST(NightPicture, DuskFallsWithoutAStepWhereTheMoonBegins) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

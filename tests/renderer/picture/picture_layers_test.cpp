@@ -13,7 +13,7 @@
 #include "lut/diffuse/multiple_scattering.h"
 #include "renderer/light/aerial_perspective.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 TEST(PictureLayers, EveryLayerHasItsNameChannelsAndOneWayToItsValues) {
@@ -95,4 +95,4 @@ TEST(PictureLayers, LightOfOneBandAloneHasLuminance) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -18,7 +18,7 @@
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 TEST(RaySpread, IsTheVarianceOfColoursRelativeToTheirMean) {
@@ -204,4 +204,4 @@ TEST_F(NoisyPicture, RefusesNoiseOfNothingAndASingleFirstRay) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

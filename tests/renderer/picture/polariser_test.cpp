@@ -15,7 +15,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using tests::Luminance;
@@ -135,4 +135,4 @@ TEST(Polariser, TakesReflectionsOffTheSeaAtBrewstersAngle) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -7,7 +7,7 @@
 #include "atmosphere/sun/sun.h"
 #include "tests/fixtures/bare_scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 glm::dvec3 SunAtElevation(double degrees) {
@@ -28,4 +28,4 @@ TEST(RecentSunlight, IsMadeOnceForTheLastTwoSunsAndAnewForAnyOther) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kArcminute = kRadiansPerDegree / 60.0;
@@ -131,4 +131,4 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationHasIt) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -13,7 +13,7 @@
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using tests::Luminance;
@@ -155,4 +155,4 @@ TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSideAndDarkAirBeforeIt) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -17,7 +17,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const UtcInstant kExtremeNoon = ParseInstant("2026-06-21T11:30:00Z");
@@ -274,4 +274,4 @@ TEST(RenderExtremes, SixteenThousandColumnsAreSmoothAndAPanoramaCloses) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -20,7 +20,7 @@
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/thread_counts.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 const RenderSettings kSmall{
@@ -374,4 +374,4 @@ TEST(Render, ScotopicLayerIsWhatRodsSeeOfTheSamePixel) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

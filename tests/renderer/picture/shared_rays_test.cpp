@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kSide = 7;
@@ -114,4 +114,4 @@ TEST(SharedRays, StayPositiveBesideALightAMillionTimesAsBright) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

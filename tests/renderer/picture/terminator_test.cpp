@@ -15,7 +15,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kEyeHeight_m = 40.0, kRadius_m = 10.0;
@@ -141,4 +141,4 @@ TEST_F(Terminator, LampLightEndsWhereTheRoundBodyTurnsAway) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

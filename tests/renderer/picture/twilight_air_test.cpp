@@ -12,7 +12,7 @@
 #include "tests/fixtures/bent_twilight.h"
 #include "tests/fixtures/luminance.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kMinuteOfArc = kRadiansPerDegree / 60.0;
@@ -111,4 +111,4 @@ TEST(LowSun, LightsLevelGroundByItsBentBeam) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ TEST(LampWorks, RulesAgreeWithTheJudgeWhenTheyTakeManyPoints) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

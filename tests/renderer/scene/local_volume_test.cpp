@@ -25,7 +25,7 @@
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 VolumePlacement Turned(VolumePlacement::Shape shape, double heading_deg) {
@@ -415,4 +415,4 @@ TEST_F(RawGrid, RefusesAFileOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -22,7 +22,7 @@
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -580,4 +580,4 @@ TEST_F(SceneFile, NamesOfFilesAreRelativeToTheScene) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

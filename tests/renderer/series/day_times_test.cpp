@@ -6,7 +6,7 @@
 
 #include "renderer/series/frame_list.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -93,4 +93,4 @@ TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -9,7 +9,7 @@
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using tests::FaultOf;
@@ -169,4 +169,4 @@ TEST(FrameTimes, DaysWithoutTheEventHaveNoFrame) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 #include "renderer/series/keogram.h"
 #include "renderer/series/manifest_json.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -114,4 +114,4 @@ TEST(JsonManifest, SaysWhereTheMoonStandsAndNullForWhatIsNotThereYet) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -17,8 +17,10 @@
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
+
+using atmosphere::operator*;  // Matrix3 is an array of the standard library
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -536,4 +538,4 @@ TEST_F(Provenance, FingerprintFollowsEverySettingAndTheTerrainsContent) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

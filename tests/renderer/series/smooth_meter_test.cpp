@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 std::vector<Frame> Every(double seconds, int count) {
@@ -94,4 +94,4 @@ TEST(SmoothMeter, ANodeIsMeteredOnce) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

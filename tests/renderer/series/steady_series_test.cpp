@@ -11,7 +11,7 @@
 #include "renderer/series/smooth_meter.h"
 #include "tests/fixtures/bare_scene.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kThreePercent_ev = 0.0426;  // log2(1.03)
@@ -113,4 +113,4 @@ TEST(SteadySeries, TheCameraPrintsNightDarkerByItsLawAndMakesNoOtherStep) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
@@ -318,4 +318,4 @@ TEST(TimeText, SunAndMoonKeepToAnAlmanac) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/rough_land.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kFlatPlanet_m = 1e15;
@@ -123,4 +123,4 @@ TEST(HorizonMap, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

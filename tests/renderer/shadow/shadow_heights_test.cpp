@@ -13,7 +13,7 @@
 #include "tests/fixtures/occlusion_march.h"
 #include "tests/fixtures/places.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
@@ -221,4 +221,4 @@ TEST(ShadowHeights, ShaftsAroundFujiAreThoseOfThousandsOfOcclusionRays) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -11,7 +11,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/shadow/shadow_heights.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSunRadius = 0.265 * kRadiansPerDegree;
@@ -139,4 +139,4 @@ TEST(SunProbes, ARidgeOfNoThicknessLetsNoLightThrough) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

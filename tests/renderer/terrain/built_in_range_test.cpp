@@ -14,7 +14,7 @@
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSpacing_m = 70.0;
@@ -226,4 +226,4 @@ TEST(BuiltInRangeView, ShowsTheSameOverTheSouthPole) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -17,9 +17,10 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 #include "tests/fixtures/places.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -663,4 +664,4 @@ TEST(SharedElevation, VoidsOfEverestAreCountedAndFilledBetweenTheirRims) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -12,7 +12,7 @@
 
 #include "renderer/terrain/lattice_noise.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 // A land of noise whose heights come in steps: many basins, and many samples of equal height.
@@ -129,4 +129,4 @@ TEST(Erosion, DistancesOfScatteredSamplesAreTheSameBothWaysAndAThirdOffAtMost) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 
 #include "renderer/terrain/lattice_text.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 TEST(LatticeNoise, SlopesAreTheDifferencesOfNearbyValues) {
@@ -49,4 +49,4 @@ TEST(LatticeNoise, IsZeroAtTheLatticePointsAndStaysWithinOne) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 GeodeticPosition PlaceOfDegrees(double latitude, double longitude, double height_m = 0.0) {
@@ -207,4 +207,4 @@ TEST(MeshFromElevation, TheGroundIsOnePieceOverTheMeridianOfGreenwich) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

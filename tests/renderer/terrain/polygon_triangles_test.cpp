@@ -10,8 +10,9 @@
 #include <string>
 
 #include "atmosphere/number/constants.h"
+#include "renderer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 using Corners = std::vector<glm::dvec3>;
@@ -163,4 +164,4 @@ TEST(PolygonTriangles, AWindingPassageOfManyCornersHasItsArea) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -15,7 +15,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -368,4 +368,4 @@ TEST(Terrain, TheGroundAHundredKilometresAwayIsWhereItIsToAMillimetre) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::renderer

@@ -5,7 +5,7 @@
 
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 TEST(AirChoice, AVisibilityThatIsAskedForIsThatOfTheAir) {
@@ -44,4 +44,4 @@ TEST(AirChoice, WhatIsOutOfRangeIsNamed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -15,7 +15,7 @@
 #include "tests/viewer/air/air_judge.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using AirFollowerOnGpu = tests::Headless;
@@ -154,4 +154,4 @@ TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -14,6 +14,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 /// Relative errors, as of a sky view.
 using AirErrors = SkyViewErrors;
 

@@ -17,6 +17,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 /// Between texels, places counted in texels from the first.
 inline glm::dvec4 Linear(const AirTexels& texels, double x, double y = 0.0, double z = 0.0) {
   glm::dvec4 sum(0.0);

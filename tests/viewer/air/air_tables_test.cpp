@@ -12,7 +12,7 @@
 #include "tests/viewer/air/air_judge.h"
 #include "viewer/gl/texture_side.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kRays = 300;
@@ -260,4 +260,4 @@ TEST(AirTablesSize, NoSideOfATextureIsAPowerOfTwo) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

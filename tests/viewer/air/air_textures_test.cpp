@@ -14,7 +14,7 @@
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using AirTexturesOnGpu = tests::Headless;
@@ -245,4 +245,4 @@ TEST_F(AirTexturesOnGpu, BeamOfTheSunIsThatOfBentBeam) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

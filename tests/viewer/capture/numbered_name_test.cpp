@@ -3,7 +3,7 @@
 
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 class NumberedNames : public TemporaryFolder {};
@@ -26,4 +26,4 @@ TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

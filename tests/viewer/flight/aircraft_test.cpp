@@ -10,7 +10,7 @@
 #include "atmosphere/number/gravity.h"
 #include "viewer/flight/standard_air.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kStep_s = 1.0 / 120.0;
@@ -329,4 +329,4 @@ TEST(Aircraft, TheEyeLooksAlongTheNoseWithTheWingsOfTheAircraft) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kPilotStep_s = 1.0 / 120.0;
@@ -156,4 +156,4 @@ TEST(Autopilot, AHeightThatCannotBeReachedIsNoStall) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

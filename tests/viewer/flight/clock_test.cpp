@@ -8,7 +8,7 @@
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const GeodeticPosition kZurich = PlaceFromDegrees(47.4582, 8.5555, 432.0);
@@ -162,4 +162,4 @@ TEST(Clock, TypedTimesAreUtcWithAZAndLocalWithout) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

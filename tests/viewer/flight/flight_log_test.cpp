@@ -6,7 +6,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kSpeed_deg_per_s = 1e-4;
@@ -59,4 +59,4 @@ TEST(FlightLog, WhereTheEyeStoodNothingHasBeenFlown) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/temporary_folder.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ TEST_F(FlightRecords, OfADiskThatIsFullTheFlightHearsAtItsEnd) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,7 +10,7 @@
 #include "atmosphere/text/error.h"
 #include "viewer/flythrough.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 Eye EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
@@ -114,4 +114,4 @@ TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 double Sea(const GeodeticPosition&) { return 0.0; }
@@ -210,4 +210,4 @@ TEST(Pilot, AReplayGoesAsLowAsItWasFlownButNotIntoTheGround) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

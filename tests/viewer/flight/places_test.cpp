@@ -11,7 +11,7 @@
 #include "atmosphere/sun/time_zone.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -171,4 +171,4 @@ TEST(Places, LocalTimeNamesItsZoneAndTheShareOfTheDay) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

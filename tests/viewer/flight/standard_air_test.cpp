@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // U.S. Standard Atmosphere 1976, table I: geometric height [m], density [kg/m3].
@@ -36,4 +36,4 @@ TEST(StandardAir, ThinsOutWithoutAJumpFromBelowTheSeaToOrbit) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

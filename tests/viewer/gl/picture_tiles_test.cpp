@@ -12,7 +12,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -134,4 +134,4 @@ TEST(PictureMemory, APictureThatMemoryDoesNotHoldIsRefusedBeforeItIsMade) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 class RenderTargets : public tests::Headless {
@@ -98,4 +98,4 @@ TEST_F(RenderTargets, APictureWithoutMemoryForItIsADisplayError) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

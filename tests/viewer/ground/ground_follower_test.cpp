@@ -6,7 +6,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/terrain/built_in_range.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const GeodeticPosition kFollowedPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
@@ -138,4 +138,4 @@ TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

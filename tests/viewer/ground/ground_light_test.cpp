@@ -22,7 +22,7 @@
 #include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using GroundOnGpu = tests::Headless;
@@ -389,4 +389,4 @@ TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "atmosphere/sun/sun_disk.h"
 #include "tests/viewer/ground/rough_site.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const std::shared_ptr<const GroundSite>& TheSite() {
@@ -234,4 +234,4 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

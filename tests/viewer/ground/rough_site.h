@@ -13,6 +13,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree,
                                               0.0};
 

@@ -7,6 +7,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 /// After air_block.glsl; stands for the functions of air_tables.glsl.
 inline ShaderPiece SunInClosedForm() {
   return {"sun in closed form",

@@ -11,7 +11,7 @@
 #include "lut/picture/image.h"
 #include "lut/sky/sky_view.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// Air of four bands with all of its light, solved once.
@@ -104,4 +104,4 @@ TEST(DayStrip, AStripIsMadeAnewOnlyForWhatItWouldShow) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

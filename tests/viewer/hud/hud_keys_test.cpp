@@ -5,7 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using Keys = std::vector<HudKey>;
@@ -52,4 +52,4 @@ TEST(HudKeys, KeysThatPanelsDoNotKnowAreTheFlights) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -10,6 +10,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 /// A flight of which every instrument has something to tell.
 inline HudModel Flying() {
   HudModel model;

@@ -12,7 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/viewer/hud/hud_picture.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 720;
@@ -298,4 +298,4 @@ TEST_F(HudTest, ItIsDimAtNight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

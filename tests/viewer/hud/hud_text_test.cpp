@@ -6,8 +6,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "viewer/hud/hud_theme.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
@@ -134,4 +135,4 @@ TEST(HudTheme, ADuskDoesNotFlicker) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "viewer/hud/pitch_ladder.h"
 #include "viewer/hud/tapes.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kPanelWidth = 1280, kPanelHeight = 720;
@@ -204,4 +204,4 @@ TEST(Tapes, MarksAreRoundNumbers) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// All that the panel writes, whether it fits into the picture or not.
@@ -84,4 +84,4 @@ TEST(KeyHelp, ColumnsKeepTheOrderAndAreAboutEven) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kPictureWidth = 1280, kPictureHeight = 800;
@@ -261,4 +261,4 @@ TEST_F(PanelsTest, OutsideOfTheAircraftThereIsNoThrottle) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/viewer/hud/hud_picture.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kLeastContrast = 4.5;  // WCAG 2.1, 1.4.3
@@ -185,4 +185,4 @@ TEST_F(Readable, PanelsHaveContrastOverDarkAndBright) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/places.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using ::testing::HasSubstr;
@@ -167,4 +167,4 @@ TEST(Action, TheManualShowsTheTable) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include "atmosphere/number/constants.h"
 #include "viewer/input/controls.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 double CockpitSea(const GeodeticPosition&) { return 0.0; }
@@ -181,4 +181,4 @@ TEST(Cockpit, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 TEST(LatestJob, WhatWasAskedForBeforeTheNewestIsNotMade) {
@@ -53,4 +53,4 @@ TEST(LatestJob, EndsWithARequestWaiting) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include "viewer/lamps/fog_follower.h"
 #include "viewer/lamps/fog_painter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
@@ -259,4 +259,4 @@ TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -11,7 +11,7 @@
 #include "atmosphere/lamp/lamp_ray.h"
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
@@ -134,4 +134,4 @@ TEST(GlowMap, SlopesInLightFogGetWhatLampGlowSays) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/lamp_painter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kLitPixel_rad = 1e-3;
@@ -422,4 +422,4 @@ TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -20,7 +20,7 @@
 #include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using LampPicture = tests::Headless;
@@ -153,4 +153,4 @@ TEST_F(LampPicture, ALatticeOfEverySecondPixelWithCoresIsTheWholePicture) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -13,7 +13,7 @@
 #include "viewer/lamps/lit_plan.h"
 #include "viewer/lamps/lit_plan_follower.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// Level ground with a ridge, and a lamp behind it.
@@ -112,4 +112,4 @@ TEST(LitPlanFollower, NoLampsAreSettledAtOnce) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "renderer/ground/scene_ground.h"
+#include "viewer/layer.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 
 /// Level ground with a ridge 60 m high that runs east, 150 m north of the origin.
 inline SceneGround Ridge(const Scene& scene) {
@@ -34,4 +35,4 @@ inline SceneGround Ridge(const Scene& scene) {
   return ground;
 }
 
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,6 +8,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 using HeadlessLand = HeadlessWith<LandFolder>;
 
 /// A folder with one tile, and a current OpenGL context.

@@ -17,7 +17,7 @@
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 #endif
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using namespace tests;
@@ -221,4 +221,4 @@ TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

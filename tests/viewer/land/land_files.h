@@ -21,6 +21,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 inline constexpr double kTileStep_deg = 1.0 / 2400.0;  // 46 m
 inline constexpr int kTileSamples = 241;               // a side: a tenth of a degree
 inline constexpr double kWest_deg = 8.0, kNorth_deg = 46.7;

@@ -9,7 +9,7 @@
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/land_files.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using namespace tests;
@@ -321,4 +321,4 @@ TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

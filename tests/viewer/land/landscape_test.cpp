@@ -15,7 +15,7 @@
 #include "viewer/land/surface_map.h"
 #include "viewer/shaders/uniform_blocks.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using namespace tests;
@@ -498,4 +498,4 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 
 #include "tests/viewer/land/land_files.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using namespace tests;
@@ -166,4 +166,4 @@ TEST_F(LevelRanges, NearTheEyeEverySampleIsDrawnAndFromAboveFewer) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 
 #include "atmosphere/number/constants.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
@@ -87,4 +87,4 @@ TEST(MeshGrid, TheHighestSurfaceCounts) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -9,7 +9,7 @@
 #include "tests/viewer/land/land_files.h"
 #include "viewer/land/level_ranges.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using namespace tests;
@@ -151,4 +151,4 @@ TEST_F(LandInFlight, NothingPops) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

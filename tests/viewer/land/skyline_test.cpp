@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // A wall 1 km north of the eye, 2 km wide and 100 m over the eye.
@@ -63,4 +63,4 @@ TEST(Skyline, AGapInAWallHidesNothing) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

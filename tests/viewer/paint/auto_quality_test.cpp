@@ -9,7 +9,7 @@
 #include "tests/fixtures/fault_of.h"
 #include "viewer/paint/paint_sizes.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 /// A machine on which a frame takes so long at full resolution and high quality; low costs 0.4 of
@@ -114,4 +114,4 @@ TEST(QualityRule, IsReadFromItsName) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

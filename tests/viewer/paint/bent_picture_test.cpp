@@ -19,7 +19,7 @@
 #include "viewer/paint/view_bend.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kArcMinute = kRadiansPerDegree / 60.0;
@@ -188,4 +188,4 @@ TEST_F(BentPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -15,7 +15,7 @@
 #include "viewer/flythrough.h"
 #include "viewer/paint/paint_sizes.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 class DarkroomTest : public tests::HeadlessTile {
@@ -158,4 +158,4 @@ TEST_F(SmallPictures, EdgesOfShadeAreAsWideAsTheirPixels) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/paint/exposure_meter.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kFrameWidth = 96, kFrameHeight = 54;
@@ -170,4 +170,4 @@ TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

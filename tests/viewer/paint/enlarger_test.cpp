@@ -13,7 +13,7 @@
 #include "viewer/paint/darkroom.h"
 #include "viewer/paint/view_difference.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kPrintWidth = 64, kPrintHeight = 36, kSmaller = 4;
@@ -118,4 +118,4 @@ TEST_F(EnlargerTest, OnOneSurfaceLightIsInterpolated) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

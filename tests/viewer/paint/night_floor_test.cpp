@@ -10,7 +10,7 @@
 #include "renderer/light/night_light.h"
 #include "renderer/light/town_light.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 TEST(NightFloor, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
@@ -62,4 +62,4 @@ TEST(NightFloor, BetweenTexelsTheSkyIsThatOfTheRenderer) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

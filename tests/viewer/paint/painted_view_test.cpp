@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/ray/shell.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kRadius_km = 6371.0;
@@ -55,4 +55,4 @@ TEST(PaintedView, RowsOfThePlanetHoldAllItsRaysAndLittleElse) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

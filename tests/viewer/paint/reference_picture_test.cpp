@@ -10,7 +10,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/flight/flight_recorder.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 ReferencePicture::View ViewOf(const std::shared_ptr<const ReferenceScene>& of) {
@@ -71,4 +71,4 @@ TEST(ReferencePicture, SaysWhatTheRendererRefuses) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

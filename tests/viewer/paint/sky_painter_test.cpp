@@ -21,7 +21,7 @@
 #include "viewer/paint/key_light.h"
 #include "viewer/paint/view_difference.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 struct PictureSize {
@@ -434,4 +434,4 @@ TEST_F(BareSky, AnotherPictureIsShownInstead) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -6,7 +6,7 @@
 #include "lut/picture/image.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using SpotMeterTest = tests::Headless;
@@ -50,4 +50,4 @@ TEST_F(SpotMeterTest, KeepsItsValueUntilTheNextArrivesAndForgetsItWhenNothingIsP
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

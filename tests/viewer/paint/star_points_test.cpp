@@ -13,7 +13,7 @@
 #include "renderer/picture/star_pixels.h"
 #include "tests/fixtures/bare_scene.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
@@ -141,4 +141,4 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

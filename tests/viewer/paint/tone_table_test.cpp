@@ -9,7 +9,7 @@
 #include "atmosphere/number/halton.h"
 #include "lut/picture/tone_curve.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 // Trilinear interpolation as a graphics card does it, of a colour in stops over saturation.
@@ -75,4 +75,4 @@ TEST(ToneTable, OtherLooksAreOffWhereTheyClipAChannel) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -7,7 +7,7 @@
 
 #include "atmosphere/text/error.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr int kSide = 10;
@@ -89,4 +89,4 @@ TEST(ViewDifference, WithoutLayersPicturesCannotBeCompared) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

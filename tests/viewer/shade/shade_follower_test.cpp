@@ -11,7 +11,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
@@ -121,4 +121,4 @@ TEST_F(ShadeFollowerTest, ASunThatOutrunsTheMapsIsStillFollowed) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

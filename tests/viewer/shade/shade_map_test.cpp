@@ -13,7 +13,7 @@
 #include "viewer/gl/texture_side.h"
 #include "viewer/shade/heights_around.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kSunRadius_rad = 0.00465;
@@ -177,4 +177,4 @@ TEST(HeightsAround, AreThoseOfTheMeshOfTheSameElevations) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -21,7 +21,7 @@
 #include "viewer/shaders/uniform_blocks.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 constexpr double kShaftSunRadius_rad = 0.00465;
@@ -329,4 +329,4 @@ TEST_F(Shafts, AMapIsInUseOnceAllOfItIsThere) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -23,7 +23,7 @@
 #include "viewer/shade/shaft_pass.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 class Glslang : public TemporaryFolder {
@@ -172,4 +172,4 @@ TEST_F(Glslang, RefusesABrokenShader) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -15,6 +15,8 @@
 
 namespace alpenglow::tests {
 
+using namespace viewer;
+
 /// Values of an expression in a[0] ... a[7], one a point, recorded by transform feedback.
 /// @param prepare  gives the program what its texts read besides the arguments.
 inline std::vector<float> EvaluateOnGpu(

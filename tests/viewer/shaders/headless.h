@@ -8,8 +8,11 @@
 
 #include "atmosphere/text/error.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::tests {
+
+using namespace viewer;
 
 /// A context that is current; null where EGL gives none.
 inline std::unique_ptr<HeadlessContext> ContextOrNone() {

@@ -8,7 +8,7 @@
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using SharedText = tests::Headless;
@@ -56,4 +56,4 @@ TEST(ShaderText, EveryPieceHasLinesOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

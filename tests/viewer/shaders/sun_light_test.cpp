@@ -13,7 +13,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using SunLight = tests::Headless;
@@ -122,4 +122,4 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/shaders/viewer_texts.h"
 
-namespace alpenglow {
+namespace alpenglow::viewer {
 namespace {
 
 using UniformBlocks = tests::Headless;
@@ -215,4 +215,4 @@ TEST_F(GroundCoverBlock, ReliefIsThatOfTheRenderer) {
 }
 
 }  // namespace
-}  // namespace alpenglow
+}  // namespace alpenglow::viewer

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Checks rules of the sources that no compiler knows.
+
+- Folder order: a file includes nothing of a folder above its own. The four layers stand in the order
+  atmosphere, lut, renderer, viewer; the folders of a layer stand in the order of the table in its README.
+- The README of a layer lists every folder of it.
+- Namespaces: a source of a layer declares nothing in the namespace of another one.
+- The top level of the repository has only the known entries.
+- Every file that begins with an interpreter can be run.
+- Programs write to standard output and error only through lut/program/messages.h: fmt::print throws
+  where standard error takes nothing, which would end the work.
+
+Every rule is also run on small examples that break it, so that a rule that finds nothing is noticed.
+"""
+import os
+import pathlib
+import re
+import sys
+
+TREE = pathlib.Path(__file__).resolve().parent.parent
+LAYERS = ("atmosphere", "lut", "renderer", "viewer")
+ALL_LAYERS = (*LAYERS, "tests")  # nothing includes what the tests have
+# Written by the build, or without contents of a folder: these stand under all folders of their layer.
+LOWEST = ("embedded_text.h", "version.h", "layer.h")
+TOP_LEVEL = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "atmosphere", "build", "lut",
+             "out", "quickstart.sh", "renderer", "tests", "viewer"}
+SPEECH = ("fmt::print", "std::cerr", "std::cout <<", "printf(")
+INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
+NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
+
+
+def folders_of(readme):
+    """The folders of the rows "| `folder/` | ..." of a README, lowest first."""
+    return re.findall(r"^\| `(\w+)/` \|", readme, re.MULTILINE)
+
+
+def place_of(path, order):
+    """The ranks of the layer and of the folder of "lut/sky/panorama.h"; None for a file of no layer.
+    Files at the top of a layer stand above its folders, a folder that is not listed above those."""
+    layer, _, rest = path.partition("/")
+    if layer not in ALL_LAYERS or not rest:
+        return None
+    folder, _, name = rest.rpartition("/")
+    folders = order.get(layer, [])
+    if name in LOWEST:
+        rank = 0
+    elif not folder:
+        rank = len(folders)
+    else:
+        rank = folders.index(folder) if folder in folders else len(folders) + 1
+    return ALL_LAYERS.index(layer), rank
+
+
+def includes_upwards(path, text, order):
+    here = place_of(path, order)
+    for number, line in enumerate(text.splitlines(), 1):
+        found = INCLUDE.match(line)
+        there = place_of(found[1], order) if found else None
+        if there and (there[0] > here[0] or there[0] == here[0] and there[1] > here[1]):
+            yield f"{path}:{number}: {found[1]} stands above this file"
+
+
+def foreign_namespaces(path, text):
+    layer = path.partition("/")[0]
+    for name in NAMESPACE.findall(text):
+        if name in LAYERS and name != layer and not path.endswith("/layer.h"):
+            yield f"{path}: namespace alpenglow::{name} belongs to another layer"
+    if re.search(r"^namespace alpenglow \{", text, re.MULTILINE):
+        yield f"{path}: namespace alpenglow without the name of a layer"
+
+
+def speech(path, text):
+    return [f"{path}: {words} does not go through lut/program/messages.h" for words in SPEECH if words in text]
+
+
+def check_examples():
+    """Every rule finds what breaks it, and nothing else."""
+    order = {"atmosphere": ["text", "air"], "lut": ["picture", "sky"], "renderer": ["terrain"], "viewer": []}
+    for path, included, expected in (
+            ("lut/sky/panorama.h", "renderer/terrain/mesh.h", 1),  # a higher layer
+            ("lut/picture/image.h", "lut/sky/panorama.h", 1),  # a higher folder
+            ("lut/picture/image.h", "lut/sky_command.h", 1),  # the top
+            ("lut/picture/image.h", "lut/cellar/wine.h", 1),  # a folder that is not listed
+            ("lut/picture/image.h", "tests/fixtures/stored_cases.h", 1),
+            ("lut/picture/image.h", "alpenglow/renderer/terrain/mesh.h", 1),
+            ("lut/sky/panorama.h", "lut/picture/image.h", 0),
+            ("lut/sky/panorama.h", "lut/embedded_text.h", 0),
+            ("lut/picture/image.h", "lut/layer.h", 0),
+            ("lut/sky_command.cpp", "lut/sky/panorama.h", 0),
+            ("lut/picture/image.h", "atmosphere/air/medium.h", 0)):
+        found = list(includes_upwards(path, f'#include <vector>\n#include "{included}"\n', order))
+        assert len(found) == expected, (path, included, found)
+    assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::renderer {\n"))) == 1
+    assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow {\n"))) == 1
+    assert not list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::lut {\nnamespace alpenglow::shared {\n"))
+    assert len(speech("lut/a.cpp", 'std::cerr << "x";')) == 1
+    assert folders_of("| `air/` | media |\n| `ray.h` | no folder |\n") == ["air"]
+
+
+def sources(layer):
+    files = [file for file in sorted((TREE / layer).rglob("*")) if file.suffix in (".h", ".cpp", ".glsl")]
+    assert len(files) > 50, f"{layer}: the rules must have looked at the sources"
+    return [(str(file.relative_to(TREE)), file.read_text(encoding="utf-8")) for file in files]
+
+
+def broken_rules():
+    order = {layer: folders_of((TREE / layer / "README.md").read_text(encoding="utf-8")) for layer in LAYERS}
+    for layer in LAYERS:
+        found = {entry.name for entry in (TREE / layer).iterdir() if entry.is_dir() and entry.name != "data"}
+        for folder in sorted(found ^ set(order[layer])):
+            yield f"{layer}/README.md: {folder}/ is listed or there, not both"
+        for path, text in sources(layer):
+            yield from includes_upwards(path, text, order)
+            if not path.endswith(".glsl"):
+                yield from foreign_namespaces(path, text)
+                yield from speech(path, text)
+    for entry in sorted(TREE.iterdir()):
+        if entry.name[0] != "." and entry.name not in TOP_LEVEL:
+            yield f"{entry.name}: the top level is closed"
+    scripts = [file for file in files_of_the_repository() if file.open("rb").read(2) == b"#!"]
+    assert len(scripts) > 3, "the rule must have looked at the scripts"
+    for file in scripts:
+        if not os.access(file, os.X_OK):
+            yield f"{file.relative_to(TREE)}: begins with an interpreter and cannot be run"
+
+
+def files_of_the_repository():
+    for entry in sorted(TREE.iterdir()):
+        if entry.name not in ("build", "out", ".git"):
+            yield from (file for file in ([entry] if entry.is_file() else sorted(entry.rglob("*")))
+                        if file.is_file())
+
+
+def main():
+    check_examples()
+    broken = list(broken_rules())
+    print("\n".join(broken) if broken else "the sources keep every rule")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
