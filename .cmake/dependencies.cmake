@@ -14,7 +14,6 @@ find_dependency(ZLIB)
 find_dependency(embree 3.13)
 find_dependency(GDAL)
 find_dependency(tinyxml2)
-find_dependency(spdlog)
 find_dependency(GeographicLib)
 
 # GeographicLib and ERFA come without CMake targets on Debian 12.

@@ -9,12 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium_choice.h"
+#include "atmosphere/air/medium_presets.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
-#include "lut/picture/picture_text.h"
-#include "lut/program/output_name.h"
+#include "lut/program/output_file.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow::lut {

@@ -4,18 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium_choice.h"
+#include "atmosphere/air/medium_presets.h"
 #include "atmosphere/text/error.h"
-#include "lut/build_command.h"
 #include "lut/eval/eval.h"
 #include "lut/eval/lamp_cases.h"
 #include "lut/program/command_line.h"
-#include "lut/program/output_name.h"
+#include "lut/program/output_file.h"
 #include "lut/program/program.h"
-#include "lut/report_command.h"
 #include "lut/sky_command.h"
 #include "lut/store/exchange_check.h"
 #include "lut/store/table_folder.h"
+#include "lut/table_commands.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -7,17 +7,15 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/eclipse.h"
-#include "atmosphere/text/file_extension.h"
+#include "atmosphere/text/parsing.h"
 #include "renderer/camera/track.h"
-#include "renderer/ground/camera_stand.h"
-#include "renderer/report_command.h"
-#include "renderer/scene/scene_files.h"
-#include "renderer/series/frame_list.h"
-#include "renderer/series/path_frames.h"
-#include "renderer/series/provenance.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/series/frame_times.h"
+#include "renderer/series/manifest.h"
 #include "renderer/series/series.h"
+#include "renderer/skyseries_commands.h"
 #include "renderer/skyseries_options.h"
-#include "renderer/times_command.h"
 
 namespace alpenglow::renderer {
 namespace {

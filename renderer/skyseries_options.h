@@ -11,10 +11,9 @@
 
 #include "lut/eval/eval.h"
 #include "lut/picture/look.h"
-#include "lut/picture/picture_text.h"
 #include "lut/program/command_line.h"
-#include "lut/program/output_name.h"
-#include "renderer/camera/pixel_samples.h"
+#include "lut/program/output_file.h"
+#include "renderer/camera/camera_rays.h"
 #include "renderer/camera/track.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"

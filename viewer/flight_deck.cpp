@@ -10,16 +10,16 @@
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
-#include "lut/picture/picture_text.h"
-#include "lut/program/atomic_file.h"
+#include "atmosphere/text/parsing.h"
+#include "lut/picture/look.h"
 #include "lut/program/messages.h"
+#include "lut/program/output_file.h"
 #include "lut/sky/sky_view_map.h"
-#include "viewer/capture/numbered_name.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
-#include "viewer/paint/picture_units.h"
-#include "viewer/window_controls.h"
+#include "viewer/paint/picture_programs.h"
+#include "viewer/picture_queue.h"
+#include "viewer/window.h"
 
 namespace alpenglow::viewer {
 namespace {

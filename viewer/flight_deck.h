@@ -7,14 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "viewer/flight/flight_log.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flythrough.h"
 #include "viewer/hud/hud.h"
-#include "viewer/hud/hud_keys.h"
 #include "viewer/input/controls.h"
 #include "viewer/picture_queue.h"
-#include "viewer/window_events.h"
+#include "viewer/window.h"
 
 namespace alpenglow::viewer {
 

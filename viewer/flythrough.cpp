@@ -13,7 +13,7 @@
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/flight/places.h"
-#include "viewer/gl/texture_side.h"
+#include "viewer/gl/gl_objects.h"
 #include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
 

@@ -9,18 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "lut/picture/eye_adaptation.h"
-#include "lut/picture/picture_text.h"
+#include "lut/picture/eye.h"
+#include "lut/picture/look.h"
 #include "renderer/scene/scene.h"
-#include "viewer/air/air_choice.h"
+#include "viewer/air/solved_air.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/input/cockpit.h"
 #include "viewer/paint/auto_quality.h"
 #include "viewer/paint/darkroom.h"
-#include "viewer/paint/exposure_meter.h"
+#include "viewer/paint/developer.h"
 #include "viewer/paint/reference_picture.h"
 #include "viewer/paint/sky_painter.h"
-#include "viewer/paint/spot_meter.h"
 
 namespace alpenglow::viewer {
 

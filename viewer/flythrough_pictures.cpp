@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
+#include "atmosphere/text/parsing.h"
 #include "lut/program/program.h"
-#include "renderer/series/provenance.h"
+#include "renderer/series/manifest.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl/picture_tiles.h"
 

@@ -6,13 +6,51 @@
 #include <unistd.h>
 #endif
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
 #include <utility>
 
 #include "atmosphere/text/error.h"
+#include "lut/program/output_file.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first numbered name that has no file with any of the extensions.
+fs::path NextFree(const fs::path& folder, const char* stem,
+                  std::initializer_list<const char*> extensions,
+                  const std::vector<fs::path>& promised = {}) {
+  for (int number = 1;; ++number) {
+    const fs::path free = folder / fmt::format("{}-{:04d}", stem, number);
+    const auto is_taken = [&](const char* extension) {
+      const fs::path file = free.string() + extension;
+      const bool is_promised = std::find(promised.begin(), promised.end(), file) != promised.end();
+      return is_promised || fs::exists(file) || fs::exists(GrowingFile::PartOf(file));
+    };
+    if (std::none_of(extensions.begin(), extensions.end(), is_taken)) return free;
+  }
+}
+
+}  // namespace
+
+fs::path NextScreenshot(const fs::path& folder, const std::vector<fs::path>& promised) {
+  return NextFree(folder, "skyview", {".png", ".exr"}, promised);
+}
+
+fs::path NextFlight(const fs::path& folder) {
+  fs::path file = NextFree(folder, "flight", {".csv"});
+  file += ".csv";
+  return file;
+}
+
 namespace {
 
 /// Ends a picture that is not wanted any more.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Names of files that a key asks for.
+//
 // Pictures that are made while the flight goes on.
 //
 // A thread with an OpenGL context of its own makes a second flight of the same scene, takes up the
@@ -24,6 +26,15 @@
 #include "viewer/flythrough.h"
 
 namespace alpenglow::viewer {
+
+/// The next free of skyview-0001, skyview-0002, ... in the folder: with neither a .png nor an .exr,
+/// so that both of one frame have one number.
+/// @param promised  files that are not there yet and will be.
+[[nodiscard]] std::filesystem::path NextScreenshot(
+    const std::filesystem::path& folder, const std::vector<std::filesystem::path>& promised = {});
+
+/// The next free of flight-0001.csv, flight-0002.csv, ...: neither there nor being recorded into.
+[[nodiscard]] std::filesystem::path NextFlight(const std::filesystem::path& folder);
 
 /// A picture that is asked for.
 struct PictureRequest {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "lut/picture/look.h"
-#include "lut/picture/picture_text.h"
 #include "lut/program/command_line.h"
 #include "renderer/scene/scene_options.h"
 #include "viewer/layer.h"

@@ -11,8 +11,8 @@
 
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/embedded_table.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -9,13 +9,12 @@
 
 #include "atmosphere/air/aerosol_mixture.h"
 #include "atmosphere/air/medium.h"
-#include "atmosphere/air/medium_ranges.h"
-#include "atmosphere/air/ozone_column.h"
+#include "atmosphere/air/medium_presets.h"
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -9,7 +9,7 @@
 #include <complex>
 #include <vector>
 
-#include "atmosphere/air/scattering_matrix.h"
+#include "atmosphere/air/phase.h"
 
 namespace alpenglow::atmosphere {
 

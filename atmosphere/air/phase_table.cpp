@@ -10,10 +10,9 @@
 #include <utility>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/fnv1a.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Published tables and the formulas on them. Colour is in colour.cpp and band_colour.cpp.
+// Published tables and the formulas on them. Colour is in spectrum.cpp and band_colour.cpp.
+//
+// sRGB, colour differences, and albedos from colours.
 #include "atmosphere/colour/spectrum.h"
 
 #include <fmt/format.h>
@@ -8,11 +10,12 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include "atmosphere/colour/solar_table.h"
-#include "atmosphere/colour/trained_bands.h"
-#include "atmosphere/text/embedded_table.h"
+#include "atmosphere/colour/band_colour.h"
+#include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -121,6 +124,286 @@ std::array<double, 3> ColourMatching(double wavelength_nm) {
 double ScotopicEfficiency(double wavelength_nm) {
   static const SampledFunction table = ReadTable(kScotopicFile, 1);
   return ValueInside(table, 380.0, 780.0, wavelength_nm);
+}
+
+double BlackBodyRadiance(double wavelength_nm, double temperature_k) {
+  constexpr double kC1_w_m2_per_sr = 1.191042972397188e-16;  // 2 h c^2
+  constexpr double kC2_m_k = 1.438776877503933e-2;           // h c / k
+  const double metres = 1e-9 * wavelength_nm;
+  const double per_metre =
+      kC1_w_m2_per_sr / std::pow(metres, 5.0) / std::expm1(kC2_m_k / (metres * temperature_k));
+  return 1e-9 * per_metre;
+}
+
+namespace {
+
+SampledFunction Column(int column) {
+  auto columns = atmosphere::ReadColumns("atmosphere/data/water_and_ice_10nm.csv", {0, column});
+  return {std::move(columns[0]), std::move(columns[1])};
+}
+
+}  // namespace
+
+double WaterAbsorption(double wavelength_nm) {
+  static const SampledFunction table = Column(1);
+  return table(wavelength_nm);
+}
+
+double SeaWaterScattering(double wavelength_nm) {
+  return 0.00288 * std::pow(wavelength_nm / 500.0, -4.32);
+}
+
+double IceAbsorption(double wavelength_nm) {
+  static const SampledFunction table = Column(2);
+  return 4.0 * kPi * table(wavelength_nm) / (1e-9 * wavelength_nm);
+}
+
+namespace {
+
+using Triple = std::array<double, 3>;
+
+Triple Cross(const Triple& a, const Triple& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// Columns of the inverse are the cross products of the rows over the determinant.
+Matrix3 Inverse(const Matrix3& m) {
+  const Triple columns[3] = {Cross(m[1], m[2]), Cross(m[2], m[0]), Cross(m[0], m[1])};
+  const double determinant =
+      m[0][0] * columns[0][0] + m[0][1] * columns[0][1] + m[0][2] * columns[0][2];
+  Matrix3 inverse{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      inverse[row][column] = columns[column][row] / determinant;
+    }
+  }
+  return inverse;
+}
+
+Triple XyzFromChromaticity(double x, double y) { return {x / y, 1.0, (1.0 - x - y) / y}; }
+
+const Triple& WhiteD65() {
+  static const Triple white = XyzFromChromaticity(0.3127, 0.3290);
+  return white;
+}
+
+// Columns are the primaries, scaled so that (1, 1, 1) is the white.
+Matrix3 DeriveXyzFromLinearSrgb() {
+  const Triple primaries[3] = {XyzFromChromaticity(0.64, 0.33), XyzFromChromaticity(0.30, 0.60),
+                               XyzFromChromaticity(0.15, 0.06)};
+  Matrix3 matrix{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) matrix[row][column] = primaries[column][row];
+  }
+  const Triple scale = Inverse(matrix) * WhiteD65();
+  for (Triple& row : matrix) {
+    for (std::size_t column = 0; column < 3; ++column) row[column] *= scale[column];
+  }
+  return matrix;
+}
+
+struct Lab {
+  double l, a, b;
+};
+
+// CIE 15:2018, with the exact constants (6/29)^3 and so on.
+double LabCompanding(double ratio) {
+  constexpr double kDelta = 6.0 / 29.0;
+  return ratio > kDelta * kDelta * kDelta ? std::cbrt(ratio)
+                                          : ratio / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
+}
+
+Lab LabFromXyz(const Triple& xyz, const Triple& white) {
+  const double x = LabCompanding(xyz[0] / white[0]);
+  const double y = LabCompanding(xyz[1] / white[1]);
+  const double z = LabCompanding(xyz[2] / white[2]);
+  return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
+}
+
+// sqrt(C^7 / (C^7 + 25^7))
+double ChromaShare(double chroma) {
+  constexpr double k25To7 = 6103515625.0;
+  const double power = std::pow(chroma, 7);
+  return std::sqrt(power / (power + k25To7));
+}
+
+double HueDegrees(double a, double b) {
+  if (a == 0.0 && b == 0.0) return 0.0;
+  const double degrees = std::atan2(b, a) / kRadiansPerDegree;
+  return degrees < 0.0 ? degrees + 360.0 : degrees;
+}
+
+struct HuePair {
+  double difference, mean;  // degrees
+};
+
+// Sharma et al. (2005), equations 10 and 14: the shorter way round.
+HuePair CompareHues(double hue_a, double hue_b, bool grey) {
+  if (grey) return {0.0, hue_a + hue_b};
+  const double difference = hue_b - hue_a;
+  if (std::abs(difference) <= 180.0) return {difference, 0.5 * (hue_a + hue_b)};
+  const double sum = hue_a + hue_b;
+  return {difference > 0.0 ? difference - 360.0 : difference + 360.0,
+          0.5 * (sum < 360.0 ? sum + 360.0 : sum - 360.0)};
+}
+
+double CosDegrees(double degrees) { return std::cos(degrees * kRadiansPerDegree); }
+double SinDegrees(double degrees) { return std::sin(degrees * kRadiansPerDegree); }
+
+// Sharma, Wu and Dalal (2005), Color Res. Appl. 30, 21-30, equations 2 to 22, all weights 1.
+double Ciede2000(const Lab& p, const Lab& q) {
+  const double stretch =
+      1.5 - 0.5 * ChromaShare(0.5 * (std::hypot(p.a, p.b) + std::hypot(q.a, q.b)));
+  const double chroma_p = std::hypot(stretch * p.a, p.b);
+  const double chroma_q = std::hypot(stretch * q.a, q.b);
+  const bool grey = chroma_p * chroma_q == 0.0;
+  const HuePair hue =
+      CompareHues(HueDegrees(stretch * p.a, p.b), HueDegrees(stretch * q.a, q.b), grey);
+  const double chroma = 0.5 * (chroma_p + chroma_q);
+  const double above_grey = 0.5 * (p.l + q.l) - 50.0;
+  const double t = 1.0 - 0.17 * CosDegrees(hue.mean - 30.0) + 0.24 * CosDegrees(2.0 * hue.mean) +
+                   0.32 * CosDegrees(3.0 * hue.mean + 6.0) -
+                   0.20 * CosDegrees(4.0 * hue.mean - 63.0);
+  const double lightness = (q.l - p.l) / (1.0 + 0.015 * above_grey * above_grey /
+                                                    std::sqrt(20.0 + above_grey * above_grey));
+  const double chromatic = (chroma_q - chroma_p) / (1.0 + 0.045 * chroma);
+  const double tint = 2.0 * std::sqrt(chroma_p * chroma_q) * SinDegrees(0.5 * hue.difference) /
+                      (1.0 + 0.015 * chroma * t);
+  const double from_blue = (hue.mean - 275.0) / 25.0;
+  const double rotation =
+      -2.0 * ChromaShare(chroma) * SinDegrees(60.0 * std::exp(-from_blue * from_blue));
+  return std::sqrt(std::max(0.0, lightness * lightness + chromatic * chromatic + tint * tint +
+                                     rotation * chromatic * tint));
+}
+
+double Step(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+// Reflectances of a red, a green and a blue surface that together reflect everything: smooth steps
+// at 485 and 593 nm, placed so that their colours are near the primaries of sRGB, within 0.05.
+Triple AlbedoBases(double wavelength_nm) {
+  constexpr double kBlueEnd_nm = 485.0;
+  constexpr double kRedStart_nm = 593.0;
+  constexpr double kWidth_nm = 8.0;
+  const double red = Step((wavelength_nm - kRedStart_nm) / kWidth_nm);
+  const double blue = Step((kBlueEnd_nm - wavelength_nm) / kWidth_nm);
+  return {red, 1.0 - red - blue, blue};
+}
+
+// Shares of the bases from linear sRGB: the inverse of the bases' colours under equal-energy light,
+// whose white is scaled to D65 component by component.
+Matrix3 DeriveSharesFromLinearSrgb() {
+  Matrix3 xyz{};
+  for (double wavelength_nm = 360.0; wavelength_nm <= 830.0; wavelength_nm += 1.0) {
+    const Triple bases = AlbedoBases(wavelength_nm);
+    const Triple matching = ColourMatching(wavelength_nm);
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t base = 0; base < 3; ++base) xyz[row][base] += matching[row] * bases[base];
+    }
+  }
+  for (std::size_t row = 0; row < 3; ++row) {
+    const double white = xyz[row][0] + xyz[row][1] + xyz[row][2];
+    for (double& value : xyz[row]) value *= WhiteD65()[row] / white;
+  }
+  Matrix3 srgb{};
+  for (std::size_t base = 0; base < 3; ++base) {
+    const Triple colour = LinearSrgbFromXyz() * Triple{xyz[0][base], xyz[1][base], xyz[2][base]};
+    for (std::size_t row = 0; row < 3; ++row) srgb[row][base] = colour[row];
+  }
+  return Inverse(srgb);
+}
+
+// Colours of the bases under the sun above the air, relative to the sun's: one row a base.
+Matrix3 DeriveBasesUnderSun() {
+  constexpr double kStep_nm = 0.5;
+  Matrix3 xyz{};
+  Triple sun{};
+  for (double at = 360.0 + 0.5 * kStep_nm; at < 830.0; at += kStep_nm) {
+    const Triple bases = AlbedoBases(at);
+    const Triple matching = ColourMatching(at);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sun[c] += matching[c] * SolarTable()(at);
+      for (std::size_t base = 0; base < 3; ++base) {
+        xyz[base][c] += matching[c] * SolarTable()(at) * bases[base];
+      }
+    }
+  }
+  for (Triple& row : xyz) {
+    for (std::size_t c = 0; c < 3; ++c) row[c] /= sun[c];
+  }
+  return xyz;
+}
+
+// The bases at the bands of a trained set, changed as little as gives them the colours above
+// through the bands: with the shares M and the error e of a base, by M^T (M M^T)^-1 e.
+std::vector<Triple> AlbedoBasesInBands(const TrainedBands& set) {
+  static const Matrix3 under_sun = DeriveBasesUnderSun();
+  const std::size_t n = set.wavelengths_nm.size();
+  std::vector<Triple> bases;
+  for (const double wavelength_nm : set.wavelengths_nm) bases.push_back(AlbedoBases(wavelength_nm));
+  Matrix3 product{};
+  Matrix3 error = under_sun;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t d = 0; d < 3; ++d) {
+        product[c][d] += set.share[c][i] * set.share[d][i];
+        error[c][d] -= bases[i][c] * set.share[d][i];
+      }
+    }
+  }
+  const Matrix3 inverse = Inverse(product);
+  for (std::size_t base = 0; base < 3; ++base) {
+    const Triple multiplier = inverse * error[base];
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) bases[i][base] += multiplier[c] * set.share[c][i];
+    }
+  }
+  return bases;
+}
+
+std::vector<Triple> AlbedoBasesAt(std::span<const double> wavelengths_nm) {
+  if (const TrainedBands* set = FindTrainedBands(wavelengths_nm)) return AlbedoBasesInBands(*set);
+  std::vector<Triple> bases;
+  for (const double wavelength_nm : wavelengths_nm) bases.push_back(AlbedoBases(wavelength_nm));
+  return bases;
+}
+
+}  // namespace
+
+const Matrix3& XyzFromLinearSrgb() {
+  static const Matrix3 matrix = DeriveXyzFromLinearSrgb();
+  return matrix;
+}
+
+const Matrix3& LinearSrgbFromXyz() {
+  static const Matrix3 matrix = Inverse(XyzFromLinearSrgb());
+  return matrix;
+}
+
+std::array<double, 3> operator*(const Matrix3& matrix, const std::array<double, 3>& vector) {
+  Triple product{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    product[row] =
+        matrix[row][0] * vector[0] + matrix[row][1] * vector[1] + matrix[row][2] * vector[2];
+  }
+  return product;
+}
+
+std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
+                                         std::span<const double> wavelengths_nm) {
+  static const Matrix3 shares_from_srgb = DeriveSharesFromLinearSrgb();
+  Triple shares = shares_from_srgb * rgb;
+  for (double& share : shares) share = std::clamp(share, 0.0, 1.0);
+  std::vector<double> albedo;
+  for (const Triple& bases : AlbedoBasesAt(wavelengths_nm)) {
+    albedo.push_back(
+        std::clamp(shares[0] * bases[0] + shares[1] * bases[1] + shares[2] * bases[2], 0.0, 1.0));
+  }
+  return albedo;
+}
+
+double Ciede2000(const std::array<double, 3>& xyz_a, const std::array<double, 3>& xyz_b,
+                 const std::array<double, 3>& white) {
+  return Ciede2000(LabFromXyz(xyz_a, white), LabFromXyz(xyz_b, white));
 }
 
 }  // namespace alpenglow::atmosphere

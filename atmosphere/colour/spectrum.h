@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Spectra on a wavelength set, published tables, and the way from bands to colour.
+//
+// The solar spectrum as published, for integrals that must resolve its lines.
+//
+// What glows.
+//
+// What water and ice do to light inside them.
 #pragma once
 
 #include <array>
@@ -104,7 +110,7 @@ class BandColour {
 
 /// A spectral albedo in [0, 1] on the wavelengths whose colour under equal-energy light, its white
 /// scaled to (1, 1, 1), is the given linear sRGB: a mixture of a red, a green and a blue surface
-/// with smooth edges that together reflect everything (see colour.cpp). Greys come out flat. A
+/// with smooth edges that together reflect everything (see spectrum.cpp). Greys come out flat. A
 /// colour more saturated than those surfaces is moved to the nearest mixture by clamping the shares
 /// to [0, 1].
 ///
@@ -121,5 +127,25 @@ class BandColour {
 [[nodiscard]] double Ciede2000(const std::array<double, 3>& xyz_a,
                                const std::array<double, 3>& xyz_b,
                                const std::array<double, 3>& white);
+
+/// ASTM G173-03, extraterrestrial [W m^-2 nm^-1], 300 to 900 nm in steps of 0.5 and 1 nm.
+[[nodiscard]] const SampledFunction& SolarTable();
+
+/// Planck's spectral radiance [W m^-2 sr^-1 nm^-1]. Constants of CODATA 2018, which are exact.
+[[nodiscard]] double BlackBodyRadiance(double wavelength_nm, double temperature_k);
+
+/// Absorption coefficient of pure water [1/m]: Pope, Fry (1997), Appl. Opt. 36, 8710, and from
+/// 730 nm Smith, Baker (1981), Appl. Opt. 20, 177; linear in a 10 nm table from 380 to 750 nm, its
+/// end values beyond.
+[[nodiscard]] double WaterAbsorption(double wavelength_nm);
+
+/// Scattering coefficient of pure sea water [1/m], half of it backwards: 0.00288
+/// (lambda / 500 nm)^-4.32, Morel (1974), Optical Properties of Pure Water and
+/// Pure Sea Water.
+[[nodiscard]] double SeaWaterScattering(double wavelength_nm);
+
+/// Absorption coefficient of pure ice [1/m], 4 pi k / lambda: Warren, Brandt (2008), J. Geophys.
+/// Res. 113, D14220; k linear in a 10 nm table from 380 to 750 nm, its end values beyond.
+[[nodiscard]] double IceAbsorption(double wavelength_nm);
 
 }  // namespace alpenglow::atmosphere

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 
 namespace alpenglow::atmosphere::judge {
 namespace {

@@ -12,10 +12,7 @@
 #include <numeric>
 #include <span>
 
-#include "atmosphere/judge/analyser.h"
-#include "atmosphere/judge/path_columns.h"
-#include "atmosphere/judge/path_line.h"
-#include "atmosphere/judge/path_random.h"
+#include "atmosphere/judge/path_sampling.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 

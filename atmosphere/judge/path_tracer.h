@@ -10,11 +10,11 @@
 // grows. New directions are drawn from a mixture of the phase functions, the aerosol's lobe around
 // the sun and, in twilight, the glow along the sunward horizon. Russian roulette ends paths.
 //
-// Unbiased but for the tables of columns (1e-6, path_columns.h). Nothing here uses the shared
+// Unbiased but for the tables of columns (1e-6, path_sampling.h). Nothing here uses the shared
 // texts, the closed forms or the tables of lut/, but for the phase functions' values.
 // A point sun, no refraction, a Lambertian ground lit where mu_s >= 0. Light is scalar, or polarised
 // (TraceStokes): then the path carries weights over Stokes parameters instead of a number
-// (analyser.h), on the same points and in directions drawn in the same way.
+// (path_sampling.h), on the same points and in directions drawn in the same way.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
-#include "atmosphere/air/scattering_matrix.h"
+#include "atmosphere/air/phase.h"
 #include "atmosphere/ray/ray.h"
 
 namespace alpenglow::atmosphere::judge {

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow::atmosphere {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/lamp/lamp_ray.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 

@@ -10,6 +10,8 @@
 // flat one that touches it in the middle: 2 m over 10 km. Columns along straight lines are closed:
 //
 //   integral from a to b of density = |b - a| (rho(a) - rho(b)) / ((z(b) - z(a)) / H)
+//
+// This header also reads the shared text lamp_ray.glsl as C++.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -18,7 +20,16 @@
 #include <vector>
 
 #include "atmosphere/air/phase.h"
+#include "atmosphere/dialect/shared_math.h"
 #include "atmosphere/ray/single_scattering.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/lamp/lamp_ray.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::atmosphere {
 

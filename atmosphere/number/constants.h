@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Constants of nature and of the solar system, with their sources. SI units.
+//
+// Acceleration of free fall, as standards have it.
 #pragma once
 
 #include <numbers>
@@ -34,5 +36,7 @@ inline constexpr double kScotopicEfficacy_lm_per_W = 1700.0;
 /// Optical depth through which a black object is just seen against the horizon, -ln 0.02: the
 /// visibility times the extinction. Koschmieder (1924), Beitr. Phys. freien Atm. 12, 33.
 inline constexpr double kOpticalDepthOfVisibility = 3.912;
+
+inline constexpr double kStandardGravity_m_per_s2 = 9.80665;  // CGPM 1901
 
 }  // namespace alpenglow::atmosphere

@@ -6,10 +6,8 @@
 #include <cstddef>
 
 #include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/ray/direct_air.h"
 #include "atmosphere/ray/direct_panels.h"
-#include "atmosphere/ray/optical_depth.h"
-#include "atmosphere/ray/ray_samples.h"
+#include "atmosphere/ray/ray.h"
 
 namespace alpenglow::atmosphere {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // For direct_kernel.cpp only: places, densities and columns at the nodes of a vector of lanes
-// (formulas in direct_columns.glsl and direct_air.h). Lengths are in km.
+// (formulas in direct_columns.glsl and direct_panels.h). Lengths are in km.
 #pragma once
 
 #include "atmosphere/ray/direct_kernel.h"

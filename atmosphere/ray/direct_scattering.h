@@ -5,7 +5,7 @@
 // A ray costs one pass over 8 or 16 SIMD lanes. The set-up is scalar (direct_panels.h). All nodes
 // then find altitude, densities and columns at once, without exp, log or march: the map of a panel is
 // a polynomial, columns upwards are rational functions with one division (direct_columns.glsl), and
-// columns of smooth ozone are polynomials (direct_air.h). Two weightless nodes, at the entry and at the
+// columns of smooth ozone are polynomials (direct_panels.h). Two weightless nodes, at the entry and at the
 // perigee, give the columns from which those along the ray follow by subtraction.
 //
 // Error against AirIntegrator, relative, rms over the rays of each regime of
@@ -23,9 +23,8 @@
 #pragma once
 
 #include "atmosphere/air/medium.h"
-#include "atmosphere/ray/direct_air.h"
 #include "atmosphere/ray/direct_panels.h"
-#include "atmosphere/ray/ray_samples.h"
+#include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow::atmosphere {

@@ -6,8 +6,7 @@
 #include <cstddef>
 
 #include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/ray/optical_depth.h"
-#include "atmosphere/ray/ray_samples.h"
+#include "atmosphere/ray/ray.h"
 
 namespace alpenglow::atmosphere {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"

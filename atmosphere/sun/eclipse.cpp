@@ -6,10 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
-#include "atmosphere/number/root.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/sun/refraction.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow::atmosphere {

@@ -3,7 +3,7 @@
 //
 // Sun and moon are disks; lengths on the sky are in radii of the sun's. At rho radii from its centre
 // the moon, of radius p at a distance z, covers the part a / pi of a circle, and of the light of a
-// disk that is f(rho) bright (LimbDarkening, sun_disk.h) passes
+// disk that is f(rho) bright (LimbDarkening, sun.h) passes
 //
 //   1 / pi integral of 2 rho f(rho) (pi - a(rho)),     cos a = (z^2 + rho^2 - p^2) / (2 z rho)
 //

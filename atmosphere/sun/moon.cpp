@@ -1,18 +1,65 @@
 // SPDX-License-Identifier: MIT
 #include "atmosphere/sun/moon.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/root.h"
-#include "atmosphere/sun/apparent_place.h"
-#include "atmosphere/sun/moon_orbit.h"
+#include "atmosphere/number/numerics.h"
+#include "atmosphere/sun/ephemeris.h"
 #include "atmosphere/sun/refraction.h"
+#include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow::atmosphere {
+namespace {
+
+struct Filter {
+  double wavelength_nm;
+  std::array<double, 4> a;
+  std::array<double, 3> d;
+};
+
+// Those of the 32 that lie near the smooth curve through all.
+constexpr std::array<Filter, 9> kFilters{{
+    {350.0, {-2.67511, -1.78539, 0.50612, -0.25578}, {0.34185, 0.01441, -0.01602}},
+    {412.3, {-2.34185, -1.74337, 0.42156, -0.21512}, {0.36591, -0.05902, 0.00080}},
+    {441.6, {-2.31964, -1.72114, 0.37286, -0.19304}, {0.37935, -0.09562, 0.00970}},
+    {486.9, {-2.23351, -1.68573, 0.37632, -0.19877}, {0.36590, -0.08945, 0.00678}},
+    {553.8, {-2.12504, -1.65970, 0.38409, -0.20655}, {0.37206, -0.10745, 0.00347}},
+    {665.1, {-1.88914, -1.58096, 0.30477, -0.17908}, {0.37141, -0.13514, 0.01248}},
+    {745.3, {-1.86896, -1.57522, 0.33712, -0.19415}, {0.36888, -0.14828, 0.00958}},
+    {865.3, {-1.74561, -1.58482, 0.35009, -0.19569}, {0.39200, -0.18837, 0.00978}},
+    {1059.5, {-1.59323, -1.71358, 0.50599, -0.25178}, {0.48160, -0.29486, 0.00116}},
+}};
+
+double LogReflectance(const Filter& filter, double angle_rad) {
+  const auto& [a, d] = std::pair{filter.a, filter.d};
+  const double degrees = angle_rad / kRadiansPerDegree;
+  return a[0] + angle_rad * (a[1] + angle_rad * (a[2] + angle_rad * a[3])) +
+         d[0] * std::exp(-degrees / 4.06054) + d[1] * std::exp(-degrees / 12.8802) +
+         d[2] * std::cos((degrees + 30.5858) / 16.7498);
+}
+
+}  // namespace
+
+double MoonReflectance(double phase_angle_rad, double wavelength_nm) {
+  constexpr double kLast_rad = 150.0 * kRadiansPerDegree;
+  const double angle_rad = std::min(phase_angle_rad, kLast_rad);
+  const auto above = std::find_if(kFilters.begin() + 1, kFilters.end() - 1, [&](const Filter& f) {
+    return f.wavelength_nm >= wavelength_nm;
+  });
+  const auto below = above - 1;
+  const double share = std::clamp(
+      (wavelength_nm - below->wavelength_nm) / (above->wavelength_nm - below->wavelength_nm), 0.0,
+      1.0);
+  return (1.0 - share) * std::exp(LogReflectance(*below, angle_rad)) +
+         share * std::exp(LogReflectance(*above, angle_rad));
+}
+
 namespace {
 
 // Geometric, as bodies move about the barycentre.
@@ -187,6 +234,80 @@ std::optional<UtcInstant> NextMoonEvent(MoonEvent event, const GeodeticPosition&
       return NextMoonTransit(place, after);
   }
   throw InternalError("unknown event of the moon");
+}
+
+namespace {
+
+constexpr double kWavelength_nm = 550.0;
+
+// Light of a sphere of Lommel and Seeliger, relative to that when full: 1 - sin(a/2) tan(a/2) ln cot(a/4).
+double SpherePhase(double angle_rad) {
+  if (angle_rad < 1e-6) return 1.0;
+  const double half = 0.5 * angle_rad;
+  return 1.0 + std::sin(half) * std::tan(half) * std::log(std::tan(0.5 * half));
+}
+
+// Of the earth at the moon, per unit of the sun's there.
+double EarthIrradiance(const MoonPosition& moon) {
+  constexpr double kGeometricAlbedo = 0.37;
+  const double angle = kPi - moon.phase_angle_rad;
+  const double share = kEarthMeanRadius_m / moon.distance_m;
+  return kGeometricAlbedo * share * share * (std::sin(angle) + (kPi - angle) * std::cos(angle)) /
+         kPi;
+}
+
+// Sunlight at the moon, per unit of that at the earth.
+double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
+  const double nearness = earth_sun_au / moon.sun_distance_au;
+  return nearness * nearness;
+}
+
+}  // namespace
+
+MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon, const glm::dvec3& to_sun,
+                    double earth_sun_au) {
+  constexpr double kLastMeasured_rad = 150.0 * kRadiansPerDegree;
+  const double angle_rad = std::min(moon.phase_angle_rad, kLastMeasured_rad);
+  const double sunlight = SunlightAt(moon, earth_sun_au);
+  const double seen = MoonReflectance(angle_rad, kWavelength_nm) / kPi;
+  const double earthlit = MoonReflectance(0.0, kWavelength_nm) / kPi;
+  return {to_moon,
+          to_sun,
+          moon.angular_radius_rad,
+          2.0 * sunlight * seen / SpherePhase(angle_rad),
+          sunlight * EarthIrradiance(moon) * earthlit,
+          to_moon};
+}
+
+double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wavelength_nm) {
+  const double sine = std::sin(moon.angular_radius_rad);
+  return sine * sine * SunlightAt(moon, earth_sun_au) *
+         MoonReflectance(moon.phase_angle_rad, wavelength_nm);
+}
+
+MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
+                          double earth_sun_au, const BendingAir& air) {
+  const MoonPosition moon = ApparentMoonAt(place, instant, air);
+  const LocalFrame frame(kWgs84, place);
+  MoonDisk disk = MoonDiskOf(moon, DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz,
+                             frame.EnuFromEcef(moon.to_sun).xyz, earth_sun_au);
+  disk.to_moon_for_air =
+      DirectionFromAngles(moon.elevation_rad - moon.lower_for_air_rad, moon.azimuth_rad).xyz;
+  return disk;
+}
+
+double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {
+  if (glm::dot(direction, moon.to_moon) <= 0.0) return 0.0;
+  // Where on the disk, in radii; over half a degree parallel rays serve.
+  const glm::dvec3 beside = direction - moon.to_moon;
+  const glm::dvec3 at =
+      (beside - glm::dot(beside, moon.to_moon) * moon.to_moon) / std::sin(moon.radius_rad);
+  const double squared = glm::dot(at, at);
+  if (squared >= 1.0) return 0.0;
+  const double mu_seen = std::sqrt(1.0 - squared);
+  const double mu_lit = glm::dot(at - mu_seen * moon.to_moon, moon.to_sun);
+  return moon.radiance_per_irradiance * shared::LommelSeeliger(mu_lit, mu_seen) +
+         moon.earthshine_per_irradiance;
 }
 
 }  // namespace alpenglow::atmosphere

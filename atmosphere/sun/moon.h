@@ -1,15 +1,45 @@
 // SPDX-License-Identifier: MIT
+// How much sunlight the moon sends back, by phase and wavelength.
+//
+// Of the whole disk, A = pi E_moon / (E_sun Omega), by the lunar calibration of ROLO (Kieffer,
+// Stone 2005, Astron. J. 129, 2887, equation 10 and table 4):
+//
+//   ln A = a0 + a1 g + a2 g^2 + a3 g^3 + d1 exp(-g/4.06054) + d2 exp(-g/12.8802)
+//          + d3 cos((g + 30.5858)/16.7498)
+//
+// with the phase angle g in radians in the polynomial and in degrees elsewhere: a curve with an
+// opposition surge, of ground that is redder than the sun and bluer in full light. What libration,
+// and maria east or west of the terminator, change (6 % in the quarters) is left out.
+//
 // Where the moon stands, how the sun lights it, and when it rises.
+//
+// The moon as a disk that the sun lights: how bright it is from place to place, outside the air.
+//
+// Ground that scatters by Lommel and Seeliger (disk_light.glsl), of a brightness that makes the
+// light of the whole disk that of the moon (moon.h): a full moon of 0.3 lux, before the
+// air. Beside the sun the earth lights it, whose disk there is (R / d)^2 of a hemisphere, of a
+// geometric albedo of 0.37 (Cox 2000, Allen's Astrophysical Quantities, table 12.1), full when the
+// moon is new, as a sphere of Lambert:
+//
+//   E_earth / E_sun = 0.37 (R / d)^2 (sin a' + (pi - a') cos a') / pi,     a' = pi - a
+//
+// and the moon sends that back as when it is full: earthshine. Maria are left out.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string_view>
 
-#include "atmosphere/sun/bent_ray.h"
 #include "atmosphere/sun/geodesy.h"
+#include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/time.h"
 
 namespace alpenglow::atmosphere {
+
+/// Measured from 1.55 to 97 degrees; beyond, the same curve, within 12 % of that of Krisciunas
+/// and Schaefer (1991) from 7 to 145 degrees; it ends at 150.
+/// @param wavelength_nm  in [350, 1060], linear between nine filters; beyond as at the ends.
+[[nodiscard]] double MoonReflectance(double phase_angle_rad, double wavelength_nm);
 
 /// Mean radius of the moon, IAU working group on cartographic coordinates (Archinal et al. 2018).
 inline constexpr double kMoonRadius_m = 1737400.0;
@@ -33,7 +63,7 @@ struct MoonPosition {
   [[nodiscard]] double IlluminatedFraction() const;
 };
 
-/// Position of the moon. ELP/MPP02 (moon_orbit.h; within an arcsecond and 3 km 1950-2100 where
+/// Position of the moon. ELP/MPP02 (ephemeris.h; within an arcsecond and 3 km 1950-2100 where
 /// delta-T is known, of which a second is half an arcsecond), IAU 2006/2000A precession-nutation,
 /// light time, aberration and parallax.
 [[nodiscard]] MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant);
@@ -70,5 +100,35 @@ enum class MoonEvent { kMoonrise, kMoonset, kMoonTransit };
 [[nodiscard]] std::optional<UtcInstant> NextMoonEvent(MoonEvent event,
                                                       const GeodeticPosition& place,
                                                       const UtcInstant& after);
+
+/// Directions in any one frame.
+struct MoonDisk {
+  glm::dvec3 to_moon;  // unit, to the disk's centre
+  glm::dvec3 to_sun;   // unit, from the moon
+  double radius_rad;   // angular
+  double
+      radiance_per_irradiance;  // [1/sr], of LommelSeeliger: by the sun's irradiance at the earth
+  double earthshine_per_irradiance = 0.0;  // [1/sr], of the whole disk, even over it
+  glm::dvec3 to_moon_for_air{0.0};         // unit, of straight rays that light the air (sun.h)
+};
+
+/// At 550 nm. Phase angles over 150 degrees, which were never measured, are as bright a place as
+/// 150.
+/// @param earth_sun_au  distance of the place from the sun, for whose irradiance the radiance is.
+[[nodiscard]] MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon,
+                                  const glm::dvec3& to_sun, double earth_sun_au);
+
+/// The moon where the refraction of air that bends gently shows it from a place, in the frame east,
+/// north, up there.
+[[nodiscard]] MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
+                                        double earth_sun_au, const BendingAir& air);
+
+/// Radiance [1/sr] outside the air per unit of solar irradiance, in a direction; 0 beside the disk,
+/// on its dark side that of earthshine.
+[[nodiscard]] double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction);
+
+/// Irradiance of the whole moon outside the air, per unit of the sun's there, at a wavelength.
+[[nodiscard]] double MoonIrradiance(const MoonPosition& moon, double earth_sun_au,
+                                    double wavelength_nm);
 
 }  // namespace alpenglow::atmosphere

@@ -2,7 +2,7 @@
 #include "lut/diffuse/diffuse_fan_kernel.h"
 
 #include "atmosphere/ray/batch.h"
-#include "lut/diffuse/tensor_moments.h"
+#include "lut/diffuse/polarised_light.h"
 
 namespace alpenglow::lut {
 namespace {

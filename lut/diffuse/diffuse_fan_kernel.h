@@ -19,7 +19,7 @@ struct FanContraction {
   std::size_t sun_stride;     // floats between nodes of the sun's angle
   std::size_t moment_stride;  // between moments
   int degree;
-  std::size_t tensor;    // channel of T20 (tensor_moments.h); 0: light is not polarised
+  std::size_t tensor;    // channel of T20 (polarised_light.h); 0: light is not polarised
   const float* factors;  // four a moment: source per moment
   float* rows;           // [(sun * (degree + 1) + m) * 4]
 };

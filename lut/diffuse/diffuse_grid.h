@@ -5,7 +5,7 @@
 #include "atmosphere/air/medium.h"
 #include "lut/diffuse/diffuse_kernel.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "lut/diffuse/tensor_moments.h"
+#include "lut/diffuse/polarised_light.h"
 #include "lut/table/cubic_taps.h"
 
 namespace alpenglow::lut {

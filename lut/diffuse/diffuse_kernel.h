@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/ray/ray_samples.h"
+#include "atmosphere/ray/ray.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -40,7 +40,7 @@ class AlignedFloats {
   std::vector<Line> lines_;
 };
 
-/// Vectors of eight floats of a node: of polarised light (tensor_moments.h) two more, (T20, T21) and
+/// Vectors of eight floats of a node: of polarised light (polarised_light.h) two more, (T20, T21) and
 /// (T22, moment 00 again).
 constexpr std::size_t PackedVectors(std::size_t degree, bool polarised) {
   return kPackedRow[degree + 1] + (polarised ? 2 : 0);
@@ -49,7 +49,7 @@ constexpr std::size_t PackedVectors(std::size_t degree, bool polarised) {
 /// Nodes of the table: altitude = top u^2; sun as DiffuseLight::SunCoordinate. Between sun nodes
 /// moments are interpolated after division by Twilight(mu_s), the usual fall of their light when
 /// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s; those of
-/// polarised light also by SinePower (tensor_moments.h).
+/// polarised light also by SinePower (polarised_light.h).
 struct DiffuseGrid {
   std::size_t altitudes, suns, degree;
   bool polarised;
@@ -143,7 +143,7 @@ struct DiffuseKernel {
                  const MarchLight* lights, std::size_t count, const BlockShape& shape,
                  const float* previous, float* rows, float* arriving);
   /// The same of a polarised grid: I, Q and U at [(((sun * azimuths) + azimuth) * 3 + stokes) * 8 +
-  /// half * 4 + band], in the frame of tensor_moments.h.
+  /// half * 4 + band], in the frame of polarised_light.h.
   void (*arrive_polarised)(const DiffuseGrid& grid, const MarchDirection& direction,
                            const MarchPoint* points, const MarchLight* lights, std::size_t count,
                            const BlockShape& shape, const float* previous, float* rows,

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/air/phase.h"
+#include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
+#include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
@@ -154,6 +157,224 @@ void DiffuseMarches::AddGround(std::size_t altitude, March& march) const {
       march.ground_taps.push_back(taps);
     }
   }
+}
+
+namespace {
+
+constexpr std::size_t kOrderLanes = 16;
+
+std::size_t RoundUp(std::size_t count) {
+  return (count + kOrderLanes - 1) / kOrderLanes * kOrderLanes;
+}
+
+/// Sunlit pieces of the rays of one march.
+struct Pieces {
+  std::vector<std::size_t> ray;
+  std::vector<double> begin, end;
+};
+
+// The stretches of [begin, end] before and after the planet's shadow, of every ray.
+std::array<Pieces, 2> SunlitPieces(const DiffuseMarches& marches, std::size_t altitude,
+                                   const March& march, double begin, double end) {
+  const double r = marches.radius_km() + marches.altitude_km(altitude);
+  const double h_m = marches.altitude_km(altitude) * 1000.0;
+  const RayExtent extent{0.0, march.panels.back() * 1000.0, RayEnd::kSpace};
+  std::array<Pieces, 2> pieces;
+  const auto add = [](Pieces& to, std::size_t ray, double from, double until) {
+    if (until - from <= 1e-9 * until) return;
+    to.ray.push_back(ray);
+    to.begin.push_back(from);
+    to.end.push_back(until);
+  };
+  for (std::size_t sun = 0; sun < marches.grid().suns; ++sun) {
+    for (std::size_t k = 0; k < marches.azimuths(); ++k) {
+      const std::size_t ray = sun * marches.azimuths() + k;
+      const double nu = marches.Nu(march, sun, k);
+      // The sun's height over the plane through the planet's centre is linear along the ray.
+      const bool day =
+          marches.mu_s(sun) > 0.0 && r * marches.mu_s(sun) + march.panels.back() * nu > 0.0;
+      ShadowSpan dark{};
+      if (!day) {
+        dark = PlanetShadow({h_m, static_cast<double>(march.mu), marches.mu_s(sun), nu}, extent,
+                            marches.radius_km() * 1000.0);
+      }
+      if (dark.dark_begin_m >= dark.dark_end_m) {
+        add(pieces[0], ray, begin, end);
+      } else {
+        add(pieces[0], ray, begin, std::min(end, dark.dark_begin_m / 1000.0));
+        add(pieces[1], ray, std::max(begin, dark.dark_end_m / 1000.0), end);
+      }
+    }
+  }
+  return pieces;
+}
+
+/// Columns [km] of n points, in one piece of memory.
+struct ColumnStore {
+  explicit ColumnStore(std::size_t n) : rayleigh(n), mie(n), ozone(n) {}
+  AlignedFloats rayleigh, mie, ozone;
+  [[nodiscard]] ColumnSet<float*> Write() { return {rayleigh.data(), mie.data(), ozone.data()}; }
+  [[nodiscard]] ColumnPointers Read() const { return {rayleigh.data(), mie.data(), ozone.data()}; }
+};
+
+// Upward columns at the node along |mu|, and at the perigee of the march.
+std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float altitude_km,
+                                      const March& march) {
+  AlignedFloats altitude(kOrderLanes), mu(kOrderLanes);
+  const float r = air.radius + altitude_km;
+  altitude.data()[0] = altitude_km;
+  mu.data()[0] = std::abs(march.mu);
+  altitude.data()[1] = std::max(altitude_km - r * march.mu * march.mu / (1.0F + march.sine), -1.0F);
+  ColumnStore columns(kOrderLanes);
+  Kernel<RayKernel<float>>().columns_up(air, kOrderLanes, altitude.data(), mu.data(),
+                                        columns.Write());
+  const ColumnPointers c = columns.Read();
+  return {c.rayleigh[0], c.mie[0], c.ozone[0], c.rayleigh[1], c.mie[1], c.ozone[1]};
+}
+
+/// Adds the light of sunlit pieces to a march's radiance.
+class PieceScatterer {
+ public:
+  PieceScatterer(const DiffuseMarches& marches, std::size_t altitude, const March& march,
+                 const DiffuseLightOptions& options)
+      : marches_(marches),
+        air_(marches.air().constants()),
+        altitude_km_(static_cast<float>(marches.altitude_km(altitude))),
+        march_(march),
+        map_(static_cast<float>(MapLengthsPerKm(marches.air().medium()))),
+        ends_(OriginAndPerigee(air_, altitude_km_, march)) {
+    const GaussRule& rule = GaussLegendre(options.ray_nodes);
+    node_.assign(rule.node.begin(), rule.node.end());
+    weight_.assign(rule.weight.begin(), rule.weight.end());
+    const Medium& medium = marches.air().medium();
+    for (std::size_t sun = 0; sun < marches.grid().suns; ++sun) {
+      for (std::size_t k = 0; k < marches.azimuths(); ++k) {
+        const double nu = marches.Nu(march, sun, k);
+        for (const double depolarisation : medium.rayleigh_depolarisation) {
+          rayleigh_phase_.push_back(static_cast<float>(shared::PhaseMolecules(nu, depolarisation)));
+        }
+        if (options.forward_peak) {
+          AddSeries(nu);
+        } else {
+          const Bands<float> phases = marches.air().AerosolPhases(nu);
+          mie_phase_.insert(
+              mie_phase_.end(), phases.value.begin(),
+              phases.value.begin() + static_cast<std::ptrdiff_t>(medium.mie_phase.size()));
+        }
+      }
+    }
+  }
+
+  void Add(const Pieces& pieces, SunlightOfMarch& light) const {
+    if (pieces.ray.empty()) return;
+    const std::size_t count = RoundUp(pieces.ray.size());
+    const std::size_t azimuths = marches_.azimuths();
+    AlignedFloats begin(count), end(count), nu(count), mu_s(count);
+    for (std::size_t i = 0; i < pieces.ray.size(); ++i) {
+      const std::size_t sun = pieces.ray[i] / azimuths;
+      begin.data()[i] = static_cast<float>(pieces.begin[i]);
+      end.data()[i] = static_cast<float>(pieces.end[i]);
+      nu.data()[i] = static_cast<float>(marches_.Nu(march_, sun, pieces.ray[i] % azimuths));
+      mu_s.data()[i] = static_cast<float>(marches_.mu_s(sun));
+    }
+    float extinction = 0.0F;
+    for (std::size_t band = 0; band < air_.bands; ++band)
+      extinction = std::max(extinction, air_.rayleigh[band] + air_.mie_extinction[band]);
+    const LitPieces lit{count,        begin.data(), end.data(),    nu.data(),  mu_s.data(),
+                        altitude_km_, march_.mu,    air_.radius,   extinction, map_,
+                        node_.size(), node_.data(), weight_.data()};
+    Scatter(pieces, lit, light);
+  }
+
+ private:
+  // Of the aerosol at an angle, from its Legendre coefficients.
+  void AddSeries(double nu) {
+    const std::vector<double> legendre =
+        LegendreSeries(static_cast<int>(marches_.grid().degree), nu);
+    for (std::size_t phase = 0; phase < marches_.air().medium().mie_phase.size(); ++phase) {
+      double sum = 0.0;
+      for (std::size_t l = 0; l < legendre.size(); ++l)
+        sum += legendre[l] * marches_.chi()[l * air_.bands + phase];
+      mie_phase_.push_back(static_cast<float>(sum));
+    }
+  }
+
+  void Scatter(const Pieces& pieces, const LitPieces& lit, SunlightOfMarch& light) const {
+    const std::size_t points = lit.count * lit.nodes;
+    AlignedFloats weight(points), altitude(points), mu(points), absolute_mu(points), mu_s(points);
+    const LitPoints at{weight.data(), altitude.data(), mu.data(), absolute_mu.data(), mu_s.data()};
+    const DiffuseKernel& kernel = Kernel<DiffuseKernel>();
+    const RayKernel<float>& rays = Kernel<RayKernel<float>>();
+    kernel.place(lit, at);
+    ColumnStore up(points), sun(points);
+    rays.columns_up(air_, points, at.altitude, at.absolute_mu, up.Write());
+    rays.columns_to_space(air_, points, at.altitude, at.mu_s, sun.Write());
+    AlignedFloats rayleigh(lit.count), mie(lit.count);
+    const std::size_t rays_count = marches_.grid().suns * marches_.azimuths();
+    const std::size_t phases = marches_.air().medium().mie_phase.size();
+    const std::size_t shapes = marches_.air().medium().rayleigh_depolarisation.size();
+    for (std::size_t band = 0; band < air_.bands; ++band) {
+      kernel.scatter(lit, at, up.Read(), sun.Read(), ends_,
+                     {air_.rayleigh[band], air_.mie_extinction[band], air_.ozone[band]},
+                     {air_.rayleigh_height, air_.mie_height, air_.deficit, air_.deficit_height},
+                     rayleigh.data(), mie.data());
+      for (std::size_t i = 0; i < pieces.ray.size(); ++i) {
+        const std::size_t ray = pieces.ray[i];
+        const float mie_phase = mie_phase_[ray * phases + (phases > 1 ? band : 0)];
+        const float rayleigh_phase = rayleigh_phase_[ray * shapes + (shapes > 1 ? band : 0)];
+        light.radiance[band * rays_count + ray] +=
+            rayleigh_phase * air_.rayleigh[band] * rayleigh.data()[i] +
+            mie_phase * air_.mie_scattering[band] * mie.data()[i];
+        light.molecules[band * rays_count + ray] += air_.rayleigh[band] * rayleigh.data()[i];
+      }
+    }
+  }
+
+  const DiffuseMarches& marches_;
+  const AirConstants<float>& air_;
+  float altitude_km_;
+  const March& march_;
+  float map_;
+  std::array<float, 6> ends_;
+  std::vector<float> node_, weight_, rayleigh_phase_, mie_phase_;
+};
+
+// Sunlight that the ground at the end of the march reflects.
+void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const March& march,
+                     std::vector<float>& radiance) {
+  const AirIntegrator<float>& air = marches.air();
+  const double r = marches.radius_km() + marches.altitude_km(altitude);
+  const std::size_t rays = marches.grid().suns * marches.azimuths();
+  for (std::size_t ray = 0; ray < rays; ++ray) {
+    const std::size_t sun = ray / marches.azimuths();
+    const double nu = marches.Nu(march, sun, ray % marches.azimuths());
+    const double mu_s = std::min(
+        (r * marches.mu_s(sun) + march.ground_distance_km * nu) / marches.radius_km(), 1.0);
+    if (mu_s <= 0.0) continue;
+    const Bands<float> light = air.TransmittanceToSpace(0.0, mu_s);
+    for (std::size_t band = 0; band < air.bands(); ++band) {
+      radiance[band * rays + ray] +=
+          march.ground_transmittance[band] * light[band] *
+          static_cast<float>(air.medium().ground_albedo[band] * mu_s / kPi);
+    }
+  }
+}
+
+}  // namespace
+
+SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches, std::size_t altitude,
+                                      const March& march, const DiffuseLightOptions& options) {
+  const std::size_t values = marches.air().bands() * marches.grid().suns * marches.azimuths();
+  SunlightOfMarch light{std::vector<float>(values, 0.0F), std::vector<float>(values, 0.0F)};
+  const PieceScatterer scatterer(marches, altitude, march, options);
+  for (std::size_t panel = 0; panel + 1 < march.panels.size(); ++panel) {
+    for (const Pieces& pieces :
+         SunlitPieces(marches, altitude, march, march.panels[panel], march.panels[panel + 1])) {
+      scatterer.Add(pieces, light);
+    }
+  }
+  if (march.hits_ground) AddSunlitGround(marches, altitude, march, light.radiance);
+  return light;
 }
 
 }  // namespace alpenglow::lut

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Directions from the nodes of DiffuseLight's table and points along them: what successive orders
 // march along, whatever band and order.
+//
+// Sunlight scattered once, and reflected by the ground, that arrives at the nodes of DiffuseLight's
+// table: the first of the successive orders.
 #pragma once
 
 #include <vector>
@@ -71,5 +74,15 @@ class DiffuseMarches {
   std::array<AlignedFloats, 2> azimuth_sines_;
   std::vector<std::vector<March>> marches_;
 };
+
+/// Per unit solar irradiance along one march: [(band * suns + sun) * azimuths + azimuth].
+struct SunlightOfMarch {
+  std::vector<float> radiance;   // [1/sr]
+  std::vector<float> molecules;  // scattered by them, without phase function [1]
+};
+
+[[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches,
+                                                    std::size_t altitude, const March& march,
+                                                    const DiffuseLightOptions& options);
 
 }  // namespace alpenglow::lut

@@ -6,9 +6,9 @@
 #include <array>
 #include <cstddef>
 
-#include "atmosphere/ray/optical_depth.h"
+#include "atmosphere/ray/ray.h"
 #include "lut/diffuse/diffuse_lanes.h"
-#include "lut/diffuse/tensor_moments.h"
+#include "lut/diffuse/polarised_light.h"
 
 namespace alpenglow::lut {
 namespace {

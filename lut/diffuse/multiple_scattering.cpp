@@ -8,7 +8,7 @@
 
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_grid.h"

@@ -13,7 +13,7 @@
 //   J(w) = sigma_R sum_lm chi^R_l L_lm Y_lm(w) + sigma_M sum_lm chi^M_l L_lm Y_lm(w),
 //
 // exact for molecules (chi^R = 1, 0, D/10; D as in phase.glsl) with l <= 2. Where the medium's
-// light is polarised the molecules' source is made of three moments more (tensor_moments.h). The
+// light is polarised the molecules' source is made of three moments more (polarised_light.h). The
 // moments of all orders are found by successive orders: radiance of one order along directions
 // of a Gauss grid split at the horizon, projected, gives the source of the
 // next. Light reflected by the (Lambertian) ground is part of every order.
@@ -34,8 +34,7 @@
 #include "lut/diffuse/forward_peak.h"
 #include "lut/diffuse/polarised_light.h"
 #include "lut/diffuse/spherical_harmonics.h"
-#include "lut/diffuse/tensor_moments.h"
-#include "lut/table/sun_axis.h"
+#include "lut/table/table_axes.h"
 
 namespace alpenglow::lut {
 
@@ -139,7 +138,7 @@ class DiffuseLight {
   /// Node values, for files and graphics cards: index ((altitude *
   /// sun_angles + sun) * channels() + channel) * bands() + band. Channels:
   /// the moments, l major (00, 10, 11, 20, ...), of polarised light T20, T21, T22
-  /// (tensor_moments.h), then SkyIrradiance.
+  /// (polarised_light.h), then SkyIrradiance.
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] std::size_t channels() const {
     return moments_ + 1 + (medium_.polarised ? kTensorMoments : 0);

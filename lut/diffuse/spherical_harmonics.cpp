@@ -10,7 +10,7 @@
 
 #include "atmosphere/air/phase_table.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow::lut {

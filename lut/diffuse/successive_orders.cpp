@@ -9,7 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "lut/diffuse/first_order.h"
+#include "lut/diffuse/diffuse_march.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
 namespace alpenglow::lut {
@@ -41,7 +41,7 @@ Light Of(const std::vector<double>& bands, std::size_t first_band) {
 }
 
 /// Four bands of the light that arrives along a march, one a sun and azimuth; Q and U, in the frame
-/// of tensor_moments.h, of polarised light alone.
+/// of polarised_light.h, of polarised light alone.
 struct MarchRadiance {
   MarchRadiance(std::size_t rays, bool polarised)
       : i(rays, Light(0.0F)), q(polarised ? rays : 0, Light(0.0F)), u(q) {}

@@ -16,9 +16,9 @@
 
 #include "atmosphere/text/error.h"
 #include "lut/eval/eval.h"
-#include "lut/program/atomic_file.h"
+#include "lut/program/messages.h"
+#include "lut/program/output_file.h"
 #include "lut/program/program.h"
-#include "lut/program/progress.h"
 
 namespace alpenglow::lut {
 

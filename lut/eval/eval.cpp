@@ -4,15 +4,77 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "atmosphere/judge/path_tracer.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/eval/case_results.h"
+#include "lut/program/program.h"
+#include "lut/store/table_folder.h"
 
 namespace alpenglow::lut {
+namespace {
+
+enum Column : std::size_t { kId, kQuantity, kAltitude, kView, kAzimuth, kSun, kDistance };
+constexpr std::array<std::string_view, 7> kColumnNames{"id",
+                                                       "quantity",
+                                                       "altitude_m",
+                                                       "view_zenith_deg",
+                                                       "relative_azimuth_deg",
+                                                       "sun_zenith_deg",
+                                                       "distance_m"};
+
+const std::map<std::string_view, Quantity> kQuantities{
+    {"transmittance", Quantity::kTransmittance},
+    {"optical_depth", Quantity::kOpticalDepth},
+    {"single", Quantity::kSingle},
+    {"inscatter_single", Quantity::kInscatterSingle},
+    {"total", Quantity::kTotal},
+    {"stokes_q", Quantity::kStokesQ},
+    {"stokes_u", Quantity::kStokesU},
+    {"irradiance_sun", Quantity::kIrradianceSun},
+    {"irradiance_sky", Quantity::kIrradianceSky}};
+
+}  // namespace
+
+CaseReader::CaseReader(const std::filesystem::path& file) : lines_(file, kColumnNames) {}
+
+std::optional<Case> CaseReader::Next() {
+  if (!lines_.Next()) return std::nullopt;
+  Case result;
+  result.line = lines_.line();
+  result.id = lines_.Field(kId);
+  if (result.id.empty()) Fail(result.line, "id is empty");
+  if (lines_.Field(kQuantity) == "airlight") {
+    Fail(result.line,
+         "quantity airlight has columns of its own; put such cases in a file of theirs");
+  }
+  const auto quantity = kQuantities.find(lines_.Field(kQuantity));
+  if (quantity == kQuantities.end()) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, unused] : kQuantities) names.push_back(name);
+    Fail(result.line, fmt::format("quantity is \"{}\"; it must be one of {}",
+                                  lines_.Field(kQuantity), fmt::join(names, ", ")));
+  }
+  result.quantity = quantity->second;
+  const double altitude_m = lines_.Number(kAltitude, -12000.0, 1e9);
+  const double view_deg = lines_.Number(kView, 0.0, 180.0);
+  result.relative_azimuth_deg = lines_.Number(kAzimuth, -360.0, 360.0);
+  result.ray = RayFromAngles(altitude_m, view_deg, result.relative_azimuth_deg,
+                             lines_.Number(kSun, 0.0, 180.0));
+  if (!lines_.Field(kDistance).empty()) {
+    result.ray.length_m = lines_.Number(kDistance, 0.0, 1e12);
+  }
+  return result;
+}
+
 namespace {
 
 std::string Lines(const Case& work, const Medium& medium, const Estimates& estimates) {
@@ -94,6 +156,187 @@ void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::pat
   WriteCaseResults(reader, results, style, prepare, [&](const Case& work) {
     return Lines(work, evaluator.medium(), evaluator.Evaluate(work));
   });
+}
+
+namespace {
+
+Estimates WithErrors(const std::vector<double>& values, const std::vector<double>& errors) {
+  Estimates result(values.size());
+  for (std::size_t band = 0; band < values.size(); ++band)
+    result[band] = {values[band], errors[band]};
+  return result;
+}
+
+class PathEvaluator final : public Evaluator {
+ public:
+  PathEvaluator(const Medium& medium, const PathTraceOptions& options)
+      : medium_(medium), black_ground_(medium) {
+    Validate(medium);
+    RequireInRange(options.max_error, kSmallestMaxError, 1.0, "max_error");
+    std::fill(black_ground_.ground_albedo.begin(), black_ground_.ground_albedo.end(), 0.0);
+    paths_.seed = options.seed;
+    paths_.max_paths = options.max_paths;
+    paths_.relative_error = options.max_error;
+    paths_.stopped = Interrupted;
+  }
+
+  [[nodiscard]] const Medium& medium() const override { return medium_; }
+
+  [[nodiscard]] std::optional<std::string> Refusal(Quantity quantity) const override {
+    switch (quantity) {
+      case Quantity::kSingle:
+      case Quantity::kInscatterSingle:
+      case Quantity::kTotal:
+      case Quantity::kIrradianceSky:
+        return std::nullopt;
+      case Quantity::kStokesQ:
+      case Quantity::kStokesU:
+        return RefusalOfScalarLight(medium_);
+      case Quantity::kTransmittance:
+      case Quantity::kOpticalDepth:
+      case Quantity::kIrradianceSun:
+        break;
+    }
+    return "is not scattered light, which is what paths are traced for; --method integral has it";
+  }
+
+  void Prepare(std::span<const Case>) override {}
+
+  [[nodiscard]] Estimates Evaluate(const Case& work) const override {
+    if (work.quantity == Quantity::kIrradianceSky) return SkyIrradiance(work.ray);
+    if (NeedsPolarisedLight(work.quantity)) return Stokes(work);
+    judge::PathOptions options = paths_;
+    if (work.quantity != Quantity::kTotal) options.max_order = 1;
+    const bool air_only = work.quantity == Quantity::kInscatterSingle;
+    const auto traced = judge::TraceRadiance(air_only ? black_ground_ : medium_, work.ray, options);
+    return WithErrors(traced.total, traced.standard_error);
+  }
+
+ private:
+  [[nodiscard]] Estimates Stokes(const Case& work) const {
+    const auto traced = judge::TraceStokes(medium_, judge::ScatteringOf(medium_), work.ray, paths_);
+    return StokesOf(work, WithErrors(traced.q.total, traced.q.standard_error),
+                    WithErrors(traced.u.total, traced.u.standard_error));
+  }
+
+  [[nodiscard]] Estimates SkyIrradiance(const ViewRay& ray) const {
+    // Nothing shines down on a plane above the air but the sun itself.
+    if (ray.altitude_m > medium_.atmosphere_height_m)
+      return Estimates(medium_.wavelengths_nm.size());
+    const auto traced = judge::TraceIrradiance(medium_, std::max(ray.altitude_m, 0.0), ray.mu_s,
+                                               judge::PlaneSide::kFromAbove, paths_);
+    return WithErrors(traced.value, traced.standard_error);
+  }
+
+  Medium medium_;
+  Medium black_ground_;
+  judge::PathOptions paths_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> MakePathTraceEvaluator(const Medium& medium,
+                                                  const PathTraceOptions& options) {
+  return std::make_unique<PathEvaluator>(medium, options);
+}
+
+namespace {
+
+class TableEvaluator final : public Evaluator {
+ public:
+  explicit TableEvaluator(TableFolder tables)
+      : tables_(std::move(tables)), integral_(MakeIntegralEvaluator(tables_.medium())) {}
+
+  [[nodiscard]] const Medium& medium() const override { return tables_.medium(); }
+
+  [[nodiscard]] std::optional<std::string> Refusal(Quantity quantity) const override {
+    if (const auto refusal = integral_->Refusal(quantity)) return refusal;
+    if (tables_.tables().multiple_scattering || !NeedsLightOfAllOrders(quantity)) {
+      return std::nullopt;
+    }
+    return "needs light of all orders, which these tables do not hold; --method integral has it";
+  }
+
+  void Prepare(std::span<const Case> cases) override { integral_->Prepare(cases); }
+
+  [[nodiscard]] Estimates Evaluate(const Case& work) const override {
+    Estimates result = integral_->Evaluate(work);
+    if (NeedsPolarisedLight(work.quantity)) return WithValues(std::move(result), Stokes(work));
+    const Bands<float> found = LookUp(work.quantity, work.ray);
+    Estimates values(found.count);
+    for (std::size_t band = 0; band < found.count; ++band)
+      values[band].value = static_cast<double>(found[band]);
+    return WithValues(std::move(result), values);
+  }
+
+ private:
+  // The error grows by the distance to the values.
+  [[nodiscard]] static Estimates WithValues(Estimates integral, const Estimates& values) {
+    for (std::size_t band = 0; band < values.size(); ++band) {
+      integral[band].error += std::abs(values[band].value - integral[band].value);
+      integral[band].value = values[band].value;
+    }
+    return integral;
+  }
+
+  [[nodiscard]] Estimates Stokes(const Case& work) const {
+    const PolarisedLight light = tables_.PolarisationOfAllOrders(work.ray);
+    const auto of = [](const Bands<float>& bands) {
+      Estimates values(bands.count);
+      for (std::size_t band = 0; band < bands.count; ++band)
+        values[band].value = static_cast<double>(bands[band]);
+      return values;
+    };
+    return StokesOf(work, of(light.q), of(light.u));
+  }
+
+  [[nodiscard]] Bands<float> LookUp(Quantity quantity, const ViewRay& ray) const {
+    switch (quantity) {
+      case Quantity::kTransmittance:
+        return tables_.Transmittance(ray);
+      case Quantity::kOpticalDepth:
+        return tables_.OpticalDepth(ray);
+      case Quantity::kSingle:
+        return WithGround(ray, tables_.InscatterOnce(ray), false);
+      case Quantity::kInscatterSingle:
+        return tables_.InscatterOnce(ray);
+      case Quantity::kTotal:
+        return WithGround(ray, tables_.InscatterOfAllOrders(ray), true);
+      case Quantity::kStokesQ:
+      case Quantity::kStokesU:
+        break;
+      case Quantity::kIrradianceSun:
+        return tables_.SunIrradiance(ray.altitude_m, ray.mu_s);
+      case Quantity::kIrradianceSky:
+        return tables_.SkyIrradiance(ray.altitude_m, ray.mu_s);
+    }
+    throw InternalError("an unknown quantity");
+  }
+
+  /// Adds what the ground at the end of the ray sends to the observer.
+  [[nodiscard]] Bands<float> WithGround(const ViewRay& ray, Bands<float> light,
+                                        bool under_the_sky) const {
+    const std::optional<double> mu_s = SunOnGround(medium(), ray);
+    if (!mu_s) return light;
+    const Bands<float> transmittance = tables_.Transmittance(ray);
+    const Bands<float> sun = tables_.SunIrradiance(0.0, *mu_s);
+    const Bands<float> sky =
+        under_the_sky ? tables_.SkyIrradiance(0.0, *mu_s) : Bands<float>(light.count);
+    for (std::size_t band = 0; band < light.count; ++band) {
+      light[band] += transmittance[band] * (sun[band] + sky[band]) *
+                     static_cast<float>(medium().ground_albedo[band] / kPi);
+    }
+    return light;
+  }
+
+  TableLookup tables_;
+  std::unique_ptr<Evaluator> integral_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables) {
+  return std::make_unique<TableEvaluator>(std::move(tables));
 }
 
 }  // namespace alpenglow::lut

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: MIT
+// Cases to evaluate, one a line of a CSV file:
+//
+//   id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m
+//
+// as CsvReader reads them. distance_m empty: the ray goes to the ground, whose light it brings, or
+// out of the top. Given: the segment stops there, or at the ground or the top if nearer, and light
+// that the ground reflects is left out even where the segment reaches it. relative_azimuth_deg in
+// (0, 180): the sun is to the left of the view, beyond (and below 0) to its right, which is another
+// sign of stokes_u. Cases of lamps have columns of their own: lamp_cases.h.
+//
 // Values of cases by one method, each with an estimate of its error: what `skylut eval` does.
 //
 //   integral  AirIntegrator in double; light of all orders from DiffuseLight. The error is the
 //             difference between two numbers of nodes and what closed forms leave (bounds below).
 //             For errors below what these can do, the judge. Of light of higher orders: the
 //             differences to two coarser solutions (one alone can be small by luck), and what the
-//             degrees of the aerosol that moments do not keep would hold (missing_degrees.h; in
+//             degrees of the aerosol that moments do not keep would hold (forward_peak.h; in
 //             hazy air forward_peak.h gives that light itself), times 0.6, and 0.3 % of it. Of 384 values in air unseen by the calibration (clear, haze,
 //             dust, molecules, thick, over snow) 98 % are within it, at least 97 % in each; it is 3
 //             times the true error in the median.
@@ -30,11 +40,54 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
-#include "lut/eval/case_file.h"
-#include "lut/program/progress.h"
+#include "atmosphere/ray/ray.h"
+#include "lut/layer.h"
+#include "lut/program/csv_reader.h"
+#include "lut/program/messages.h"
 #include "lut/store/table_folder.h"
 
 namespace alpenglow::lut {
+
+enum class Quantity {
+  kTransmittance,    // of the ray [1]
+  kOpticalDepth,     // of the ray [1]
+  kSingle,           // scattered once, and sunlight from the ground at the end of the ray [1/sr]
+  kInscatterSingle,  // scattered once [1/sr]
+  kTotal,            // all orders, and light from the ground at the end of the ray [1/sr]
+  kStokesQ,          // of all orders, as PolarisedLight [1/sr]
+  kStokesU,
+  kIrradianceSun,  // of the direct sun on a horizontal plane [1]
+  kIrradianceSky,  // of the sky on a horizontal plane [1]
+};
+
+struct Case {
+  std::string id;
+  std::size_t line = 0;
+  Quantity quantity = Quantity::kTransmittance;
+  ViewRay ray;
+  double relative_azimuth_deg = 0.0;
+};
+
+class CaseReader {
+ public:
+  /// Throws InputError, here and in Next(), for what CsvReader refuses and an unknown quantity.
+  explicit CaseReader(const std::filesystem::path& file);
+
+  /// The next case, or nothing at the end.
+  [[nodiscard]] std::optional<Case> Next();
+
+  /// An InputError "file:line: fault".
+  [[noreturn]] void Fail(std::size_t line, const std::string& fault) const {
+    lines_.Fail(line, fault);
+  }
+
+  /// How far it is, for progress.
+  [[nodiscard]] std::uint64_t bytes_read() const { return lines_.bytes_read(); }
+  [[nodiscard]] std::uint64_t bytes() const { return lines_.bytes(); }
+
+ private:
+  CsvReader lines_;
+};
 
 /// A value and the method's own estimate of its error, in the same unit.
 struct Estimate {
@@ -71,7 +124,7 @@ inline constexpr double kSmallestMaxError = 1e-8;
 [[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
 
 /// Relative error of closed-form optical depths (worst: rays that graze the top from outside),
-/// where the planet's radius is more than 120 times the scale heights; see medium_ranges.h.
+/// where the planet's radius is more than 120 times the scale heights; see medium.h.
 inline constexpr double kClosedFormError = 2e-5;
 
 /// The same over any planet.

@@ -9,7 +9,7 @@
 #include "atmosphere/judge/judge.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "lut/diffuse/missing_degrees.h"
+#include "lut/diffuse/forward_peak.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/eval/eval.h"
 

@@ -1,19 +1,331 @@
 // SPDX-License-Identifier: MIT
+#include "lut/picture/develop.h"
+
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <random>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/clipped_edge.h"
-#include "lut/picture/dither.h"
-#include "lut/picture/highlights.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/look.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
+namespace {
+
+constexpr int kSize = kDitherTileSize;
+constexpr int kCells = kSize * kSize;
+
+/// Gaussian of the distance on the torus, sigma 1.9 pixels (Ulichney's 1.5 leaves more low
+/// frequencies in tiles this small), in integers so that sums are exact.
+std::vector<int> DitherKernel() {
+  std::vector<int> kernel(kCells);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const double dx = std::min(x, kSize - x);
+      const double dy = std::min(y, kSize - y);
+      const double gauss = std::exp(-(dx * dx + dy * dy) / (2.0 * 1.9 * 1.9));
+      kernel[static_cast<std::size_t>(y * kSize + x)] = static_cast<int>(std::lround(1e6 * gauss));
+    }
+  }
+  return kernel;
+}
+
+/// A pattern of points on the torus and how crowded every cell is.
+class Pattern {
+ public:
+  Pattern() : kernel_(DitherKernel()), crowding_(kCells, 0), set_(kCells, false) {}
+
+  void Add(int cell) { Change(cell, true, 1); }
+  void Remove(int cell) { Change(cell, false, -1); }
+
+  [[nodiscard]] int TightestCluster() const { return Extreme(true, 1); }
+  [[nodiscard]] int LargestVoid() const { return Extreme(false, -1); }
+
+ private:
+  void Change(int cell, bool set, int sign) {
+    set_[static_cast<std::size_t>(cell)] = set;
+    const int x0 = cell % kSize;
+    const int y0 = cell / kSize;
+    for (int y = 0; y < kSize; ++y) {
+      const int row = (y - y0 + kSize) % kSize * kSize;
+      for (int x = 0; x < kSize; ++x) {
+        crowding_[static_cast<std::size_t>(y * kSize + x)] +=
+            sign * kernel_[static_cast<std::size_t>(row + (x - x0 + kSize) % kSize)];
+      }
+    }
+  }
+  /// The cell with `set` of the largest sign * crowding, the first of equal ones.
+  [[nodiscard]] int Extreme(bool set, int sign) const {
+    int best = -1;
+    for (int i = 0; i < kCells; ++i) {
+      const auto cell = static_cast<std::size_t>(i);
+      if (set_[cell] != set) continue;
+      if (best < 0 || sign * crowding_[cell] > sign * crowding_[static_cast<std::size_t>(best)]) {
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  std::vector<int> kernel_, crowding_;
+  std::vector<bool> set_;
+};
+
+/// A tenth of the cells at random. (Regular starts, lattices among them, survive the relaxation and
+/// correlate the tile with its shifted copies.)
+std::vector<int> FirstPoints() {
+  std::mt19937 random(20260621);  // the same sequence on every machine (ISO C++ [rand.predef])
+  std::vector<int> cells;
+  while (cells.size() < kCells / 10) {
+    const auto cell = static_cast<int>(random() % kCells);
+    if (std::find(cells.begin(), cells.end(), cell) == cells.end()) cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// Moves points from clusters into voids until nothing improves.
+void Relax(Pattern& pattern) {
+  for (int moves = 0; moves < kCells; ++moves) {
+    const int cluster = pattern.TightestCluster();
+    pattern.Remove(cluster);
+    const int gap = pattern.LargestVoid();
+    pattern.Add(gap);
+    if (gap == cluster) return;
+  }
+}
+
+std::vector<std::uint16_t> VoidAndCluster() {
+  Pattern pattern;
+  const std::vector<int> first = FirstPoints();
+  for (const int cell : first) pattern.Add(cell);
+  Relax(pattern);
+  std::vector<std::uint16_t> rank(kCells);
+  Pattern thinned = pattern;
+  for (std::size_t left = first.size(); left > 0; --left) {
+    const int cell = thinned.TightestCluster();
+    thinned.Remove(cell);
+    rank[static_cast<std::size_t>(cell)] = static_cast<std::uint16_t>(left - 1);
+  }
+  // Crowding by points plus crowding by gaps is the same everywhere, so the largest void of the
+  // points is also the tightest cluster of the gaps: one loop does both of Ulichney's last phases.
+  for (std::size_t points = first.size(); points < kCells; ++points) {
+    const int cell = pattern.LargestVoid();
+    pattern.Add(cell);
+    rank[static_cast<std::size_t>(cell)] = static_cast<std::uint16_t>(points);
+  }
+  return rank;
+}
+
+/// Inverse cumulative distribution of the triangle on (-1, 1). @param u in (0, 1).
+float Triangular(float u) {
+  return u < 0.5F ? std::sqrt(2.0F * u) - 1.0F : 1.0F - std::sqrt(2.0F - 2.0F * u);
+}
+
+}  // namespace
+
+const std::vector<std::uint16_t>& DitherTile() {
+  static const std::vector<std::uint16_t> tile = VoidAndCluster();
+  return tile;
+}
+
+DitherShift DitherShiftOf(int tile_x, int tile_y) {
+  const std::uint32_t hash =
+      shared::DitherHash(static_cast<std::uint32_t>(tile_x), static_cast<std::uint32_t>(tile_y));
+  constexpr std::uint32_t kMask = kSize - 1;
+  return {static_cast<int>(hash & kMask), static_cast<int>((hash >> 8) & kMask)};
+}
+
+float DitherNoise(int x, int y, int channel) {
+  static const std::vector<float> noise = [] {
+    std::vector<float> values;
+    for (const std::uint16_t rank : DitherTile()) {
+      values.push_back(Triangular((static_cast<float>(rank) + 0.5F) / kCells));
+    }
+    return values;
+  }();
+  constexpr std::array<int, 3> kShiftX = {0, 23, 47};
+  constexpr std::array<int, 3> kShiftY = {0, 41, 19};
+  const auto c = static_cast<std::size_t>(channel);
+  const DitherShift shift = DitherShiftOf(x / kSize, y / kSize);
+  const int column = (x + shift.x + kShiftX[c]) % kSize;
+  const int row = (y + shift.y + kShiftY[c]) % kSize;
+  return noise[static_cast<std::size_t>(row * kSize + column)];
+}
+
+std::uint8_t DitheredCode(float code, float noise) {
+  return static_cast<std::uint8_t>(std::lround(shared::DitheredValue(code, noise)));
+}
+
+namespace {
+
+constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // of white
+constexpr float kEven = 0.4F;         // of the light, in its square: the limb is half as bright
+constexpr float kDarkestLimb = 0.4F;  // of the light four pixels farther in
+// Pixels: filters spread an edge over three or four.
+constexpr int kToLight = 4, kToBeside = 4;
+// Squares of 2 and 4 pixels, and of the knight's move that is nearest to each: in all directions
+// some pixel is about as far.
+constexpr int kToLimb2 = 5, kToLight2 = 20;
+// An aureole rises towards its sun: from the farther pixels behind (over the root of kToFar2 away) to
+// the nearer ones it grows by a factor, and on to the pixel by about its square. More than kSteepest
+// is the edge of something else.
+constexpr int kToFar2 = 10;
+constexpr float kSteepest = 1.6F;
+// The far ends of a filter let a pixel that is not clipped have a little of the light, too: there it
+// is so much brighter than what lies behind.
+constexpr float kTouched = 1.25F;
+
+float LuminanceAt(const Image& image, int x, int y) {
+  const auto& rgb = image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1));
+  return shared::Luminance(rgb[0], rgb[1], rgb[2]);
+}
+
+/// Whether a pixel stands in a square of four that is as bright.
+bool IsEven(const Image& image, int x, int y, float light) {
+  const auto bright = [&](int i, int j) { return LuminanceAt(image, i, j) >= kEven * light; };
+  for (const int i : {x - 1, x + 1}) {
+    for (const int j : {y - 1, y + 1}) {
+      if (bright(i, y) && bright(x, j) && bright(i, j)) return true;
+    }
+  }
+  return false;
+}
+
+struct Pixel {
+  int x, y;
+};
+
+/// Calls visit(pixel) for all within some pixels of a place.
+template <typename Visit>
+void Around(const Image& image, const Pixel& at, int reach, const Visit& visit) {
+  for (int y = std::max(at.y - reach, 0); y <= std::min(at.y + reach, image.height - 1); ++y) {
+    for (int x = std::max(at.x - reach, 0); x <= std::min(at.x + reach, image.width - 1); ++x) {
+      visit(Pixel{x, y});
+    }
+  }
+}
+
+struct EdgeLight {
+  Pixel at;
+  float luminance;
+};
+
+/// Within the root of `reach2`.
+EdgeLight BrightestAround(const Image& image, const Pixel& at, int reach2) {
+  EdgeLight light{at, LuminanceAt(image, at.x, at.y)};
+  Around(image, at, kToLight, [&](const Pixel& pixel) {
+    const int dx = pixel.x - at.x, dy = pixel.y - at.y;
+    const float luminance = LuminanceAt(image, pixel.x, pixel.y);
+    if (dx * dx + dy * dy <= reach2 && luminance > light.luminance) light = {pixel, luminance};
+  });
+  return light;
+}
+
+struct EdgeDirection {
+  float x, y;
+};
+
+/// Away from the light around a pixel, unit; zero where it lies on all sides alike.
+EdgeDirection AwayFromLight(const Image& image, const Pixel& at) {
+  EdgeDirection away{0.0F, 0.0F};
+  Around(image, at, kToBeside, [&](const Pixel& pixel) {
+    const float luminance = LuminanceAt(image, pixel.x, pixel.y);
+    away.x -= luminance * static_cast<float>(pixel.x - at.x);
+    away.y -= luminance * static_cast<float>(pixel.y - at.y);
+  });
+  const float length = std::hypot(away.x, away.y);
+  return length > 0.0F ? EdgeDirection{away.x / length, away.y / length}
+                       : EdgeDirection{0.0F, 0.0F};
+}
+
+/// Mean of colours.
+class MeanColour {
+ public:
+  void Add(const std::array<float, 3>& rgb, float weight) {
+    for (std::size_t c = 0; c < 3; ++c) sum_[c] += weight * rgb[c];
+    weights_ += weight;
+  }
+  [[nodiscard]] bool empty() const { return weights_ == 0.0F; }
+  [[nodiscard]] std::array<float, 3> Value() const {
+    return {sum_[0] / weights_, sum_[1] / weights_, sum_[2] / weights_};
+  }
+  [[nodiscard]] float Luminance() const {
+    const auto rgb = Value();
+    return shared::Luminance(rgb[0], rgb[1], rgb[2]);
+  }
+
+ private:
+  std::array<float, 3> sum_{};
+  float weights_ = 0.0F;
+};
+
+/// By what an aureole grows from the pixels behind, near and far, to the pixel itself.
+float RiseTowardsLight(const MeanColour& near, const MeanColour& far) {
+  if (near.empty() || far.empty()) return 1.0F;
+  const float rise = near.Luminance() / std::max(far.Luminance(), 1e-30F);
+  return rise > 1.0F && rise < kSteepest ? rise * rise : 1.0F;
+}
+
+/// The colour of what is not clipped, as it would be at the pixel: the mean by nearness and, to the
+/// fourth power, by the cosine with the way from the light, with the rise of its aureole; by nearness
+/// alone where nothing lies that way; nothing where all is clipped.
+std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, float white) {
+  const EdgeDirection away = AwayFromLight(image, at);
+  MeanColour behind, around, near, far;
+  Around(image, at, kToBeside, [&](const Pixel& pixel) {
+    if (LuminanceAt(image, pixel.x, pixel.y) > white) return;
+    const auto dx = static_cast<float>(pixel.x - at.x), dy = static_cast<float>(pixel.y - at.y);
+    const float distance2 = dx * dx + dy * dy;
+    if (distance2 == 0.0F) return;
+    // What a filter mixes with the light counts only where nothing farther off is there.
+    const bool mixed = distance2 < static_cast<float>(kToLimb2);
+    const float weight = (mixed ? 1e-6F : 1.0F) / distance2;
+    const float cosine = std::max(away.x * dx + away.y * dy, 0.0F) / std::sqrt(distance2);
+    const float along = cosine * cosine * cosine * cosine;
+    const auto& rgb = image.at(pixel.x, pixel.y);
+    around.Add(rgb, weight);
+    behind.Add(rgb, weight * along);
+    if (!mixed) (distance2 > static_cast<float>(kToFar2) ? far : near).Add(rgb, along);
+  });
+  if (around.empty()) return std::nullopt;
+  std::array<float, 3> colour = (behind.empty() ? around : behind).Value();
+  for (float& channel : colour) channel *= RiseTowardsLight(near, far);
+  return colour;
+}
+
+}  // namespace
+
+std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y, float white) {
+  const float here = LuminanceAt(image, x, y);
+  const auto clips = [&](int dx, int dy) { return LuminanceAt(image, x + dx, y + dy) > white; };
+  if (!clips(0, 0) && !clips(-2, 0) && !clips(2, 0) && !clips(0, -2) && !clips(0, 2)) {
+    return std::nullopt;
+  }
+  const EdgeLight light = BrightestAround(image, {x, y}, kToLight2);
+  if (light.luminance <= kLeastLight * white ||
+      !IsEven(image, light.at.x, light.at.y, light.luminance)) {
+    return std::nullopt;
+  }
+  const std::optional<std::array<float, 3>> beside = Beside(image, {x, y}, white);
+  if (!beside) return std::nullopt;
+  const float dark = shared::Luminance((*beside)[0], (*beside)[1], (*beside)[2]);
+  if (dark >= white || (here <= white && here < kTouched * dark)) return std::nullopt;
+  const float within = BrightestAround(image, {x, y}, kToLimb2).luminance;
+  const float full =
+      std::max(3.0F * within - 2.0F * light.luminance, kDarkestLimb * light.luminance);
+  const float stops = std::log2(light.luminance / (kLeastLight * white));
+  const float seen = std::clamp(2.0F * (1.0F - dark / white), 0.0F, 1.0F);
+  return ClippedEdge{image.at(light.at.x, light.at.y), *beside,
+                     std::clamp((here - dark) / (full - dark), 0.0F, 1.0F),
+                     seen * std::min(stops / std::log2(kFullLight / kLeastLight), 1.0F)};
+}
+
 namespace {
 
 void RequireFinite(const std::array<float, 3>& pixel, int x, int y) {

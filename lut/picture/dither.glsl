@@ -1,4 +1,4 @@
-// Noise of the last bit of a picture (dither.h).
+// Noise of the last bit of a picture (develop.h).
 
 // Where a repetition of the tile begins in it: column in
 // the lowest bits, row eight bits up. 0 at the origin.

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Pictures: linear in memory, EXR (linear, with metadata) and PNG (exposed, tone-mapped, dithered).
+//
+// Layers of pictures and panoramas that say how their light is polarised.
+//
+// Q is what vibrates along the picture's vertical more than across it, U what vibrates from the
+// lower left to the upper right more than across that.
 #pragma once
 
 #include <array>
@@ -86,7 +91,7 @@ inline constexpr double kBrightestEv100 = 20.0;
 /// Luminance over which the exposure meter takes a pixel for the sun's disk [cd/m^2].
 inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 
-/// EV100 that a histogram meter picks (light_meter.h): mean log luminance between the 40th and 95th
+/// EV100 that a histogram meter picks (metering.h): mean log luminance between the 40th and 95th
 /// percentile mapped to middle grey by K = 12.5, or more where the latter would be over white by day.
 /// Pixels brighter than `ignore_above_cd_per_m2` (the sun's disk), those without light, and those
 /// that stay black beside the rest (space) do not count; those of a panorama weigh as their solid
@@ -97,7 +102,7 @@ inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 
 enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
 
-/// 8-bit sRGB of the exposed picture, dithered by triangular blue noise of +-1 code (dither.h; the
+/// 8-bit sRGB of the exposed picture, dithered by triangular blue noise of +-1 code (develop.h; the
 /// same for every run). Out-of-gamut colours: see tone_curve.glsl.
 struct DisplayImage {
   int width = 0;
@@ -115,5 +120,24 @@ void WritePng(const std::filesystem::path& file, const DisplayImage& image,
 [[nodiscard]] DisplayImage ReadPng(const std::filesystem::path& file);
 /// The text chunks before the pixels. Throws InputError.
 [[nodiscard]] Metadata ReadPngMetadata(const std::filesystem::path& file);
+
+enum class StokesLayer {
+  kQ,             // stokes_q.R, .G, .B: linear sRGB [cd/m^2], of either sign
+  kU,             // stokes_u.R, .G, .B
+  kPolarisation,  // polarisation.degree and .angle, of luminance: DegreeAndAngle
+};
+inline constexpr std::array<StokesLayer, 3> kStokesLayers{StokesLayer::kQ, StokesLayer::kU,
+                                                          StokesLayer::kPolarisation};
+
+/// "stokes_q", "stokes_u", "polarisation"; throws InputError for another name.
+[[nodiscard]] std::string NameOf(StokesLayer layer);
+[[nodiscard]] StokesLayer StokesLayerFromName(const std::string& name);
+/// Names of its channels, as in the EXR file.
+[[nodiscard]] std::vector<std::string> ChannelsOf(StokesLayer layer);
+
+/// Degree of linear polarisation in [0, 1], and the direction of vibration [degrees] clockwise from
+/// the picture's vertical, in [-90, 90]; both 0 without light.
+/// @param luminance, q, u  in one unit.
+[[nodiscard]] std::array<float, 2> DegreeAndAngle(double luminance, double q, double u);
 
 }  // namespace alpenglow::lut

@@ -4,15 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/acuity.h"
-#include "lut/picture/light_meter.h"
-#include "lut/picture/night_vision.h"
-#include "lut/picture/picture_text.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/layer.h"
+#include "lut/picture/eye.h"
+#include "lut/picture/metering.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 
@@ -147,6 +147,70 @@ double IncidentEv100(double illuminance_lux) {
   if (!(illuminance_lux > 0.0)) return kDarkestEv100;
   return std::clamp(std::log2(illuminance_lux * 100.0 / kFlatReceptor), kDarkestEv100,
                     kBrightestEv100);
+}
+
+namespace {
+
+/// Calls `refuse` unless the whole text is a number.
+template <typename Number, typename Refuse>
+Number NumberFromText(std::string_view text, const Refuse& refuse) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) refuse();
+  return number;
+}
+
+}  // namespace
+
+ImageSize ImageSizeFromText(const std::string& text, int largest) {
+  const auto refuse = [&] {
+    throw InputError(
+        fmt::format("size is \"{}\"; write it as 1280x720, each in [1, {}]", text, largest));
+  };
+  const auto side = [&](std::string_view digits) {
+    const int pixels = NumberFromText<int>(digits, refuse);
+    if (pixels < 1 || pixels > largest) refuse();
+    return pixels;
+  };
+  const std::string_view whole = text;
+  const std::size_t cross = whole.find('x');
+  if (cross == std::string_view::npos) refuse();
+  return {side(whole.substr(0, cross)), side(whole.substr(cross + 1))};
+}
+
+std::optional<double> Ev100FromText(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  const double ev100 = NumberFromText<double>(text, [&] {
+    throw InputError(
+        fmt::format("exposure is \"{}\"; it must be auto, eye, incident or a number (EV)", text));
+  });
+  return RequireInRange(ev100, -30.0, 30.0, "exposure");
+}
+
+ToneCurve ToneCurveFromName(const std::string& name) {
+  if (name == "agx") return ToneCurve::kAgx;
+  if (name == "aces") return ToneCurve::kAces;
+  if (name == "reinhard") return ToneCurve::kReinhard;
+  if (name == "pbr-neutral") return ToneCurve::kPbrNeutral;
+  if (name == "linear") return ToneCurve::kLinear;
+  throw InputError(fmt::format(
+      "tone curve is \"{}\"; it must be agx, aces, reinhard, pbr-neutral or linear", name));
+}
+
+std::string NameOf(ToneCurve curve) {
+  switch (curve) {
+    case ToneCurve::kAgx:
+      return "agx";
+    case ToneCurve::kAces:
+      return "aces";
+    case ToneCurve::kReinhard:
+      return "reinhard";
+    case ToneCurve::kPbrNeutral:
+      return "pbr-neutral";
+    case ToneCurve::kLinear:
+      return "linear";
+  }
+  throw InternalError("unknown tone curve");
 }
 
 }  // namespace alpenglow::lut

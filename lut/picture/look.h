@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 // How a picture of physical light becomes one to look at: the eye's adaptation, exposure, curve.
+//
+// What people type about pictures: sizes, exposures, names of tone curves.
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "lut/picture/agx_look.h"
 #include "lut/picture/image.h"
-#include "lut/picture/white_balance.h"
+#include "lut/picture/metering.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 
 struct Look {
   ToneCurve curve = ToneCurve::kAgx;
   bool local_exposure = false;  // lut/picture/local_exposure.h
-  bool rolls_off = false;       // lut/picture/highlights.h
-  bool night_vision = false;    // lut/picture/night_vision.h
+  bool rolls_off = false;       // lut/picture/local_exposure.h
+  bool night_vision = false;    // lut/picture/eye.h
   AgxLook agx = AgxLook::kPhoto;
   WhiteBalance white = {};
 
@@ -37,7 +39,7 @@ struct PictureView {
 [[nodiscard]] Look Settled(Look look, const Image& image, const PictureView& view = {});
 
 /// A picture as it is metered and developed: balanced, and with night vision as the eye sees it, as
-/// soft as its acuity has it (acuity.h). Of a look that is settled.
+/// soft as its acuity has it (eye.h). Of a look that is settled.
 [[nodiscard]] Image Seen(const Image& image, const Look& look, const PictureView& view = {});
 
 /// A picture from Seen(), developed. Throws InternalError for a pixel that is not finite.
@@ -99,5 +101,20 @@ struct ExposureRule {
 /// What an incident-light meter reads: E S / C = 2^EV with C = 250 for a flat receptor (ISO 2720).
 /// @param illuminance_lux  on a horizontal plane, >= 0. Within [kDarkestEv100, kBrightestEv100].
 [[nodiscard]] double IncidentEv100(double illuminance_lux);
+
+struct ImageSize {
+  int width = 1280;
+  int height = 720;
+};
+
+/// "1280x720", each in [1, largest]; throws InputError.
+[[nodiscard]] ImageSize ImageSizeFromText(const std::string& text, int largest = 16384);
+
+/// "auto" is nothing, a number in [-30, 30] an exposure value; throws InputError for other texts.
+[[nodiscard]] std::optional<double> Ev100FromText(const std::string& text);
+
+/// "agx", "aces", "reinhard", "pbr-neutral" or "linear"; throws InputError for another name.
+[[nodiscard]] ToneCurve ToneCurveFromName(const std::string& name);
+[[nodiscard]] std::string NameOf(ToneCurve curve);
 
 }  // namespace alpenglow::lut

@@ -13,7 +13,6 @@
 
 #include "atmosphere/text/error.h"
 #include "lut/layer.h"
-#include "lut/program/command_hints.h"
 #include "lut/program/program.h"
 
 namespace alpenglow::lut {

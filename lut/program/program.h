@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Hints for words on a command line that the program does not know.
+//
 // What the three programs have in common: exit statuses, signals, version, threads; messages,
 // progress and atomic output have headers of their own, included here.
 #pragma once
@@ -6,12 +8,23 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "lut/program/atomic_file.h"
 #include "lut/program/messages.h"
-#include "lut/program/progress.h"
+#include "lut/program/output_file.h"
 
 namespace alpenglow::lut {
+
+/// Describes the fault of a word that stands where a command or the name of a file may: it is
+/// neither, but nearly a command, or one that other programs have as a command ("help"). Empty for
+/// other words.
+[[nodiscard]] std::string FaultOfCommand(const std::string& word,
+                                         const std::vector<std::string>& commands);
+
+/// Describes an option that the program does not have, "-o" or "--lattitude=3", and which
+/// of the known ones (long names without dashes) are like it.
+[[nodiscard]] std::string FaultOfUnknownOption(const std::string& option,
+                                               const std::vector<std::string>& known);
 
 /// Runs `body` and maps failures to exit statuses, one line on standard error each: OptionError 2,
 /// InputError 3, OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else

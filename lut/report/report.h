@@ -2,7 +2,7 @@
 // Speed and accuracy held against each other, on the same rays, in one run: `skylut report`.
 //
 // Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
-// answers the same rays, drawn once from the distribution of report_rays.h, by day, at sunset, in
+// answers the same rays, drawn once from the distribution of report_measure.h, by day, at sunset, in
 // civil and nautical twilight, and from space. Its error is the distance to a judge (judge.h, path_tracer.h); its cost is memory,
 // the time to get ready, and the time of one answer on one thread. Methods of the literature,
 // written anew from their publications (report_baselines.h), stand beside this library's.
@@ -22,7 +22,7 @@
 
 #include "atmosphere/air/medium.h"
 #include "lut/layer.h"
-#include "lut/program/progress.h"
+#include "lut/program/messages.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow::lut {
@@ -55,7 +55,7 @@ struct ErrorStatistics {
   double median = 0.0, rms = 0.0, percentile_99 = 0.0, largest = 0.0;
   /// The judge's own noise hides the error: rms is what it can be at most, about.
   bool rms_is_bound = false;
-  /// Relative to each value itself, however dark, above kDarkestValue (report_rays.h). Rms and
+  /// Relative to each value itself, however dark, above kDarkestValue (report_measure.h). Rms and
   /// percentile_99 count what is dark as brighter (DarkestRadiance).
   double strict_rms = 0.0, strict_percentile_99 = 0.0;
 };

@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/ray/optical_depth.h"
+#include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/text/error.h"
 #include "lut/eval/eval.h"
-#include "lut/table/table_size.h"
+#include "lut/table/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

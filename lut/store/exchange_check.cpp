@@ -16,7 +16,7 @@
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
+#include "atmosphere/text/parsing.h"
 #include "lut/store/table_image.h"
 #include "lut/table/transmittance_table.h"
 

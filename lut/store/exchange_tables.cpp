@@ -12,7 +12,7 @@
 #include <fstream>
 #include <utility>
 
-#include "atmosphere/air/medium_toml.h"
+#include "atmosphere/air/medium.h"
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"

@@ -36,7 +36,7 @@
 
 #include "atmosphere/air/medium.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "lut/program/progress.h"
+#include "lut/program/messages.h"
 #include "lut/store/table_image.h"
 #include "lut/table/scattering_table.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "atmosphere/air/medium_toml.h"
+#include "atmosphere/air/medium.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/program/program.h"

@@ -7,7 +7,7 @@
 //                                                               or mu_s nu as mu_s azimuth: see
 //                                                               ScatteringAxes
 //   multiple scattering L00.0450nm, L10 ..., E.0450nm ...       columns mu_s, rows h
-//                       of polarised light T20, T21, T22 too (tensor_moments.h)
+//                       of polarised light T20, T21, T22 too (polarised_light.h)
 //
 // 32-bit floats, ZIP, first row = ground. Text attributes alpenglow.*: kind, quantity, units, axes,
 // axisSizes, layout, mapVersion, mediumHash, mediumName, medium (a whole atmosphere.toml),

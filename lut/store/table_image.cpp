@@ -21,9 +21,9 @@
 #include <type_traits>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/exr_header.h"
-#include "lut/program/atomic_file.h"
-#include "lut/table/table_size.h"
+#include "lut/picture/exr.h"
+#include "lut/program/output_file.h"
+#include "lut/table/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -12,9 +12,7 @@
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 #include "lut/table/cubic_taps.h"
-#include "lut/table/scattering_map.h"
-#include "lut/table/sun_axis.h"
-#include "lut/table/table_size.h"
+#include "lut/table/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -15,6 +15,9 @@
 //              so that no texel is wasted; the sun's zenith cosine dense around the terminator, as
 //              in DiffuseLight; cubic but for mu. Texels hold fourth roots: what falls by decades
 //              in twilight is then smooth. For programs of this project.
+//
+// This header also reads the shared text scattering_map.glsl as C++, as templates over double,
+// float and SIMD batches. Lengths are kilometres there and metres in the table.
 #pragma once
 
 #include <array>
@@ -26,8 +29,17 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/program/progress.h"
-#include "lut/table/table_size.h"
+#include "lut/program/messages.h"
+#include "lut/table/table_axes.h"
+#include "lut/table/transmittance_table.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "lut/table/scattering_map.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::lut {
 

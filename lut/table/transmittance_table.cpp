@@ -8,10 +8,9 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/ray/optical_depth.h"
+#include "atmosphere/ray/ray.h"
 #include "atmosphere/text/error.h"
-#include "lut/table/table_size.h"
-#include "lut/table/transmittance_map.h"
+#include "lut/table/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -6,6 +6,9 @@
 // on the map of transmittance_map.glsl: columns run from the zenith to the horizon, rows from the
 // ground to the top. AirIntegrator gives the same numbers faster and better (see its header); the
 // table is for programs that load tables, and to be held against it.
+//
+// This header also reads the shared text transmittance_map.glsl as C++, as templates over double,
+// float and SIMD batches. Lengths are kilometres there and metres in the table.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +17,17 @@
 
 #include "atmosphere/air/medium.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/layer.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "lut/table/transmittance_map.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::lut {
 

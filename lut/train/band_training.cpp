@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/cholesky.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 
 namespace alpenglow::lut {

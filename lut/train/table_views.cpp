@@ -9,7 +9,7 @@
 #include "atmosphere/judge/judge.h"
 #include "atmosphere/judge/path_tracer.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/halton.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 #include "lut/program/program.h"
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "lut/diffuse/multiple_scattering.h"
-#include "lut/store/table_lookup.h"
+#include "lut/store/table_folder.h"
 
 namespace alpenglow::lut {
 

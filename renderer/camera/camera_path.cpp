@@ -10,7 +10,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
+#include "atmosphere/text/parsing.h"
 #include "lut/program/csv_reader.h"
 #include "renderer/scene/scene.h"
 

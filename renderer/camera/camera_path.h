@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+// Distances along a way.
+//
+// What a flight asks of the ground.
+//
 // The way of a camera: where it is and where it looks, moment by moment; and the file that says so.
 //
 // The file is text, one point a line. Its first line names the columns, separated by commas, in any
@@ -27,6 +31,8 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -37,6 +43,17 @@
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+
+/// Places that are closer are the same place: a receiver does not tell them apart.
+inline constexpr double kSamePlace_m = 0.5;
+
+/// The chord between two places [m].
+[[nodiscard]] inline double DistanceBetween(const GeodeticPosition& a, const GeodeticPosition& b) {
+  return glm::length((EcefFromGeodetic(kWgs84, a) - EcefFromGeodetic(kWgs84, b)).xyz);
+}
+
+/// Height of the ground [m] over the ellipsoid, under a place.
+using GroundHeight = std::function<double(const GeodeticPosition&)>;
 
 /// Where a camera is and looks. Angles as in Camera.
 struct CameraPose {

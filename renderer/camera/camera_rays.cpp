@@ -1,14 +1,215 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/camera/camera_rays.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+glm::dvec2 OnCircle(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+}  // namespace
+
+Iris::Iris(int blades, double rotation_rad)
+    : blades_(blades),
+      rotation_rad_(rotation_rad),
+      area_(blades == 0 ? kPi : 0.5 * blades * std::sin(2.0 * kPi / blades)) {}
+
+// A disk in polar coordinates; a polygon as triangles around the middle, of which the first number
+// picks one and a place along its outer side.
+glm::dvec2 Iris::Point(std::array<double, 2> unit) const {
+  const double r = std::sqrt(unit[1]);
+  if (blades_ == 0) return r * OnCircle(2.0 * kPi * unit[0]);
+  const double side = unit[0] * blades_;
+  const double corner = std::min(std::floor(side), blades_ - 1.0);
+  const double step = 2.0 * kPi / blades_;
+  const double share = side - corner;
+  return r * ((1.0 - share) * OnCircle(rotation_rad_ + corner * step) +
+              share * OnCircle(rotation_rad_ + (corner + 1.0) * step));
+}
+
+double Iris::EdgeTowards(const glm::dvec2& direction) const {
+  if (blades_ == 0) return 1.0;
+  const double half = kPi / blades_;
+  const double turn = std::atan2(direction.y, direction.x) - rotation_rad_ - half;
+  return std::cos(half) / std::cos(std::remainder(turn, 2.0 * half));
+}
+
+namespace {
+
+constexpr double kGaussianRadius = 1.5;
+constexpr double kGaussianSigma = 0.5;
+constexpr double kBlackmanHarrisRadius = 1.5;
+// Four terms, side lobes below -92 dB: Harris (1978), Proc. IEEE 66, 51, table I.
+constexpr std::array<double, 4> kBlackmanHarris{0.35875, 0.48829, 0.14128, 0.01168};
+
+double RadiusOf(PixelFilter::Kind kind) {
+  switch (kind) {
+    case PixelFilter::Kind::kBox:
+      return 0.5;
+    case PixelFilter::Kind::kGaussian:
+      return kGaussianRadius;
+    case PixelFilter::Kind::kBlackmanHarris:
+      return kBlackmanHarrisRadius;
+  }
+  throw InternalError("unknown kind of filter");
+}
+
+constexpr int kKnots = 513;       // of the inverse of the distribution, straight in between
+constexpr int kFilterSteps = 16;  // of the trapezoidal rule between two points of the distribution
+
+}  // namespace
+
+double PixelFilter::Shape(double x) const {
+  if (!(std::abs(x) < radius_)) return 0.0;
+  switch (kind_) {
+    case Kind::kBox:
+      return 1.0;
+    case Kind::kGaussian: {
+      constexpr double kTwice = 2.0 * kGaussianSigma * kGaussianSigma;
+      return std::exp(-x * x / kTwice) - std::exp(-radius_ * radius_ / kTwice);
+    }
+    case Kind::kBlackmanHarris: {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kBlackmanHarris.size(); ++k) {
+        sum += kBlackmanHarris[k] * std::cos(static_cast<double>(k) * kPi * x / radius_);
+      }
+      return sum;
+    }
+  }
+  throw InternalError("unknown kind of filter");
+}
+
+PixelFilter::PixelFilter(Kind kind) : kind_(kind), radius_(RadiusOf(kind)), integral_(1.0) {
+  // The distribution on the positive side, tabulated over x, read backwards.
+  std::vector<double> below{0.0};
+  const double step = radius_ / (kKnots - 1);
+  for (int i = 1; i < kKnots; ++i) {
+    double area = 0.0;
+    for (int k = 0; k < kFilterSteps; ++k) area += Shape(step * (i - 1 + (k + 0.5) / kFilterSteps));
+    below.push_back(below.back() + area * step / kFilterSteps);
+  }
+  const double half = below.back();
+  integral_ = 2.0 * half;
+  for (int i = 0; i < kKnots; ++i) {
+    const double wanted = half * i / (kKnots - 1);
+    const auto above = std::clamp(std::upper_bound(below.begin(), below.end(), wanted),
+                                  below.begin() + 1, below.end() - 1);
+    const double low = *(above - 1), high = *above;
+    const double share = high > low ? std::clamp((wanted - low) / (high - low), 0.0, 1.0) : 0.0;
+    offsets_.push_back(step * (static_cast<double>(above - 1 - below.begin()) + share));
+  }
+}
+
+double PixelFilter::Offset(double u) const {
+  const double at = std::abs(2.0 * u - 1.0) * (kKnots - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kKnots - 2));
+  const double share = at - static_cast<double>(i);
+  const double offset = (1.0 - share) * offsets_[i] + share * offsets_[i + 1];
+  return u < 0.5 ? -offset : offset;
+}
+
+double PixelFilter::Weight(double x) const { return Shape(x) / integral_; }
+
+const std::vector<std::string>& PixelFilterNames() {
+  static const std::vector<std::string> names{"box", "gaussian", "blackman-harris"};
+  return names;
+}
+
+PixelFilter::Kind PixelFilterFromName(std::string_view name) {
+  const std::vector<std::string>& names = PixelFilterNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError(fmt::format("filter \"{}\" is not one of {}", name, fmt::join(names, ", ")));
+  }
+  return static_cast<PixelFilter::Kind>(found - names.begin());
+}
+
+std::string NameOf(PixelFilter::Kind kind) {
+  return PixelFilterNames()[static_cast<std::size_t>(kind)];
+}
+
+namespace {
+
+/// The finaliser of MurmurHash3 (Appleby): every bit of the result depends on every bit.
+std::uint32_t Mixed(std::uint32_t h) {
+  h = (h ^ (h >> 16U)) * 0x85EBCA6BU;
+  h = (h ^ (h >> 13U)) * 0xC2B2AE35U;
+  return h ^ (h >> 16U);
+}
+
+std::uint32_t Mirrored(std::uint32_t bits) {
+  bits = ((bits & 0x55555555U) << 1U) | ((bits >> 1U) & 0x55555555U);
+  bits = ((bits & 0x33333333U) << 2U) | ((bits >> 2U) & 0x33333333U);
+  bits = ((bits & 0x0F0F0F0FU) << 4U) | ((bits >> 4U) & 0x0F0F0F0FU);
+  bits = ((bits & 0x00FF00FFU) << 8U) | ((bits >> 8U) & 0x00FF00FFU);
+  return (bits << 16U) | (bits >> 16U);
+}
+
+/// Each bit is changed as the bits below it say. The factors, all even so that nothing goes from
+/// high bits to low ones, are those of Laine and Karras (2011), section 3.1.
+std::uint32_t ScrambledUpwards(std::uint32_t bits, std::uint32_t seed) {
+  bits += seed;
+  for (const std::uint32_t factor : {0x6C50B47CU, 0xB82F1E52U, 0xC7AFE638U, 0x8D22F6E6U}) {
+    bits ^= bits * factor;
+  }
+  return bits;
+}
+
+/// Nested uniform scrambling: each bit is changed as the bits above it say.
+std::uint32_t Scrambled(std::uint32_t bits, std::uint32_t seed) {
+  return Mirrored(ScrambledUpwards(Mirrored(bits), seed));
+}
+
+/// Dimension 1 of Sobol's sequence, mirrored (dimension 0, mirrored, is the index itself). Its
+/// direction numbers are the rows of Pascal's triangle modulo 2, in which C(j, i) is odd where the
+/// bits of i are among those of j (Lucas): bit i is the sum of the bits j of the index that contain
+/// i, one bit of the five of i and j at a time.
+std::uint32_t MirroredSobolSecond(std::uint32_t index) {
+  index ^= (index >> 1U) & 0x55555555U;
+  index ^= (index >> 2U) & 0x33333333U;
+  index ^= (index >> 4U) & 0x0F0F0F0FU;
+  index ^= (index >> 8U) & 0x00FF00FFU;
+  return index ^ (index >> 16U);
+}
+
+/// Bits of x on even places: half of Morton's code.
+std::uint32_t SpreadBits(std::uint32_t x) {
+  x = (x | (x << 4U)) & 0x0F0FU;
+  x = (x | (x << 2U)) & 0x3333U;
+  return (x | (x << 1U)) & 0x5555U;
+}
+
+double InUnit(std::uint32_t bits) { return static_cast<double>(bits) / 4294967296.0; }
+
+}  // namespace
+
+PixelSamples::PixelSamples(int x, int y, int samples_per_pixel) {
+  ALPENGLOW_ENSURE(samples_per_pixel, <=, kMostSamples);
+  const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
+  constexpr auto kSide = static_cast<std::uint32_t>(kTile);
+  tile_ = Mixed(Mixed(column / kSide) + 0x9E3779B9U * (row / kSide) + 1U);
+  const std::uint32_t place = SpreadBits(column % kSide) | (SpreadBits(row % kSide) << 1U);
+  first_ = place * std::bit_ceil(static_cast<std::uint32_t>(samples_per_pixel));
+}
+
+std::array<double, 2> PixelSamples::Point(int sample, SampleOf decision) const {
+  const std::uint32_t seed = Mixed(tile_ + 0x85EBCA77U * static_cast<std::uint32_t>(decision));
+  const std::uint32_t index = Scrambled(first_ + static_cast<std::uint32_t>(sample), seed);
+  return {InUnit(Mirrored(ScrambledUpwards(index, Mixed(seed + 1U)))),
+          InUnit(Mirrored(ScrambledUpwards(MirroredSobolSecond(index), Mixed(seed + 2U))))};
+}
 
 CameraRays::CameraRays(const Camera& camera, int width, int height, const CameraStand& stand)
     : width_(width),
@@ -133,6 +334,17 @@ CameraRays Between(const CameraRays& from, const CameraRays& to, double share) {
   between.right_ = glm::normalize(glm::cross(between.forward_, mixed(from.up_, to.up_)));
   between.up_ = glm::cross(between.right_, between.forward_);
   return between;
+}
+
+MovingCamera::MovingCamera(std::vector<CameraRays> steps) : steps_(std::move(steps)) {
+  ALPENGLOW_ENSURE(steps_.size(), >=, std::size_t{1});
+}
+
+CameraRay MovingCamera::Ray(double x, double y, std::array<double, 2> lens, double time) const {
+  if (!IsMoving()) return steps_.front().Ray(x, y, lens);
+  const double at = time * static_cast<double>(steps_.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), steps_.size() - 2);
+  return Between(steps_[i], steps_[i + 1], at - static_cast<double>(i)).Ray(x, y, lens);
 }
 
 }  // namespace alpenglow::renderer

@@ -9,9 +9,8 @@
 #include <optional>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/gravity.h"
 #include "atmosphere/text/error.h"
-#include "renderer/camera/way_length.h"
+#include "renderer/camera/camera_path.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -11,7 +11,6 @@
 #pragma once
 
 #include "renderer/camera/camera_path.h"
-#include "renderer/camera/ground_height.h"
 #include "renderer/camera/track_file.h"
 
 namespace alpenglow::renderer {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 #include "renderer/camera/track_record.h"
 
 namespace alpenglow::renderer {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "renderer/camera/way_length.h"
+#include "renderer/camera/camera_path.h"
 
 namespace alpenglow::renderer {
 namespace {

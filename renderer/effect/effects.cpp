@@ -7,7 +7,7 @@
 #include <array>
 
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 #include "lut/program/program.h"
 #include "renderer/layer.h"
 

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/colour/water.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
-#include "renderer/ground/reflectance_text.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -6,6 +6,8 @@
 //
 // of isotropic surfaces, in bands. Directions point away from the surface. All are reciprocal, and
 // none sends on more than it receives; tests hold both against quadrature over the hemisphere.
+//
+// This header also reads the shared text reflectance.glsl as C++.
 #pragma once
 
 #include <array>
@@ -13,8 +15,17 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "atmosphere/dialect/shared_math.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/layer.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "renderer/ground/reflectance.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::renderer {
 

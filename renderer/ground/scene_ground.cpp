@@ -5,16 +5,157 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "renderer/ground/ground_heights.h"
-#include "renderer/ground/model_in_sight.h"
-#include "renderer/shadow/sun_probes.h"
+#include "renderer/shadow/sunlit_path.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/obj_file.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+constexpr double kReach_m = 20000.0;  // over any mountain, under any trench
+
+/// The vertical of a place in a frame.
+glm::dvec3 UpAt(const LocalFrame& frame, const GeodeticPosition& place) {
+  const LocalFrame there(frame.ellipsoid(), place);
+  return frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{glm::dvec3(0.0, 0.0, 1.0)})).xyz;
+}
+
+/// The first surface under a point that is so far over another.
+std::optional<SurfaceUnder> SeenFrom(const Terrain& terrain, const glm::dvec3& point,
+                                     const glm::dvec3& up, double over_m) {
+  const auto hit = terrain.Intersect(point + over_m * up, -up);
+  if (!hit) return std::nullopt;
+  return SurfaceUnder{*hit, over_m - hit->distance_m};
+}
+
+}  // namespace
+
+std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain, const glm::dvec3& point,
+                                                const glm::dvec3& up) {
+  const auto from_above = terrain.Intersect(point + kReach_m * up, -up, 2.0 * kReach_m);
+  if (!from_above) return std::nullopt;
+  const double highest_m = kReach_m - from_above->distance_m;
+  const auto from_below = terrain.Intersect(point - kReach_m * up, up, 2.0 * kReach_m);
+  // One ray may meet an edge that the other just passes: the surface that one has met exists.
+  const double lowest_m = from_below ? from_below->distance_m - kReach_m : highest_m;
+  return GroundHeights{std::min(lowest_m, highest_m), highest_m};
+}
+
+std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain, const LocalFrame& frame,
+                                             const GeodeticPosition& place) {
+  GeodeticPosition foot = place;
+  foot.height_m = 0.0;
+  return GroundHeightsAlong(terrain, frame.EnuFromGeodetic(foot).xyz, UpAt(frame, foot));
+}
+
+std::optional<SurfaceUnder> SurfaceUnderPoint(const Terrain& terrain, const glm::dvec3& point,
+                                              const glm::dvec3& up) {
+  constexpr double kRounding_m = 0.02;  // what stands on a surface is not under it
+  const auto below = SeenFrom(terrain, point, up, kRounding_m);
+  return below ? below : SeenFrom(terrain, point, up, kReach_m);
+}
+
+std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
+                                     const GeodeticPosition& place) {
+  const auto surface =
+      SurfaceUnderPoint(terrain, frame.EnuFromGeodetic(place).xyz, UpAt(frame, place));
+  if (!surface) return std::nullopt;
+  return place.height_m + surface->height_m;
+}
+
+namespace {
+
+constexpr double kEarth_m = 6.371e6;
+
+// The distance from which ground of any height may be seen [radians of the earth's curve]. Refraction
+// carries light a tenth farther at most.
+double Sight(double eye_m) {
+  constexpr double kHighestGround_m = 9000.0, kRefraction = 1.1;
+  return kRefraction * (HorizonDip(eye_m) + HorizonDip(kHighestGround_m));
+}
+
+struct Span {
+  int first, count;
+};
+
+// Two samples or more of an axis, from half a width before a place to half a width after it.
+Span Within(double middle, double half, int all) {
+  const double first = std::clamp(std::floor(middle - half), 0.0, all - 2.0);
+  const double last = std::clamp(std::ceil(middle + half), first + 1.0, all - 1.0);
+  return {static_cast<int>(first), static_cast<int>(last - first) + 1};
+}
+
+// A circle on the sphere is widest in longitude off its middle's latitude; over a pole it has all.
+Span ColumnsAround(const ElevationGrid& grid, const GeodeticPosition& place, double distance_rad) {
+  const bool is_over_pole = distance_rad + std::abs(place.latitude_rad) >= 0.5 * kPi;
+  const double half_rad =
+      is_over_pole ? kPi : std::asin(std::sin(distance_rad) / std::cos(place.latitude_rad));
+  const double half = half_rad / grid.step_lon_rad;
+  const double centre_rad = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
+  const double middle =
+      0.5 * (grid.columns - 1) +
+      std::remainder(place.longitude_rad - centre_rad, 2.0 * kPi) / grid.step_lon_rad;
+  if (!grid.ClosesAroundTheEarth()) return Within(middle, half, grid.columns);
+  const double first = std::floor(middle - half);
+  const double count = std::max(std::ceil(middle + half) - first, 1.0) + 1.0;
+  if (count >= grid.columns) return {0, grid.columns};
+  const int column = static_cast<int>(first) % grid.columns;
+  return {column < 0 ? column + grid.columns : column, static_cast<int>(count)};
+}
+
+// Height of the eye over the ellipsoid.
+double EyeHeight(const Scene& scene, const ElevationGrid& grid) {
+  const Height& height = scene.camera.height;
+  if (!height.above_ground) return height.value_m;
+  const ElevationModel there =
+      ReadElevation(scene.terrain.file, scene.terrain.voids, WindowAround(grid, scene.place, 0.0));
+  return height.value_m +
+         there.grid.HeightAt(scene.place.latitude_rad, scene.place.longitude_rad).value_or(0.0);
+}
+
+}  // namespace
+
+double HorizonDip(double height_m) {
+  return std::acos(kEarth_m / (kEarth_m + std::max(height_m, 0.0)));
+}
+
+GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place,
+                        double distance_rad) {
+  const Span rows = Within((grid.north_rad - place.latitude_rad) / grid.step_lat_rad,
+                           distance_rad / grid.step_lat_rad, grid.rows);
+  const Span columns = ColumnsAround(grid, place, distance_rad);
+  return {columns.first, rows.first, columns.count, rows.count};
+}
+
+ModelInSight ReadModelInSight(const Scene& scene) {
+  constexpr double kManySamples = 1 << 25;
+  const std::filesystem::path& file = scene.terrain.file;
+  ElevationGrid all = ReadElevationExtent(file);
+  const double samples = static_cast<double>(all.columns) * static_cast<double>(all.rows);
+  if (samples <= kManySamples || !CanBeCut(file)) {
+    return {ReadElevation(file, scene.terrain.voids), std::move(all), ""};
+  }
+  const double sight = Sight(EyeHeight(scene, all));
+  const GridWindow window = WindowAround(all, scene.place, sight);
+  ModelInSight loaded{ReadElevation(file, scene.terrain.voids, window), all, ""};
+  if (loaded.model.voids == loaded.model.grid.height_m.size()) {
+    throw InputError(fmt::format("{}: has no valid sample within {:.0f} km of the camera",
+                                 file.string(), 1e-3 * kEarth_m * sight));
+  }
+  if (window.columns < all.columns || window.rows < all.rows) {
+    loaded.message = fmt::format(
+        "{}: of {} x {} samples {} x {} are read, those within {:.0f} km of "
+        "the camera",
+        file.string(), all.columns, all.rows, window.columns, window.rows, 1e-3 * kEarth_m * sight);
+  }
+  return loaded;
+}
+
 namespace {
 
 struct LoadedMesh {
@@ -174,6 +315,83 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
           std::move(loaded.message),
           is_one_surface,
           loaded.is_whole && under_eye.has_value()};
+}
+
+namespace {
+
+std::string TextOf(const GeodeticPosition& place) {
+  return fmt::format("the eye at {:.6f}, {:.6f}", place.latitude_rad / kRadiansPerDegree,
+                     place.longitude_rad / kRadiansPerDegree);
+}
+
+void RequireOverGround(const SceneGround& ground, const GeodeticPosition& place) {
+  if (!ground.terrain) {
+    if (place.height_m < 0.0) {
+      throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at 0 m", TextOf(place),
+                                   place.height_m));
+    }
+    return;
+  }
+  const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
+  if (there && place.height_m < there->lowest_m) {
+    throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at {:.1f} m",
+                                 TextOf(place), place.height_m, there->lowest_m));
+  }
+}
+
+/// Throws InputError where the place is too far from the scene's.
+CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
+  const LocalFrame there(ground.frame.ellipsoid(), place);
+  const auto in_frame = [&](const glm::dvec3& axis) {
+    return ground.frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{axis})).xyz;
+  };
+  const CameraStand stand{
+      ground.frame.EnuFromGeodetic(place).xyz,
+      {in_frame({1.0, 0.0, 0.0}), in_frame({0.0, 1.0, 0.0}), in_frame({0.0, 0.0, 1.0})}};
+  constexpr double kFarthest_m = 500e3;
+  const double radius_m = ground.frame.ellipsoid().equatorial_radius_m;
+  const double along_m = radius_m * std::acos(std::min(stand.frame_from_enu[2].z, 1.0));
+  if (along_m > kFarthest_m) {
+    throw InputError(
+        fmt::format("{} is {:.0f} km from the scene's place; at most {:.0f} km can be "
+                    "shown from one frame",
+                    TextOf(place), 1e-3 * along_m, 1e-3 * kFarthest_m));
+  }
+  return stand;
+}
+
+}  // namespace
+
+CameraStand StandOfScene(const SceneGround& ground) {
+  return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};
+}
+
+CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
+  const CameraStand stand = StandOver(ground, place);
+  RequireOverGround(ground, place);
+  return stand;
+}
+
+double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
+  if (!ground.terrain) return 0.0;
+  StandOver(ground, place);  // throws where the place is too far away
+  const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
+  return there ? there->highest_m : 0.0;
+}
+
+MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
+                      std::span<const CameraPose> poses, int width, int height) {
+  if (poses.empty()) return CameraRays(camera, width, height, StandOfScene(ground));
+  std::vector<CameraRays> steps;
+  for (const CameraPose& pose : poses) {
+    Camera there = camera;
+    there.heading_rad = pose.heading_rad;
+    there.pitch_rad = pose.pitch_rad;
+    there.roll_rad = pose.roll_rad;
+    there.fov_rad = pose.fov_rad;
+    steps.emplace_back(there, width, height, StandAt(ground, pose.place));
+  }
+  return MovingCamera(std::move(steps));
 }
 
 }  // namespace alpenglow::renderer

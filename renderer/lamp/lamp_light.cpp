@@ -13,7 +13,6 @@
 #include "atmosphere/lamp/airlight.h"
 #include "lut/program/program.h"
 #include "renderer/ground/band_light.h"
-#include "renderer/lamp/lamp_stage.h"
 #include "renderer/lamp/lamp_tree.h"
 #include "renderer/lamp/placed_lamp.h"
 #include "renderer/lamp/tile_cut.h"

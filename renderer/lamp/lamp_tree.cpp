@@ -1,16 +1,207 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/lamp/lamp_tree.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/numerics.h"
+#include "atmosphere/text/error.h"
 #include "renderer/ground/band_light.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+constexpr int kDistances = 16;
+constexpr double kNearest_m = 0.2;
+constexpr double kFarthestGlow_m = 2e4;
+constexpr double kDarkest = 1e-250;  // logarithms are taken of no less
+/// Sines of the lamp's elevation, dense where a lamp stands on the ground far away.
+constexpr std::array<double, 9> kSines{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
+constexpr int kElevations = static_cast<int>(kSines.size());
+
+double DistanceNumber(int i) {
+  return kNearest_m * std::pow(kFarthestGlow_m / kNearest_m, i / (kDistances - 1.0));
+}
+
+/// Moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
+double LobeOf(int l) {
+  switch (l) {
+    case 0:
+      return kPi;
+    case 1:
+      return 2.0 * kPi / 3.0;
+    case 2:
+      return kPi / 4.0;
+    case 4:
+      return -kPi / 24.0;
+    case 6:
+      return kPi / 64.0;
+    default:
+      return 0.0;
+  }
+}
+
+/// Directions around the lamp's, over half a turn: the light is even about the vertical plane
+/// through the lamp. Weights are solid angles of both halves.
+struct Around {
+  double alpha, turn, weight;
+};
+const std::vector<Around>& Directions() {
+  static const auto kDirections = [] {
+    constexpr std::array<double, 6> kCuts{0.0, 0.05, 0.2, 0.6, 1.3, kPi};
+    constexpr int kTurns = 8;
+    const GaussRule& rule = GaussLegendre(3);
+    std::vector<Around> directions;
+    for (std::size_t piece = 0; piece + 1 < kCuts.size(); ++piece) {
+      const double width = kCuts[piece + 1] - kCuts[piece];
+      for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        const double alpha = kCuts[piece] + width * rule.node[i];
+        for (int k = 0; k < kTurns; ++k) {
+          directions.push_back({alpha, kPi * (k + 0.5) / kTurns,
+                                rule.weight[i] * width * std::sin(alpha) * 2.0 * kPi / kTurns});
+        }
+      }
+    }
+    return directions;
+  }();
+  return kDirections;
+}
+
+/// Where a value lies between the ascending points of an axis.
+struct GlowPlace {
+  int low;
+  double share;  // of the next point
+};
+GlowPlace GlowPlaceOf(double sine) {
+  int low = 0;
+  while (low + 2 < kElevations && sine >= kSines[static_cast<std::size_t>(low + 1)]) ++low;
+  const double from = kSines[static_cast<std::size_t>(low)];
+  const double to = kSines[static_cast<std::size_t>(low + 1)];
+  return {low, std::clamp((sine - from) / (to - from), 0.0, 1.0)};
+}
+
+/// Of a normal about the direction to the lamp; `lift` is across it, in the vertical plane.
+Moments HarmonicsOf(const glm::dvec3& normal, const glm::dvec3& towards, const glm::dvec3& lift) {
+  const double mu = std::clamp(glm::dot(normal, towards), -1.0, 1.0);
+  const glm::dvec3 aside = normal - mu * towards;
+  const double lengths = glm::length(lift) * glm::length(aside);
+  const double azimuth =
+      lengths > 1e-9 ? std::clamp(glm::dot(lift, aside) / lengths, -1.0, 1.0) : 1.0;
+  return SphericalHarmonics(LampGlow::kDegree, static_cast<float>(mu), static_cast<float>(azimuth));
+}
+
+double Facing(const Moments& lobe, const Moments& harmonics) {
+  float sum = 0.0F;
+  for (std::size_t k = 0; k < MomentCount(LampGlow::kDegree); ++k) sum += lobe[k] * harmonics[k];
+  return static_cast<double>(sum);
+}
+
+}  // namespace
+
+LampGlow::LampGlow(const std::vector<LampLayer>& layers, double lamp_altitude_m,
+                   double ground_altitude_m)
+    : lamp_altitude_m_(lamp_altitude_m),
+      ground_altitude_m_(ground_altitude_m),
+      lights_(static_cast<std::size_t>(kDistances * kElevations) *
+              layers.front().scattering_per_m.count) {
+  ALPENGLOW_ENSURE(ground_altitude_m, <=, lamp_altitude_m);
+  air_.layers = layers;
+  tbb::parallel_for(0, kDistances * kElevations, [&](int entry) {
+    const std::vector<Light> lights = LightAt(
+        DistanceNumber(entry / kElevations), kSines[static_cast<std::size_t>(entry % kElevations)]);
+    std::copy(lights.begin(), lights.end(),
+              lights_.begin() + entry * static_cast<std::ptrdiff_t>(lights.size()));
+  });
+}
+
+std::vector<LampGlow::Light> LampGlow::LightAt(double distance_m, double sine) const {
+  constexpr int kNodes = 8;
+  constexpr double kFar_m = 20e3;
+  const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
+  const glm::dvec3 point(0.0, 0.0, lamp_altitude_m_ - distance_m * sine);
+  const glm::dvec3 towards(cosine, 0.0, sine), lift(-sine, 0.0, cosine), side(0.0, 1.0, 0.0);
+  const double ground_m = std::min(ground_altitude_m_, point.z);
+  Lamp lamp;
+  lamp.position_m = point + distance_m * towards;
+  const std::size_t bands = air_.bands();
+  std::vector<std::array<double, kMaxMoments>> sums(bands);
+  std::vector<double> on_level(bands);
+  for (const Around& around : Directions()) {
+    LampSegment segment;
+    segment.origin_m = point;
+    segment.direction =
+        std::cos(around.alpha) * towards +
+        std::sin(around.alpha) * (std::cos(around.turn) * lift + std::sin(around.turn) * side);
+    segment.end_m = 4.0 * distance_m + kFar_m;
+    const double fall = -segment.direction.z;
+    if (fall > 0.0) segment.end_m = std::min(segment.end_m, (point.z - ground_m) / fall);
+    if (!(segment.end_m > 0.0)) continue;
+    const Bands<double> radiance = Airlight(air_, lamp, segment, kNodes);
+    const Moments harmonics =
+        SphericalHarmonics(kDegree, static_cast<float>(std::cos(around.alpha)),
+                           static_cast<float>(std::cos(around.turn)));
+    for (std::size_t band = 0; band < bands; ++band) {
+      on_level[band] += around.weight * radiance[band] * std::max(-fall, 0.0);
+      for (std::size_t k = 0; k < MomentCount(kDegree); ++k)
+        sums[band][k] += around.weight * radiance[band] * static_cast<double>(harmonics[k]);
+    }
+  }
+  std::vector<Light> lights(bands);
+  const Moments upwards = HarmonicsOf({0.0, 0.0, 1.0}, towards, lift);
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double mean = std::max(sums[band][0], kDarkest);
+    lights[band].log_mean = std::log(mean * distance_m);
+    for (int l = 0; l <= kDegree; ++l) {
+      for (int m = 0; m <= l; ++m) {
+        const std::size_t k = MomentIndex(l, m);
+        lights[band].lobe[k] = static_cast<float>(LobeOf(l) * sums[band][k] / mean);
+      }
+    }
+    lights[band].level = on_level[band] / mean - Facing(lights[band].lobe, upwards);
+  }
+  return lights;
+}
+
+Bands<double> LampGlow::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
+                           const glm::dvec3& up) const {
+  const double length = std::max(glm::length(to_lamp), 1e-6);
+  const double distance = std::clamp(length, kNearest_m, kFarthestGlow_m);
+  const glm::dvec3 towards = to_lamp / length;
+  const double sine = std::clamp(glm::dot(towards, up), -1.0, 1.0);
+  const Moments harmonics = HarmonicsOf(normal, towards, up - sine * towards);
+  const double u =
+      std::log(distance / kNearest_m) / std::log(kFarthestGlow_m / kNearest_m) * (kDistances - 1.0);
+  const int low = std::min(static_cast<int>(u), kDistances - 2);
+  const GlowPlace elevation = GlowPlaceOf(sine);
+  const double upwards = std::max(glm::dot(normal, up), 0.0);
+  const double levelness = upwards * upwards;
+  const double near = DistanceNumber(low);
+  const double share = (distance - near) / (DistanceNumber(low + 1) - near);
+  Bands<double> irradiance(air_.bands());
+  for (std::size_t band = 0; band < irradiance.count; ++band) {
+    double log_mean = 0.0, facing = 0.0;
+    for (const int i : {0, 1}) {
+      for (const int j : {0, 1}) {
+        const double weight =
+            (i == 0 ? 1.0 - share : share) * (j == 0 ? 1.0 - elevation.share : elevation.share);
+        const auto entry = static_cast<std::size_t>((low + i) * kElevations + elevation.low + j);
+        const Light& light = lights_[entry * irradiance.count + band];
+        log_mean += weight * light.log_mean;
+        facing += weight * (Facing(light.lobe, harmonics) + levelness * light.level);
+      }
+    }
+    irradiance[band] = std::exp(log_mean) / distance * std::max(facing, 0.0);
+  }
+  return irradiance;
+}
 
 LampTree::LampTree(std::vector<PlacedLamp> lamps, const LampEye& eye, const LampStage& stage) {
   for (PlacedLamp& lamp : lamps) Add(ShiningOn(eye, stage, std::move(lamp)), stage);

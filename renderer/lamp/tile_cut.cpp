@@ -11,7 +11,7 @@
 
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/number/constants.h"
-#include "renderer/lamp/lamp_stage.h"
+#include "renderer/lamp/placed_lamp.h"
 
 namespace alpenglow::renderer {
 

@@ -6,8 +6,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "renderer/camera/moving_camera.h"
-#include "renderer/lamp/lamp_plan.h"
+#include "renderer/camera/camera_rays.h"
+#include "renderer/lamp/lamp_light.h"
 #include "renderer/lamp/lamp_tree.h"
 
 namespace alpenglow::renderer {

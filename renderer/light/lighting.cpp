@@ -6,10 +6,16 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/moon_reflectance.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/sun.h"
 
 namespace alpenglow::renderer {
+
+glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
+                        const UtcInstant& instant) {
+  const MoonPosition moon = MoonAt(eye, instant);
+  const double lift_rad = apparent_sun.elevation_rad - SunAt(eye, instant).elevation_rad;
+  return DirectionFromAngles(moon.elevation_rad + lift_rad, moon.azimuth_rad).xyz;
+}
 
 Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
                     const GeodeticPosition& place, const Medium& medium, double wetness) {

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: MIT
+// Air of one medium as ground, fog and volumes in it are lit through it.
+//
+// Where the moon is drawn while it stands before the sun.
+//
 // The sun over a scene at one time: where it stands, what it sends above the air, what of its disk
 // a point sees over the planet's horizon, and what the season makes of the ground; by night what
 // else shines. All lights so far away that they are a direction have one form (DistantLight), by
@@ -12,18 +16,40 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
+#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/eclipse.h"
-#include "atmosphere/sun/moon_disk.h"
+#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/sun/time.h"
+#include "lut/diffuse/multiple_scattering.h"
 #include "renderer/effect/effects.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/surface.h"
+#include "renderer/layer.h"
 #include "renderer/light/night_light.h"
 #include "renderer/light/terrain_light.h"
 
 namespace alpenglow::renderer {
+
+/// Refers to all three.
+struct SunlitAir {
+  const AirIntegrator<float>& air;
+  const BentBeam& beam;         // of sun and moon themselves
+  const DiffuseLight& diffuse;  // of the sky
+
+  /// Returns the irradiance across the beams of a disk whose irradiance above the air is 1. @param mu  see BentBeam::Left.
+  [[nodiscard]] Bands<float> BeamLeft(double altitude_m, double mu) const {
+    return beam.Left(air, altitude_m, mu);
+  }
+};
+
+/// Unit, east, north and up of the eye: towards the moon, lifted as refraction lifts the middle of the
+/// sun behind it, for what hides part of a round sun is round.
+[[nodiscard]] glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
+                                      const UtcInstant& instant);
 
 /// A light so far away that it shines everywhere from one direction, and lights the air from another
 /// where refraction lifts it (SunForAir of sun.h).

@@ -5,11 +5,105 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
-#include "atmosphere/colour/black_body.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/sun/ephemeris.h"
+#include "atmosphere/sun/night_sky.h"
+#include "atmosphere/sun/sun.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+/// Half sodium, half LED; the sum has a luminance of 1 cd/m^2.
+BandLight LampsOfUnitLuminance(const BandColour& colour) {
+  constexpr double kSodium_k = 2050.0, kLed_k = 4000.0, kShare = 0.5;
+  const std::vector<double>& wavelengths_nm = colour.wavelengths_nm();
+  BandLight sum(wavelengths_nm.size());
+  for (const double temperature_k : {kSodium_k, kLed_k}) {
+    std::vector<double> values;
+    for (const double nm : wavelengths_nm) values.push_back(BlackBodyRadiance(nm, temperature_k));
+    const double luminance = colour.Xyz(values)[1];
+    for (std::size_t band = 0; band < sum.count; ++band)
+      sum[band] += static_cast<float>(kShare * values[band] / luminance);
+  }
+  return sum;
+}
+
+}  // namespace
+
+BandLight TownLight(double zenith, double ground_m, const AirIntegrator<float>& air,
+                    const BandColour& colour) {
+  const double wanted = std::max(
+      LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
+  const BandLight lamps = LampsOfUnitLuminance(colour);
+  const BandLight left = air.TransmittanceToSpace(ground_m, 1.0);
+  BandLight seen(lamps.count);
+  for (std::size_t band = 0; band < lamps.count; ++band)
+    seen[band] = (1.0F - left[band]) * lamps[band];
+  return static_cast<float>(wanted / colour.Xyz(InDouble(seen))[1]) * lamps;
+}
+
+namespace {
+
+glm::dvec3 Refracted(const glm::dvec3& enu, const BentView& view) {
+  const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
+  return DirectionFromAngles(view.LiftedElevationOf(elevation), std::atan2(enu.x, enu.y)).xyz;
+}
+
+StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const BandColour& colour) {
+  const std::vector<double>& wavelengths_nm = colour.wavelengths_nm();
+  const double temperature = TemperatureOf(point.colour_index);
+  BandLight spectrum(wavelengths_nm.size());
+  for (std::size_t band = 0; band < spectrum.count; ++band)
+    spectrum[band] = static_cast<float>(1e6 * BlackBodyRadiance(wavelengths_nm[band], temperature));
+  const double of_spectrum = colour.Xyz(InDouble(spectrum))[1];
+  const double lux = IlluminanceOf(point.magnitude);
+  return {direction, static_cast<float>(lux / of_spectrum) * spectrum, lux};
+}
+
+/// As the earth turns under the stars.
+glm::dvec3 After(const glm::dvec3& ecef, double seconds) {
+  const double turned = -kEarthRotation_rad_per_s * seconds;
+  const double c = std::cos(turned), s = std::sin(turned);
+  return {c * ecef.x - s * ecef.y, s * ecef.x + c * ecef.y, ecef.z};
+}
+
+}  // namespace
+
+OpenShutter OpenFor(double open_s, double pixel_angle_rad) {
+  // An arc of t is t^2 / 8 off its chord.
+  const double step_rad = std::sqrt(8.0 * 0.1 * pixel_angle_rad);
+  const double turned_rad = kEarthRotation_rad_per_s * open_s;
+  return {open_s, static_cast<int>(std::ceil(turned_rad / step_rad))};
+}
+
+double FaintestStar(double lux, double pixel_angle_rad) {
+  constexpr double kUnseenStar = 1e-3;
+  return MagnitudeOf(kUnseenStar * pixel_angle_rad * pixel_angle_rad / kPi * lux);
+}
+
+std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
+                                      const BentView& view, const BandColour& colour,
+                                      double faintest, const OpenShutter& shutter) {
+  const LocalFrame local(kWgs84, eye);
+  std::vector<StarLight> lights;
+  const auto add = [&](const PointLight& point) {
+    if (point.magnitude > faintest) return;
+    const auto seen_after = [&](double seconds) {
+      const Vector<Ecef> ecef{After(point.direction.xyz, seconds)};
+      return Refracted(local.EnuFromEcef(ecef).xyz, view);
+    };
+    lights.push_back(LightOf(point, seen_after(0.0), colour));
+    for (int i = 0; shutter.steps > 0 && i <= shutter.steps; ++i)
+      lights.back().way.push_back(seen_after(shutter.open_s * (i / double(shutter.steps) - 0.5)));
+  };
+  for (const PointLight& planet : PlanetsAt(eye, instant)) add(planet);
+  for (const PointLight& star : StarsAt(instant, faintest)) add(star);
+  return lights;
+}
+
 namespace {
 
 /// Light of a spectrum whose luminance is 1 cd/m^2.

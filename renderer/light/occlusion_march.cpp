@@ -9,7 +9,6 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/sun/sun_disk.h"
 #include "renderer/camera/camera_rays.h"
 
 namespace alpenglow::renderer {

@@ -22,7 +22,6 @@
 
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
-#include "renderer/light/sunlit_air.h"
 #include "renderer/media/local_media.h"
 #include "renderer/media/media_march.h"
 #include "renderer/shadow/sunlit_path.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/sun.h"
 
 namespace alpenglow::renderer {
 namespace {

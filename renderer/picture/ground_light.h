@@ -9,12 +9,11 @@
 #include <optional>
 
 #include "renderer/ground/band_light.h"
-#include "renderer/ground/ground_material.h"
 #include "renderer/ground/scene_geometry.h"
+#include "renderer/ground/surface.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
 #include "renderer/light/picture_stokes.h"
-#include "renderer/light/sunlit_air.h"
 #include "renderer/light/terrain_light.h"
 #include "renderer/media/media_light.h"
 

@@ -3,11 +3,149 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+constexpr float kSameLight = 2e-3F;  // of all that is seen there, and of transmittance
+constexpr double kSameReach = 4e-3;  // |r - 1| (1 - T)
+
+/// What one sees at least through the air: itself, and of ground a part of what air without an end
+/// would send.
+float SeenThrough(const AirAlongRay& air, HitKind kind, std::size_t band) {
+  const float light = air.inscatter[band];
+  if (kind == HitKind::kSky) return light;
+  return std::min(light / std::max(1.0F - air.transmittance[band], 1e-6F), 4.0F * light);
+}
+
+bool Agree(const AirAlongRay& a, const AirAlongRay& b, HitKind kind) {
+  for (std::size_t band = 0; band < a.inscatter.count; ++band) {
+    const float same = kSameLight * SeenThrough(a, kind, band);
+    if (!(std::abs(a.inscatter[band] - b.inscatter[band]) <= same) ||
+        !(std::abs(a.transmittance[band] - b.transmittance[band]) <= kSameLight)) {
+      return false;
+    }
+    if (a.polarised && !(std::abs(a.polarised->q[band] - b.polarised->q[band]) <= same &&
+                         std::abs(a.polarised->u[band] - b.polarised->u[band]) <= same)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The same air, `ratio` times as far; nothing where that is too much to be told from its mean.
+std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
+  for (std::size_t band = 0; band < air.inscatter.count; ++band) {
+    const float left = air.transmittance[band];
+    if (!(std::abs(ratio - 1.0) * static_cast<double>(1.0F - left) <= kSameReach))
+      return std::nullopt;
+    // T^r = T e^x with x = (r - 1) ln T, whose size kSameReach keeps below a hundredth where T > 0.2:
+    // the square is then exact to 2e-7 of T.
+    const float x = static_cast<float>(ratio - 1.0) * std::log(std::max(left, 1e-30F));
+    const float then = left * (std::abs(x) < 0.01F ? 1.0F + x * (1.0F + 0.5F * x) : std::exp(x));
+    const float hidden = 1.0F - left;
+    const float grown = hidden > 1e-4F ? (1.0F - then) / hidden : static_cast<float>(ratio);
+    air.inscatter[band] *= grown;
+    if (air.polarised) {
+      air.polarised->q[band] *= grown;
+      air.polarised->u[band] *= grown;
+    }
+    air.transmittance[band] = then;
+  }
+  return air;
+}
+
+}  // namespace
+
+AirLattice::AirLattice(const SceneState& scene, const PictureFrame& frame, int x0, int y0, int x1,
+                       int y1)
+    : scene_(&scene),
+      frame_(&frame),
+      x0_(x0),
+      y0_(y0),
+      columns_((x1 - x0 + kCell - 1) / kCell),
+      rows_((y1 - y0 + kCell - 1) / kCell),
+      corners_(static_cast<std::size_t>((columns_ + 1) * (rows_ + 1))),
+      cells_(static_cast<std::size_t>(columns_ * rows_), Cell::kUnknown) {}
+
+AirLattice::Corner AirLattice::Computed(double x, double y) const {
+  const CameraRay ray = frame_->camera().MiddleRay(x, y);
+  const Hit hit = scene_->Trace(ray, *frame_);
+  SharedAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
+  AddAir(*frame_, scene_->geometry, scene_->medium, air);
+  return {hit.kind, hit.distance_m, air.air};
+}
+
+const AirLattice::Corner& AirLattice::At(int column, int row) {
+  std::optional<Corner>& corner = corners_[static_cast<std::size_t>(row * (columns_ + 1) + column)];
+  if (!corner) corner = Computed(x0_ + kCell * column, y0_ + kCell * row);
+  return *corner;
+}
+
+std::optional<AirAlongRay> AirLattice::Between(int column, int row, double x, double y,
+                                               HitKind kind, double distance_m) {
+  const double u = (x - x0_) / kCell - column, v = (y - y0_) / kCell - row;
+  const std::array<double, 4> share{(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
+  const std::size_t bands = scene_->medium.wavelengths_nm.size();
+  const auto add = [](float weight, const BandLight& light, BandLight& to) {
+    for (std::size_t band = 0; band < to.count; ++band) to[band] += weight * light[band];
+  };
+  AirAlongRay sum{BandLight(bands), BandLight(bands)};
+  if (frame_->polarised) sum.polarised = {BandLight(bands), BandLight(bands)};
+  double corners_m = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const Corner& corner = At(column + i % 2, row + i / 2);
+    if (corner.kind != kind) return std::nullopt;
+    const auto weight = static_cast<float>(share.at(static_cast<std::size_t>(i)));
+    add(weight, corner.air.inscatter, sum.inscatter);
+    add(weight, corner.air.transmittance, sum.transmittance);
+    if (sum.polarised) {
+      add(weight, corner.air.polarised->q, sum.polarised->q);
+      add(weight, corner.air.polarised->u, sum.polarised->u);
+    }
+    corners_m += share.at(static_cast<std::size_t>(i)) * corner.distance_m;
+  }
+  return kind == HitKind::kSky ? sum : Reaching(sum, distance_m / corners_m);
+}
+
+bool AirLattice::IsShared(int column, int row) {
+  Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+  if (cell != Cell::kUnknown) return cell == Cell::kShared;
+  cell = Cell::kRough;
+  const HitKind kind = At(column, row).kind;
+  for (int i = 1; i < 4; ++i) {
+    if (At(column + i % 2, row + i / 2).kind != kind) return false;
+  }
+  const double x = x0_ + kCell * (column + 0.5), y = y0_ + kCell * (row + 0.5);
+  const Corner middle = Computed(x, y);
+  if (middle.kind != kind) return false;
+  const auto told = Between(column, row, x, y, kind, middle.distance_m);
+  if (told && Agree(middle.air, *told, kind)) cell = Cell::kShared;
+  return cell == Cell::kShared;
+}
+
+std::optional<AirAlongRay> AirLattice::Before(const SharedAir& rays) {
+  if (rays.kind == HitKind::kPlanet || frame_->media) return std::nullopt;
+  const auto place = frame_->camera().PlaceOf(rays.direction_sum);
+  if (!place) return std::nullopt;
+  const auto [x, y] = *place;
+  // Pixels around the rectangle are taken with the cells at its edge.
+  const auto cell = [](double along, int count) {
+    return std::clamp(static_cast<int>(std::floor(along)), 0, count - 1);
+  };
+  const double across = (x - x0_) / kCell, down = (y - y0_) / kCell;
+  if (across < -1.0 || down < -1.0 || across > columns_ + 1.0 || down > rows_ + 1.0)
+    return std::nullopt;
+  const int column = cell(across, columns_), row = cell(down, rows_);
+  if (!IsShared(column, row)) return std::nullopt;
+  return Between(column, row, x, y, rays.kind, rays.length_m());
+}
+
 namespace {
 
 /// Lamps that no ray comes near.

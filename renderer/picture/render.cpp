@@ -1,9 +1,27 @@
 // SPDX-License-Identifier: MIT
+// Pictures of what a scene needs: the pilot of effect_choice.h, with a scene's own pixels.
 #include "renderer/picture/render.h"
 
+#include <optional>
+
+#include "atmosphere/air/medium_presets.h"
+#include "atmosphere/text/error.h"
+#include "renderer/camera/camera_rays.h"
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow::renderer {
+
+void ValidateSettings(const RenderSettings& settings) {
+  RequireInRange(settings.width, 1, 16384, "picture width");
+  RequireInRange(settings.height, 1, 16384, "picture height");
+  RequireInRange(settings.samples_per_pixel, 1, PixelSamples::kMostSamples, "samples per pixel");
+  if (settings.noise) {
+    RequireInRange(*settings.noise, 1e-8, 1.0, "noise");
+    RequireInRange(settings.samples_per_pixel, 2, PixelSamples::kMostSamples,
+                   "samples per pixel, with noise,");
+  }
+  RequireInRange(settings.air_nodes, 2, 32, "air nodes");
+}
 
 SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
     : state_(std::make_unique<SceneState>(scene, progress)) {}
@@ -31,6 +49,102 @@ CountedPicture SceneRenderer::RenderCounted(const Shot& shot,
   ValidateSettings(settings);
   const SceneState& state = state_->For(settings.effects);
   return state.Picture(state.FrameAt(shot, settings));
+}
+
+std::unique_ptr<SceneState> SceneState::OnOtherBands(int bands) const {
+  const std::optional<Medium> other = OnBands(scene.medium, bands);
+  if (!other) return nullptr;
+  Scene same = scene;
+  same.medium = *other;
+  return std::make_unique<SceneState>(same, shared_ground, this);
+}
+
+const SceneState& SceneState::OnFewBands() const {
+  constexpr int kFew = 4;
+  std::call_once(few_bands_asked, [&] {
+    if (medium.wavelengths_nm.size() > kFew) few_bands = OnOtherBands(kFew);
+  });
+  return few_bands ? *few_bands : *this;
+}
+
+// Effects that have something to do.
+EffectSet SceneState::Present(const PictureFrame& frame) const {
+  const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
+    if (is_there) return effects;
+    for (const Effect effect : those.List()) effects = effects.Without(effect);
+    return effects;
+  };
+  EffectSet present = EffectSet::All();
+  const bool moon_is_broken = frame.moonlit && frame.moonlit->sunlight->IsBroken();
+  present = without(present, frame.sunlight->IsBroken() || moon_is_broken, {Effect::kShafts});
+  present = without(present, !lamps.All().empty(), {Effect::kLights, Effect::kBeams});
+  present = without(present, ground.terrain.has_value(), {Effect::kShadows, Effect::kRelief});
+  const bool is_terrain_lit =
+      frame.light.on_terrain || (frame.moonlit && frame.moonlit->light.on_terrain);
+  present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
+  present = without(present, media.HasVolumes(), {Effect::kVolumes});
+  present = without(present, media.fog() != nullptr, {Effect::kFogGlow});
+  present = without(present, frame.moonlit != nullptr, {Effect::kMoonlight});
+  present = without(present, frame.night != nullptr, {Effect::kNightSky});
+  present = without(present, frame.stars != nullptr, {Effect::kStars});
+  present = without(present, frame.bent != nullptr, {Effect::kRefraction});
+  return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
+}
+
+ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings& settings,
+                                          const EffectBudget& budget) const {
+  ValidateSettings(settings);
+  const SceneState& whole = state_->For(settings.effects);
+  const PictureFrame frame = whole.FrameAt(shot, settings);
+  std::optional<PictureFrame> on_few_bands;
+  const auto with = [&](EffectSet effects) {
+    const SceneState& state = state_->For(effects);
+    if (&state == &whole) return whole.Reduced(frame, effects);
+    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings));
+    return state.Reduced(*on_few_bands, effects);
+  };
+  EffectPilot pilot;
+  std::vector<glm::dvec3> points = frame.lamps->Directions();
+  if (frame.stars) {
+    const auto& stars = frame.stars->directions();
+    points.insert(points.end(), stars.begin(), stars.end());
+  }
+  pilot.groups =
+      PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
+  std::vector<PixelPlace> places;
+  for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
+  const auto timed = [&](const SceneState& state, const PictureFrame& of) {
+    const Stopwatch watch;
+    Image image = state.Pixels(of, places);
+    return PilotPicture{std::move(image), watch.seconds()};
+  };
+  pilot.render = [&](EffectSet effects) { return timed(state_->For(effects), with(effects)); };
+  pilot.pixels_of_picture = static_cast<double>(settings.width) * settings.height;
+  pilot.preparation_s = [&](Effect effect) {
+    return effect == Effect::kShafts   ? frame.sunlight_s
+           : effect == Effect::kLights ? frame.plan_s
+           : effect == Effect::kBounce ? frame.slopes_s
+                                       : 0.0;
+  };
+  Prepare(settings.progress, "choice of effects");
+  pilot.present = whole.Present(frame);
+  const auto refine = [&](const char* name, const auto& change) {
+    pilot.refinements.push_back({name, [&, change] {
+                                   PictureFrame finer = frame;
+                                   change(finer.settings);
+                                   return timed(whole, finer);
+                                 }});
+  };
+  refine("16 air nodes", [](RenderSettings& finer) { finer.air_nodes = 16; });
+  refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
+  const std::unique_ptr<SceneState> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
+  if (more_bands && frame.model->air.bands() < 16) {
+    pilot.refinements.push_back(
+        {"16 bands", [&] { return timed(*more_bands, more_bands->FrameAt(shot, settings)); }});
+  }
+  EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
+  CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));
+  return {std::move(picture.image), picture.rays, std::move(choice)};
 }
 
 }  // namespace alpenglow::renderer

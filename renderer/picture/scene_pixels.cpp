@@ -9,13 +9,13 @@
 #include <optional>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
-#include "renderer/effect/picture_change.h"
-#include "renderer/picture/open_sky_pixels.h"
+#include "renderer/effect/effect_choice.h"
+#include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
-#include "renderer/picture/pixel_writer.h"
 #include "renderer/picture/scene_state.h"
+#include "renderer/picture/sky_pixels.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -4,17 +4,32 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/apparent_place.h"
 #include "atmosphere/sun/eclipse.h"
+#include "atmosphere/sun/ephemeris.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
-#include "renderer/ground/terrain_sunlight.h"
-#include "renderer/light/moon_before_sun.h"
-#include "renderer/light/town_light.h"
+#include "renderer/effect/effect_choice.h"
+#include "renderer/ground/scene_geometry.h"
+#include "renderer/light/lighting.h"
+#include "renderer/light/night_light.h"
 
 namespace alpenglow::renderer {
+
+RecentSunlight::Made RecentSunlight::At(const glm::dvec3& to_sun, double sun_radius_rad) {
+  constexpr std::size_t kMost = 2;
+  const std::lock_guard lock(asking_);
+  for (const Kept& kept : kept_) {
+    if (kept.to_sun == to_sun && kept.sun_radius_rad == sun_radius_rad) return kept.made;
+  }
+  if (kept_.size() == kMost) kept_.pop_front();
+  const Stopwatch watch;
+  auto sunlight = std::make_shared<const TerrainSunlight>(ground_, to_sun, sun_radius_rad);
+  kept_.push_back({to_sun, sun_radius_rad, {std::move(sunlight), watch.seconds()}});
+  return kept_.back().made;
+}
 
 namespace {
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
+// Light of sun or moon in the air over one ground, made once for all pictures of one moment.
+//
 // What a SceneRenderer is made of: its parts, and what becomes of them in one picture.
 #pragma once
 
 #include <array>
+#include <deque>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -10,22 +14,43 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "renderer/effect/effect_choice.h"
-#include "renderer/ground/camera_stand.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/lighting.h"
-#include "renderer/picture/air_model.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
-#include "renderer/picture/pixel_writer.h"
-#include "renderer/picture/recent_sunlight.h"
 #include "renderer/picture/render.h"
-#include "renderer/picture/render_settings.h"
 #include "renderer/picture/shared_air.h"
 
 namespace alpenglow::renderer {
+
+/// Keeps the last two that it has made: a frame of a series is metered small while the frame before
+/// it is developed, and drawn then. Safe to ask from many threads.
+class RecentSunlight {
+ public:
+  struct Made {
+    std::shared_ptr<const TerrainSunlight> sunlight;
+    double made_in_s;  // of all threads together
+  };
+
+  /// Refers to the ground.
+  explicit RecentSunlight(const SceneGround& ground) : ground_(ground) {}
+  /// @param to_sun  as TerrainSunlight takes it.
+  [[nodiscard]] Made At(const glm::dvec3& to_sun, double sun_radius_rad);
+
+ private:
+  struct Kept {
+    glm::dvec3 to_sun;
+    double sun_radius_rad;
+    Made made;
+  };
+
+  const SceneGround& ground_;
+  std::mutex asking_;
+  std::deque<Kept> kept_;  // the oldest first
+};
 
 class OpenSkyPixels;
 
@@ -75,7 +100,7 @@ struct SceneState {
                const OpenSkyPixels& open_sky, PixelWriter& writer) const;
   void Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
              PixelWriter& writer) const;
-  /// Of what is darker, noise counts as if it were so bright (picture_change.h) [cd/m^2].
+  /// Of what is darker, noise counts as if it were so bright (effect_choice.h) [cd/m^2].
   [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
   /// @param expected_m  how far the ray may go; 0: unknown.
   [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame,

@@ -1,27 +1,69 @@
 // SPDX-License-Identifier: MIT
+// The air of a scene, solved, whole and without some of its parts.
+//
 // What stands between an eye and the ends of its rays: air, fog, volumes, and light of lamps in
 // them.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <limits>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "atmosphere/ray/bent_view.h"
-#include "renderer/camera/moving_camera.h"
-#include "renderer/camera/pixel_samples.h"
-#include "renderer/ground/bent_fan.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/diffuse/multiple_scattering.h"
+#include "renderer/camera/camera_rays.h"
+#include "renderer/effect/effects.h"
 #include "renderer/ground/scene_geometry.h"
-#include "renderer/ground/terrain_sunlight.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/media/media_light.h"
-#include "renderer/picture/air_model.h"
-#include "renderer/picture/render_settings.h"
-#include "renderer/picture/star_pixels.h"
+#include "renderer/picture/ground_light.h"
+#include "renderer/picture/render.h"
+#include "renderer/picture/sky_pixels.h"
 
 namespace alpenglow::renderer {
+
+/// Air and what its light reaches, of all orders as hazy and thick air needs it (OptionsFor). Refers to the parts of the ground.
+struct AirModel {
+  AirModel(const Medium& medium, const GroundParts& parts)
+      : air(medium),
+        beam(medium),
+        diffuse(medium, OptionsFor(medium)),
+        aerial(air, diffuse),
+        ground_light(parts, sunlit()) {}
+  AirModel(const AirModel&) = delete;
+  AirModel& operator=(const AirModel&) = delete;
+
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
+
+  AirIntegrator<float> air;
+  BentBeam beam;
+  DiffuseLight diffuse;
+  AerialPerspective aerial;
+  GroundLight ground_light;
+};
+
+/// Safe to share between threads. Air that lacks a part is solved when it is first asked for. The
+/// air in front of lamps has all parts always.
+class AirModels {
+ public:
+  AirModels(const Medium& medium, const GroundParts& parts)
+      : parts_(parts), whole_(medium, parts) {}
+
+  [[nodiscard]] const AirModel& whole() const { return whole_; }
+  /// With those of molecules, aerosol and ozone that are among the effects.
+  [[nodiscard]] const AirModel& With(EffectSet effects) const;
+
+ private:
+  GroundParts parts_;
+  AirModel whole_;
+  mutable std::mutex mutex_;
+  mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;
+};
 
 /// What a light beside the sun makes of a picture, as if it were the sun.
 struct SecondLight {

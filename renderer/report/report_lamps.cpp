@@ -15,7 +15,7 @@
 #include "lut/program/program.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/lamp/lamp_works.h"
-#include "renderer/report/report_measure.h"
+#include "renderer/report/report.h"
 
 namespace alpenglow::renderer {
 namespace {

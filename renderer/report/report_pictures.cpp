@@ -12,9 +12,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "lut/program/program.h"
-#include "renderer/effect/picture_change.h"
+#include "renderer/effect/effect_choice.h"
 #include "renderer/picture/render.h"
-#include "renderer/report/report_measure.h"
+#include "renderer/report/report.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 

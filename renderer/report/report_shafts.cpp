@@ -14,9 +14,9 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/light/occlusion_march.h"
-#include "renderer/report/report_measure.h"
+#include "renderer/report/report.h"
 #include "renderer/shadow/shadow_heights.h"
-#include "renderer/shadow/sun_probes.h"
+#include "renderer/shadow/sunlit_path.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -7,12 +7,11 @@
 #include <initializer_list>
 #include <limits>
 
-#include "atmosphere/air/medium_choice.h"
+#include "atmosphere/air/medium_presets.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/night_sky.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::renderer {
 namespace {

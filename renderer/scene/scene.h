@@ -15,7 +15,7 @@
 #include "atmosphere/sun/time.h"
 #include "renderer/scene/local_volume.h"
 #include "renderer/terrain/elevation.h"
-#include "renderer/terrain/up_axis.h"
+#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {
 

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: MIT
+// The files that a scene is made from.
+//
 // A scene from the command line, for programs that are called without a scene file.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "lut/program/output_file.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {
+
+/// Every file that a scene names and that is read when it is rendered, under the name of its key.
+[[nodiscard]] std::vector<NamedFile> FilesOf(const Scene& scene);
 
 /// Latitude and longitude [degrees] where none are typed: of elevation models, and of the view of
 /// the built-in range that is centred there.

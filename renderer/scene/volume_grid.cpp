@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: MIT
+// Files of densities: NRRD and raw.
 #include "renderer/scene/volume_grid.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <fstream>
 #include <limits>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "atmosphere/text/error.h"
 #include "renderer/layer.h"
+#include "renderer/scene/nrrd_header.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -165,6 +175,175 @@ double VolumeGrid::Column(const glm::dvec3& origin, const glm::dvec3& direction,
         });
   }
   return sum;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string BytesAfter(const fs::path& file, std::size_t begin) {
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(begin));
+  std::ostringstream text;
+  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+  if (stream.bad() || !stream.is_open() || !text) {
+    throw InputError("cannot be read");
+  }
+  return std::move(text).str();
+}
+
+std::size_t StoredCountOf(const std::array<int, 3>& size) {
+  std::size_t count = 1;
+  for (const int side : size) count *= static_cast<std::size_t>(side);
+  return count;
+}
+
+float FloatAt(const char* bytes, bool is_big_endian) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    bits = bits << 8U | static_cast<unsigned char>(bytes[is_big_endian ? i : 3 - i]);
+  }
+  return std::bit_cast<float>(bits);
+}
+
+VolumeGrid FromBytes(const NrrdHeader& header, std::string_view data) {
+  const std::array<int, 3>& size = header.size;
+  const bool is_float = header.type == NrrdHeader::Type::kFloat;
+  const std::size_t bytes = StoredCountOf(size) * (is_float ? 4 : 1);
+  if (data.size() != bytes) {
+    throw InputError(fmt::format("{} bytes of data; {} x {} x {} {} are {}", data.size(), size[0],
+                                 size[1], size[2], is_float ? "floats" : "bytes", bytes));
+  }
+  std::vector<float> values(StoredCountOf(size));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = is_float ? FloatAt(data.data() + 4 * i, header.is_big_endian)
+                         : static_cast<float>(static_cast<unsigned char>(data[i])) / 255.0F;
+  }
+  return {size, std::move(values)};
+}
+
+/// The stream of zlib, closed in any case.
+class Inflater {
+ public:
+  Inflater() {
+    constexpr int kGzip = 16 + MAX_WBITS;
+    if (inflateInit2(&stream_, kGzip) != Z_OK) throw InternalError("zlib does not start");
+  }
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  /// The data that are packed, `most` bytes of them at most.
+  std::string Unpacked(std::string packed, std::size_t most) {
+    std::string data(most, '\0');
+    std::size_t read = 0, written = 0;
+    while (written < most && read < packed.size()) {
+      stream_.next_in = reinterpret_cast<Bytef*>(packed.data() + read);
+      stream_.next_out = reinterpret_cast<Bytef*>(data.data() + written);
+      const uInt in = stream_.avail_in = Piece(packed.size() - read);
+      const uInt out = stream_.avail_out = Piece(most - written);
+      const int status = inflate(&stream_, Z_NO_FLUSH);
+      read += in - stream_.avail_in;
+      written += out - stream_.avail_out;
+      if (status == Z_STREAM_END) {  // another may follow
+        inflateReset(&stream_);
+      } else if (status != Z_OK) {
+        throw InputError(fmt::format("the gzip data are damaged at byte {}", read));
+      }
+    }
+    data.resize(written);
+    return data;
+  }
+
+ private:
+  static uInt Piece(std::size_t bytes) {
+    return static_cast<uInt>(std::min<std::size_t>(bytes, 1U << 30U));
+  }
+  z_stream stream_{};
+};
+
+std::string WithoutLines(std::string bytes, int lines) {
+  std::size_t begin = 0;
+  for (int i = 0; i < lines; ++i) {
+    const std::size_t end = bytes.find('\n', begin);
+    if (end == std::string::npos) {
+      throw InputError(fmt::format("has {} lines; line skip is {}", i, lines));
+    }
+    begin = end + 1;
+  }
+  return bytes.substr(begin);
+}
+
+std::string DataOf(const NrrdHeader& header) {
+  std::string bytes =
+      WithoutLines(BytesAfter(header.data_file, header.data_begin), header.line_skip);
+  const std::size_t wanted =
+      StoredCountOf(header.size) * (header.type == NrrdHeader::Type::kFloat ? 4 : 1);
+  if (header.byte_skip < 0) {
+    return bytes.substr(bytes.size() - std::min(bytes.size(), wanted));
+  }
+  const auto skipped = static_cast<std::size_t>(header.byte_skip);
+  if (header.encoding == NrrdHeader::Encoding::kGzip) {
+    // One byte more tells whether there are too many.
+    bytes = Inflater().Unpacked(std::move(bytes), wanted + skipped + 1);
+  }
+  return bytes.substr(std::min(bytes.size(), skipped));
+}
+
+// Values in the order of space: to the right fastest, up slowest.
+VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid) {
+  if (header.space_axis == std::array<std::size_t, 3>{0, 1, 2} &&
+      header.is_reversed == std::array<bool, 3>{}) {
+    return grid;
+  }
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) size[header.space_axis[axis]] = header.size[axis];
+  const std::array<std::size_t, 3> stride{
+      1, static_cast<std::size_t>(size[0]),
+      static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1])};
+  const auto step = [&](std::size_t axis, int i) {
+    const int along = header.is_reversed[axis] ? header.size[axis] - 1 - i : i;
+    return static_cast<std::size_t>(along) * stride[header.space_axis[axis]];
+  };
+  std::vector<float> values(grid.values().size());
+  auto value = grid.values().begin();
+  for (int k = 0; k < header.size[2]; ++k) {
+    for (int j = 0; j < header.size[1]; ++j) {
+      for (int i = 0; i < header.size[0]; ++i) {
+        values[step(0, i) + step(1, j) + step(2, k)] = *value++;
+      }
+    }
+  }
+  return {size, std::move(values)};
+}
+
+// Runs a step of reading, and names the file in its faults.
+template <typename Read>
+VolumeGrid NamingItsFile(const fs::path& file, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace
+
+VolumeGrid ReadNrrd(const fs::path& file) {
+  const NrrdHeader header = ReadNrrdHeader(file);
+  return NamingItsFile(header.data_file, [&] {
+    CheckGridSize(header.size);
+    return InSpace(header, FromBytes(header, DataOf(header)));
+  });
+}
+
+VolumeGrid ReadRawGrid(const fs::path& file, const std::array<int, 3>& size) {
+  NrrdHeader header;
+  header.size = size;
+  return NamingItsFile(file, [&] {
+    CheckGridSize(size);
+    return FromBytes(header, BytesAfter(file, 0));
+  });
 }
 
 }  // namespace alpenglow::renderer

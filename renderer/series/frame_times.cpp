@@ -10,8 +10,87 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/text/error.h"
+#include "atmosphere/text/parsing.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+[[noreturn]] void Refuse(const std::string& pattern, const std::string& fault) {
+  throw InputError(fmt::format("--out is \"{}\"; {}", pattern, fault));
+}
+
+struct Conversion {
+  int width = 0;
+  std::size_t length = 0;  // characters after the per cent sign
+};
+
+Conversion ConversionAt(const std::string& pattern, std::size_t at) {
+  constexpr int kWidest = 19;
+  Conversion conversion;
+  std::size_t i = at;
+  for (; i < pattern.size() && pattern[i] >= '0' && pattern[i] <= '9'; ++i) {
+    conversion.width = 10 * conversion.width + (pattern[i] - '0');
+    if (conversion.width > kWidest) Refuse(pattern, "the frame number is too wide");
+  }
+  if (i >= pattern.size() || pattern[i] != 'd') {
+    Refuse(pattern, "the frame number is written %d or %04d, a per cent sign %%");
+  }
+  conversion.length = i + 1 - at;
+  return conversion;
+}
+
+}  // namespace
+
+FrameName::FrameName(const std::string& pattern) {
+  if (!HasExtension(pattern, ".exr")) Refuse(pattern, "it must end in .exr");
+  std::string* part = &before_;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] != '%') {
+      *part += pattern[i];
+    } else if (i + 1 < pattern.size() && pattern[i + 1] == '%') {
+      *part += pattern[++i];
+    } else {
+      if (has_number_) Refuse(pattern, "it must have one frame number, not more");
+      const Conversion conversion = ConversionAt(pattern, i + 1);
+      has_number_ = true;
+      width_ = conversion.width;
+      part = &after_;
+      i += conversion.length;
+    }
+  }
+  if (has_number_ && after_.find('/') != std::string::npos) {
+    Refuse(pattern, "the frame number must be in the name of the file, not of a folder");
+  }
+}
+
+std::filesystem::path FrameName::Exr(int number) const {
+  if (!has_number_) return before_;
+  return before_ + fmt::format("{:0{}}", number, width_) + after_;
+}
+
+std::filesystem::path FrameName::Png(int number) const {
+  return Exr(number).replace_extension(".png");
+}
+
+std::filesystem::path FrameName::Manifest() const {
+  const std::filesystem::path first(has_number_ ? before_ : before_ + after_);
+  std::string stem = has_number_ ? first.filename().string() : first.stem().string();
+  while (!stem.empty() && (stem.back() == '.' || stem.back() == '_' || stem.back() == '-')) {
+    stem.pop_back();
+  }
+  return first.parent_path() / (stem.empty() ? "manifest.csv" : stem + ".manifest.csv");
+}
+
+std::filesystem::path FrameName::JsonManifest() const {
+  return Manifest().replace_extension(".json");
+}
+
+std::filesystem::path FrameName::Folder() const {
+  return std::filesystem::path(before_).parent_path();
+}
+
 namespace {
 
 /// An instant at one end says of which day the event at the other end is.
@@ -223,6 +302,53 @@ std::vector<Frame> SelectFrames(const std::vector<Frame>& frames, std::string_vi
     if (std::any_of(wanted.begin(), wanted.end(), holds)) selected.push_back(frame);
   }
   return selected;
+}
+
+namespace {
+
+double Positive(double value, const std::string& name) {
+  if (!(value > 0.0 && std::isfinite(value))) {
+    throw InputError(fmt::format("{} is {}; it must be positive", name, value));
+  }
+  return value;
+}
+
+}  // namespace
+
+double FrameInterval(const CameraPath& path, const PathRate& rate) {
+  if (rate.every) return Positive(ParseDuration(*rate.every), "--every");
+  if (!rate.count) return 1.0 / Positive(rate.per_second, "--fps");
+  RequireInRange(*rate.count, 1, kMostFrames, "--count");
+  return (path.end_s() - path.begin_s()) / std::max(*rate.count - 1, 1);
+}
+
+std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
+                               const UtcInstant& start) {
+  const double interval_s = FrameInterval(path, rate);
+  const double length_s = path.end_s() - path.begin_s();
+  // A last frame that rounding puts after the path's end is one of the path.
+  constexpr double kRounding = 1e-9;
+  const double count =
+      rate.count ? *rate.count : std::floor(length_s / interval_s * (1.0 + kRounding)) + 1.0;
+  if (!(count <= kMostFrames)) {
+    throw InputError(fmt::format("the path has {:.0f} frames; at most {}", count, kMostFrames));
+  }
+  std::vector<Frame> frames;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const double along_s = i * interval_s;
+    const double path_s = path.begin_s() + along_s;
+    frames.push_back({i, path.UtcAt(path_s).value_or(AddSeconds(start, along_s)), path_s});
+  }
+  return frames;
+}
+
+Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s) {
+  // Straight ways between 16 steps miss a curve by less than a hundredth of its length.
+  constexpr int kSteps = 17;
+  Shot shot(frame.instant);
+  shot.poses = path.PosesBetween(frame.path_s - 0.5 * shutter_s, frame.path_s + 0.5 * shutter_s,
+                                 shutter_s > 0.0 ? kSteps : 1);
+  return shot;
 }
 
 }  // namespace alpenglow::renderer

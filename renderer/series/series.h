@@ -12,10 +12,9 @@
 #include "atmosphere/sun/geodesy.h"
 #include "lut/picture/image.h"
 #include "lut/picture/look.h"
-#include "lut/program/output_name.h"
-#include "lut/program/progress.h"
+#include "lut/program/messages.h"
+#include "lut/program/output_file.h"
 #include "renderer/camera/camera_path.h"
-#include "renderer/series/frame_name.h"
 #include "renderer/series/frame_times.h"
 
 namespace alpenglow::renderer {
@@ -75,9 +74,9 @@ struct SeriesOutput {
   std::vector<NamedFile> inputs = {};  // that no file of the series may replace
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;  // PNG
   ProgressStyle progress = ProgressStyle::kAuto;
-  bool glare = false;  // developed pictures have that of the eye (glare.h); the EXR never
-  std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (keogram.h)
-  std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_plot.h)
+  bool glare = false;  // developed pictures have that of the eye (eye.h); the EXR never
+  std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (contact_sheet.h)
+  std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_times.h)
   std::optional<std::filesystem::path> video = std::nullopt;    // video.h
   double video_frames_per_s = 25.0;
 };
@@ -94,7 +93,7 @@ struct SeriesSummary {
 /// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
 /// sun_elevation_deg (without refraction), sun_covered (share of its light behind the moon), ev100; on a path also t_s, latitude, longitude, height_m,
 /// heading, pitch, roll and fov; and exposure, the rule (as ev100 empty until the frame exists);
-/// and the same as JSON (manifest_json.h). Contact sheet, keogram and video show the selected frames,
+/// and the same as JSON (manifest.h). Contact sheet, keogram and video show the selected frames,
 /// the plot all that there are times of; they are made when the last of the selected is there.
 ///
 /// Files are written atomically, in folders that are created when they are missing. With `resume`

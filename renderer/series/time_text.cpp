@@ -13,9 +13,9 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun_day.h"
+#include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -23,9 +23,8 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
-#include "lut/program/atomic_file.h"
-#include "lut/program/descriptor.h"
+#include "atmosphere/text/parsing.h"
+#include "lut/program/output_file.h"
 #include "lut/program/program.h"
 
 extern char** environ;

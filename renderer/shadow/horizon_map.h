@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/terrain/height_raster.h"
+#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {
 

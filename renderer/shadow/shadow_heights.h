@@ -20,7 +20,7 @@
 // of extremes for shafts: Chen, Baran, Durand, Jarosz 2011, I3D.)
 //
 // For ground that is one surface over the plane. Under bridges and overhangs light passes where
-// this sees none: SunProbes (sun_probes.h) follows rays there.
+// this sees none: SunProbes (sunlit_path.h) follows rays there.
 #pragma once
 
 #include <array>

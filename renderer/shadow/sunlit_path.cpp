@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
-#include "renderer/shadow/sunlight_over_edge.h"
+#include "atmosphere/text/error.h"
 
 namespace alpenglow::renderer {
 
@@ -68,6 +70,140 @@ void SunlitPathBuilder::Close() {
 SunlitPath SunlitPathBuilder::Take() {
   Close();
   return std::exchange(path_, {});
+}
+
+namespace {
+
+constexpr int kHalvings = 6;
+
+// Where `lit` changes between two distances at which it differs.
+template <typename Lit>
+double Edge(double lit_m, double dark_m, const Lit& lit) {
+  for (int step = 0; step < kHalvings; ++step) {
+    const double middle = 0.5 * (lit_m + dark_m);
+    (lit(middle) ? lit_m : dark_m) = middle;
+  }
+  return 0.5 * (lit_m + dark_m);
+}
+
+}  // namespace
+
+SunProbes::SunProbes(const Terrain& terrain, const glm::dvec3& to_sun, double sun_radius_rad,
+                     int probes)
+    : terrain_(terrain), to_sun_(to_sun), probes_(probes) {
+  ALPENGLOW_ENSURE(probes, >=, 2);
+  const double flat = std::hypot(to_sun.x, to_sun.y);
+  sunwards_ = flat > 0.0 ? glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+  across_ = {-sunwards_.y, sunwards_.x, 0.0};
+  upwards_ = glm::dvec3(0.0, 0.0, flat) - to_sun.z * sunwards_;
+  bottom_of_sun_ = glm::normalize(to_sun - std::tan(sun_radius_rad) * upwards_);
+  highest_c_m_ = u_high_m_ = v_high_m_ = -std::numeric_limits<double>::infinity();
+  v_low_m_ = std::numeric_limits<double>::infinity();
+  const glm::dvec3 above_bottom =
+      glm::normalize(upwards_ + std::tan(sun_radius_rad) * to_sun);  // across the lowest beams
+  for (const auto& position : terrain.mesh().positions) {
+    const glm::dvec3 p = ToDouble(position);
+    highest_c_m_ = std::max(highest_c_m_, glm::dot(p, above_bottom));
+    u_high_m_ = std::max(u_high_m_, glm::dot(p, sunwards_));
+    v_low_m_ = std::min(v_low_m_, glm::dot(p, across_));
+    v_high_m_ = std::max(v_high_m_, glm::dot(p, across_));
+  }
+  upwards_ = above_bottom;
+}
+
+SunProbes::Stretch SunProbes::WithinTheShadowOfTheBox(const glm::dvec3& origin,
+                                                      const glm::dvec3& unit,
+                                                      double length_m) const {
+  Stretch stretch{0.0, length_m};
+  const auto keep_below = [&](const glm::dvec3& axis, double most) {
+    const double room = most - glm::dot(origin, axis);
+    const double rate = glm::dot(unit, axis);
+    if (rate > 0.0) {
+      stretch.end_m = std::min(stretch.end_m, room / rate);
+    } else if (rate < 0.0) {
+      stretch.begin_m = std::max(stretch.begin_m, room / rate);
+    } else if (room < 0.0) {
+      stretch.end_m = -1.0;
+    }
+  };
+  keep_below(upwards_, highest_c_m_);
+  keep_below(sunwards_, u_high_m_);
+  keep_below(across_, v_high_m_);
+  keep_below(-across_, -v_low_m_);
+  return stretch;
+}
+
+SunlitPath SunProbes::Along(const glm::dvec3& origin, const glm::dvec3& unit,
+                            double length_m) const {
+  if (!(length_m > 0.0)) return {};
+  const Stretch near = WithinTheShadowOfTheBox(origin, unit, length_m);
+  if (!(near.begin_m < near.end_m)) return {{0.0, length_m}};
+  const auto sees = [&](double distance_m, const glm::dvec3& to) {
+    return !terrain_.Occluded(origin + distance_m * unit, to, to,
+                              std::numeric_limits<double>::infinity());
+  };
+  const auto lit = [&](double distance_m) { return sees(distance_m, to_sun_); };
+  const auto free_of_edges = [&](double distance_m) { return sees(distance_m, bottom_of_sun_); };
+  // Probes are dense near the eye, where air and shadows count most.
+  const auto probe_m = [&](int i) {
+    constexpr double kStrength = 3.0;
+    const double v = (i + 0.5) / probes_;
+    return near.begin_m + (near.end_m - near.begin_m) * v / (1.0 + kStrength * (1.0 - v));
+  };
+  std::vector<char> is_lit;
+  for (int i = 0; i < probes_; ++i) is_lit.push_back(lit(probe_m(i)) ? 1 : 0);
+
+  SunlitPathBuilder builder;
+  builder.Add({0.0, near.begin_m});
+  double done_m = near.begin_m;
+  for (int i = 0; i + 1 < probes_; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (is_lit[at] == is_lit[at + 1]) continue;
+    const bool rises = is_lit[at + 1] != 0;
+    // Half of the disk is seen at the edge; all of it at the end of the half shade, which is looked
+    // for up to the next change of light.
+    const int step = rises ? 1 : -1;
+    int last = rises ? i + 1 : i;
+    const double edge_m = Edge(probe_m(last), probe_m(rises ? i : i + 1), lit);
+    double dark_m = edge_m;
+    while (!free_of_edges(probe_m(last)) && last + step >= 0 && last + step < probes_ &&
+           is_lit[static_cast<std::size_t>(last + step)] != 0) {
+      dark_m = probe_m(last);
+      last += step;
+    }
+    const double free_m = Edge(probe_m(last), dark_m, free_of_edges);
+    const double half_m = std::abs(free_m - edge_m);
+    const double begin_m = std::max(edge_m - half_m, done_m);
+    const double end_m = std::clamp(edge_m + half_m, begin_m, near.end_m);
+    const auto height = [&](double distance_m) {
+      const double x = half_m > 0.0 ? (distance_m - edge_m) / half_m : 0.0;
+      return rises ? x : -x;
+    };
+    const double before = rises ? -1.0 : 1.0;
+    builder.Add({done_m, begin_m, before, before});
+    builder.Add({begin_m, end_m, height(begin_m), height(end_m)});
+    done_m = std::max(done_m, end_m);
+  }
+  const double after = is_lit.back() != 0 ? 1.0 : -1.0;
+  builder.Add({done_m, near.end_m, after, after});
+  builder.Add({near.end_m, length_m});
+  return builder.Take();
+}
+
+bool IsOneSurface(const Terrain& terrain) {
+  const TriangleMesh& mesh = terrain.mesh();
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto alone = [&](const glm::dvec3& p) {
+    return !terrain.Occluded(p, up, up, infinity) && !terrain.Occluded(p, -up, -up, infinity);
+  };
+  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
+    const glm::dvec3 a = ToDouble(mesh.positions[triangle[0]]);
+    const glm::dvec3 b = ToDouble(mesh.positions[triangle[1]]);
+    const glm::dvec3 c = ToDouble(mesh.positions[triangle[2]]);
+    if (!((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0)) return false;
+    return alone(a) && alone(b) && alone(c) && alone((a + b + c) / 3.0);
+  });
 }
 
 }  // namespace alpenglow::renderer

@@ -19,12 +19,10 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "renderer/terrain/cell_diagonal.h"
 #include "renderer/terrain/erosion.h"
-#include "renderer/terrain/kept_heights.h"
 #include "renderer/terrain/land.h"
 #include "renderer/terrain/lattice_noise.h"
-#include "renderer/terrain/range_shape.h"
+#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -21,7 +21,7 @@ namespace alpenglow::renderer {
 /// Its grid without heights, at once.
 [[nodiscard]] ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre);
 
-/// Fingerprint of the heights of seed 0, see FingerprintOf (kept_heights.h).
+/// Fingerprint of the heights of seed 0, see FingerprintOf (land.h).
 inline constexpr std::uint64_t kBuiltInRangeFingerprint = 15784046122448507333ULL;
 
 /// The heights of a seed, rows from the north, made anew: BuiltInRange keeps them.

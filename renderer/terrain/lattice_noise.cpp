@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/terrain/lattice_text.h"
-
 namespace alpenglow::renderer {
 namespace {
 

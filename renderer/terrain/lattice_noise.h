@@ -4,9 +4,21 @@
 //
 // Gradient noise and fractal sums: Perlin (1985, 2002); ridged sums: Musgrave in Ebert et al.,
 // Texturing and Modeling (2003), ch. 16.
+//
+// This header also reads the shared text lattice_noise.glsl as C++.
 #pragma once
 
 #include <cstdint>
+
+#include "atmosphere/dialect/shared_math.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "renderer/terrain/lattice_noise.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::renderer {
 

@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "atmosphere/text/error.h"
+#include "renderer/terrain/mesh.h"
 #include "renderer/terrain/obj_text.h"
 #include "renderer/terrain/polygon_triangles.h"
-#include "renderer/terrain/smooth_normals.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "renderer/terrain/mesh.h"
-#include "renderer/terrain/up_axis.h"
 
 namespace alpenglow::renderer {
 

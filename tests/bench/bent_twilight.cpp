@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/ray/bent_beam.h"
+#include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 #include "tests/fixtures/bent_twilight.h"

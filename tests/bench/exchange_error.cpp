@@ -19,7 +19,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/layer.h"
-#include "lut/table/scattering_map.h"
+#include "lut/table/scattering_table.h"
 
 namespace alpenglow::lut {
 namespace {

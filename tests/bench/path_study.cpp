@@ -13,7 +13,7 @@
 
 #include "atmosphere/judge/path_tracer.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/halton.h"
+#include "atmosphere/number/numerics.h"
 #include "lut/eval/eval.h"
 
 namespace alpenglow::lut {

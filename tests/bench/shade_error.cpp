@@ -22,11 +22,10 @@
 #include "renderer/terrain/terrain.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/shade/heights_around.h"
-#include "viewer/shade/shade_quality.h"
+#include "viewer/shade/shade_map.h"
+#include "viewer/shade/shafts.h"
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
-#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow::viewer {
 namespace {

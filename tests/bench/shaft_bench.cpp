@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "atmosphere/number/constants.h"
-#include "renderer/shadow/sun_probes.h"
+#include "renderer/shadow/sunlit_path.h"
 #include "tests/fixtures/occlusion_march.h"
 
 namespace alpenglow::renderer {

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "atmosphere/air/medium.h"
-#include "atmosphere/colour/black_body.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/ray/ray.h"

@@ -10,7 +10,7 @@
 
 #include "atmosphere/air/medium.h"
 #include "tests/fixtures/lit_air.h"
-#include "viewer/air/air_textures.h"
+#include "viewer/air/air_follower.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"

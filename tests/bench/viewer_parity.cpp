@@ -13,12 +13,12 @@
 #include <filesystem>
 #include <string>
 
-#include "renderer/effect/picture_change.h"
+#include "renderer/effect/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"
+#include "viewer/paint/reference_picture.h"
 #include "viewer/paint/sky_painter.h"
-#include "viewer/paint/view_difference.h"
 
 namespace alpenglow::viewer {
 namespace {

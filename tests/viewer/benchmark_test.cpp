@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/benchmark.h"
+#include "viewer/reports.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/window_icon.h"
+#include "viewer/window.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
+// Light on the way to a point, for AirTables. A row of texels is one march: every ray of it meets
+// the same air, only the sun stands elsewhere, and what it has gathered up to each distance is kept.
 #include "viewer/air/air_rows.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/exponential.hpp>
 
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
+#include "atmosphere/number/numerics.h"
+#include "lut/diffuse/diffuse_fan.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -65,6 +70,353 @@ glm::vec4 AirPhases::OfAerosol(double nu) const {
 float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km) {
   return static_cast<float>(shared::AirTwilight<double>(
       map.altitude, mu_s, nu, distance_km, map.twilight_fall, map.twilight_reference, map.radius));
+}
+
+namespace {
+
+/// A row of rays: where they enter the air, where they may first meet land and where they may last
+/// do so [m from the eye].
+struct Reach {
+  AirRow row;
+  double begin_m, near_m, end_m;
+  std::vector<double> distance_m;  // of the nodes, from near_m on
+};
+
+Reach ReachOf(const AirMap& map, const AirRow& row, int distances) {
+  using namespace shared;
+  const double near = AirEntry<double>(map.altitude, row.mu, map.ceiling, map.radius);
+  const double end = row.ground ? AirEndDown<double>(map.altitude, row.mu, map.radius)
+                                : AirEndUp<double>(map.altitude, row.mu, map.ceiling, map.radius);
+  const double begin = AirEntry<double>(map.altitude, row.mu, map.top, map.radius);
+  Reach reach{row,
+              kMetresPerKilometre * begin,
+              kMetresPerKilometre * near,
+              kMetresPerKilometre * std::max(end, near + 1e-3),
+              {}};
+  // The eye's own place has no way to it: a little beyond.
+  const double first = map.altitude > map.ceiling ? 0.0 : 0.05;
+  for (int j = 0; j < distances; ++j) {
+    const double w = j == 0 ? first / (distances - 1) : Unit(j, distances);
+    const double share =
+        AirShareFromNode<double>(w, row.ground ? map.ground_crowding : map.sky_crowding);
+    reach.distance_m.push_back(reach.near_m + (reach.end_m - reach.near_m) * share);
+  }
+  return reach;
+}
+
+/// Nodes of a rule along a ray, and where each of its pieces, from one distance to the next, ends
+/// among them.
+struct PieceNodes {
+  std::vector<RayNode> node;
+  std::vector<std::size_t> end;
+};
+
+constexpr int kNodesOfAPiece = 3;
+constexpr int kNodesOfFirstPiece = 16;  // through all air above the ceiling
+
+int NodesOfPiece(const Reach& reach, double to_m) {
+  return to_m <= reach.near_m ? kNodesOfFirstPiece : kNodesOfAPiece;
+}
+
+void AddRule(double begin_m, double end_m, int count, std::vector<RayNode>& nodes) {
+  if (end_m <= begin_m) return;
+  const GaussRule& rule = GaussLegendre(count);
+  for (std::size_t k = 0; k < rule.node.size(); ++k) {
+    nodes.push_back(
+        {begin_m + rule.node[k] * (end_m - begin_m), rule.weight[k] * (end_m - begin_m)});
+  }
+}
+
+// Only the ends of pieces.
+PieceNodes EndsOf(const Reach& reach) {
+  PieceNodes nodes;
+  for (const double to : reach.distance_m) {
+    nodes.node.push_back({to, 0.0});
+    nodes.end.push_back(nodes.node.size());
+  }
+  return nodes;
+}
+
+// Closed by a node of no weight at the end of each piece.
+PieceNodes NodesOf(const Reach& reach) {
+  PieceNodes nodes;
+  double from = reach.begin_m;
+  for (const double to : reach.distance_m) {
+    AddRule(from, to, NodesOfPiece(reach, to), nodes.node);
+    nodes.node.push_back({to, 0.0});
+    nodes.end.push_back(nodes.node.size());
+    from = to;
+  }
+  return nodes;
+}
+
+// Only in the sun, without those.
+PieceNodes LitNodesOf(const Reach& reach, const ShadowSpan& shadow) {
+  PieceNodes nodes;
+  double from = reach.begin_m;
+  for (const double to : reach.distance_m) {
+    const int count = NodesOfPiece(reach, to);
+    AddRule(from, std::min(to, shadow.dark_begin_m), count, nodes.node);
+    AddRule(std::max(from, shadow.dark_end_m), to, count, nodes.node);
+    nodes.end.push_back(nodes.node.size());
+    from = to;
+  }
+  return nodes;
+}
+
+glm::vec4 DepthOf(const AirConstants<float>& air, float rayleigh, float mie, float ozone) {
+  glm::vec4 depth(0.0F);
+  for (std::size_t band = 0; band < air.bands; ++band) {
+    depth[static_cast<glm::length_t>(band)] =
+        air.rayleigh[band] * rayleigh + air.mie_extinction[band] * mie + air.ozone[band] * ozone;
+  }
+  return depth;
+}
+
+/// 1 - exp(-tau) that does not cancel.
+glm::vec4 Absorbed(const glm::vec4& tau) {
+  glm::vec4 share;
+  for (glm::length_t band = 0; band < 4; ++band) share[band] = -std::expm1(-tau[band]);
+  return share;
+}
+
+/// One row of rays under a sun in the zenith, which leaves nothing of them dark.
+class RowOfRays {
+ public:
+  RowOfRays(const AirIntegrator<float>& air, const AirEye& eye, const AirMap& map,
+            const Reach& reach, PieceNodes nodes)
+      : air_(air), nodes_(std::move(nodes)), samples_(SamplesOf(eye, map, reach)) {}
+
+  [[nodiscard]] const RaySamples<float>& samples() const { return samples_; }
+  /// After the last sample of each piece, which has no weight.
+  [[nodiscard]] const std::vector<std::size_t>& ends() const { return nodes_.end; }
+
+  /// To every distance.
+  [[nodiscard]] std::vector<glm::vec4> OpticalDepths() const {
+    std::vector<glm::vec4> depths;
+    for (const std::size_t end : nodes_.end) {
+      depths.push_back(DepthOf(air_.constants(), samples_.view_rayleigh[end - 1],
+                               samples_.view_mie[end - 1], samples_.view_ozone[end - 1]));
+    }
+    return depths;
+  }
+
+  /// The samples of one piece.
+  [[nodiscard]] RaySamples<float> Piece(std::size_t i) const {
+    const std::size_t first = i == 0 ? 0 : nodes_.end[i - 1];
+    const std::size_t count = nodes_.end[i] - 1 - first;
+    RaySamples<float> piece;
+    piece.extent = samples_.extent;
+    piece.count = count;
+    using Samples = RaySamples<float>;
+    for (auto row : {&Samples::distance, &Samples::weight, &Samples::altitude, &Samples::mu,
+                     &Samples::rayleigh_density, &Samples::mie_density, &Samples::view_rayleigh,
+                     &Samples::view_mie, &Samples::view_ozone}) {
+      std::copy_n((samples_.*row).begin() + static_cast<std::ptrdiff_t>(first), count,
+                  (piece.*row).begin());
+    }
+    return piece;
+  }
+
+ private:
+  // Between samples nothing cancels, but they must be close.
+  [[nodiscard]] RaySamples<float> SamplesOf(const AirEye& eye, const AirMap& map,
+                                            const Reach& reach) const {
+    const double mu = reach.row.mu;
+    return air_.SampleAt(
+        {eye.altitude_m, mu, 1.0, mu}, {reach.begin_m, reach.end_m, RayEnd::kLength}, {},
+        nodes_.node,
+        map.altitude > map.ceiling ? ViewColumns::kFromSpace : ViewColumns::kBetweenSamples);
+  }
+
+  const AirIntegrator<float>& air_;
+  PieceNodes nodes_;
+  RaySamples<float> samples_;
+};
+
+/// Columns [km] from samples to the sun.
+struct SunColumns {
+  std::vector<float> rayleigh, mie, ozone;
+};
+
+/// Light scattered once along the rays of one row, up to each distance.
+class SingleOfRow {
+ public:
+  SingleOfRow(const AirIntegrator<float>& air, const AirPhases& phases, const AirEye& eye,
+              const AirMap& map, const Reach& reach, const RowOfRays& rays)
+      : air_(air), phases_(phases), eye_(eye), map_(map), reach_(reach), rays_(rays) {}
+
+  /// @param nu_seen  of where the sun is seen.
+  [[nodiscard]] std::vector<glm::vec4> Along(double nu, double nu_seen) const {
+    const ViewRay ray{eye_.altitude_m, reach_.row.mu, eye_.mu_s, nu};
+    const RayExtent extent{reach_.begin_m, reach_.end_m, RayEnd::kLength};
+    const ShadowSpan shadow = PlanetShadow(ray, extent, air_.medium().planet_radius_m);
+    if (shadow.dark_begin_m == shadow.dark_end_m)
+      return Gathered(rays_.samples(), rays_.ends(), SunOf(rays_.samples(), nu), nu_seen);
+    const PieceNodes nodes = LitNodesOf(reach_, shadow);
+    const RaySamples<float> samples =
+        air_.SampleAt(ray, extent, {}, nodes.node, ViewColumns::kFromSpace);
+    return Gathered(samples, nodes.end, SunOf(samples), nu_seen);
+  }
+
+ private:
+  [[nodiscard]] static SunColumns SunOf(const RaySamples<float>& samples) {
+    const auto row = [&](const RaySamples<float>::Row& from) {
+      return std::vector<float>(from.begin(),
+                                from.begin() + static_cast<std::ptrdiff_t>(samples.count));
+    };
+    return {row(samples.sun_rayleigh), row(samples.sun_mie), row(samples.sun_ozone)};
+  }
+
+  // Of samples that were taken under another sun.
+  [[nodiscard]] SunColumns SunOf(const RaySamples<float>& samples, double nu) const {
+    const auto eye = static_cast<float>((map_.radius + map_.altitude) * eye_.mu_s);
+    const auto radius = static_cast<float>(map_.radius);
+    const auto begin = static_cast<float>(reach_.begin_m / kMetresPerKilometre);
+    std::vector<float> altitude_m(samples.count), mu_s(samples.count);
+    for (std::size_t s = 0; s < samples.count; ++s) {
+      const float cosine = (eye + (begin + samples.distance[s]) * static_cast<float>(nu)) /
+                           (radius + samples.altitude[s]);
+      mu_s[s] = std::clamp(cosine, -1.0F, 1.0F);
+      altitude_m[s] = 1000.0F * samples.altitude[s];
+    }
+    auto columns = air_.ColumnsToSpace(altitude_m, mu_s);
+    for (std::vector<float>& column : columns)
+      for (float& value : column) value *= 1e-3F;
+    return {std::move(columns[0]), std::move(columns[1]), std::move(columns[2])};
+  }
+
+  [[nodiscard]] std::vector<glm::vec4> Gathered(const RaySamples<float>& samples,
+                                                const std::vector<std::size_t>& ends,
+                                                const SunColumns& sun, double nu_seen) const {
+    const AirConstants<float>& air = air_.constants();
+    glm::vec4 molecules = Vec4Of(air.rayleigh, air.bands);
+    const std::vector<double> phase = RayleighPhaseValues(air_.medium(), nu_seen);
+    for (std::size_t band = 0; band < air.bands; ++band)
+      molecules[static_cast<glm::length_t>(band)] *= static_cast<float>(phase[band]);
+    const glm::vec4 aerosol = phases_.OfAerosol(nu_seen) * Vec4Of(air.mie_scattering, air.bands);
+    std::vector<glm::vec4> light;
+    glm::vec4 sum(0.0F);
+    std::size_t s = 0;
+    for (const std::size_t end : ends) {
+      for (; s < end; ++s) {
+        if (samples.weight[s] == 0.0F) continue;
+        const glm::vec4 depth =
+            DepthOf(air, samples.view_rayleigh[s] + sun.rayleigh[s],
+                    samples.view_mie[s] + sun.mie[s], samples.view_ozone[s] + sun.ozone[s]);
+        sum += samples.weight[s] * glm::exp(-depth) *
+               (samples.rayleigh_density[s] * molecules + samples.mie_density[s] * aerosol);
+      }
+      light.push_back(sum);
+    }
+    return light;
+  }
+
+  const AirIntegrator<float>& air_;
+  const AirPhases& phases_;
+  const AirEye& eye_;
+  const AirMap& map_;
+  const Reach& reach_;
+  const RowOfRays& rays_;
+};
+
+class WayBuilder {
+ public:
+  WayBuilder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+             AirTables& tables)
+      : air_(air),
+        fan_(diffuse),
+        phases_(phases),
+        tables_(tables),
+        azimuths_(AzimuthsOf(tables.size.columns)) {}
+
+  void Fill() {
+    const AirTablesSize& size = tables_.size;
+    int y = 0;
+    for (const AirRow& row :
+         RowsOf(tables_.map, size.rows, tables_.map.air_sky_range, size.ground_rows)) {
+      FillRow(y++, ReachOf(tables_.map, row, size.distances));
+    }
+    y = 0;
+    for (const AirRow& row : RowsOf(tables_.map, size.extinction_rows, tables_.map.air_sky_range,
+                                    size.extinction_ground_rows)) {
+      FillExtinction(y++, ReachOf(tables_.map, row, size.extinction_distances));
+    }
+  }
+
+ private:
+  void FillRow(int y, const Reach& reach) {
+    const RowOfRays rays(air_, tables_.eye, tables_.map, reach, NodesOf(reach));
+    std::vector<glm::vec4> absorbed = rays.OpticalDepths();
+    for (glm::vec4& share : absorbed) share = Absorbed(share);
+    const double mu_s_seen = std::cos(tables_.eye.zenith_angle_seen_rad());
+    std::vector<double> nus;
+    for (const double azimuth : azimuths_)
+      nus.push_back(SunCosineOf(reach.row, tables_.eye.mu_s, azimuth));
+    const SingleOfRow single(air_, phases_, tables_.eye, tables_.map, reach, rays);
+    for (std::size_t x = 0; x < nus.size(); ++x) {
+      const double nu_seen = SunCosineOf(reach.row, mu_s_seen, azimuths_[x]);
+      const glm::vec4 mix = AirPhases::OfMolecules(nu_seen) * tables_.single_mix[0] +
+                            phases_.OfAerosol(nu_seen) * tables_.single_mix[1];
+      const std::vector<glm::vec4> light = single.Along(nus[x], nu_seen);
+      for (std::size_t j = 0; j < light.size(); ++j)
+        Texel(tables_.single, x, y, j) = Quotient(light[j], absorbed[j] * mix);
+    }
+    FillDiffuse(y, reach, rays, absorbed, {nus.begin(), nus.end()});
+    DivideByTwilight(y, reach, nus);
+  }
+
+  void FillDiffuse(int y, const Reach& reach, const RowOfRays& rays,
+                   const std::vector<glm::vec4>& absorbed, const std::vector<float>& nus) {
+    const ViewRay ray{tables_.eye.altitude_m, reach.row.mu, tables_.eye.mu_s, 0.0};
+    const std::size_t bands = air_.bands();
+    std::vector<glm::vec4> sum(nus.size(), glm::vec4(0.0F));
+    for (std::size_t j = 0; j < absorbed.size(); ++j) {
+      const std::vector<float> piece = fan_.InscatterAlong(rays.Piece(j), ray, nus);
+      for (std::size_t x = 0; x < nus.size(); ++x) {
+        for (std::size_t band = 0; band < bands; ++band)
+          sum[x][static_cast<glm::length_t>(band)] += piece[x * bands + band];
+        Texel(tables_.diffuse, x, y, j) = Quotient(sum[x], absorbed[j]);
+      }
+    }
+  }
+
+  void DivideByTwilight(int y, const Reach& reach, const std::vector<double>& nus) {
+    for (std::size_t j = 0; j < reach.distance_m.size(); ++j) {
+      const double source_km = 0.5 * (reach.near_m + reach.distance_m[j]) / kMetresPerKilometre;
+      for (std::size_t x = 0; x < nus.size(); ++x) {
+        const float twilight = TwilightAt(tables_.map, tables_.eye.mu_s, nus[x], source_km);
+        Texel(tables_.single, x, y, j) /= twilight;
+        Texel(tables_.diffuse, x, y, j) /= twilight;
+      }
+    }
+  }
+
+  void FillExtinction(int y, const Reach& reach) {
+    const RowOfRays rays(air_, tables_.eye, tables_.map, reach, EndsOf(reach));
+    const std::vector<glm::vec4> depths = rays.OpticalDepths();
+    for (std::size_t j = 0; j < depths.size(); ++j) {
+      const double length_km = (reach.distance_m[j] - reach.begin_m) / kMetresPerKilometre;
+      Texel(tables_.extinction, j, y, 0) = depths[j] / static_cast<float>(length_km);
+    }
+  }
+
+  [[nodiscard]] static glm::vec4& Texel(AirTexels& texels, std::size_t x, int y, std::size_t z) {
+    return texels.At(static_cast<int>(x), y, static_cast<int>(z));
+  }
+
+  const AirIntegrator<float>& air_;
+  DiffuseFan fan_;
+  const AirPhases& phases_;
+  AirTables& tables_;
+  std::vector<double> azimuths_;
+};
+
+}  // namespace
+
+void FillWays(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+              AirTables& tables) {
+  WayBuilder(air, diffuse, phases, tables).Fill();
 }
 
 }  // namespace alpenglow::viewer

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/ray/ray_samples.h"
-#include "viewer/air/air_map.h"
+#include "atmosphere/ray/ray.h"
 #include "viewer/air/air_tables.h"
 
 namespace alpenglow::viewer {

@@ -18,18 +18,45 @@
 //
 // S is sunlight scattered once where the planet's own shadow lets it in, terrain left out; D all
 // light scattered more than once. Axes: air_map.glsl.
+//
+// This header also reads the shared text air_map.glsl as C++.
 #pragma once
 
 #include <array>
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "atmosphere/ray/bent_beam.h"
+#include "atmosphere/air/medium.h"
+#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "viewer/air/air_map.h"
+#include "viewer/layer.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/dialect/shared_begin.h"
+#include "viewer/air/air_map.glsl"
+#include "atmosphere/dialect/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::viewer {
+
+/// The axes of one eye's tables. Angles in radians, lengths in km.
+struct AirMap {
+  /// @param ceiling_m  that no land exceeds.
+  AirMap(const Medium& medium, double altitude_m, double ceiling_m, double twilight_fall_);
+
+  double altitude, ceiling, top, radius;
+  double horizon_dip;         // of the horizon below the horizontal
+  double sky_range;           // from the horizon up to the zenith or to the upper edge of the air
+  double air_sky_range;       // up to the zenith or to where rays miss all land
+  double ground_range;        // from the horizon down to the nadir
+  double twilight_fall;       // of DiffuseGrid
+  double twilight_reference;  // radius about where the light comes from
+  double sky_crowding, ground_crowding;  // of distances
+};
 
 struct AirTablesSize {
   int sky_columns, sky_rows, sky_ground_rows;  // of the sky
@@ -45,7 +72,7 @@ enum class AirQuality { kFirst, kLow, kMedium, kHigh };
 
 /// From high up rows are longer, because the terminator crosses them, and ways through the air
 /// below short. kFirst is for a first frame that must not wait. No side of a texture is a power of
-/// two (texture_side.h): qualities change while one flies.
+/// two (gl_objects.h): qualities change while one flies.
 [[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m);
 
 /// Texels of four floats, x fastest.

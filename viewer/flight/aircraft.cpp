@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/gravity.h"
 #include "viewer/flight/standard_air.h"
 
 namespace alpenglow::viewer {

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
-#include "lut/program/growing_file.h"
+#include "atmosphere/text/parsing.h"
 #include "lut/program/messages.h"
-#include "renderer/series/frame_name.h"
+#include "lut/program/output_file.h"
+#include "renderer/series/frame_times.h"
 #include "viewer/job/latest_job.h"
 
 namespace alpenglow::viewer {
@@ -131,6 +131,35 @@ std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern, in
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < count; ++i) files.push_back(name.Exr(i).replace_extension(last.extension()));
   return files;
+}
+
+namespace {
+
+std::vector<CameraPathPoint> EverySecond(const std::vector<CameraPathPoint>& points) {
+  std::vector<CameraPathPoint> kept;
+  for (std::size_t i = 0; i < points.size(); i += 2) kept.push_back(points[i]);
+  return kept;
+}
+
+}  // namespace
+
+void FlightLog::Note(double elapsed_s, const Eye& eye, const UtcInstant& now) {
+  last_ = CameraPathPoint{elapsed_s, PoseOf(eye), now};
+  has_flown_ = has_flown_ || (!points_.empty() && !(EyeOf(points_.front().pose) == eye));
+  if (!points_.empty() && !IsDue(elapsed_s, points_.back().time_s, interval_s_)) return;
+  points_.push_back(*last_);
+  if (points_.size() < most_) return;
+  points_ = EverySecond(points_);
+  interval_s_ *= 2.0;
+}
+
+CameraPath FlightLog::Path() const {
+  if (!has_flown_) throw InputError("nothing has been flown yet");
+  std::vector<CameraPathPoint> points = points_;
+  if (last_->time_s > points.back().time_s) points.push_back(*last_);
+  const double begin_s = points.front().time_s;
+  for (CameraPathPoint& point : points) point.time_s -= begin_s;
+  return CameraPath(std::move(points));
 }
 
 }  // namespace alpenglow::viewer

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: MIT
+// What hands say to whatever flies, in one frame.
+//
+// An autopilot: it moves what the aircraft's own computer holds (aircraft.h), and the throttle.
+//
+//   heading          tan(bank) = v (target - heading) / (4 s g), to 25 degrees, at 8 degrees/s
+//   height           climb = (target - height) / 6 s, to 6 degrees of path
+//   vertical speed   sin(path) = climb / v, at 2 degrees/s
+//   speed            throttle' = 0.07 (target - v) - 0.5 v', [1/s] for m/s
+//
+// It begins from where the aircraft is, so that engaging it jerks nothing. From level flight a new
+// heading is reached with an overshoot of less than 2 degrees, a new height of less than 5 m, a new
+// speed of less than 1 m/s.
+//
 // Who flies: the free camera, the aircraft or a track, one at a time; and where the eye is then.
 //
 // Real seconds come in, however many: aircraft fly them in steps of 1/120 s, and what is seen is
@@ -12,11 +25,55 @@
 
 #include "renderer/camera/camera_path.h"
 #include "viewer/flight/aircraft.h"
-#include "viewer/flight/autopilot.h"
 #include "viewer/flight/flight.h"
-#include "viewer/flight/pilot_controls.h"
 
 namespace alpenglow::viewer {
+
+struct PilotControls {
+  Steering camera = {};  // the free camera
+  Stick stick = {};      // the aircraft
+  /// Looking around with the mouse or the right stick, in this frame: in widths of the view.
+  double look_right = 0.0, look_up = 0.0;
+};
+
+/// What is held; at most one of a heading and level wings, and of a height and a climb.
+struct AutopilotTargets {
+  std::optional<double> heading_rad = {}, height_m = {}, climb_m_per_s = {}, speed_m_per_s = {};
+  bool level_wings = false;
+
+  [[nodiscard]] bool HoldsAnything() const;
+};
+
+/// "HDG 270 ALT 1500 m SPD 60 m/s"; empty when nothing is held.
+[[nodiscard]] std::string TextOf(const AutopilotTargets& targets);
+
+class Autopilot {
+ public:
+  enum class Hold { kHeading, kHeight, kClimb, kSpeed, kLevelWings };
+
+  [[nodiscard]] const AutopilotTargets& targets() const { return targets_; }
+  void Set(const AutopilotTargets& targets) { targets_ = targets; }
+  /// Begins to hold what the aircraft does now, or lets go of it.
+  void Toggle(Hold hold, const AircraftReadout& now, double height_m);
+  void Release() { targets_ = {}; }
+
+  /// The aircraft with what its computer is to hold, and what is left of the hands' wishes: a stick
+  /// that is moved against something held moves the target.
+  struct Flown {
+    AircraftState state;
+    Stick stick;
+  };
+  [[nodiscard]] Flown Fly(const AircraftState& state, const AircraftKind& kind,
+                          const Ellipsoid& ellipsoid, const Stick& hands, double step_s);
+
+ private:
+  void MoveTargets(const Stick& hands, double step_s);
+  void FlyPath(const AircraftReadout& now, double from_m, double step_s, Flown& flown) const;
+  [[nodiscard]] double ThrottleUp(const AircraftReadout& now, double step_s) const;
+
+  AutopilotTargets targets_;
+  std::optional<double> speed_before_m_per_s_;
+};
 
 /// Where something flies to: heading clockwise from north, climb over the horizontal.
 struct Course {

@@ -11,7 +11,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 #include "viewer/embedded_text.h"
 
 namespace alpenglow::viewer {

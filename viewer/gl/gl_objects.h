@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Names that OpenGL gives out, owned. Each lives no longer than the context it was made in.
+//
+// Draws into a part of what is bound.
+//
+// Sides of textures that change while one flies.
 #pragma once
 
 #include <epoxy/gl.h>
 
+#include <bit>
 #include <utility>
 
 namespace alpenglow::viewer {
@@ -88,5 +93,30 @@ using GlTexture = GlObject<gl_kind::Texture>;
 using GlFramebuffer = GlObject<gl_kind::Framebuffer>;
 using GlQuery = GlObject<gl_kind::Query>;
 using GlProgram = GlObject<gl_kind::Program>;
+
+/// Pixels from a lower left one on.
+struct PixelBox {
+  int x, y, width, height;
+};
+
+/// Draws reach pixels of the box alone, as long as it lives. Not within another.
+class Scissor {
+ public:
+  explicit Scissor(const PixelBox& box) {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(box.x, box.y, box.width, box.height);
+  }
+  ~Scissor() { glDisable(GL_SCISSOR_TEST); }
+  Scissor(const Scissor&) = delete;
+  Scissor& operator=(const Scissor&) = delete;
+};
+
+/// `side`, or one more where it is a power of two (but 1). Mesa's software driver compiles a program
+/// again when a side of a texture that it reads becomes a power of two, or ceases to be one: frames
+/// of 0.3 to 0.9 s, measured with its cache of programs off.
+/// @param side  > 0.
+[[nodiscard]] constexpr int OffPowersOfTwo(int side) {
+  return side > 1 && std::has_single_bit(static_cast<unsigned>(side)) ? side + 1 : side;
+}
 
 }  // namespace alpenglow::viewer

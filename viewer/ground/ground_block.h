@@ -1,22 +1,64 @@
 // SPDX-License-Identifier: MIT
+// A ColourDrape resampled over a rectangle of the frame's plane, as a texture has it.
+//
+// The picture, of colours or land cover, that a scene lays over its terrain, and where it lies.
+//
 // What ground_light.glsl and ground_surface.glsl read of C++: uniform blocks byte for byte, as
 // uniform_blocks.h does it, textures, and the texts put together for what the ground is made of.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <vector>
 
-#include "renderer/ground/ground_material.h"
-#include "viewer/air/light_source.h"
+#include "renderer/ground/colour_drape.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/ground/surface.h"
+#include "renderer/scene/scene.h"
+#include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/ground/drape_texels.h"
-#include "viewer/ground/sea_mirror.h"
-#include "viewer/ground/sky_tilt.h"
+#include "viewer/ground/sky_on_ground.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
+
+/// East and north in the frame of the ground [m].
+struct FlatRectangle {
+  double west_m, south_m, width_m, depth_m;
+};
+
+/// Around all vertices.
+[[nodiscard]] FlatRectangle RectangleOf(const TriangleMesh& mesh);
+
+/// What of a rectangle a picture covers, to a hundredth of its sides; all of it where that is
+/// nothing.
+[[nodiscard]] FlatRectangle CoveredPart(const ColourDrape& drape, const FlatRectangle& of);
+
+/// Row 0 is the southernmost; linear sRGB in 16 bits, and 65535 where there is a picture.
+struct DrapeTexels {
+  FlatRectangle place;
+  std::size_t columns, rows;
+  std::vector<std::array<std::uint16_t, 4>> rgba;
+
+  /// @param most  texels a side.
+  DrapeTexels(const ColourDrape& drape, const FlatRectangle& over, std::size_t most);
+};
+
+struct SceneDrape {
+  std::shared_ptr<const ColourDrape> colours;  // null: the scene names none
+  FlatRectangle place{};                       // of the terrain, what it covers
+};
+
+/// @param ground  of the scene; its terrain, if it has none, is loaded for its frame and its rim.
+[[nodiscard]] SceneDrape DrapeOf(const Scene& scene, const SceneGround& ground);
+
+/// Finer than the picture, so that edges stay where they are when it is interpolated once more; 4096
+/// texels a side at most, which take 180 MB. Only where there are colours.
+[[nodiscard]] DrapeTexels TexelsOf(const SceneDrape& drape);
 
 /// `block GroundLight` of ground_light.glsl.
 struct GroundLightBlock {

@@ -9,14 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/air/light_source.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
-#include "viewer/ground/sea_mirror.h"
-#include "viewer/ground/sky_tilt.h"
+#include "viewer/ground/sky_on_ground.h"
 #include "viewer/job/latest_job.h"
 #include "viewer/land/land_chunk.h"
-#include "viewer/shade/shade_follower.h"
+#include "viewer/shade/shafts.h"
 
 namespace alpenglow::viewer {
 

@@ -8,8 +8,8 @@
 
 #include "atmosphere/number/constants.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/land/horizon_texture.h"
-#include "viewer/shaders/viewer_texts.h"
+#include "viewer/land/land_pass.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/air/light_source.h"
+#include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_follower.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a slope lies in the table of the open sky's irradiance (sky_tilt.h): even steps of its unit
+// Where a slope lies in the table of the open sky's irradiance (sky_on_ground.h): even steps of its unit
 // normal's components towards the sun, -1 to 1, and upwards, 0 to 1. Both halves of the sky beside the sun
 // are alike, so that these two say all, and the irradiance is smooth in them.
 SHARED Number OpenSkyColumn(Number n_sunward) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "atmosphere/number/constants.h"
-#include "viewer/hud/hud_text.h"
+#include "viewer/hud/hud_model.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

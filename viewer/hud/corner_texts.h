@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "viewer/hud/canvas.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/instruments.h"
 

@@ -1,28 +1,89 @@
 // SPDX-License-Identifier: MIT
+// What mouse and keyboard did since the last frame, as panels want it: no window is needed for it.
+//
+// Keys of a window, as GLFW numbers them, gathered for panels.
+//
 // Head-up display: instruments over the picture, and panels. Dear ImGui underneath.
 //
 // Knows no window: what mouse and keyboard did comes as HudInput, so that pictures without a
 // display have instruments too, and tests click.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "viewer/gl/gl_objects.h"
-#include "viewer/hud/day_strip.h"
-#include "viewer/hud/hud_input.h"
 #include "viewer/hud/hud_model.h"
-#include "viewer/hud/hud_request.h"
-#include "viewer/hud/hud_theme.h"
+#include "viewer/hud/panel_controls.h"
 #include "viewer/hud/panels.h"
 
 namespace alpenglow::viewer {
 
+/// Keys that edit text or walk through panels.
+enum class HudKey {
+  kTab,
+  kLeft,
+  kRight,
+  kUp,
+  kDown,
+  kPageUp,
+  kPageDown,
+  kHome,
+  kEnd,
+  kInsert,
+  kDelete,
+  kBackspace,
+  kSpace,
+  kEnter,
+  kEscape,
+  kA,
+  kC,
+  kV,
+  kX,
+  kY,
+  kZ
+};
+
+struct HudPointer {
+  double x = 0.0, y = 0.0;  // pixels of the picture from its upper left corner
+};
+
+struct HudInput {
+  int width = 0, height = 0;               // of the picture [pixels]
+  double seconds = 0.0;                    // since the last frame
+  std::optional<HudPointer> pointer = {};  // none outside of the window
+  std::array<bool, 3> buttons{};           // left, right, middle: held, or pressed and let go
+  double wheel = 0.0;                      // steps, away from who turns it
+  std::vector<HudKey> keys;                // held, or pressed and let go
+  bool shift = false, control = false;
+  std::string text;  // typed, UTF-8
+};
+
+/// Which of the keys that panels know are held, or were pressed and let go since the last frame.
+class HudKeys {
+ public:
+  /// @param glfw_key  GLFW_KEY_...; others than panels know are passed over.
+  /// @param is_down   false when it was let go; repeats count as down.
+  void Note(int glfw_key, bool is_down);
+  /// All keys are up: the window no longer hears the keyboard.
+  void Release() { held_.clear(); }
+
+  /// Once a frame: the input with its keys, shift and control filled in.
+  [[nodiscard]] HudInput Into(HudInput input);
+
+ private:
+  std::vector<int> held_;     // of GLFW
+  std::vector<int> pressed_;  // since the last frame
+};
+
 struct HudSettings {
   double scale = 1.0;  // pixels a unit, [0.5, 8]: 1 for 96 dots an inch
   HudThemeChoice theme = HudThemeChoice::kAuto;
-  std::optional<std::filesystem::path> font = {};  // TrueType; else InstalledFont (hud_font.h)
+  std::optional<std::filesystem::path> font = {};  // TrueType; else InstalledFont (imgui_backend.h)
 };
 
 /// For pictures of other sizes than the window's: another Hud, so that panels stay where they are.

@@ -10,10 +10,9 @@
 
 #include "atmosphere/number/constants.h"
 #include "lut/picture/image.h"
-#include "lut/picture/white_balance.h"
-#include "viewer/hud/hud_text.h"
-#include "viewer/hud/panel_parts.h"
-#include "viewer/hud/place_search.h"
+#include "lut/picture/metering.h"
+#include "viewer/hud/hud_model.h"
+#include "viewer/hud/panel_controls.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -5,10 +5,8 @@
 
 #include <array>
 
-#include "viewer/hud/day_strip.h"
 #include "viewer/hud/hud_model.h"
-#include "viewer/hud/hud_request.h"
-#include "viewer/hud/hud_theme.h"
+#include "viewer/hud/panel_controls.h"
 
 namespace alpenglow::viewer {
 

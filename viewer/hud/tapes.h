@@ -2,7 +2,6 @@
 // Scales that run past a mark: heading, speed, height.
 #pragma once
 
-#include "viewer/hud/canvas.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/instruments.h"
 

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/flight/pilot_controls.h"
+#include "viewer/flight/pilot.h"
 #include "viewer/input/action.h"
 
 namespace alpenglow::viewer {

@@ -6,13 +6,12 @@
 #include <array>
 
 #include "atmosphere/air/phase_table.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/lamps/glow_map.h"
-#include "viewer/lamps/phase_macro.h"
+#include "viewer/lamps/ground_under_lamps.h"
+#include "viewer/lamps/scene_lamps.h"
 #include "viewer/shaders/full_screen.h"
-#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "atmosphere/text/error.h"
-#include "renderer/terrain/cell_diagonal.h"
+#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: MIT
+// The horizon of terrain towards the sun of this moment, on the graphics card: where the sun has moved
+// on and the edges of shade that vertices have are those before another sun, the vertices take theirs
+// from it. It is coarser (HorizonMap: a node every few hundred metres, sixteen azimuths).
+//
+// What the eye sees of the terrain, a pixel each: the first pass of a frame draws it, the picture
+// reads it.
+//
+// Where land stands in a picture of the screen's size, while its light is painted in a smaller one.
+//
 // The pass that draws land: its program, what the program reads, depth.
 #pragma once
 
@@ -7,16 +16,79 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "atmosphere/sun/geodesy.h"
+#include "renderer/shadow/horizon_map.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
-#include "viewer/land/horizon_texture.h"
-#include "viewer/land/light_fade.h"
+#include "viewer/land/chunk_set.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
+
+/// Horizons around places of a frame.
+struct TerrainHorizon {
+  std::shared_ptr<const HorizonMap> map;
+  LocalFrame frame;
+};
+
+/// Where a place of a frame lies in a texture whose texels are the nodes of a grid: u and v are the products
+/// of these rows and (x, y, z, 1) [m].
+struct PlaceOnGrid {
+  glm::vec4 u{0.0F}, v{0.0F};
+};
+/// @param grid  in the first frame; places are those of the second.
+[[nodiscard]] PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
+                                        const LocalFrame& of_places);
+
+class HorizonTexture {
+ public:
+  void Use(const TerrainHorizon& horizon);
+  [[nodiscard]] bool HasAny() const { return horizon_.has_value(); }
+
+  /// Where a place of an anchor's frame lies in the texture.
+  [[nodiscard]] PlaceOnGrid PlaceIn(const LocalFrame& anchor) const;
+
+  /// Binds the sines of the horizon towards a direction to a texture unit.
+  void Bind(int unit, const Vector<Ecef>& to_sun);
+
+ private:
+  void Upload(double azimuth_rad);
+
+  std::optional<TerrainHorizon> horizon_;
+  std::optional<double> azimuth_rad_;  // that the texture has
+  GlTexture texture_;
+};
+
+/// Its depth is 0 where there is no land.
+class SurfaceMap : public RenderTarget {
+ public:
+  enum Output : std::size_t {
+    /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); height of the disk that
+    /// throws shadows over the terrain's edge, in its radii; distance [m], 0: no terrain.
+    kSurface,
+    /// Four half floats each: irradiance of the sun's sky and of the moon's in bands, as in VertexLight.
+    kSky,
+    kMoonSky,
+  };
+
+  /// @param width, height >= 1.
+  SurfaceMap(int width, int height)
+      : RenderTarget(width, height,
+                     {PixelFormat::kRgba32F, PixelFormat::kRgba16F, PixelFormat::kRgba16F},
+                     Depth::k32Bit) {}
+};
+
+/// Depth alone, as the depth of a SurfaceMap: 0 where there is no land.
+class LandOutline : public RenderTarget {
+ public:
+  /// @param width, height >= 1.
+  LandOutline(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
+};
 
 /// What the eye sees, as in view_block.glsl: axes in its frame (east, north, up).
 struct LandView {

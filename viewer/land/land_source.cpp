@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "atmosphere/text/error.h"
-#include "atmosphere/text/file_extension.h"
+#include "atmosphere/text/parsing.h"
 #include "renderer/terrain/built_in_range.h"
-#include "viewer/land/tile_pads.h"
+#include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::viewer {
 namespace {

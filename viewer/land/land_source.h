@@ -11,7 +11,6 @@
 #include "renderer/scene/scene.h"
 #include "renderer/terrain/elevation.h"
 #include "viewer/land/height_pyramid.h"
-#include "viewer/land/land_lattice.h"
 
 namespace alpenglow::viewer {
 

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
+// What is asked of a landscape: heights, how far loading is, figures.
+//
+// The chunks of a landscape: asked for, taken over, moved to another anchor.
 #include "viewer/land/landscape.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
+#include <utility>
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
@@ -252,5 +258,177 @@ void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
 void Landscape::Draw(GLuint view_binding) { DrawAll(LandDrawn::kSurface, view_binding); }
 
 void Landscape::DrawOutline(GLuint view_binding) { DrawAll(LandDrawn::kOutline, view_binding); }
+
+std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) const {
+  if (mesh_) return mesh_->GroundUnder(place);
+  return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
+}
+
+std::optional<double> Landscape::HighestGround(const GeodeticPosition& place) const {
+  return mesh_ ? mesh_->HighestGround(place) : GroundUnder(place);
+}
+
+bool Landscape::KnowsGround(const GeodeticPosition& place) const {
+  return mesh_ ? mesh_->IsRead() : cache_.HasRead(place);
+}
+
+bool Landscape::HasCome() const {
+  constexpr double kAbout_m = 3000.0;
+  if (mesh_) return mesh_->IsRead();
+  if (tiles_->tiles().empty()) return true;
+  if (!set_ || !KnowsGround(eye_place_)) return false;
+  if (!GroundUnder(eye_place_)) return true;
+  if (!fade_.HasShown()) return false;
+  const std::vector<ChunkKey> roots = tree_.Roots(eye_);
+  const bool has_roots = std::all_of(roots.begin(), roots.end(), [&](const ChunkKey& root) {
+    return set_->Has(root) || ChunkTree::Distance(root, eye_) > kAbout_m;
+  });
+  double full_m = detail_ * std::sqrt(eye_.size.column_m * eye_.size.row_m);
+  for (const double reach_m : reach_m_) {
+    if (reach_m < std::min(0.99 * full_m, kAbout_m)) return false;
+    full_m *= 2.0;
+  }
+  return has_roots;
+}
+
+GroundSampler Landscape::Sampler() const {
+  if (mesh_) return mesh_->Sampler();
+  return [loaded = cache_.loaded()](const GeodeticPosition& place, double half_width_m,
+                                    int most_samples) {
+    return loaded->SampledGrid(place, half_width_m, most_samples);
+  };
+}
+
+LandProgress Landscape::Progress() const {
+  if (mesh_ && !mesh_->IsRead())
+    return {0.0,
+            fmt::format("terrain: reading {}", tiles_->source().mesh->file.filename().string())};
+  if (tiles_->tiles().empty() || !set_) return {};
+  std::size_t there = 0;
+  for (const WantedChunk& wanted : demand_.wanted)
+    if (set_->Has(wanted.key)) ++there;
+  const double tiles = static_cast<double>(cache_.there()) / std::max(cache_.wanted(), 1);
+  const double chunks = static_cast<double>(there) /
+                        static_cast<double>(std::max<std::size_t>(demand_.wanted.size(), 1));
+  const double share = 0.5 * (tiles + chunks);
+  if (!cache_.reading().empty() && tiles_->source().files.empty())
+    return {share, "terrain: making the mountains of this place"};
+  if (!cache_.reading().empty())
+    return {share, fmt::format("terrain: reading {} ({} of {})", cache_.reading(),
+                               cache_.there() + 1, cache_.wanted())};
+  // What no tile is kept fine enough for does not come.
+  if (there == demand_.wanted.size() || !is_working_) return {};
+  return {share, fmt::format("terrain: {} of {} pieces", there, demand_.wanted.size())};
+}
+
+std::vector<std::string> Landscape::TakeNotes() { return std::exchange(notes_, {}); }
+
+LandFigures Landscape::Figures() const {
+  LandFigures figures;
+  figures.tile_bytes = cache_.bytes();
+  if (mesh_) figures.card_bytes = mesh_->bytes();
+  if (!set_) return figures;
+  figures.chunks = static_cast<int>(drawn_.size());
+  for (const auto& drawn : drawn_)
+    figures.triangles += static_cast<int>(drawn.chunk->triangles.size() / 3);
+  for (const ChunkSet* const set : {set_.get(), next_set_.get()}) {
+    if (set == nullptr) continue;
+    figures.kept_chunks += static_cast<int>(set->size());
+    figures.card_bytes += set->card_bytes();
+    figures.chunk_bytes += set->bytes();
+  }
+  return figures;
+}
+
+namespace {
+
+constexpr double kAnchorReach_m = 100e3;
+
+}  // namespace
+
+LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
+  const LandLattice& lattice = tiles_->lattice();
+  const int column = std::clamp(static_cast<int>(eye_.at.column), 0, lattice.last_column);
+  const int row = std::clamp(static_cast<int>(eye_.at.row), 0, lattice.last_row);
+  return {LocalFrame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0}), column, row};
+}
+
+// Of each level a disk about the eye, at most all; and what is kept a while longer.
+int Landscape::ExpectedChunks(double detail) const {
+  const double radius = 1.25 * detail / kChunkCells + 2.0;
+  double chunks = 0.0;
+  for (int level = 0; level <= tree_.top(); ++level) {
+    const double all =
+        std::ceil(static_cast<double>(tiles_->lattice().LastI(level)) / kChunkCells) *
+        std::ceil(static_cast<double>(tiles_->lattice().LastJ(level)) / kChunkCells);
+    chunks += std::min(all, 3.2 * radius * radius);
+  }
+  return static_cast<int>(1.25 * chunks) + 64;
+}
+
+std::unique_ptr<ChunkSet> Landscape::NewSet() const {
+  return std::make_unique<ChunkSet>(AnchorAt(eye_place_),
+                                    std::min(ExpectedChunks(size_.detail), size_.most_chunks));
+}
+
+// A new set grows beside the old one and takes its place when it has all that is wanted.
+void Landscape::MoveAnchor() {
+  if (next_set_) {
+    const bool has_all =
+        std::all_of(demand_.wanted.begin(), demand_.wanted.end(), [&](const WantedChunk& wanted) {
+          return !set_->Has(wanted.key) || next_set_->Has(wanted.key);
+        });
+    if (!has_all) return;
+    set_ = std::move(next_set_);
+    drawn_.clear();
+    return;
+  }
+  GeodeticPosition foot = eye_place_;
+  foot.height_m = 0.0;
+  const double away = glm::length(set_->anchor().frame.EnuFromGeodetic(foot).xyz);
+  if (away > kAnchorReach_m) next_set_ = NewSet();
+}
+
+void Landscape::TakeChunks() {
+  const std::optional<MadeChunks> made = worker_.Take();
+  if (!made) return;
+  is_working_ = false;
+  ChunkSet* const set = made->for_next_anchor ? next_set_.get() : set_.get();
+  if (set == nullptr) return;
+  set->Add(made->made, made->light_number, frame_);
+  set->Relight(made->relit, fade_.from(), made->light_number);
+}
+
+std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
+  constexpr std::size_t kMost = 48;  // so that taking them does not hold up a frame
+  std::vector<WantedChunk> missing;
+  for (const WantedChunk& wanted : demand_.wanted)
+    if (!set.Has(wanted.key)) missing.push_back(wanted);
+  std::sort(missing.begin(), missing.end(),
+            [](const WantedChunk& a, const WantedChunk& b) { return a.urgency < b.urgency; });
+  std::vector<ChunkKey> keys;
+  for (const WantedChunk& wanted : missing) {
+    if (keys.size() == kMost) break;
+    if (cache_.CanMake(wanted.key)) keys.push_back(wanted.key);
+  }
+  return keys;
+}
+
+void Landscape::Ask(const ChunkSet& set, std::vector<ChunkKey> make,
+                    std::vector<std::shared_ptr<const LandChunk>> relight) {
+  if (make.empty() && relight.empty()) return;
+  worker_.Ask({cache_.loaded(), set.anchor(), std::move(make), std::move(relight), tree_.top(),
+               fade_.light(), fade_.number(), &set == next_set_.get()});
+  is_working_ = true;
+}
+
+void Landscape::AskForChunks() {
+  for (const ChunkSet* const set : {set_.get(), next_set_.get()})
+    if (!is_working_ && set != nullptr) Ask(*set, Missing(*set), {});
+}
+
+void Landscape::AskForLight() {
+  if (!is_working_ && fade_.IsFilling()) Ask(*set_, {}, set_->NotLitBy(fade_.number()));
+}
 
 }  // namespace alpenglow::viewer

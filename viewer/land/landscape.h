@@ -12,12 +12,10 @@
 #include <vector>
 
 #include "viewer/job/latest_job.h"
-#include "viewer/land/chunk_maker.h"
 #include "viewer/land/chunk_set.h"
-#include "viewer/land/ground_sampler.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
-#include "viewer/land/light_fade.h"
+#include "viewer/land/loaded_heights.h"
 #include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
 

@@ -4,10 +4,203 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
 
-#include "renderer/terrain/cell_diagonal.h"
+#include "atmosphere/text/error.h"
+#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::viewer {
+namespace {
+
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+constexpr double kOnLattice = 1e-2;  // samples
+
+/// A range of one axis, in samples of the lattice.
+struct Range {
+  double first, last, step;
+};
+
+Range ColumnsOf(const LandLattice& lattice, const ElevationGrid& grid, double near_rad) {
+  const double west = std::remainder(grid.west_rad - near_rad, kWholeTurn) + near_rad;
+  const double first = (west - lattice.west_rad) / lattice.step_lon_rad;
+  const double step = grid.step_lon_rad / lattice.step_lon_rad;
+  return {first, first + (grid.columns - 1) * step, step};
+}
+
+Range RowsOf(const LandLattice& lattice, const ElevationGrid& grid) {
+  const double first = (lattice.north_rad - grid.north_rad) / lattice.step_lat_rad;
+  const double step = grid.step_lat_rad / lattice.step_lat_rad;
+  return {first, first + (grid.rows - 1) * step, step};
+}
+
+// Two ranges are near if they come within a step of each other.
+bool AreNear(const Range& a, const Range& b) {
+  const double step = std::max(a.step, b.step) + kOnLattice;
+  return a.first <= b.last + step && b.first <= a.last + step;
+}
+
+// Two ranges have a gap if the lattice has a sample between them and one step bridges it.
+bool HasGap(const Range& before, const Range& after, double step) {
+  const double gap = after.first - before.last;
+  return gap <= step + kOnLattice &&
+         std::floor(before.last + kOnLattice) + 1.0 < after.first - kOnLattice;
+}
+
+}  // namespace
+
+TilePads PadsOf(const LandLattice& lattice, const std::vector<ElevationGrid>& extents,
+                std::size_t index) {
+  const ElevationGrid& own = extents[index];
+  const Range columns = ColumnsOf(lattice, own, own.west_rad), rows = RowsOf(lattice, own);
+  TilePads pads;
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (i == index) continue;
+    const Range across = ColumnsOf(lattice, extents[i], own.west_rad);
+    const Range down = RowsOf(lattice, extents[i]);
+    if (!AreNear(columns, across) || !AreNear(rows, down)) continue;
+    pads.east = pads.east || HasGap(columns, across, columns.step);
+    pads.west = pads.west || HasGap(across, columns, columns.step);
+    pads.south = pads.south || HasGap(rows, down, rows.step);
+    pads.north = pads.north || HasGap(down, rows, rows.step);
+  }
+  return pads;
+}
+
+ElevationGrid PaddedExtent(const ElevationGrid& grid, const TilePads& pads) {
+  ElevationGrid padded;
+  padded.step_lon_rad = grid.step_lon_rad;
+  padded.step_lat_rad = grid.step_lat_rad;
+  padded.west_rad = grid.west_rad - (pads.west ? grid.step_lon_rad : 0.0);
+  padded.north_rad = grid.north_rad + (pads.north ? grid.step_lat_rad : 0.0);
+  padded.columns = grid.columns + (pads.west ? 1 : 0) + (pads.east ? 1 : 0);
+  padded.rows = grid.rows + (pads.north ? 1 : 0) + (pads.south ? 1 : 0);
+  return padded;
+}
+
+namespace {
+
+/// A place in rows and columns of a grid.
+struct GridPlace {
+  double row, column;
+};
+
+GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitude_rad) {
+  const double middle = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
+  return {(grid.north_rad - latitude_rad) / grid.step_lat_rad,
+          0.5 * (grid.columns - 1) +
+              std::remainder(longitude_rad - middle, kWholeTurn) / grid.step_lon_rad};
+}
+
+// A tile has what lies up to half a step beyond its rim: its samples stand for as much.
+bool Has(const ElevationGrid& grid, const GridPlace& at) {
+  constexpr double kBeyond = 0.5 + kOnLattice;
+  return at.row >= -kBeyond && at.column >= -kBeyond && at.row <= grid.rows - 1 + kBeyond &&
+         at.column <= grid.columns - 1 + kBeyond;
+}
+
+/// The samples of other tiles around the pads of one.
+class Rims {
+ public:
+  Rims(const LandTiles& tiles, int tile, const ElevationGrid& padded) {
+    for (int other = 0; other < static_cast<int>(tiles.tiles().size()); ++other) {
+      if (other != tile) Add(tiles, other, padded);
+    }
+  }
+
+  /// The height of another tile; empty where none has one.
+  [[nodiscard]] std::optional<double> At(double latitude_rad, double longitude_rad) const {
+    for (const Rim& rim : rims_) {
+      const GridPlace at = PlaceIn(rim.extent, latitude_rad, longitude_rad);
+      if (!Has(rim.extent, at)) continue;
+      const double row = std::clamp(at.row, 0.0, rim.extent.rows - 1.0);
+      const double column = std::clamp(at.column, 0.0, rim.extent.columns - 1.0);
+      const std::optional<double> height =
+          rim.heights.HeightAt(rim.extent.north_rad - row * rim.extent.step_lat_rad,
+                               rim.extent.west_rad + column * rim.extent.step_lon_rad);
+      if (height) return height;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Rim {
+    ElevationGrid extent;
+    ElevationGrid heights;  // of the part of it that is needed
+  };
+
+  // Adds the part of the other grid that both share, and a sample or two more.
+  void Add(const LandTiles& tiles, int other, const ElevationGrid& padded) {
+    const ElevationGrid& extent = tiles.ExtentOf(other);
+    const GridPlace first = PlaceIn(extent, padded.north_rad, padded.west_rad);
+    const double last_row =
+        first.row + (padded.rows - 1) * padded.step_lat_rad / extent.step_lat_rad;
+    const double last_column =
+        first.column + (padded.columns - 1) * padded.step_lon_rad / extent.step_lon_rad;
+    const GridWindow window = Shared(first, {last_row, last_column}, extent);
+    if (window.columns < 2 || window.rows < 2) return;
+    std::optional<ElevationGrid> heights =
+        Read(tiles.tiles()[static_cast<std::size_t>(other)], window, tiles.source().voids);
+    if (heights) rims_.push_back({extent, std::move(*heights)});
+  }
+
+  struct Span {
+    int first = 0, count = 0;
+  };
+  // Samples of an axis from before one place to after another; none where it ends before them.
+  static Span Between(double from, double to, int count) {
+    if (to < -1.0 || from > count) return {};
+    const double first = std::clamp(std::floor(from) - 1.0, 0.0, count - 2.0);
+    const double last = std::clamp(std::ceil(to) + 1.0, first + 1.0, count - 1.0);
+    return {static_cast<int>(first), static_cast<int>(last - first) + 1};
+  }
+  static GridWindow Shared(const GridPlace& first, const GridPlace& last,
+                           const ElevationGrid& extent) {
+    const Span columns = Between(first.column, last.column, extent.columns);
+    const Span rows = Between(first.row, last.row, extent.rows);
+    return {columns.first, rows.first, columns.count, rows.count};
+  }
+
+  static std::optional<ElevationGrid> Read(const LandTile& tile, GridWindow window,
+                                           VoidPolicy voids) {
+    if (tile.part) {
+      window.first_column += tile.part->first_column;
+      window.first_row += tile.part->first_row;
+    }
+    try {
+      if (tile.file.empty() || !CanBeCut(tile.file)) return std::nullopt;
+      return ReadElevation(tile.file, voids, window).grid;
+    } catch (const InputError&) {
+      return std::nullopt;  // it is told when the tile itself is read
+    }
+  }
+
+  std::vector<Rim> rims_;
+};
+
+}  // namespace
+
+ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& grid) {
+  const TilePads& pads = tiles.tiles()[static_cast<std::size_t>(tile)].pads;
+  ElevationGrid padded = PaddedExtent(grid, pads);
+  const Rims rims(tiles, tile, padded);
+  const int first_row = pads.north ? -1 : 0, first_column = pads.west ? -1 : 0;
+  for (int row = first_row; row < first_row + padded.rows; ++row) {
+    for (int column = first_column; column < first_column + padded.columns; ++column) {
+      const int own_row = std::clamp(row, 0, grid.rows - 1);
+      const int own_column = std::clamp(column, 0, grid.columns - 1);
+      float height = grid.at(own_row, own_column);
+      if (row != own_row || column != own_column) {
+        const auto other = rims.At(grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column));
+        height = other ? static_cast<float>(*other) : height;
+      }
+      padded.height_m.push_back(height);
+    }
+  }
+  return padded;
+}
+
 namespace {
 
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
 // How well a picture is drawn, and who chooses it by the time that frames take.
+//
+// What a quality means for each part of a picture.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <optional>
 #include <string>
+
+#include "viewer/air/air_tables.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/lamps/lamp_painter.h"
+#include "viewer/shade/shafts.h"
 
 namespace alpenglow::viewer {
 
@@ -66,5 +74,24 @@ class AutoQuality {
   double since_change_s_ = 0.0;
   double wait_up_s_ = 2.0;
 };
+
+struct PaintSizes {
+  AirQuality air = AirQuality::kMedium;
+  double land_detail = 96.0;  // LandSize::detail
+  double land_growth = 4.0;   // LandSize::most_growth
+  bool has_shafts = true;
+  ShadeQuality shade = kMediumShade;
+  LampQuality lamps = kMediumLamps;
+  std::size_t most_lamps = kMostGpuLamps;
+  FogMapSize fog;
+  int dropped_octaves = 0;    // of the ground's detail
+  bool sky_by_pixel = false;  // SkyByPixel instead of light of vertices, once it is there
+};
+
+/// kReference is drawn as kHigh until the renderer's picture is there.
+[[nodiscard]] PaintSizes SizesOf(Quality quality);
+/// With what is left out. Rays of shafts and of the light of lamps are as far apart on the screen, at
+/// whatever scale light is painted.
+[[nodiscard]] PaintSizes SizesOf(const PaintedQuality& painted);
 
 }  // namespace alpenglow::viewer

@@ -12,7 +12,6 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun.h"
 #include "atmosphere/sun/time.h"
-#include "viewer/air/light_source.h"
 #include "viewer/air/solved_air.h"
 
 namespace alpenglow::viewer {

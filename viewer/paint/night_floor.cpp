@@ -6,9 +6,8 @@
 
 #include "atmosphere/number/constants.h"
 #include "renderer/light/night_light.h"
-#include "renderer/light/town_light.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/paint/picture_units.h"
+#include "viewer/paint/picture_programs.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow::viewer {

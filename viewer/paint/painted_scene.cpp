@@ -9,7 +9,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "renderer/media/local_media.h"
-#include "viewer/paint/picture_units.h"
+#include "viewer/paint/picture_programs.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -10,21 +10,20 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/sun.h"
-#include "renderer/ground/ground_material.h"
 #include "renderer/ground/scene_ground.h"
+#include "renderer/ground/surface.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
-#include "viewer/ground/scene_drape.h"
 #include "viewer/ground/sky_by_pixel.h"
-#include "viewer/ground/sky_tilt.h"
-#include "viewer/lamps/scene_fog.h"
+#include "viewer/ground/sky_on_ground.h"
+#include "viewer/lamps/fog.h"
 #include "viewer/land/landscape.h"
+#include "viewer/paint/auto_quality.h"
 #include "viewer/paint/key_light.h"
-#include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_view.h"
-#include "viewer/shade/shade_follower.h"
+#include "viewer/shade/shafts.h"
 
 namespace alpenglow::viewer {
 

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: MIT
+// Where what programs of a picture read is bound: one number each, so that passes do not take each
+// other's places.
+//
+// What the fragment stages of a picture are put together from: one text, picture.frag.glsl, for
+// land, sky and disks, after texts for what there is in a scene.
+//
+// The uniform blocks of a picture: what its programs read of the air, the view and the ground, on
+// its way to the card.
+//
 // The programs of a picture, one a stage, made when a stage is first drawn with and kept.
 //
 // Drivers finish a program when it is drawn with, which takes tenths of a second. Stages that will
@@ -6,16 +15,108 @@
 // first frames, over one pixel that is painted after.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
+#include <vector>
 
+#include "atmosphere/air/phase.h"
+#include "atmosphere/sun/sun.h"
+#include "renderer/ground/surface.h"
+#include "viewer/air/air_follower.h"
+#include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
+#include "viewer/ground/ground_block.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/lamps/lamp_painter.h"
+#include "viewer/paint/key_light.h"
 #include "viewer/paint/painted_scene.h"
-#include "viewer/paint/picture_texts.h"
-#include "viewer/shade/shaft_pass.h"
+#include "viewer/paint/painted_view.h"
+#include "viewer/shade/shafts.h"
+#include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow::viewer {
+
+/// Of uniform blocks.
+enum PictureBinding : GLuint {
+  kAirBinding,
+  kViewBinding,
+  kGroundBinding,
+  kGroundLightBinding,
+  kGroundSurfaceBinding,
+  kSkyByPixelBinding,
+  kTablesBinding,
+  kLampsBinding,
+  kFogBinding
+};
+
+/// Of textures.
+enum PictureUnit {
+  kSurfaceUnit,
+  kSkyOnSurfaceUnit,
+  kShaftUnit,
+  kFogShaftUnit,
+  kShadeUnit,
+  kUploadUnit,
+  kAirUnit,
+  kGroundUnit = kAirUnit + AirTextures::kUnits,
+  kLampUnit = kGroundUnit + 3,
+  kFogUnit = kLampUnit + 6,
+  kNightUnit = kFogUnit + 2,
+  kSkyByPixelUnit = kNightUnit + 1,
+};
+
+inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
+inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
+
+/// One of the picture's programs. Sky is open above the horizon, see RowsOfPlanet.
+struct PictureStage {
+  enum class Pass { kLand, kSky, kDisks, kOpenSky, kNight };
+  Pass pass;
+  bool has_shade = false, has_lamps = false;
+  bool sky_by_pixel = false;  // SkyByPixel, of land alone
+
+  auto operator<=>(const PictureStage&) const = default;
+};
+
+/// What the texts of a picture depend on.
+struct PictureKind {
+  const GroundMaterial& material;
+  const LampPainter& lamps;
+  LandKind land;
+  std::optional<PhaseKind> fog;  // its phase function
+};
+
+/// The texts that a stage of the picture is made of, but for picture.frag.glsl itself.
+[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
+                                                    const PictureStage& stage);
+
+/// Those that they begin with: the view and the air.
+[[nodiscard]] std::vector<ShaderPiece> AirTexts();
+
+/// Each call fills blocks and binds them (PictureBinding).
+class PictureBlocks {
+ public:
+  void UploadAir(const PaintedScene& scene, const Eye& eye);
+  /// @param ray  that is painted of each pixel.
+  void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
+                  const PixelRay& ray) const;
+  void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
+  void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
+                         const KeyLight& light) const;
+  /// Nothing where vertices have the sky's light.
+  void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
+                        const KeyLight& light) const;
+
+ private:
+  GlBuffer air_, view_, ground_, ground_light_, ground_surface_, sky_by_pixel_;
+  // Of the air that was drawn last: colours of its bands take milliseconds.
+  std::shared_ptr<const SolvedAir> known_air_;
+  AirBlock air_block_{};
+};
 
 class PicturePrograms {
  public:

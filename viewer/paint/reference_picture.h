@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: MIT
 // The renderer's own picture of a view, made beside drawing and refined while the view stays.
+//
+// How far the picture on the graphics card is from the renderer's, edges aside.
+//
+// Of a pixel: PixelChange (effect_choice.h), the relative difference of linear radiance above the
+// floor of ChangeFloor. Left out are pixels beside an edge, where a hundredth of a pixel decides
+// what is seen: whose neighbours are of another kind, a tenth farther or nearer, or lit by more or
+// less of the sun's disk, or by a fifth more or less by lamps.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "lut/picture/image.h"
+#include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
 #include "viewer/flight/flight.h"
 #include "viewer/job/latest_job.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 
@@ -71,5 +81,23 @@ class ReferencePicture {
   std::shared_ptr<Renderers> renderers_;  // used by the job alone
   LatestJob<Request, std::optional<Made>> job_;
 };
+
+struct ViewDifference {
+  double mean = 0.0;
+  double at_99_percent = 0.0;
+  double at_999_permille = 0.0;
+  double worst = 0.0;
+  double edge_share = 0.0;  // of all pixels that were left out
+};
+
+/// Layers that the renderer's picture has; without that of lamps these have no edges.
+[[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
+
+/// Pixels of the renderer's picture that stand beside an edge, row by row.
+[[nodiscard]] std::vector<bool> EdgesOf(const Image& judge);
+
+/// @param judge  the renderer's, with LayersOfEdges(). Throws InternalError for other sizes and for
+///     pictures that are nothing but edges.
+[[nodiscard]] ViewDifference DifferenceOf(const Image& judge, const Image& painted);
 
 }  // namespace alpenglow::viewer

@@ -7,12 +7,12 @@
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
-#include "renderer/ground/camera_stand.h"
-#include "renderer/light/moon_before_sun.h"
+#include "renderer/ground/scene_ground.h"
+#include "renderer/light/lighting.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/scissor.h"
-#include "viewer/paint/picture_units.h"
-#include "viewer/paint/view_bend.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/paint/painted_view.h"
+#include "viewer/paint/picture_programs.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -13,25 +13,22 @@
 #include <memory>
 #include <optional>
 
-#include "atmosphere/sun/moon_disk.h"
+#include "atmosphere/sun/moon.h"
 #include "lut/picture/image.h"
 #include "renderer/scene/scene.h"
+#include "viewer/gl/gl_objects.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/gl/scissor.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/land/land_outline.h"
-#include "viewer/land/surface_map.h"
-#include "viewer/paint/bent_disk.h"
+#include "viewer/land/land_pass.h"
+#include "viewer/paint/auto_quality.h"
 #include "viewer/paint/key_light.h"
 #include "viewer/paint/night_floor.h"
-#include "viewer/paint/paint_sizes.h"
 #include "viewer/paint/painted_scene.h"
 #include "viewer/paint/painted_view.h"
-#include "viewer/paint/picture_blocks.h"
 #include "viewer/paint/picture_programs.h"
 #include "viewer/paint/star_painter.h"
-#include "viewer/shade/shaft_pass.h"
+#include "viewer/shade/shafts.h"
 
 namespace alpenglow::viewer {
 

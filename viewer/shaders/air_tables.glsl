@@ -3,7 +3,7 @@
 // [1/sr]; one band a component; directions are unit vectors in the frame of the eye, east, north,
 // up; distances are kilometres from the eye.
 
-// AirTablesBlock of air_textures.h.
+// AirTablesBlock of air_follower.h.
 layout(std140) uniform AirTables {
   vec4 air_sun;       // unit vector to the sun that lights the air
   vec4 air_sun_seen;  // and to where it is seen: there aureoles are
@@ -114,7 +114,7 @@ vec4 ToSun(float altitude_km, float mu_s, float beam) {
 // hide, which air and bare ground of the sky's table are lit by.
 vec4 TransmittanceToSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 0.0); }
 
-// What is left there across the beams of a disk that is seen: BentBeam of atmosphere/ray/bent_beam.h.
+// What is left there across the beams of a disk that is seen: BentBeam of atmosphere/ray/bent_view.h.
 vec4 BeamOfSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 1.0); }
 
 // Where a point lies in the tables of ways, and what reaches the eye from there.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Disks of sun and moon near the horizon, band by band where air lifts them to, through the air of
-// bent rays: BentDisk of bent_disk.h. The block View has the sun where it truly stands, and `moon`
+// bent rays: BentDisk of painted_view.h. The block View has the sun where it truly stands, and `moon`
 // (sun_light.glsl) the moon.
 #define DISK_NODES 13
 

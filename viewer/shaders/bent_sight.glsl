@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where air that bends rays shows land and the bare planet (atmosphere/ray/land_lift.h), by what the
+// Where air that bends rays shows land and the bare planet (atmosphere/ray/bent_view.h), by what the
 // block View has of it. Without refraction everything is where it is.
 //
 // Pixels, the air before them, fog and shafts go by apparent directions and true distances, as the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The picture on a display: white balance, exposure, gamut, tone curve, dither, as Develop (image.h) does it. AgX
-// comes from its table (tone_table.h). Defined before this text: CURVE, a ToneCurve; DITHERS, 0 for
+// comes from its table (developer.h). Defined before this text: CURVE, a ToneCurve; DITHERS, 0 for
 // codes that enlarge.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light of sun and sky in fog, from the map of fog_map.h, and what fog leaves of other light:
-// FogBlock of fog_painter.h. Frame: east, north, up at the eye; lengths are kilometres; light is
+// Light of sun and sky in fog, from the map of fog.h, and what fog leaves of other light:
+// FogBlock of fog.h. Frame: east, north, up at the eye; lengths are kilometres; light is
 // per unit solar irradiance. Fog is grey.
 #define FOG_STRETCHES 4
 

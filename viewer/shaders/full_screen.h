@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: MIT
+// The viewer's own texts for shaders, by their names in the tree: "viewer/shaders/hud.frag.glsl".
+//
 // Passes over a whole picture, or over boxes of it: one fragment stage.
 #pragma once
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "viewer/gl/gl_objects.h"
-#include "viewer/gl/scissor.h"
 #include "viewer/gl/shader.h"
 
 namespace alpenglow::viewer {
+
+[[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
+
+/// These texts, and after them the viewer's of these names.
+[[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
+                                                        const std::vector<std::string>& names);
 
 /// full_screen.vert.glsl and a fragment stage of these texts.
 [[nodiscard]] ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment);

@@ -27,8 +27,8 @@ layout(std140) uniform GroundSurface {
   vec4 by_root_mu[17];
 };
 
-uniform sampler2D sea_mirror;  // SeaMirror of sea_mirror.h
-uniform sampler2D level_sky;   // LevelSky of sea_mirror.h
+uniform sampler2D sea_mirror;  // SeaMirror of sky_on_ground.h
+uniform sampler2D level_sky;   // LevelSky of sky_on_ground.h
 #if HAS_DRAPE
 uniform sampler2D drape;  // linear sRGB, or shares of land cover; 1 where there is a picture
 #endif

@@ -3,7 +3,7 @@
 in vec3 facing;
 in vec4 sky_light, moon_sky_light;
 in float disk_height;
-// SurfaceMap of surface_map.h, the normal on the side that is seen.
+// SurfaceMap of land_pass.h, the normal on the side that is seen.
 layout(location = 0) out vec4 surface;
 layout(location = 1) out vec4 sky_irradiance;
 layout(location = 2) out vec4 moon_sky_irradiance;

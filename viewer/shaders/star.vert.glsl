@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The pixels that a star's light falls on, unless land hides its middle: StarPoint of
-// star_points.h.
+// star_painter.h.
 in vec4 star_corner;
 in vec4 star_towards;
 in vec4 star_light;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sun and moon as disks: what stands of the sun over the horizon, and how bright they are
-// (sun_disk.h, moon_disk.h).
+// (sun.h, moon.h).
 
 uniform vec4 moon;      // unit vector to the apparent moon, in the frame of the eye; angular radius
 uniform vec4 moon_colour;      // of its reflectance, relative to that at 550 nm

@@ -9,7 +9,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "renderer/ground/ground_cover.h"
+#include "renderer/ground/land_cover.h"
 
 namespace alpenglow::viewer {
 namespace {

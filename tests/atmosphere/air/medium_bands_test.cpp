@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/air/medium_bands.h"
+#include "atmosphere/air/medium_presets.h"
 
 #include <gtest/gtest.h>
 

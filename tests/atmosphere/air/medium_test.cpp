@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "atmosphere/air/aerosol_mixture.h"
-#include "atmosphere/air/scattering_matrix.h"
+#include "atmosphere/air/phase.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "tests/fixtures/fault_of.h"

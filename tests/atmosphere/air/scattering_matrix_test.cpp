@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/air/scattering_matrix.h"
+#include "atmosphere/air/phase.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "atmosphere/air/lorenz_mie.h"
-#include "atmosphere/air/phase.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
-#include "atmosphere/text/embedded_table.h"
+#include "atmosphere/number/numerics.h"
+#include "atmosphere/text/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/colour/water.h"
+#include "atmosphere/colour/spectrum.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 #include <set>
 
 #include "atmosphere/judge/judge.h"
-#include "atmosphere/judge/path_columns.h"
+#include "atmosphere/judge/path_sampling.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"

@@ -10,8 +10,7 @@
 
 #include "atmosphere/judge/airlight_judge.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/halton.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "tests/fixtures/lamp_cases.h"
 
 namespace alpenglow::atmosphere {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light of the sun's disk on ground at any height, against the ray equation and against integration
 // along bent rays.
-#include "atmosphere/ray/bent_beam.h"
+#include "atmosphere/ray/bent_view.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/judge/ray_equation.h"
+#include "atmosphere/judge/judge.h"
 #include "tests/fixtures/bent_twilight.h"
 
 namespace alpenglow::atmosphere {

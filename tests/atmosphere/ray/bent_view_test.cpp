@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/judge/ray_equation.h"
+#include "atmosphere/judge/judge.h"
 
 namespace alpenglow::atmosphere {
 namespace {

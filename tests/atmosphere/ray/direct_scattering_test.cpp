@@ -13,7 +13,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/ray/direct_columns.h"
-#include "atmosphere/ray/optical_depth.h"
+#include "atmosphere/ray/ray.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/direct_regimes.h"
 
@@ -400,7 +400,7 @@ TEST(DirectColumns, AgreeWithTheColumnsOfTwoTermsToOnePartInTenThousand) {
   }
 }
 
-// The polynomials of direct_air.h at an altitude [km].
+// The polynomials of direct_panels.h at an altitude [km].
 double FittedOzone(const DirectAir& air, double altitude, double mu) {
   constexpr double k = static_cast<double>(kOzoneCosine);
   const double y = 2.0 * altitude / static_cast<double>(air.ozone_top) - 1.0;

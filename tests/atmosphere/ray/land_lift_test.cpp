@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Land and the edge of a planet as shaders lift them, against the ray equation.
-#include "atmosphere/ray/land_lift.h"
+#include "atmosphere/ray/bent_view.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/judge/ray_equation.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/judge/judge.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {

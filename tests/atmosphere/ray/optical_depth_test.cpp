@@ -12,7 +12,7 @@
 #include "atmosphere/air/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"

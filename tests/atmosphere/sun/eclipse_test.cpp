@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
-#include "atmosphere/number/root.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/number/numerics.h"
+#include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/sanitized.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/sun/moon_disk.h"
+#include "atmosphere/sun/moon.h"
 
 #include <gtest/gtest.h>
 

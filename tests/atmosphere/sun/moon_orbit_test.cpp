@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/sun/moon_orbit.h"
+#include "atmosphere/sun/ephemeris.h"
 
 #include <erfa.h>
 #include <gtest/gtest.h>

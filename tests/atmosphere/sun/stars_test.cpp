@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/sun/stars.h"
+#include "atmosphere/sun/night_sky.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/apparent_place.h"
+#include "atmosphere/sun/ephemeris.h"
 #include "atmosphere/sun/sun.h"
 
 namespace alpenglow::atmosphere {

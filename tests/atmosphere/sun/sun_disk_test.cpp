@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/sun.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 
 namespace alpenglow::atmosphere {
 namespace {

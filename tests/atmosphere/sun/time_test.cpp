@@ -9,7 +9,7 @@
 #include <locale>
 #include <string>
 
-#include "atmosphere/sun/posix_zone_rule.h"
+#include "atmosphere/sun/time_zone.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/fault_of.h"
 

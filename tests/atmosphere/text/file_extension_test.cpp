@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/text/file_extension.h"
+#include "atmosphere/text/parsing.h"
 
 #include <gtest/gtest.h>
 

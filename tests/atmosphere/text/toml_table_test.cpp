@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/text/toml_table.h"
+#include "atmosphere/text/parsing.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 #include "atmosphere/dialect/instruction_set.h"
 #include "atmosphere/judge/path_tracer.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/acuity.h"
+#include "lut/picture/eye.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "atmosphere/number/constants.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/clipped_edge.h"
+#include "lut/picture/develop.h"
 
 #include <gtest/gtest.h>
 

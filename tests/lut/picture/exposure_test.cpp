@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lut/picture/image.h"
-#include "lut/picture/light_meter.h"
+#include "lut/picture/metering.h"
 
 namespace alpenglow::lut {
 namespace {

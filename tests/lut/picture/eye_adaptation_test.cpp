@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/eye_adaptation.h"
+#include "lut/picture/eye.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/glare.h"
+#include "lut/picture/eye.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/highlights.h"
+#include "lut/picture/local_exposure.h"
 
 #include <gtest/gtest.h>
 

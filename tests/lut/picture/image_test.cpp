@@ -15,7 +15,7 @@
 
 #include "atmosphere/text/error.h"
 #include "lut/layer.h"
-#include "lut/picture/dither.h"
+#include "lut/picture/develop.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::lut {

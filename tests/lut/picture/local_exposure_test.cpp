@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 namespace {

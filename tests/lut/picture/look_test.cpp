@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/highlights.h"
+#include "lut/picture/eye.h"
 #include "lut/picture/local_exposure.h"
-#include "lut/picture/night_vision.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/night_vision.h"
+#include "lut/picture/eye.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 namespace {

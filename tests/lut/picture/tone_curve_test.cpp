@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "lut/picture/picture_text.h"
+#include "lut/picture/look.h"
 
 namespace alpenglow::lut {
 namespace {

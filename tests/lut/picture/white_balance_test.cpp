@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/white_balance.h"
+#include "lut/picture/metering.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "atmosphere/text/error.h"
 #include "lut/picture/look.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/program/growing_file.h"
+#include "lut/program/output_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@
 
 #include "atmosphere/text/error.h"
 #include "lut/layer.h"
-#include "lut/program/output_name.h"
+#include "lut/program/output_file.h"
 #include "tests/fixtures/lost_messages.h"
 
 namespace alpenglow::lut {

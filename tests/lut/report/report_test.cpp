@@ -14,7 +14,7 @@
 #include "atmosphere/number/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
-#include "lut/report/report_rays.h"
+#include "lut/report/report_measure.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"

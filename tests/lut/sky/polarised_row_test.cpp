@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Polarised skies: rows of panoramas, and where the sky is not polarised.
-#include "lut/sky/polarised_row.h"
+#include "lut/sky/panorama.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/halton.h"
+#include "atmosphere/number/numerics.h"
 #include "tests/fixtures/lit_air.h"
 
 namespace alpenglow::lut {

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <random>
 
-#include "atmosphere/air/medium_toml.h"
+#include "atmosphere/air/medium.h"
 #include "atmosphere/judge/judge.h"
 #include "atmosphere/judge/path_tracer.h"
 #include "atmosphere/text/error.h"

@@ -24,7 +24,7 @@
 #include <functional>
 #include <vector>
 
-#include "atmosphere/air/medium_toml.h"
+#include "atmosphere/air/medium.h"
 #include "atmosphere/text/error.h"
 #include "lut/store/table_image.h"
 #include "tests/fixtures/temporary_folder.h"

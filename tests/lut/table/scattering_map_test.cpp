@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/table/scattering_map.h"
+#include "lut/table/scattering_table.h"
 
 #include <gtest/gtest.h>
 

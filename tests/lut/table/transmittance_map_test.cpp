@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/table/transmittance_map.h"
+#include "lut/table/transmittance_table.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/text/error.h"
 

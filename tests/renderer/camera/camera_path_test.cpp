@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "renderer/series/path_frames.h"
+#include "renderer/series/frame_times.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

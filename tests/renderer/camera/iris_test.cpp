@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/camera/iris.h"
+#include "renderer/camera/camera_rays.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "renderer/camera/pixel_samples.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/camera/pixel_filter.h"
+#include "renderer/camera/camera_rays.h"
 
 #include <gtest/gtest.h>
 

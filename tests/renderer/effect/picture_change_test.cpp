@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/effect/picture_change.h"
+#include "renderer/effect/effect_choice.h"
 
 #include <gtest/gtest.h>
 

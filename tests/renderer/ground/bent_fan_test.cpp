@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Tabulated bent rays against the ray equation.
-#include "renderer/ground/bent_fan.h"
+#include "renderer/ground/scene_geometry.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/judge/ray_equation.h"
+#include "atmosphere/judge/judge.h"
 #include "atmosphere/ray/bent_view.h"
 
 namespace alpenglow::renderer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/ground_heights.h"
+#include "renderer/ground/scene_ground.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
-#include "renderer/ground/ground_material.h"
+#include "renderer/ground/surface.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/rough_land.h"

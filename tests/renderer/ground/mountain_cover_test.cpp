@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where mountains of the earth are green, grey and white, against what is known of them.
-#include "renderer/ground/mountain_cover.h"
+#include "renderer/ground/land_cover.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
-#include "renderer/ground/ground_cover.h"
+#include "renderer/ground/land_cover.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/lamp/lamp_glow.h"
+#include "renderer/lamp/lamp_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/quadrature.h"
+#include "atmosphere/number/numerics.h"
 
 namespace alpenglow::renderer {
 namespace {

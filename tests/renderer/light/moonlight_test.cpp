@@ -6,10 +6,9 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/moon_disk.h"
+#include "atmosphere/sun/moon.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/light/night_light.h"
-#include "renderer/light/town_light.h"
 #include "tests/fixtures/lit_air.h"
 
 namespace alpenglow::renderer {

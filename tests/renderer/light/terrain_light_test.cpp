@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/number/halton.h"
+#include "atmosphere/number/numerics.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/sky/sky_view.h"
 #include "renderer/ground/reflectance.h"

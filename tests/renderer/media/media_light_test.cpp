@@ -7,13 +7,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/colour/black_body.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/spherical_harmonics.h"
-#include "renderer/light/sky_moments.h"
+#include "renderer/light/open_sky.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/noise_grid.h"

@@ -9,7 +9,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/stars.h"
+#include "atmosphere/sun/night_sky.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/air/medium.h"
-#include "atmosphere/air/medium_bands.h"
+#include "atmosphere/air/medium_presets.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/pixel_noise.h"
+#include "renderer/picture/shared_rays.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "renderer/effect/picture_change.h"
+#include "renderer/effect/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/effect_scenes.h"

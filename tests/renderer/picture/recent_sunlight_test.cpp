@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/recent_sunlight.h"
+#include "renderer/picture/scene_state.h"
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/judge/ray_equation.h"
+#include "atmosphere/judge/judge.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/stars.h"
-#include "renderer/light/star_lights.h"
+#include "atmosphere/sun/night_sky.h"
+#include "renderer/light/night_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

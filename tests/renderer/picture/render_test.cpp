@@ -13,7 +13,7 @@
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/text/error.h"
 #include "lut/diffuse/multiple_scattering.h"
-#include "lut/picture/night_vision.h"
+#include "lut/picture/eye.h"
 #include "renderer/camera/camera_rays.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

@@ -15,12 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/colour/black_body.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/number/constants.h"
 #include "atmosphere/text/error.h"
-#include "renderer/media/fog_layer.h"
 #include "renderer/media/local_media.h"
-#include "renderer/scene/scene_files.h"
+#include "renderer/scene/scene_options.h"
 #include "renderer/terrain/lattice_noise.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "renderer/series/frame_list.h"
+#include "renderer/series/manifest.h"
 
 namespace alpenglow::renderer {
 namespace {

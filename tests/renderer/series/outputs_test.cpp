@@ -7,10 +7,10 @@
 
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/moon.h"
-#include "lut/program/json_text.h"
-#include "renderer/series/day_plot.h"
-#include "renderer/series/keogram.h"
-#include "renderer/series/manifest_json.h"
+#include "lut/program/messages.h"
+#include "renderer/series/contact_sheet.h"
+#include "renderer/series/day_times.h"
+#include "renderer/series/manifest.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "atmosphere/text/error.h"
-#include "lut/picture/night_vision.h"
+#include "lut/picture/eye.h"
 #include "lut/program/program.h"
 #include "renderer/series/contact_sheet.h"
-#include "renderer/series/provenance.h"
+#include "renderer/series/manifest.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

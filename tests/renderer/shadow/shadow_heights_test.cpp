@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "atmosphere/number/constants.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/sun.h"
 #include "atmosphere/text/error.h"
 #include "tests/fixtures/occlusion_march.h"
 #include "tests/fixtures/places.h"

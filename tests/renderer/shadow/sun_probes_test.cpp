@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/shadow/sun_probes.h"
+#include "renderer/shadow/sunlit_path.h"
 
 #include <gtest/gtest.h>
 

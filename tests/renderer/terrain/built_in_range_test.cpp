@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "atmosphere/number/constants.h"
-#include "renderer/terrain/kept_heights.h"
+#include "renderer/terrain/land.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"
 

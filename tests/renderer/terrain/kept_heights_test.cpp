@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/terrain/kept_heights.h"
+#include "renderer/terrain/land.h"
 
 #include <gtest/gtest.h>
 

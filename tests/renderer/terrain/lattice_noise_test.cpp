@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/terrain/lattice_text.h"
-
 namespace alpenglow::renderer {
 namespace {
 

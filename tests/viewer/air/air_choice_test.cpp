@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/air/air_choice.h"
+#include "viewer/air/solved_air.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 
 #include "atmosphere/air/phase_text.h"
 #include "atmosphere/number/constants.h"
-#include "lut/table/transmittance_map.h"
+#include "lut/table/transmittance_table.h"
 #include "viewer/air/air_tables.h"
 
 namespace alpenglow::tests {

@@ -10,7 +10,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/text/error.h"
 #include "tests/viewer/air/air_judge.h"
-#include "viewer/gl/texture_side.h"
+#include "viewer/gl/gl_objects.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tables of the air as shaders read them, against their reading on the processor.
-#include "viewer/air/air_textures.h"
+#include "viewer/air/air_follower.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/halton.h"
+#include "atmosphere/number/numerics.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/viewer/air/air_reading.h"
 #include "tests/viewer/shaders/gpu_values.h"

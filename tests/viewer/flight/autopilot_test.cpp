@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/autopilot.h"
+#include "viewer/flight/pilot.h"
 
 #include <gtest/gtest.h>
 

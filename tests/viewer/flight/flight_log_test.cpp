@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/flight_log.h"
+#include "viewer/flight/flight_recorder.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/halton.h"
+#include "atmosphere/number/numerics.h"
 #include "lut/picture/image.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/viewer/ground/rough_site.h"
@@ -19,8 +19,8 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/sky_by_pixel.h"
+#include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
-#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow::viewer {
 namespace {

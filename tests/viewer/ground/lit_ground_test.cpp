@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/number/halton.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/number/numerics.h"
+#include "atmosphere/sun/sun.h"
 #include "tests/viewer/ground/rough_site.h"
 
 namespace alpenglow::viewer {

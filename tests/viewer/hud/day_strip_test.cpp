@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/hud/day_strip.h"
+#include "viewer/hud/panel_controls.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/hud/hud_keys.h"
+#include "viewer/hud/hud.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

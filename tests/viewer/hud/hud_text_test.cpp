@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/hud/hud_text.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
+#include "viewer/hud/hud_model.h"
 
 #include <gtest/gtest.h>
 
 #include "atmosphere/number/constants.h"
-#include "viewer/hud/hud_theme.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

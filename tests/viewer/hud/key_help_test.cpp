@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/hud/key_help.h"
+#include "viewer/hud/panels.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

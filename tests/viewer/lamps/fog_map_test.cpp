@@ -13,8 +13,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/lamps/fog_follower.h"
-#include "viewer/lamps/fog_painter.h"
+#include "viewer/lamps/fog.h"
 
 namespace alpenglow::viewer {
 namespace {

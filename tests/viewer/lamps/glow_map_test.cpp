@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a map of a lamp's glow says of slopes, against LampGlow.
-#include "viewer/lamps/glow_map.h"
+#include "viewer/lamps/ground_under_lamps.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/lamp/lamp_ray.h"
+#include "atmosphere/lamp/lamp.h"
 #include "atmosphere/number/constants.h"
 
 namespace alpenglow::viewer {

@@ -18,7 +18,6 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
-#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow::viewer {
 namespace {

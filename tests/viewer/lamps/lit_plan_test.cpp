@@ -7,11 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "renderer/lamp/lamp_stage.h"
+#include "renderer/lamp/placed_lamp.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/lamps/ridge.h"
-#include "viewer/lamps/lit_plan.h"
-#include "viewer/lamps/lit_plan_follower.h"
+#include "viewer/lamps/ground_under_lamps.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -12,7 +12,7 @@
 #include "renderer/terrain/obj_file.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/headless_land.h"
-#include "viewer/land/surface_map.h"
+#include "viewer/land/land_pass.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow::viewer {

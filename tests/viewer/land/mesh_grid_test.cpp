@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/mesh_grid.h"
+#include "viewer/land/mesh_land.h"
 
 #include <gtest/gtest.h>
 

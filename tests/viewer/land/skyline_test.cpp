@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/skyline.h"
+#include "viewer/land/seen_chunks.h"
 
 #include <gtest/gtest.h>
 

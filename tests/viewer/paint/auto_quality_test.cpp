@@ -7,7 +7,6 @@
 #include <map>
 
 #include "tests/fixtures/fault_of.h"
-#include "viewer/paint/paint_sizes.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -6,18 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/ray/land_lift.h"
-#include "lut/picture/tone_curve.h"
+#include "atmosphere/ray/bent_view.h"
+#include "lut/picture/tone_mapping.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/far_peak.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/paint/bent_disk.h"
+#include "viewer/paint/painted_view.h"
 #include "viewer/paint/sky_painter.h"
-#include "viewer/paint/view_bend.h"
-#include "viewer/shaders/viewer_texts.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lut/picture/agx_look.h"
+#include "lut/picture/tone_mapping.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flythrough.h"
-#include "viewer/paint/paint_sizes.h"
+#include "viewer/paint/auto_quality.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/paint/exposure_meter.h"
 
 namespace alpenglow::viewer {
 namespace {

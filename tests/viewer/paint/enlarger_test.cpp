@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Small pictures on large screens.
-#include "viewer/paint/enlarger.h"
+#include "viewer/paint/darkroom.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,8 @@
 #include <functional>
 
 #include "tests/viewer/land/headless_land.h"
-#include "viewer/gl/scissor.h"
-#include "viewer/paint/darkroom.h"
-#include "viewer/paint/view_difference.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/paint/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {

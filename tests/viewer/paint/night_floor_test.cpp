@@ -8,7 +8,6 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/light/night_light.h"
-#include "renderer/light/town_light.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pictures of the graphics card against those of the renderer, pixel by pixel.
 #include "viewer/paint/sky_painter.h"
-#include "lut/picture/tone_curve.h"
+#include "lut/picture/tone_mapping.h"
 
 #include <fmt/format.h>
 #include <gdal_priv.h>
@@ -19,7 +19,7 @@
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/paint/key_light.h"
-#include "viewer/paint/view_difference.h"
+#include "viewer/paint/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/paint/spot_meter.h"
+#include "viewer/paint/developer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/paint/star_points.h"
+#include "viewer/paint/star_painter.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/picture/star_pixels.h"
+#include "renderer/picture/sky_pixels.h"
 #include "tests/fixtures/bare_scene.h"
 
 namespace alpenglow::viewer {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/paint/tone_table.h"
+#include "viewer/paint/developer.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/halton.h"
-#include "lut/picture/tone_curve.h"
+#include "atmosphere/number/numerics.h"
+#include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::viewer {
 namespace {

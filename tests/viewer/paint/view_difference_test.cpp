@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/paint/view_difference.h"
+#include "viewer/paint/reference_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/shade/shade_follower.h"
+#include "viewer/shade/shafts.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "renderer/terrain/mesh.h"
 #include "tests/fixtures/rough_land.h"
-#include "viewer/gl/texture_side.h"
-#include "viewer/shade/heights_around.h"
+#include "viewer/gl/gl_objects.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -9,17 +9,15 @@
 
 #include "atmosphere/number/constants.h"
 #include "renderer/shadow/shadow_heights.h"
-#include "renderer/terrain/height_raster.h"
+#include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/shade/shade_map.h"
-#include "viewer/shade/shade_texture.h"
-#include "viewer/shade/shaft_pass.h"
+#include "viewer/shade/shafts.h"
 #include "viewer/shaders/full_screen.h"
 #include "viewer/shaders/uniform_blocks.h"
-#include "viewer/shaders/viewer_texts.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -14,14 +14,14 @@
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/lamps/fog_painter.h"
+#include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
+#include "viewer/paint/darkroom.h"
 #include "viewer/paint/developer.h"
-#include "viewer/paint/enlarger.h"
-#include "viewer/paint/picture_texts.h"
-#include "viewer/shade/shaft_pass.h"
-#include "viewer/shaders/viewer_texts.h"
+#include "viewer/paint/picture_programs.h"
+#include "viewer/shade/shafts.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sun's disk on the graphics card, against sun_disk.h.
+// The sun's disk on the graphics card, against sun.h.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/sun/moon_disk.h"
-#include "atmosphere/sun/sun_disk.h"
+#include "atmosphere/sun/moon.h"
+#include "atmosphere/sun/sun.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/shaders/viewer_texts.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 namespace {

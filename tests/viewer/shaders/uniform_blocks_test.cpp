@@ -10,7 +10,7 @@
 #include "atmosphere/number/constants.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/shaders/viewer_texts.h"
+#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of lamps: LampsBlock of lamp_block.h. Frame: east, north, up at the eye, which is the
+// Light of lamps: LampsBlock of scene_lamps.h. Frame: east, north, up at the eye, which is the
 // origin; lengths are metres. One band a component.
 //
 // Light in the air, with a the angle at which it is scattered, t_c the place of the ray nearest to
@@ -49,7 +49,7 @@ uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
 uniform sampler2DArray lamp_tables;  // share over angles from the axis and around it
 #endif
 #ifdef LAMP_GLOW_MAP
-uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see glow_map.h
+uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see ground_under_lamps.h
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slopes over which a lamp is seen, by compass and distance
@@ -322,7 +322,7 @@ vec4 LampGlowTerm(Lamp lamp, vec2 at, float term) {
   return textureLod(lamp_glow_map, vec3(place, lamp.glow.y), 0.0);
 }
 
-// What the air that a lamp lights brings to a surface; see glow_map.h.
+// What the air that a lamp lights brings to a surface; see ground_under_lamps.h.
 vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
   float sine = dot(towards, lamp.up.xyz);
   float up = dot(normal, lamp.up.xyz);

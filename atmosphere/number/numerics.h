@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The root of a continuous function between two points where its signs differ.
+//
+// Gauss-Legendre rules, and adaptive integration built on them.
+//
+// Small dense systems of linear equations.
+//
+// Points that fill the unit interval evenly, the same in every run: Halton (1960), Numer. Math. 2,
+// 84-90. Coordinates of a point in more dimensions are sequences of different prime bases.
+//
+// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv), over little-endian bytes; -0 reads as 0.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <queue>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace alpenglow::atmosphere {
+
+/// A point within `tolerance` of a root of f in [low, high]; f(low) and f(high) have different
+/// signs or are 0. The tolerance must be larger than the rounding of the bounds. False position
+/// with the Illinois weights (Dowell and Jarratt 1971, BIT 11, 168-174); a step that did not halve
+/// the bracket is followed by a bisection, so the number of steps is bounded.
+template <typename Function>
+[[nodiscard]] double BracketedRoot(const Function& f, double low, double high, double tolerance) {
+  double f_low = f(low);
+  double f_high = f(high);
+  if (f_low == 0.0) return low;
+  if (f_high == 0.0) return high;
+  bool bisect = false;
+  int kept_side = 0;
+  while (std::abs(high - low) > tolerance) {
+    const double width = high - low;
+    const double secant = high - f_high * (width / (f_high - f_low));
+    const bool is_inside = secant > low && secant < high;  // false for 0/0 too
+    const double middle = bisect || !is_inside ? 0.5 * (low + high) : secant;
+    const double f_middle = f(middle);
+    if (f_middle == 0.0) return middle;
+    if ((f_middle < 0.0) == (f_low < 0.0)) {
+      low = middle;
+      f_low = f_middle;
+      if (kept_side == +1) f_high *= 0.5;
+      kept_side = +1;
+    } else {
+      high = middle;
+      f_high = f_middle;
+      if (kept_side == -1) f_low *= 0.5;
+      kept_side = -1;
+    }
+    bisect = high - low > 0.5 * width;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Nodes and weights on [0, 1]; integrates polynomials up to degree 2 n - 1 exactly.
+struct GaussRule {
+  std::vector<double> node;
+  std::vector<double> weight;
+};
+
+inline constexpr int kMaxGaussNodes = 64;
+
+/// The rule of n nodes, 1 <= n <= kMaxGaussNodes, nodes ascending.
+/// Computed once by Newton's method on the Legendre recurrence
+/// (Abramowitz and Stegun 25.4.29); nodes and weights are right to 1e-15.
+[[nodiscard]] const GaussRule& GaussLegendre(int n);
+
+/// Integral of a vector-valued function over consecutive panels, and an estimate of its error.
+struct AdaptiveResult {
+  std::vector<double> value;
+  double error = 0.0;  // largest over components, relative to the largest component
+  std::size_t panels = 0;
+  bool converged = false;
+};
+
+/// Integrates f: double -> std::vector<double> (of `size` values) over [b0, b1], [b1, b2], ... of
+/// ascending breakpoints. Panels are halved, worst first, until the difference between the 10-point
+/// rule and its two halves, summed over panels, is below `relative_tolerance` times the largest
+/// component of the integral.
+template <typename Function>
+[[nodiscard]] AdaptiveResult IntegrateAdaptively(const Function& f, std::size_t size,
+                                                 std::span<const double> breakpoints,
+                                                 double relative_tolerance,
+                                                 std::size_t max_panels = 4096) {
+  struct Panel {
+    double low, high, error;
+    std::vector<double> whole, halves;
+    bool operator<(const Panel& other) const { return error < other.error; }
+  };
+  const GaussRule& rule = GaussLegendre(10);
+  const auto apply = [&](double low, double high) {
+    std::vector<double> sum(size, 0.0);
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const std::vector<double> value = f(low + (high - low) * rule.node[i]);
+      for (std::size_t k = 0; k < size; ++k) sum[k] += rule.weight[i] * (high - low) * value[k];
+    }
+    return sum;
+  };
+  const auto panel = [&](double low, double high, std::vector<double> whole) {
+    const double middle = 0.5 * (low + high);
+    Panel made{low, high, 0.0, std::move(whole), apply(low, middle)};
+    const std::vector<double> right = apply(middle, high);
+    for (std::size_t k = 0; k < size; ++k) {
+      made.halves[k] += right[k];
+      made.error = std::max(made.error, std::abs(made.halves[k] - made.whole[k]));
+    }
+    return made;
+  };
+  std::priority_queue<Panel> open;
+  AdaptiveResult result;
+  result.value.assign(size, 0.0);
+  double error = 0.0;
+  const auto add = [&](Panel made) {
+    for (std::size_t k = 0; k < size; ++k) result.value[k] += made.halves[k];
+    error += made.error;
+    open.push(std::move(made));
+  };
+  for (std::size_t i = 0; i + 1 < breakpoints.size(); ++i) {
+    if (breakpoints[i] < breakpoints[i + 1]) {
+      add(panel(breakpoints[i], breakpoints[i + 1], apply(breakpoints[i], breakpoints[i + 1])));
+    }
+  }
+  const auto largest = [&] {
+    double most = 0.0;
+    for (const double value : result.value) most = std::max(most, std::abs(value));
+    return most;
+  };
+  while (!open.empty() && error > relative_tolerance * largest() && open.size() < max_panels) {
+    const Panel worst = open.top();
+    open.pop();
+    for (std::size_t k = 0; k < size; ++k) result.value[k] -= worst.halves[k];
+    error -= worst.error;
+    const double middle = 0.5 * (worst.low + worst.high);
+    add(panel(worst.low, middle, apply(worst.low, middle)));
+    add(panel(middle, worst.high, apply(middle, worst.high)));
+    // Sums of many differences drift; the true sum of errors is never negative.
+    error = std::max(error, 0.0);
+  }
+  result.panels = open.size();
+  const double scale = largest();
+  result.converged = error <= relative_tolerance * scale;
+  result.error = scale > 0.0 ? error / scale : 0.0;
+  return result;
+}
+
+/// Solves a symmetric positive definite system by Cholesky's factorisation. Throws InternalError
+/// when a pivot is not positive.
+/// @param matrix  n x n, row-major; the lower triangle is read. n = right_side.size().
+[[nodiscard]] std::vector<double> SolvePositiveDefinite(std::vector<double> matrix,
+                                                        std::vector<double> right_side);
+
+/// Point number i >= 0 of the sequence of a base >= 2:
+/// the digits of i mirrored at the point, in [0, 1).
+[[nodiscard]] constexpr double Halton(int i, int base) {
+  double value = 0.0, digit = 1.0;
+  for (; i > 0; i /= base) value += (digit /= base) * (i % base);
+  return value;
+}
+
+class Fnv1a {
+ public:
+  void Add(std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte, word >>= 8) {
+      hash_ = (hash_ ^ (word & 0xffU)) * 0x100000001b3U;
+    }
+  }
+  void Add(double value) { Add(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value)); }
+  void Add(const std::vector<double>& values) {
+    Add(std::uint64_t{values.size()});
+    for (const double value : values) Add(value);
+  }
+  void Add(const std::string& text) {
+    Add(std::uint64_t{text.size()});
+    for (const char letter : text) Add(std::uint64_t{static_cast<unsigned char>(letter)});
+  }
+
+  [[nodiscard]] std::uint64_t hash() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325U;
+};
+
+}  // namespace alpenglow::atmosphere

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "lut/table_commands.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "atmosphere/air/aerosol_mixture.h"
+#include "atmosphere/air/medium.h"
+#include "atmosphere/air/medium_presets.h"
+#include "lut/eval/eval.h"
+#include "lut/program/output_file.h"
+#include "lut/report/report.h"
+#include "lut/store/exchange_tables.h"
+#include "lut/store/table_folder.h"
+#include "lut/train/table_search.h"
+
+namespace alpenglow::lut {
+namespace {
+
+struct BuildOptions {
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool single_scattering_only = false;
+  std::string quality = "standard";
+  std::string tables = "smallest";
+  std::string layout = "native";
+  std::optional<std::string> type, format, max_error;
+  std::optional<int> lowest_sun_deg;
+};
+
+/// The layout of other programs, when one is asked for.
+std::optional<ExchangeOptions> ExchangeOf(const BuildOptions& options) {
+  if (options.layout == "native") return std::nullopt;
+  ExchangeOptions exchange;
+  exchange.layout =
+      options.layout == "takram" ? ExchangeLayout::kTakram : ExchangeLayout::kBruneton;
+  if (options.type) exchange.type = TexelTypeFromName(*options.type);
+  if (options.format) exchange.format = TexelFormatFromName(*options.format);
+  exchange.lowest_sun_deg = options.lowest_sun_deg;
+  return exchange;
+}
+
+/// What CLI11 cannot say by itself: options that contradict each other.
+void CheckLayout(const BuildOptions& options) {
+  if (const auto exchange = ExchangeOf(options)) {
+    if (options.single_scattering_only) {
+      throw CLI::ValidationError("--single-scattering-only", "needs --layout native");
+    }
+    if (const auto fault = FaultOf(*exchange)) throw CLI::ValidationError("--layout", *fault);
+    return;
+  }
+  if (options.type.value_or("float") != "float") {
+    throw CLI::ValidationError("--type", "layout native is float");
+  }
+  if (options.format.value_or("exr") != "exr") {
+    throw CLI::ValidationError("--format", "layout native is exr");
+  }
+  if (options.lowest_sun_deg) {
+    throw CLI::ValidationError("--lowest-sun", "needs --layout bruneton or takram");
+  }
+}
+
+/// Refuses an atmosphere that a file of this name in the folder would replace.
+void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
+  if (!options.atmosphere) return;
+  RequireNoInput({"--out", std::filesystem::path(options.out) / name},
+                 {{"--atmosphere", *options.atmosphere}});
+}
+
+/// One lobe for those who load tables, which hold no phase functions.
+std::string LobeText(const Medium& medium) {
+  if (medium.mie_phase.front().kind != PhaseKind::kTable) return "";
+  const std::size_t middle = medium.wavelengths_nm.size() / 2;
+  return fmt::format(
+      "skylut: warning: the aerosol of {} has a tabulated phase function, and these programs have "
+      "one lobe of Cornette and Shanks; with g = {:.3f} it has the same mean cosine at {:g} nm, "
+      "but "
+      "no aureole\n",
+      medium.name, CornetteShanksG(MeanCosine(MiePhase(medium, middle))),
+      medium.wavelengths_nm[middle]);
+}
+
+void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
+                         const CommonOptions& common) {
+  RequireAtmosphereElsewhere(options, kMediumFileName);
+  const Medium medium =
+      options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("bruneton2017");
+  MakeFolder(options.out);  // before the work
+  WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
+                      exchange, options.out);
+  if (!IsTheMediumThatLoadersAssume(medium)) {
+    Say(fmt::format(
+        "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
+        "these tables are for {}\n",
+        medium.name));
+    Say(LobeText(medium));
+  }
+}
+
+void Build(const BuildOptions& options, const CommonOptions& common) {
+  if (const auto exchange = ExchangeOf(options)) {
+    BuildExchangeTables(options, *exchange, common);
+    return;
+  }
+  const Medium medium =
+      options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("earth");
+  if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
+    MakeFolder(options.out);  // before the work
+    const TableChoice choice = ChooseTables(
+        medium, {.max_error = *max_error,
+                 .wanted = options.tables == "all" ? TablesWanted::kAll : TablesWanted::kSmallest});
+    WriteTables(choice, options.out);
+    Print(ChoiceText(choice, *max_error));
+    return;
+  }
+  BuildTableFolder(medium, TableQualityFromName(options.quality),
+                   options.single_scattering_only ? TableOrders::kSingleOnly : TableOrders::kAll,
+                   options.out, common.progress_style());
+}
+
+}  // namespace
+
+Subcommand AddBuildCommand(CLI::App& app) {
+  const auto options = std::make_shared<BuildOptions>();
+  CLI::App& build = *app.add_subcommand(
+      "build",
+      "Build the tables of an atmosphere: transmittance, single scattering, multiple scattering.");
+  build.add_option("--out", options->out, "Folder for the tables; made when missing")
+      ->check(FaultOfFolderName)
+      ->required();
+  AddAtmosphereOption(build, options->atmosphere);
+  CLI::Option* quality =
+      build
+          .add_option(
+              "--quality", options->quality,
+              "preview (128x32; 6x16x32x24; 28x14), standard (256x64; 8x32x64x48; 32x18) or "
+              "fine (512x128; 10x48x96x64; 64x32): sizes of transmittance mu x r; single "
+              "scattering azimuth x mu_s x mu x r; multiple scattering mu_s x altitudes")
+          ->check(CLI::IsMember({"preview", "standard", "fine"}))
+          ->capture_default_str();
+  CLI::Option* max_error =
+      build
+          .add_option("--max-error", options->max_error,
+                      "Relative error, like 0.5%: chooses the number of ray nodes, which tables "
+                      "to make and the smallest sizes so that sky, aerial perspective, twilight "
+                      "and irradiance stay below it (rms), and prints what it measured")
+          ->check(FaultOfRelativeError)
+          ->excludes(quality);
+  build
+      .add_option("--tables", options->tables,
+                  "With --max-error: smallest (whatever needs least memory; what closed forms and "
+                  "a few nodes along the ray do as well gets no table) or all three")
+      ->check(CLI::IsMember({"smallest", "all"}))
+      ->needs(max_error)
+      ->capture_default_str();
+  build
+      .add_flag("--single-scattering-only", options->single_scattering_only,
+                "Leave the table of multiple scattering out")
+      ->excludes(max_error);
+  build
+      .add_option("--layout", options->layout,
+                  "native, or the files that other programs load: bruneton (his demo), takram "
+                  "(three-atmosphere); three wavelengths, by default those of preset bruneton2017, "
+                  "the only atmosphere that the latter's sky draws")
+      ->check(CLI::IsMember({"native", "bruneton", "takram"}))
+      ->excludes(quality)
+      ->excludes(max_error)
+      ->capture_default_str();
+  build.add_option("--type", options->type, "float or half; default: float, but half for takram")
+      ->check(CLI::IsMember({"float", "half"}));
+  build
+      .add_option("--format", options->format,
+                  "exr, bin (half, takram) or dat (float, bruneton): default exr, but dat for "
+                  "bruneton")
+      ->check(CLI::IsMember({"exr", "bin", "dat"}));
+  build
+      .add_option(
+          "--lowest-sun", options->lowest_sun_deg,
+          "Degrees from the zenith of the lowest sun in the tables, which the programs have "
+          "as a constant: 102 (default of bruneton: his demo as it stands, in half "
+          "precision) or 120 (takram, which has no other, and his demo when compiled for "
+          "single precision)")
+      ->check(CLI::IsMember({102, 120}));
+  build.parse_complete_callback([options] { CheckLayout(*options); });
+  build.footer(
+      "Examples: skylut build --out tables --atmosphere atmosphere.toml --quality fine\n"
+      "          skylut build --out tables --max-error 1%\n"
+      "          skylut build --out takram --layout takram");
+  return [options](const CommonOptions& common) { Build(*options, common); };
+}
+
+namespace {
+
+struct ReportCommandOptions {
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool quick = false;
+};
+
+void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOptions& common) {
+  const Report report = MeasureReport(
+      {.mediums = MediumsOfReport(options.atmosphere, options.quick),
+       .hard_mediums = options.atmosphere || options.quick ? std::vector<Medium>{} : HardMediums(),
+       .quick = options.quick,
+       .progress = common.progress_style()});
+  WriteReport(report, options.out);
+  if (!common.quiet) Print(SummaryOf(report));
+}
+
+}  // namespace
+
+Subcommand AddReportCommand(CLI::App& app) {
+  const auto options = std::make_shared<ReportCommandOptions>();
+  CLI::App& report = *app.add_subcommand(
+      "report",
+      "Measure every method against the judges, error against time and memory, by day, at sunset "
+      "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
+  report.add_option("--out", options->out, "Folder for the report; made when missing")
+      ->check(FaultOfFolderName)
+      ->required();
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) or preset; without it the presets earth and hazy, and, "
+                    "for light of all "
+                    "orders, dust, thick haze and thick air");
+  report.add_flag("--quick", options->quick,
+                  "Few rays and methods, one atmosphere: a test of the report, not of the methods");
+  report.footer("Example: skylut report --out report");
+  return [options](const CommonOptions& common) { WriteMeasuredReport(*options, common); };
+}
+
+}  // namespace alpenglow::lut

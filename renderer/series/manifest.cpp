@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/series/manifest.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/eclipse.h"
+#include "atmosphere/sun/moon.h"
+#include "atmosphere/sun/sun.h"
+#include "atmosphere/text/error.h"
+#include "lut/program/messages.h"
+#include "lut/program/program.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+/// FNV-1a, 64 bits (Fowler, Noll, Vo).
+class Hash {
+ public:
+  void Add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+    }
+  }
+  [[nodiscard]] std::string Text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+std::string HashOfFile(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Hash hash;
+  std::vector<char> block(1U << 20U);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
+         stream.gcount() > 0) {
+    hash.Add({block.data(), static_cast<std::size_t>(stream.gcount())});
+  }
+  if (!stream.eof()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  return hash.Text();
+}
+
+std::string DegreesText(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
+
+std::string HeightText(const Height& height) {
+  return fmt::format("{} m above the {}", height.value_m,
+                     height.above_ground ? "ground" : "ellipsoid");
+}
+
+std::string TerrainText(const TerrainSource& terrain) {
+  switch (terrain.kind) {
+    case TerrainSource::Kind::kBuiltInRange:
+      return !terrain.centre
+                 ? "built-in range"
+                 : fmt::format("{} around {}, {}",
+                               terrain.range_seed == 0
+                                   ? "built-in range"
+                                   : fmt::format("built-in range {}", terrain.range_seed),
+                               DegreesText(terrain.centre->latitude_rad),
+                               DegreesText(terrain.centre->longitude_rad));
+    case TerrainSource::Kind::kElevationModel:
+      return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
+                         HashOfFile(terrain.file),
+                         terrain.voids == VoidPolicy::kFill ? "filled" : "open");
+    case TerrainSource::Kind::kMesh:
+      return fmt::format("{}, hash {}{}", terrain.file.filename().string(),
+                         HashOfFile(terrain.file), terrain.up == UpAxis::kY ? ", y up" : "");
+    case TerrainSource::Kind::kNone:
+      return "none";
+  }
+  throw InternalError("unknown kind of terrain");
+}
+
+std::string LightText(const Light& light) {
+  std::string text = fmt::format(
+      "{} at {}, {}, {}: {} cd, {} K, radius {} m",
+      light.type == Light::Type::kSpot ? "spot" : "point", DegreesText(light.latitude_rad),
+      DegreesText(light.longitude_rad), HeightText(light.height),
+      light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
+      light.temperature_k, light.radius_m);
+  if (light.ies) {
+    text += fmt::format(", {}, hash {}", light.ies->filename().string(), HashOfFile(*light.ies));
+  } else if (light.type == Light::Type::kPoint) {
+    return text;
+  }
+  text += fmt::format(", heading {}, pitch {}", DegreesText(light.heading_rad),
+                      DegreesText(light.pitch_rad));
+  if (light.ies) return text;
+  return text +
+         fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
+}
+
+std::string FogText(const Fog& fog) {
+  return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {} g {}",
+                     fog.extinction_per_m,
+                     fog.base_height_m ? fmt::format("{} m", *fog.base_height_m) : "the ground",
+                     fog.scale_height_m, fog.albedo, NameOf(fog.phase.kind), fog.phase.g);
+}
+
+}  // namespace
+
+Metadata SceneMetadata(const Scene& scene) {
+  const Camera& camera = scene.camera;
+  Metadata metadata = {
+      {"Software", ProducerText()},
+      {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
+      {"alpenglow.atmosphere", scene.medium.name},
+      {"alpenglow.atmosphere_hash", fmt::format("{:016x}", MediumHash(scene.medium))},
+      {"alpenglow.latitude_deg", DegreesText(scene.place.latitude_rad)},
+      {"alpenglow.longitude_deg", DegreesText(scene.place.longitude_rad)},
+      {"alpenglow.camera_height", HeightText(camera.height)},
+      {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
+      {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
+      {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
+      {"alpenglow.fov_deg", DegreesText(camera.fov_rad)},
+      {"alpenglow.terrain", TerrainText(scene.terrain)}};
+  if (camera.lens) {
+    const ThinLens& lens = *camera.lens;
+    metadata["alpenglow.lens"] =
+        fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
+                    lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
+  }
+  if (camera.polariser_rad)
+    metadata["alpenglow.polariser_deg"] = DegreesText(*camera.polariser_rad);
+  if (camera.shutter_s > 0.0) metadata["alpenglow.shutter_s"] = fmt::format("{}", camera.shutter_s);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
+  }
+  if (scene.town_zenith)
+    metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
+  if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
+  return metadata;
+}
+
+Metadata PoseMetadata(const CameraPose& pose) {
+  return {{"alpenglow.latitude_deg", DegreesText(pose.place.latitude_rad)},
+          {"alpenglow.longitude_deg", DegreesText(pose.place.longitude_rad)},
+          {"alpenglow.camera_height", HeightText({pose.place.height_m, false})},
+          {"alpenglow.heading_deg", DegreesText(pose.heading_rad)},
+          {"alpenglow.pitch_deg", DegreesText(pose.pitch_rad)},
+          {"alpenglow.roll_deg", DegreesText(pose.roll_rad)},
+          {"alpenglow.fov_deg", DegreesText(pose.fov_rad)}};
+}
+
+Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
+  Metadata metadata = SceneMetadata(scene);
+  metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
+  metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
+  if (settings.noise) metadata["alpenglow.noise"] = fmt::format("{}", *settings.noise);
+  metadata["alpenglow.filter"] = NameOf(settings.filter);
+  metadata["alpenglow.air_nodes"] = fmt::format("{}", settings.air_nodes);
+  metadata["alpenglow.effects"] = NameOf(settings.effects);
+  std::vector<std::string> layers;
+  for (const PictureLayer layer : settings.layers) layers.push_back(NameOf(layer));
+  metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
+  return metadata;
+}
+
+Metadata NotesOn(const RayCount& rays, const RenderSettings& settings) {
+  const double pixels = static_cast<double>(settings.width) * settings.height;
+  return {{"alpenglow.note.rays",
+           fmt::format("{:.3f} a pixel, {} to {}", static_cast<double>(rays.rays) / pixels,
+                       rays.least, rays.most)}};
+}
+
+std::string Fingerprint(const Metadata& metadata) {
+  Hash hash;
+  for (const auto& [name, value] : metadata) {
+    hash.Add(name);
+    hash.Add({"\0", 1});
+    hash.Add(value);
+    hash.Add({"\0", 1});
+  }
+  return hash.Text();
+}
+
+namespace {
+
+std::string LineOf(const Frame& frame, const FrameListing& listing) {
+  const GeodeticPosition place = listing.place_of(frame);
+  const SunPosition sun = SunAt(place, frame.instant);
+  const MoonPosition moon = MoonAt(place, frame.instant);
+  return fmt::format("{},{},{},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{}\n", frame.number,
+                     FormatUtc(frame.instant),
+                     listing.zone ? FormatInZone(frame.instant, *listing.zone) : "",
+                     sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
+                     CoveredLight(place, frame.instant), moon.azimuth_rad / kRadiansPerDegree,
+                     moon.elevation_rad / kRadiansPerDegree, moon.IlluminatedFraction(),
+                     listing.name ? listing.name->Exr(frame.number).string() : "");
+}
+
+}  // namespace
+
+std::string ListOf(const std::vector<Frame>& frames, const FrameListing& listing) {
+  std::string text =
+      "frame,utc,local_time,sun_azimuth_deg,sun_elevation_deg,sun_covered,moon_azimuth_deg,"
+      "moon_elevation_deg,moon_illuminated,file\n";
+  for (const Frame& frame : frames) text += LineOf(frame, listing);
+  return text;
+}
+
+namespace {
+
+std::string StringOrNull(const std::string& text) {
+  return text.empty() ? "null" : JsonString(text);
+}
+
+std::string NumberOrNull(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "null";
+}
+
+std::string PoseOf(const ManifestEntry& entry) {
+  if (!entry.pose) return "";
+  const CameraPose& pose = *entry.pose;
+  return fmt::format(
+      ",\"t_s\":{:.6f},\"latitude\":{:.8f},\"longitude\":{:.8f},\"height_m\":{:.3f},"
+      "\"heading\":{:.6f},\"pitch\":{:.6f},\"roll\":{:.6f},\"fov\":{:.6f}",
+      entry.frame.path_s, pose.place.latitude_rad / kRadiansPerDegree,
+      pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m,
+      pose.heading_rad / kRadiansPerDegree, pose.pitch_rad / kRadiansPerDegree,
+      pose.roll_rad / kRadiansPerDegree, pose.fov_rad / kRadiansPerDegree);
+}
+
+std::string ObjectOf(const ManifestEntry& entry) {
+  const SunPosition sun = SunAt(entry.place, entry.frame.instant);
+  const MoonPosition moon = MoonAt(entry.place, entry.frame.instant);
+  return fmt::format(
+      "{{\"frame\":{},\"file\":{},\"utc\":{},\"local_time\":{},\"sun_azimuth_deg\":{:.4f},"
+      "\"sun_elevation_deg\":{:.4f},\"sun_covered\":{:.6f},\"moon_azimuth_deg\":{:.4f},\"moon_"
+      "elevation_deg\":{:.4f},"
+      "\"moon_illuminated\":{:.4f},\"illuminance_lx\":{},\"ev100\":{},\"exposure\":{}{}}}",
+      entry.frame.number, JsonString(entry.file), JsonString(FormatUtc(entry.frame.instant)),
+      StringOrNull(entry.local_time), sun.azimuth_rad / kRadiansPerDegree,
+      sun.elevation_rad / kRadiansPerDegree, entry.sun_covered,
+      moon.azimuth_rad / kRadiansPerDegree, moon.elevation_rad / kRadiansPerDegree,
+      moon.IlluminatedFraction(), NumberOrNull(entry.illuminance_lx), NumberOrNull(entry.ev100),
+      StringOrNull(entry.exposure), PoseOf(entry));
+}
+
+}  // namespace
+
+std::string JsonOfManifest(const std::vector<ManifestEntry>& entries, const Metadata& settings) {
+  std::string text = fmt::format("{{\"program\":{},\n\"settings\":{{", JsonString(ProducerText()));
+  const char* between = "";
+  for (const auto& [name, value] : settings) {
+    text += fmt::format("{}\n{}:{}", between, JsonString(name), JsonString(value));
+    between = ",";
+  }
+  text += "},\n\"frames\":[";
+  between = "";
+  for (const ManifestEntry& entry : entries) {
+    text += fmt::format("{}\n{}", between, ObjectOf(entry));
+    between = ",";
+  }
+  return text + "]}\n";
+}
+
+}  // namespace alpenglow::renderer

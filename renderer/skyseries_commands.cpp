@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/skyseries_commands.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "atmosphere/air/medium.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/sun/moon.h"
+#include "atmosphere/sun/sun.h"
+#include "lut/picture/look.h"
+#include "lut/program/messages.h"
+#include "lut/program/output_file.h"
+#include "lut/program/program.h"
+#include "renderer/picture/render.h"
+#include "renderer/report/report.h"
+#include "renderer/scene/scene.h"
+#include "renderer/series/day_times.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+struct PictureReportOptions {
+  CommonOptions common;
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool quick = false;
+};
+
+void WriteMeasuredReport(const PictureReportOptions& options) {
+  const ThreadLimit threads(options.common.threads);
+  const Report report =
+      MeasurePictureReport({.mediums = MediumsOfReport(options.atmosphere, options.quick),
+                            .quick = options.quick,
+                            .progress = options.common.progress_style()});
+  WriteReport(report, options.out);
+  if (!options.common.quiet) Print(SummaryOf(report));
+}
+
+}  // namespace
+
+std::function<void()> AddPictureReportCommand(CLI::App& app) {
+  const auto options = std::make_shared<PictureReportOptions>();
+  CLI::App& report = *app.add_subcommand(
+      "report",
+      "Measure the air before mountains, shafts, lamps and whole pictures against slow judges, "
+      "error against time: CSV, SVG plots, summary.md and a page, index.html.");
+  report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
+  report.add_option("--out", options->out, "Folder for the report; made when missing")
+      ->check(FaultOfFolderName)
+      ->required();
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) of the air before mountains; without it the presets "
+                    "earth and hazy");
+  report.add_flag("--quick", options->quick,
+                  "Few rays and small pictures: a test of the report, not of the methods");
+  AddCommonOptions(report, "skyseries", options->common);
+  report.footer("Example: skyseries report --out report");
+  return [options] { WriteMeasuredReport(*options); };
+}
+
+namespace {
+
+struct TimesOptions {
+  CommonOptions common;
+  std::optional<std::string> scene_file, zone, out;
+  std::optional<double> latitude_deg, longitude_deg;
+  double height_m = 0.0;
+  std::string date = "today";
+  int days = 1;
+  std::optional<std::string> plot;
+  double every_min = 30.0;
+};
+
+/// The scene, or a place without terrain.
+Scene SceneOf(const TimesOptions& options) {
+  if (options.scene_file) return ReadScene(*options.scene_file);
+  Scene scene;
+  scene.place = PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, 0.0);
+  scene.camera.height = {std::max(options.height_m, 0.0), false};
+  scene.medium = MediumPreset("earth");
+  scene.terrain.kind = TerrainSource::Kind::kNone;
+  return scene;
+}
+
+/// The place and the first day.
+EventDay FirstDayOf(const TimesOptions& options) {
+  EventDay day;
+  if (options.scene_file) {
+    const Scene scene = ReadScene(*options.scene_file);
+    day.place = scene.place;
+    day.zone = scene.zone;
+  } else {
+    day.place = PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, options.height_m);
+  }
+  if (options.zone) day.zone = options.zone;
+  day.around = DayFromText(options.date, day);
+  return day;
+}
+
+/// From the first noon on, by night as by day.
+void WritePlot(const TimesOptions& options, const EventDay& first) {
+  const SceneRenderer renderer(SceneOf(options));
+  const double span_s = 86400.0 * options.days, step_s = 60.0 * options.every_min;
+  std::vector<PlottedMoment> moments;
+  for (double at_s = 0.0; at_s <= span_s; at_s += step_s) {
+    ThrowIfInterrupted();
+    const UtcInstant instant = AddSeconds(*first.around, at_s);
+    const double lux = renderer.Illuminance(instant);
+    moments.push_back({instant, SunAt(first.place, instant).elevation_rad / kRadiansPerDegree,
+                       MoonAt(first.place, instant).elevation_rad / kRadiansPerDegree, lux,
+                       IncidentEv100(lux)});
+  }
+  WriteTextAtomically(*options.plot, SvgOfDay(moments, first.zone, PublishedLightLevels()));
+}
+
+void WriteTimes(const TimesOptions& options) {
+  const EventDay first = FirstDayOf(options);
+  const std::vector<DayTimes> days = TimesOfDays(first, options.days);
+  if (options.out) {
+    WriteTextAtomically(*options.out, CsvOf(days));
+  } else {
+    Print(TableOf(days, first.zone));
+  }
+  if (options.plot) WritePlot(options, first);
+}
+
+}  // namespace
+
+std::function<void()> AddTimesCommand(CLI::App& app) {
+  const auto options = std::make_shared<TimesOptions>();
+  CLI::App& times = *app.add_subcommand(
+      "times", "Print when sun and moon rise, culminate and set at a place, and the twilights.");
+  times.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
+  CLI::Option* file = times.add_option("SCENE", options->scene_file, "Scene file (TOML)");
+  CLI::Option* latitude = times.add_option("--latitude", options->latitude_deg, "Degrees north")
+                              ->check(CLI::Range(-90.0, 90.0))
+                              ->excludes(file);
+  times.add_option("--longitude", options->longitude_deg, "Degrees east")
+      ->check(CLI::Range(-180.0, 360.0))
+      ->needs(latitude);
+  latitude->needs("--longitude");
+  times.parse_complete_callback([file, latitude] {
+    if (!*file && !*latitude) throw CLI::RequiresError("times", "SCENE, or --latitude");
+  });
+  times
+      .add_option("--height", options->height_m,
+                  "Metres above the ellipsoid; from high places the horizon is lower. Events of "
+                  "skyseries --at are those of height 0")
+      ->check(CLI::Range(-12000.0, 1e9))
+      ->excludes(file)
+      ->capture_default_str();
+  times.add_option("--zone", options->zone,
+                   "IANA zone of days and times (default: the scene's; without one the days are "
+                   "those of the meridian, and the times UTC)");
+  times.add_option("--date", options->date, "First day: 2026-06-21, today, tomorrow, yesterday")
+      ->capture_default_str();
+  times.add_option("--days", options->days, "Number of days, 1 to 3660")
+      ->check(CLI::Range(1, 3660))
+      ->capture_default_str();
+  times.add_option("--out", options->out, "CSV file, with instants of UTC, instead of a table")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".csv"); });
+  CLI::Option* plot =
+      times
+          .add_option(
+              "--plot", options->plot,
+              "SVG of sun, moon and the light on level ground from the first noon on, by the "
+              "scene's air or a clear one, beside published levels")
+          ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
+  times.add_option("--minutes", options->every_min, "Between points of the plot, 1 to 1440")
+      ->check(CLI::Range(1.0, 1440.0))
+      ->needs(plot)
+      ->capture_default_str();
+  AddCommonOptions(times, "skyseries", options->common);
+  times.footer(
+      "Example: a year on Mount Fuji\n"
+      "  skyseries times --latitude 35.36 --longitude 138.73 --zone Asia/Tokyo --date 2026-01-01 "
+      "--days 365 --out fuji.csv\n"
+      "Example: the light of a month of nights\n"
+      "  skyseries times --latitude 35.36 --longitude 138.73 --zone Asia/Tokyo --days 30 --plot "
+      "month.svg");
+  return [options] { WriteTimes(*options); };
+}
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Prints how large the code is and how it is divided, and fails where it has become worse.
+
+    python3 tests/shape.py                # all rows
+    python3 tests/shape.py --build build/ci    # with the size of the build
+
+LIMITS holds the rows that must never become worse. A change that makes a row better lowers its limit.
+The rules that hold without exception (folder order, namespaces) are in source_rules.py.
+"""
+import argparse
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+
+TREE = pathlib.Path(__file__).resolve().parent.parent
+LAYERS = ("atmosphere", "lut", "renderer", "viewer")
+SOURCES = (".h", ".cpp", ".glsl")
+MOST_PUBLIC_METHODS = 20
+LIMITS = {
+    "source files of the four layers": 541,
+    "types with more than 20 public methods": 7,
+    "files over 500 lines": 9,
+    "installed headers": 146,
+    "comment blocks that start without a subject, %": 19.3,
+}
+LEAST_MEDIAN = 120  # lines of a file, in every layer
+# A sentence whose first word points at something that the reader must guess.
+FRAGMENT = re.compile(r"(Of|What|Which|Whose|Whether|Where|How|That|The same|As|Its|Those|Not|Nothing|Only) ")
+
+
+def files(folder, suffixes=SOURCES):
+    return sorted(file for file in (TREE / folder).rglob("*") if file.suffix in suffixes)
+
+
+def text_of(file):
+    return file.read_text(encoding="utf-8")
+
+
+def line_count(paths):
+    return sum(text_of(file).count("\n") for file in paths)
+
+
+def without_comments(text):
+    text = re.sub(r"//[^\n]*", "", text)
+    return re.sub(r'"(?:\\.|[^"\\\n])*"', '""', text)
+
+
+def body_from(text, opening):
+    """The text between the brace at `opening` and its partner."""
+    depth = 0
+    for at in range(opening, len(text)):
+        depth += {"{": 1, "}": -1}.get(text[at], 0)
+        if depth == 0:
+            return text[opening + 1:at]
+    return text[opening + 1:]
+
+
+def flat(body):
+    """The declarations of a class without the bodies in them."""
+    out, depth = [], 0
+    for letter in body:
+        if letter == "}":
+            depth -= 1
+            out.append(";" if depth == 0 else "")
+        if depth == 0 and letter not in "{}":
+            out.append(letter)
+        if letter == "{":
+            depth += 1
+    return "".join(out)
+
+
+def public_methods(kind, body):
+    """How many functions a class declares as public; constructors and operators do not count."""
+    count, is_public = 0, kind == "struct"
+    for part in re.split(r"\b(public|protected|private)\s*:", flat(body)):
+        if part in ("public", "protected", "private"):
+            is_public = part == "public"
+        elif is_public:
+            for statement in part.split(";"):
+                name = re.search(r"(\w+)\s*\(", re.sub(r"\[\[.*?\]\]", "", statement))
+                has_result = name and re.search(r"[\w>&*]\s+[&*]*$", statement[:statement.find(name[1] + "(")])
+                if has_result and "=" not in statement[:name.start()] and "operator" not in statement:
+                    count += 1
+    return count
+
+
+def types_of(text):
+    text = without_comments(text)
+    for found in re.finditer(r"\b(class|struct) (\w+)(?: final)?(?:\s*:[^;{]*)?\s*\{", text):
+        yield found[1], found[2], body_from(text, found.end() - 1)
+
+
+def large_types():
+    found = {}
+    for layer in LAYERS:
+        for file in files(layer, (".h",)):
+            for kind, name, body in types_of(text_of(file)):
+                methods = public_methods(kind, body)
+                if methods > MOST_PUBLIC_METHODS:
+                    found[name] = methods
+    return found
+
+
+def comment_blocks():
+    """The first line of every block of comments in the layers, without its slashes."""
+    for layer in LAYERS:
+        for file in files(layer):
+            before = ""
+            for line in text_of(file).splitlines():
+                now = line.strip()
+                if now.startswith("//") and not before.startswith("//") and "SPDX" not in now:
+                    yield now.lstrip("/ <")
+                before = now
+
+
+def installed_headers():
+    count = 0
+    for layer in LAYERS:
+        lists = text_of(TREE / layer / "CMakeLists.txt")
+        listed = re.search(r"HEADERS(.*?)\)", lists, re.DOTALL)
+        count += len(re.findall(r"\S+\.(?:h|glsl)", listed[1])) if listed else 0
+    return count
+
+
+def build_size(build):
+    commands = subprocess.run(["ninja", "-C", build, "-t", "commands"], capture_output=True, text=True, check=True)
+    lines = commands.stdout.splitlines()
+    return {"translation units": sum(" -c " in line for line in lines), "build edges": len(lines)}
+
+
+def rows(build):
+    shape = {}
+    for layer in LAYERS:
+        lengths = [text_of(file).count("\n") for file in files(layer)]
+        shape[f"{layer}: files / lines / median"] = (len(lengths), sum(lengths), statistics.median(lengths))
+    code = [file for layer in LAYERS for file in files(layer)]
+    shape["source files of the four layers"] = len(code)
+    shape["lines of the four layers"] = line_count(code)
+    shape["lines of tests"] = line_count(files("tests"))
+    shape["files over 500 lines"] = sum(text_of(file).count("\n") > 500 for file in code)
+    large = large_types()
+    shape["types with more than 20 public methods"] = len(large)
+    shape["the largest of them"] = ", ".join(f"{name} {count}" for name, count in
+                                             sorted(large.items(), key=lambda item: -item[1])[:5])
+    blocks = list(comment_blocks())
+    fragments = sum(bool(FRAGMENT.match(block)) for block in blocks)
+    shape["comment blocks"] = len(blocks)
+    shape["comment blocks that start without a subject, %"] = round(100.0 * fragments / len(blocks), 1)
+    shape["installed headers"] = installed_headers()
+    if build:
+        shape.update(build_size(build))
+    return shape
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", help="build folder of Ninja")
+    shape = rows(parser.parse_args().build)
+    for name, value in shape.items():
+        print(f"{name}: {value}")
+    worse = [f"{name}: {shape[name]}, the limit is {limit}" for name, limit in LIMITS.items() if shape[name] > limit]
+    worse += [f"{layer}: the median file has fewer than {LEAST_MEDIAN} lines" for layer in LAYERS
+              if shape[f"{layer}: files / lines / median"][2] < LEAST_MEDIAN]
+    print("\n".join(worse), file=sys.stderr)
+    return 1 if worse else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/ground/sky_on_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "lut/sky/sky_view.h"
+#include "renderer/ground/band_light.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+const glm::dvec3 kUp(0.0, 0.0, 1.0);
+
+BandTexel TexelOf(const BandLight& light) {
+  BandTexel texel{};
+  std::copy_n(light.value.begin(), light.count, texel.begin());
+  return texel;
+}
+
+BandLight Shown(const OpenSky& sky, const Water& water, double mu_s, const glm::dvec3& to_eye) {
+  BandLight sum(sky.bands());
+  const MirroredRays mirrored = water.Mirrored(kUp, to_eye);
+  for (const MirroredRay& ray : mirrored.All())
+    sum = sum + static_cast<float>(ray.weight) * sky.Radiance(0.0, mu_s, ray.direction);
+  return sum;
+}
+
+}  // namespace
+
+BandLight LevelSky::Under(const DiffuseLight& diffuse, double sun_elevation_rad) {
+  return diffuse.SkyIrradiance(0.0, std::sin(std::max(sun_elevation_rad, kLowest_rad)));
+}
+
+std::vector<BandTexel> LevelSky::Of(const DiffuseLight& diffuse) {
+  std::vector<BandTexel> texels;
+  texels.reserve(kNodes);
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    const double elevation_rad =
+        kLowest_rad + kRange_rad * static_cast<double>(i) / static_cast<double>(kNodes - 1);
+    texels.push_back(TexelOf(Under(diffuse, elevation_rad)));
+  }
+  return texels;
+}
+
+// The sky's sectors do not lie symmetrically about the sun: the mean of both sides does.
+std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const DiffuseLight& diffuse,
+                                     const Water& water, const glm::dvec3& to_sun) {
+  const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
+  const BandLight level = diffuse.SkyIrradiance(0.0, mu_s);
+  const double flat = std::hypot(to_sun.x, to_sun.y);
+  const glm::dvec3 sunward =
+      flat > 1e-9 ? glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+  const glm::dvec3 aside(-sunward.y, sunward.x, 0.0);
+  std::vector<BandTexel> texels;
+  texels.reserve(kSide * kSide);
+  for (std::size_t i = 0; i < kSide * kSide; ++i) {
+    const double row = static_cast<double>(i / kSide) / static_cast<double>(kSide - 1);
+    const double column = static_cast<double>(i % kSide) / static_cast<double>(kSide - 1);
+    const double mu = std::max(row * row, 1e-6), sine = std::sqrt(1.0 - std::min(mu * mu, 1.0));
+    const double along = 2.0 * column * column - 1.0;
+    const double across = std::sqrt(std::max(1.0 - along * along, 0.0));
+    const auto seen_from = [&](double side) {
+      return Shown(sky, water, mu_s, sine * (along * sunward + side * across * aside) + mu * kUp);
+    };
+    BandLight both = 0.5F * (seen_from(1.0) + seen_from(-1.0));
+    for (std::size_t band = 0; band < both.count; ++band)
+      both[band] /= std::max(level[band], 1e-30F);
+    texels.push_back(TexelOf(both));
+  }
+  return texels;
+}
+
+namespace {
+
+// A coarse table of the sky: what is taken from it are means over half of it.
+constexpr SkyViewSize kCoarseSky{.sky_rows = 20, .ground_rows = 5, .azimuths = 9, .ray_nodes = 8};
+constexpr std::size_t kSkyRows = 48;     // even in the sine of the elevation
+constexpr std::size_t kSkyColumns = 24;  // of half a turn from the sun's azimuth
+
+/// A part of the sky on one side of the sun, and its mirror image.
+struct SkyPart {
+  glm::vec3 towards, mirrored;  // unit: towards the sun, aside, upwards
+  std::array<float, 4> light;   // radiance times solid angle
+};
+
+std::vector<SkyPart> PartsOf(const SkyView& sky) {
+  constexpr auto kSolidAngle = static_cast<float>(kPi / (kSkyRows * kSkyColumns));
+  std::vector<double> azimuths;
+  for (std::size_t i = 0; i < kSkyColumns; ++i)
+    azimuths.push_back(kPi * (static_cast<double>(i) + 0.5) / kSkyColumns);
+  const SkyAzimuths columns(sky, azimuths);
+  std::vector<float> radiance(kSkyColumns * sky.stride());
+  std::vector<SkyPart> parts;
+  for (std::size_t row = 0; row < kSkyRows; ++row) {
+    const double z = (static_cast<double>(row) + 0.5) / kSkyRows, flat = std::sqrt(1.0 - z * z);
+    sky.FillRow(std::acos(z), columns, radiance);
+    for (std::size_t column = 0; column < kSkyColumns; ++column) {
+      const double x = flat * std::cos(azimuths[column]), y = flat * std::sin(azimuths[column]);
+      SkyPart part{{x, y, z}, {x, -y, z}, {}};
+      for (std::size_t band = 0; band < sky.bands(); ++band)
+        part.light[band] = kSolidAngle * radiance[column * sky.stride() + band];
+      parts.push_back(part);
+    }
+  }
+  return parts;
+}
+
+std::array<float, 4> IrradianceOn(const std::vector<SkyPart>& parts, const glm::vec3& normal) {
+  std::array<float, 4> sum{};
+  for (const SkyPart& part : parts) {
+    const float falls = std::max(glm::dot(normal, part.towards), 0.0F) +
+                        std::max(glm::dot(normal, part.mirrored), 0.0F);
+    for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += falls * part.light[band];
+  }
+  return sum;
+}
+
+// On the slope of these components; beyond all slopes as the light runs towards the rim.
+std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, float up) {
+  const float radius = std::hypot(sunward, up);
+  const auto at = [&](float share) {
+    const float x = share * sunward, z = share * up;
+    return IrradianceOn(parts, {x, std::sqrt(std::max(1.0F - x * x - z * z, 0.0F)), z});
+  };
+  if (radius <= 1.0F) return at(1.0F);
+  constexpr float kInside = 0.9F, kLeast = 0.1F;
+  const std::array<float, 4> rim = at(1.0F / radius), inside = at(kInside / radius);
+  std::array<float, 4> beyond{};
+  for (std::size_t band = 0; band < beyond.size(); ++band)
+    beyond[band] =
+        std::max(rim[band] + (radius - 1.0F) / (1.0F - kInside) * (rim[band] - inside[band]),
+                 kLeast * rim[band]);
+  return beyond;
+}
+
+}  // namespace
+
+SkyTilt::SkyTilt(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+                 double mu_s) {
+  ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
+  const std::vector<SkyPart> parts = PartsOf(SkyView(air, diffuse, altitude_m, mu_s, kCoarseSky));
+  for (std::size_t row = 0; row < kRows; ++row) {
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const float sunward = static_cast<float>(column) / 4.0F - 1.0F;
+      nodes[row * kColumns + column] = NodeAt(parts, sunward, static_cast<float>(row) / 4.0F);
+    }
+  }
+}
+
+std::array<float, 4> SkyTilt::On(double n_up, double n_sunward) const {
+  const auto u = static_cast<float>(shared::OpenSkyColumn(n_sunward));
+  const auto v = static_cast<float>(shared::OpenSkyRow(n_up));
+  const auto column = std::min(static_cast<std::size_t>(u), kColumns - 2);
+  const auto row = std::min(static_cast<std::size_t>(v), kRows - 2);
+  const float right = u - static_cast<float>(column), above = v - static_cast<float>(row);
+  const auto* low = &nodes[row * kColumns + column];
+  const auto* high = low + kColumns;
+  std::array<float, 4> light{};
+  for (std::size_t band = 0; band < light.size(); ++band)
+    light[band] = std::lerp(std::lerp(low[0][band], low[1][band], right),
+                            std::lerp(high[0][band], high[1][band], right), above);
+  return light;
+}
+
+}  // namespace alpenglow::viewer

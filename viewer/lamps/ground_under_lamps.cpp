@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/lamps/ground_under_lamps.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <utility>
+
+#include "atmosphere/lamp/lamp.h"
+#include "atmosphere/number/constants.h"
+#include "atmosphere/number/numerics.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+constexpr double kDark = 1e-30;  // m^-1, of which logarithms are taken at least
+constexpr std::size_t kSlopeTerms = kGlowTerms - 1;
+using SlopeTerms = std::array<glm::vec4, kSlopeTerms>;
+
+double DistanceAt(double texel) {
+  return kNearestGlow_m *
+         std::pow(kFarthestGlow_m / kNearestGlow_m, texel / (kGlowDistances - 1.0));
+}
+double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRises - 1.0)); }
+
+/// A lamp in the plane of x, which is towards it, and z.
+struct View {
+  const LampGlow& glow;
+  double distance_m, rise;
+
+  [[nodiscard]] Bands<double> On(const glm::dvec3& normal) const {
+    const double across = std::sqrt(std::max(1.0 - rise * rise, 0.0));
+    return glow.On(distance_m * glm::dvec3(across, 0.0, rise), normal, {0.0, 0.0, 1.0});
+  }
+  [[nodiscard]] Bands<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
+};
+
+/// What a slope has of the terms of LampGlowOnSlope.
+std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
+  std::array<double, kSlopeTerms> of_term{};
+  for (std::size_t k = 0; k < kSlopeTerms; ++k) {
+    std::array<double, kSlopeTerms> one{};
+    one[k] = 1.0;
+    of_term[k] =
+        shared::LampGlowOnSlope(normal.x, normal.z, one[0], one[1], one[2], one[3], one[4]) - 1.0;
+  }
+  return of_term;
+}
+
+/// A slope of the fit.
+struct Slope {
+  glm::dvec3 normal;
+  double weight;
+  std::array<double, kSlopeTerms> of_term;
+};
+
+/// Half of all: light is even about the plane.
+const std::vector<Slope>& FittedSlopes() {
+  static const auto kSlopes = [] {
+    constexpr int kTilts = 5, kTurns = 6;
+    constexpr double kSteepest_rad = 60.0 * kRadiansPerDegree, kGentleness = 4.0;
+    std::vector<Slope> slopes;
+    for (int i = 0; i < kTilts; ++i) {
+      const double tilt = kSteepest_rad * (i + 0.5) / kTilts, z = std::cos(tilt);
+      for (int k = 0; k < kTurns; ++k) {
+        const double turn = kPi * (k + 0.5) / kTurns;
+        const glm::dvec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
+                                z);
+        slopes.push_back({normal, std::sin(tilt) * std::pow(z, kGentleness), TermsOf(normal)});
+      }
+    }
+    return slopes;
+  }();
+  return kSlopes;
+}
+
+/// The least squares' normal equations, but for what they are equal to.
+const std::vector<double>& FitMatrix() {
+  static const auto kMatrix = [] {
+    std::vector<double> matrix(kSlopeTerms * kSlopeTerms);
+    for (const Slope& slope : FittedSlopes()) {
+      for (std::size_t i = 0; i < kSlopeTerms; ++i) {
+        for (std::size_t j = 0; j < kSlopeTerms; ++j)
+          matrix[i * kSlopeTerms + j] += slope.weight * slope.of_term[i] * slope.of_term[j];
+      }
+    }
+    return matrix;
+  }();
+  return kMatrix;
+}
+
+SlopeTerms FitOf(const View& view) {
+  const Bands<double> level = view.OnLevel();
+  std::array<std::vector<double>, 4> sums;
+  sums.fill(std::vector<double>(kSlopeTerms));
+  for (const Slope& slope : FittedSlopes()) {
+    const Bands<double> light = view.On(slope.normal);
+    for (std::size_t band = 0; band < level.count; ++band) {
+      const double over_level = light[band] / std::max(level[band], kDark) - 1.0;
+      for (std::size_t i = 0; i < kSlopeTerms; ++i)
+        sums[band][i] += slope.weight * slope.of_term[i] * over_level;
+    }
+  }
+  SlopeTerms terms{};
+  for (std::size_t band = 0; band < level.count; ++band) {
+    const std::vector<double> fitted = SolvePositiveDefinite(FitMatrix(), sums[band]);
+    for (std::size_t i = 0; i < kSlopeTerms; ++i)
+      terms[i][static_cast<glm::length_t>(band)] = static_cast<float>(fitted[i]);
+  }
+  return terms;
+}
+
+/// Of level ground.
+glm::vec4 LogLevelOf(const View& view) {
+  const Bands<double> level = view.OnLevel();
+  glm::vec4 logs(static_cast<float>(std::log(kDark)));
+  for (std::size_t band = 0; band < level.count; ++band) {
+    logs[static_cast<glm::length_t>(band)] =
+        static_cast<float>(std::log(std::max(level[band], kDark) * view.distance_m));
+  }
+  return logs;
+}
+
+}  // namespace
+
+std::vector<glm::vec4> SampledGlow(const LampGlow& glow) {
+  constexpr std::size_t kTerm = std::size_t{kGlowDistances} * kGlowRises;
+  std::vector<glm::vec4> texels(kGlowTerms * kTerm);
+  tbb::parallel_for(std::size_t{0}, kTerm, [&](std::size_t at) {
+    const View view{glow, DistanceAt(static_cast<double>(at % kGlowDistances)),
+                    RiseAt(static_cast<double>(at / kGlowDistances))};
+    texels[at] = LogLevelOf(view);
+    const SlopeTerms terms = FitOf(view);
+    for (std::size_t k = 0; k < kSlopeTerms; ++k) texels[(k + 1) * kTerm + at] = terms[k];
+  });
+  return texels;
+}
+
+namespace {
+
+/// One level. Places are columns and rows of its nodes.
+class PlanLevel {
+ public:
+  PlanLevel(const LampStage& stage, const Lamp& lamp, int level)
+      : stage_(stage),
+        lamp_(lamp),
+        step_m_(std::ldexp(kPlanStep_m, level)),
+        hole_(level == 0 ? 0 : kHole),
+        is_lit_(kPlanSide * kPlanSide, 1),
+        from_edge_(kPlanSide * kPlanSide, static_cast<float>(kPlanRange_steps)) {
+    to_edge_.fill(std::vector<float>(kPlanSide * kPlanSide, kNoEdge));
+    TraceNodes();
+    FindEdges();
+    EachNode([&](const glm::ivec2& at) {
+      if (std::max(at.x, at.y) + 1 < kPlanSide) MeasureCell(at);
+    });
+  }
+
+  [[nodiscard]] std::uint8_t Texel(std::size_t node) const {
+    const double signed_steps = double{is_lit_[node] != 0 ? from_edge_[node] : -from_edge_[node]};
+    return static_cast<std::uint8_t>(std::lround(128.0 + 127.0 * signed_steps / kPlanRange_steps));
+  }
+
+ private:
+  /// Of what the level before serves nothing is looked up here; edges within it count two steps
+  /// beyond it, interpolation reaches one step into it.
+  static constexpr int kHole = kPlanReach_steps / 2 - 4;
+  /// Of an edge between two nodes: to a 64th of a step, as finely as texels hold it.
+  static constexpr int kBisections = 5;
+  static constexpr float kNoEdge = -1.0F;
+
+  [[nodiscard]] static std::size_t NodeAt(const glm::ivec2& at) {
+    return static_cast<std::size_t>(at.y) * kPlanSide + static_cast<std::size_t>(at.x);
+  }
+  [[nodiscard]] bool IsInHole(const glm::ivec2& at) const {
+    const glm::ivec2 away = glm::abs(at - kPlanSide / 2);
+    return std::max(away.x, away.y) < hole_;
+  }
+
+  [[nodiscard]] bool IsLitAt(const glm::dvec2& at) const {
+    const glm::dvec2 way = step_m_ * (at - 0.5 * kPlanSide);
+    const glm::dvec3 place = lamp_.position_m + glm::dvec3(way, 0.0);
+    if (const std::optional<SurfaceUnder> ground = stage_.TerrainAt(place))
+      return !stage_.Shades(lamp_, ground->hit.smooth_point, ground->hit.geometric_normal);
+    const glm::dvec3 up = stage_.UpAt(place);
+    return !stage_.Shades(lamp_, place - stage_.AltitudeOf(place) * up, up);
+  }
+
+  // Every second node each way; those between only where the ones around them differ.
+  void TraceNodes() {
+    EachNode([&](const glm::ivec2& at) {
+      if (at.x % 2 == 0 && at.y % 2 == 0) is_lit_[NodeAt(at)] = IsLitAt(at);
+    });
+    EachNode([&](const glm::ivec2& at) {
+      if (at.x % 2 == 0 && at.y % 2 == 0) return;
+      is_lit_[NodeAt(at)] =
+          AlikeAround(at) ? is_lit_[NodeAt(at - at % 2)] : std::uint8_t{IsLitAt(at)};
+    });
+  }
+
+  // Whether the traced nodes around another one, a ring more than the nearest, are all lit or all
+  // dark.
+  [[nodiscard]] bool AlikeAround(const glm::ivec2& at) const {
+    const std::uint8_t first = is_lit_[NodeAt(at - at % 2)];
+    const glm::ivec2 low = glm::max(at - at % 2 - 2, 0);
+    const glm::ivec2 high = glm::min(at + at % 2 + 2, kPlanSide - 2);
+    for (int row = low.y; row <= high.y; row += 2) {
+      for (int column = low.x; column <= high.x; column += 2) {
+        if (IsInHole({column, row}) || is_lit_[NodeAt({column, row})] != first) return false;
+      }
+    }
+    return true;
+  }
+
+  template <typename Visit>
+  void EachNode(const Visit& visit) const {
+    for (int row = 0; row < kPlanSide; ++row) {
+      for (int column = 0; column < kPlanSide; ++column) {
+        if (!IsInHole({column, row})) visit(glm::ivec2(column, row));
+      }
+    }
+  }
+
+  void FindEdges() {
+    EachNode([&](const glm::ivec2& at) {
+      const glm::ivec2 east = at + glm::ivec2(1, 0), north = at + glm::ivec2(0, 1);
+      if (east.x < kPlanSide) to_edge_[0][NodeAt(at)] = EdgeBetween(at, east);
+      if (north.y < kPlanSide) to_edge_[1][NodeAt(at)] = EdgeBetween(at, north);
+    });
+  }
+
+  /// Share of the way between two nodes at which light turns into shade or back; kNoEdge: nowhere.
+  [[nodiscard]] float EdgeBetween(const glm::ivec2& from, const glm::ivec2& to) const {
+    const bool begins_lit = is_lit_[NodeAt(from)] != 0, ends_lit = is_lit_[NodeAt(to)] != 0;
+    if (begins_lit == ends_lit || IsInHole(to)) return kNoEdge;
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = 0.5 * (low + high);
+      const bool is_lit = IsLitAt(glm::mix(glm::dvec2(from), glm::dvec2(to), middle));
+      (is_lit == begins_lit ? low : high) = middle;
+    }
+    return static_cast<float>(0.5 * (low + high));
+  }
+
+  // The edge crosses a cell from side to side: twice where opposite corners are alike.
+  void MeasureCell(const glm::ivec2& cell) {
+    std::vector<glm::dvec2> crossings;
+    const auto add = [&](const glm::ivec2& from, std::size_t axis) {
+      const float share = to_edge_[axis][NodeAt(from)];
+      const glm::dvec2 way(axis == 0 ? 1.0 : 0.0, axis == 0 ? 0.0 : 1.0);
+      if (share != kNoEdge) crossings.push_back(glm::dvec2(from) + double{share} * way);
+    };
+    add(cell, 0);
+    add(cell + glm::ivec2(1, 0), 1);
+    add(cell + glm::ivec2(0, 1), 0);
+    add(cell, 1);
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
+      MeasureTo(crossings[i], crossings[i + 1], cell);
+  }
+
+  void MeasureTo(const glm::dvec2& begin, const glm::dvec2& end, const glm::ivec2& cell) {
+    for (int row = std::max(cell.y - 1, 0); row <= std::min(cell.y + 2, kPlanSide - 1); ++row) {
+      for (int column = std::max(cell.x - 1, 0); column <= std::min(cell.x + 2, kPlanSide - 1);
+           ++column) {
+        const glm::dvec2 way = end - begin, at = glm::dvec2(column, row) - begin;
+        const double length2 = std::max(glm::dot(way, way), 1e-12);
+        const double share = std::clamp(glm::dot(at, way) / length2, 0.0, 1.0);
+        float& nearest = from_edge_[NodeAt({column, row})];
+        nearest = std::min(nearest, static_cast<float>(glm::length(at - share * way)));
+      }
+    }
+  }
+
+  const LampStage& stage_;
+  const Lamp& lamp_;
+  double step_m_;
+  int hole_;
+  std::vector<std::uint8_t> is_lit_;
+  std::vector<float> from_edge_;               // steps
+  std::array<std::vector<float>, 2> to_edge_;  // to the next node east and north
+};
+
+}  // namespace
+
+int PlanLevelsOf(double candela) {
+  constexpr double kDimmest_lux = 1e-3;
+  const double reach_m = std::sqrt(candela / kDimmest_lux);
+  const double levels = std::ceil(std::log2(reach_m / (kPlanReach_steps * kPlanStep_m))) + 1.0;
+  return static_cast<int>(std::clamp(levels, 1.0, double{kMostPlanLevels}));
+}
+
+LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels) {
+  LitPlan plan;
+  plan.levels = levels;
+  for (int number = 0; number < levels; ++number) {
+    const PlanLevel level(stage, lamp, number);
+    for (std::size_t node = 0; node < kPlanSide * kPlanSide; ++node)
+      plan.texels.push_back(level.Texel(node));
+  }
+  return plan;
+}
+
+void LitPlanFollower::Follow() {
+  if (plans_.size() == lamps_ || job_.Busy()) return;
+  if (std::optional<LitPlan> made = job_.Take()) plans_.push_back(std::move(*made));
+  if (plans_.size() < lamps_) job_.Ask(plans_.size());
+}
+
+void LitPlanFollower::Settle() {
+  for (Follow(); plans_.size() < lamps_; Follow()) job_.Wait();
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/reports.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/number/constants.h"
+#include "atmosphere/text/error.h"
+#include "renderer/picture/render.h"
+#include "viewer/paint/darkroom.h"
+#include "viewer/paint/reference_picture.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+double Seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+std::string LineOf(const std::string& name, const std::vector<double>& ms) {
+  const Percentiles of = PercentilesOf(ms);
+  return fmt::format("{} {:.3f} {:.3f} {:.3f}\n", name, of.median, of.p95, of.p99);
+}
+
+}  // namespace
+
+Percentiles PercentilesOf(std::vector<double> values) {
+  ALPENGLOW_ENSURE(values.size(), >, 0U);
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    const double rank = std::ceil(share * static_cast<double>(values.size()));
+    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+  };
+  return {at(0.5), at(0.95), at(0.99)};
+}
+
+Benchmark::Benchmark(double seconds, PassClock clock)
+    : seconds_(seconds), warm_up_s_(std::min(1.0, 0.25 * seconds)), clock_(clock) {}
+
+Benchmark::~Benchmark() {
+  if (drawn_ != nullptr) glDeleteSync(drawn_);
+}
+
+// With queries every frame is timed; else every second one, by finishes.
+bool Benchmark::NextFrame() {
+  timer_.End();
+  WaitForTheFrameBefore();
+  const Clock::time_point now = Clock::now();
+  if (!first_) first_ = now;
+  if (begin_) EndFrame(now);
+  begin_ = now;
+  elapsed_s_ = Seconds(now - *first_);
+  times_passes_ = clock_ == PassClock::kQueries || !times_passes_;
+  timer_.SetClock(times_passes_ ? clock_ : PassClock::kNone);
+  if (elapsed_s_ < seconds_ || frame_ms_.empty() || timed_frames_ == 0) return true;
+  NotePasses(timer_.TakeAll());
+  return false;
+}
+
+void Benchmark::WaitForTheFrameBefore() {
+  constexpr GLuint64 kLongest_ns = 10'000'000'000;
+  GLsync before = std::exchange(drawn_, glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
+  if (before == nullptr) return;
+  glClientWaitSync(before, GL_SYNC_FLUSH_COMMANDS_BIT, kLongest_ns);
+  glDeleteSync(before);
+}
+
+void Benchmark::EndFrame(Clock::time_point now) {
+  const std::vector<PassTime> passes = timer_.Take();
+  if (Seconds(*begin_ - *first_) < warm_up_s_) return;
+  const bool is_slowed = times_passes_ && clock_ == PassClock::kFinishes;
+  if (!is_slowed) NoteFrame(1e3 * Seconds(now - *begin_));
+  if (times_passes_) ++timed_frames_;
+  NotePasses(passes);
+}
+
+void Benchmark::NoteFrame(double ms) {
+  frame_ms_.push_back(ms);
+  if (ms <= worst_ms_) return;
+  worst_ms_ = ms;
+  worst_at_s_ = elapsed_s_;
+}
+
+void Benchmark::NotePasses(const std::vector<PassTime>& passes) {
+  for (const PassTime& pass : passes) {
+    if (!ms_.contains(pass.pass)) passes_.push_back(pass.pass);
+    ms_[pass.pass].push_back(pass.ms);
+    cpu_ms_[pass.pass].push_back(pass.cpu_ms);
+  }
+}
+
+std::string Benchmark::Text() const {
+  std::string text;
+  for (const std::string& pass : passes_) {
+    text += LineOf(pass, ms_.at(pass)) + LineOf(pass + ".cpu", cpu_ms_.at(pass));
+  }
+  return text + LineOf("frame", frame_ms_);
+}
+
+std::string Benchmark::WorstText() const {
+  return fmt::format(
+      "{} frames, the worst of them {:.1f} ms, {:.1f} times the median, after {:.1f} s",
+      frame_ms_.size(), worst_ms_, worst_ms_ / PercentilesOf(frame_ms_).median, worst_at_s_);
+}
+
+ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin, double elapsed_s) {
+  constexpr double kSpeed_m_per_s = 250.0, kRadius_m = 5000.0;
+  const double turned = kSpeed_m_per_s * elapsed_s / kRadius_m;
+  const double ahead = kRadius_m * std::sin(turned), right = kRadius_m * (1.0 - std::cos(turned));
+  const double c = std::cos(start.heading_rad), s = std::sin(start.heading_rad);
+  Eye eye = start;
+  eye.place = LocalFrame(kWgs84, start.place)
+                  .GeodeticFromEnu(Point<Enu>{{ahead * s + right * c, ahead * c - right * s, 0.0}});
+  eye.place.height_m = start.place.height_m;
+  eye.heading_rad = std::remainder(start.heading_rad + turned, 2.0 * kPi);
+  return {elapsed_s, eye, AddSeconds(begin, Benchmark::kTimeRate * elapsed_s)};
+}
+
+namespace {
+
+constexpr int kSamples = 16;
+
+/// One part of a picture at its best.
+struct Shortcut {
+  const char* name;
+  void (*perfect)(PaintSizes& sizes);
+};
+constexpr std::array<Shortcut, 5> kShortcuts{
+    {{"air tables", [](PaintSizes& sizes) { sizes.air = AirQuality::kHigh; }},
+     {"levels of land", [](PaintSizes& sizes) { sizes.land_detail = 512.0; }},
+     {"shafts",
+      [](PaintSizes& sizes) {
+        sizes.shade.size.samples = sizes.shade.size.cells = 2048;
+        sizes.shade.detail = {1, {8, 12}};
+      }},
+     {"lamps' light in the air",
+      [](PaintSizes& sizes) {
+        sizes.lamps = {24, 1};
+      }},
+     {"octaves of the ground", [](PaintSizes& sizes) { sizes.dropped_octaves = 0; }}}};
+
+struct TimedPicture {
+  Image image;
+  double frame_ms;
+};
+
+double LeastMs(const std::function<void()>& draw) {
+  using Clock = std::chrono::steady_clock;
+  draw();
+  glFinish();
+  double least_ms = 1e9;
+  for (int i = 0; i < 5; ++i) {
+    const Clock::time_point begin = Clock::now();
+    draw();
+    glFinish();
+    least_ms =
+        std::min(least_ms, std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+  }
+  return least_ms;
+}
+
+TimedPicture Paint(Flythrough& flight, const PaintedView& view, const PaintSizes& sizes) {
+  SkyPainter& painter = flight.painter();
+  painter.Use(sizes);
+  painter.Settle(view);
+  const double best_ms = LeastMs([&] { painter.Paint(view); });
+  painter.Paint(view, kSamples);
+  return {painter.picture().Read(), best_ms};
+}
+
+/// One ray a pixel of the screen, or fewer and enlarged: linear light.
+class OneRay {
+ public:
+  OneRay(SkyPainter& painter, const PaintedView& screen) : painter_(painter), screen_(screen) {}
+
+  /// @param scale  of the picture that is painted, to the screen.
+  [[nodiscard]] TimedPicture At(double scale) {
+    PaintedView painted = screen_;
+    painted.width = std::max(static_cast<int>(std::lround(scale * screen_.width)), 1);
+    painted.height = std::max(static_cast<int>(std::lround(scale * screen_.height)), 1);
+    const double ms = LeastMs([&] { Show(painted); });
+    return {light_.Read(), ms};
+  }
+
+ private:
+  void Show(const PaintedView& painted) {
+    painter_.Paint(painted, 1, SkyPainter::Bodies::kStars);
+    painter_.PaintOutline(outline_);
+    enlarger_.Enlarge(painter_.picture(), outline_, HalfViewOf(painted), light_.framebuffer());
+  }
+
+  SkyPainter& painter_;
+  PaintedView screen_;
+  LandOutline outline_{screen_.width, screen_.height};
+  RenderTarget light_{screen_.width, screen_.height};
+  Enlarger enlarger_{Enlarger::Shows::kLight};
+};
+
+Image JudgeOf(const Flythrough& flight, const ImageSize& size) {
+  RenderSettings settings;
+  settings.width = size.width;
+  settings.height = size.height;
+  settings.samples_per_pixel = kSamples;
+  settings.filter = PixelFilter::Kind::kBox;
+  settings.layers = LayersOfEdges();
+  return RendererOf(flight.SceneForRenderer())->Render(flight.now(), settings);
+}
+
+std::string Row(const std::string& name, const ViewDifference& is, const std::string& time) {
+  return fmt::format("{:<26}{:>8.3f} %{:>9.3f} %{:>9.3f} %  {:>10}\n", name, 100.0 * is.mean,
+                     100.0 * is.at_99_percent, 100.0 * is.at_999_permille, time);
+}
+
+// A view that is painted at a share of its size and enlarged, beside the same of one ray a pixel.
+std::string FewerRays(Flythrough& flight, const PaintedView& view,
+                      const std::vector<Channel>& edges, double scale) {
+  flight.painter().Settle(view);
+  OneRay of_view(flight.painter(), view);
+  TimedPicture all = of_view.At(1.0);
+  all.image.layers = edges;
+  const TimedPicture fewer = of_view.At(scale);
+  return Row(fmt::format("light at {:.2g}x", scale), DifferenceOf(all.image, fewer.image),
+             fmt::format("saves {:.1f}", all.frame_ms - fewer.frame_ms));
+}
+
+}  // namespace
+
+std::string ExplainView(Flythrough& flight, const ImageSize& size) {
+  flight.Settle(size);
+  const Quality quality = flight.quality_rule().fixed.value_or(Quality::kMedium);
+  const PaintSizes sizes = SizesOf(quality);
+  const PaintedView view{flight.eye(), flight.now(), size.width, size.height};
+  const Image judge = JudgeOf(flight, size);
+  const TimedPicture painted = Paint(flight, view, sizes);
+  const ViewDifference all = DifferenceOf(judge, painted.image);
+  std::string text = fmt::format(
+      "quality {}, {}x{}, {} rays a pixel; {:.1f} % of pixels are edges and left out\n"
+      "{:<26}{:>10}{:>11}{:>11}  {:>10}\n",
+      NameOf(quality), size.width, size.height, kSamples, 100.0 * all.edge_share, "off by", "mean",
+      "99 %", "99.9 %", "frame");
+  text += Row("picture, from renderer's", all, fmt::format("{:.1f} ms", painted.frame_ms));
+  for (const Shortcut& shortcut : kShortcuts) {
+    PaintSizes better = sizes;
+    shortcut.perfect(better);
+    const TimedPicture without = Paint(flight, view, better);
+    Image reference = without.image;
+    reference.layers = judge.layers;
+    text += Row(shortcut.name, DifferenceOf(reference, painted.image),
+                fmt::format("saves {:.1f}", without.frame_ms - painted.frame_ms));
+  }
+  flight.painter().Use(sizes);
+  const double scale = PaintedAlways(quality).scale;
+  return scale < 1.0 ? text + FewerRays(flight, view, judge.layers, scale) : text;
+}
+
+}  // namespace alpenglow::viewer

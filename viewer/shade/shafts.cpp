@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/shade/shafts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
+
+#include "atmosphere/text/error.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/shade/shade_map.h"
+#include "viewer/shaders/full_screen.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+// The component of a place along an axis of the map's frame, scaled and shifted, for places in the
+// frame of the eye.
+glm::vec4 Row(const glm::dmat4& map_from_eye, const glm::dvec3& axis, double scale, double shift) {
+  const auto along = [&](int column) {
+    return scale * glm::dot(glm::dvec3(map_from_eye[column]), axis);
+  };
+  return {along(0), along(1), along(2), along(3) + shift};
+}
+
+void Allocate(const ShadeMap& map) {
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, map.columns, map.lines, 0, GL_RG, GL_FLOAT, nullptr);
+  ClampAndFilter(GL_TEXTURE_2D, true);
+}
+
+}  // namespace
+
+void ShadeTexture::TakeOver(std::shared_ptr<const ShadeMap> map) {
+  ALPENGLOW_ENSURE(map != nullptr, ==, true);
+  coming_.map = std::move(map);
+  lines_sent_ = 0;
+}
+
+bool ShadeTexture::Upload(int most_lines, int unit) {
+  if (!coming_.map) return false;
+  const ShadeMap& map = *coming_.map;
+  if (!map.ShadesNothing()) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, coming_.texture.id());
+    if (lines_sent_ == 0) Allocate(map);
+    const int lines = std::min(most_lines, map.lines - lines_sent_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, lines_sent_, map.columns, lines, GL_RG, GL_FLOAT,
+                    &map.at(0, lines_sent_));
+    lines_sent_ += lines;
+    CheckGl("ShadeTexture::Upload");
+  }
+  if (lines_sent_ < map.lines) return false;
+  std::swap(used_, coming_);
+  coming_.map = nullptr;
+  return true;
+}
+
+void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4& map_from_eye,
+                        const ShadeSteps& steps) const {
+  ALPENGLOW_ENSURE(Shades(), ==, true);
+  const ShadeMap& map = *used_.map;
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, used_.texture.id());
+  glUniform1i(program.Uniform("shade_map"), unit);
+  const double across_u = 1.0 / (map.cell_m * map.columns);
+  const double across_v = 1.0 / (map.cell_m * map.lines);
+  // Nodes are the middles of texels.
+  const auto u = [&](double u_m) { return (u_m - map.first_u_m + 0.5 * map.cell_m) * across_u; };
+  const auto v = [&](double v_m) { return (v_m - map.first_v_m + 0.5 * map.cell_m) * across_v; };
+  const auto set = [&](const char* name, const glm::vec4& row) {
+    glUniform4f(program.Uniform(name), row.x, row.y, row.z, row.w);
+  };
+  set("shade_u", Row(map_from_eye, map.sunwards, across_u, u(0.0)));
+  set("shade_v", Row(map_from_eye, map.across, across_v, v(0.0)));
+  set("shade_z", Row(map_from_eye, {0.0, 0.0, 1.0}, 1.0, 0.0));
+  const glm::vec3 low(u(map.low_u_m), v(map.low_v_m), map.floor_m);
+  const glm::vec3 high(u(map.high_u_m), v(map.high_v_m), map.ceiling_m);
+  glUniform3f(program.Uniform("shade_low"), low.x, low.y, low.z);
+  glUniform3f(program.Uniform("shade_high"), high.x, high.y, high.z);
+  glUniform2f(program.Uniform("shade_first"), static_cast<float>(u(map.first_u_m)),
+              static_cast<float>(map.tangent / across_u));
+  glUniform1i(program.Uniform("shade_pieces"), steps.pieces);
+  glUniform1i(program.Uniform("shade_steps"), steps.steps);
+}
+
+std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_fog) {
+  air.push_back(
+      {"fog of shafts",
+       fmt::format("#define HAS_FOG {}\n#define LEFT_BY_FOG(direction, km) {}\n", has_fog ? 1 : 0,
+                   has_fog ? "FogTransmittance(direction, min(km, kOutOfFog_km))" : "1.0")});
+  std::vector<std::string> files{"viewer/shaders/shade_march.glsl",
+                                 "viewer/shaders/shaft_texel.glsl"};
+  if (has_fog) files.emplace_back("viewer/shaders/fog_shade.glsl");
+  return WithViewerPieces(std::move(air), files);
+}
+
+std::vector<ShaderPiece> ShaftTexts() {
+  return WithViewerPieces({}, {"viewer/shaders/shaft_texel.glsl", "viewer/shaders/shafts.glsl"});
+}
+
+ShaftPass::ShaftPass(std::vector<ShaderPiece> air, bool has_fog)
+    : has_fog_(has_fog),
+      program_(FullScreenProgram(WithViewerPieces(ShaftPassTexts(std::move(air), has_fog),
+                                                  {"viewer/shaders/shafts.frag.glsl"}))) {}
+
+void ShaftPass::Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width,
+                      int height, int surface_unit, int shade_unit, const ShaftDetail& detail) {
+  ALPENGLOW_ENSURE(detail.scale, >=, 1);
+  scale_ = detail.scale;
+  const auto part = [&](int side) { return (side + scale_ - 1) / scale_; };
+  if (!map_ || map_->width() != part(width) || map_->height() != part(height)) {
+    const std::vector<PixelFormat> maps(has_fog_ ? 2 : 1, PixelFormat::kRgba32F);
+    map_.emplace(part(width), part(height), maps, RenderTarget::Depth::kNone);
+  }
+  map_->Bind();
+  program_.Use();
+  shade.Bind(program_, shade_unit, map_from_eye, detail.steps);
+  glUniform1i(program_.Uniform("surface_map"), surface_unit);
+  glUniform2i(program_.Uniform("picture_size"), width, height);
+  glUniform1i(program_.Uniform("shaft_scale"), scale_);
+  DrawFullScreen(program_, no_vertices_);
+  CheckGl("ShaftPass::Paint");
+}
+
+void ShaftPass::Bind(const ShaderProgram& picture, int unit) const {
+  ALPENGLOW_ENSURE(map_.has_value(), ==, true);
+  map_->BindTexture(unit);
+  if (has_fog_) map_->BindTexture(unit + 1, 1);
+  picture.Use();
+  glUniform1i(picture.Uniform("shaft_map"), unit);
+  glUniform1i(picture.Uniform("fog_shaft_map"), unit + 1);
+  const float step = 1.0F / static_cast<float>(scale_);
+  const float first = 0.5F + static_cast<float>(scale_ / 2);  // pixel that has the first ray
+  glUniform2f(picture.Uniform("shaft_place"), step, -first * step);
+}
+
+namespace {
+
+constexpr double kSunStep = 0.2;     // of the disk's radius
+constexpr double kPlaceStep = 0.2;   // of the ground's half width
+constexpr int kLinesOfAFrame = 256;  // two megabytes at a thousand columns
+
+// Of the frame of one place in that of another, with the distance of their origins.
+glm::dmat4 BetweenFrames(const LocalFrame& to, const LocalFrame& from) {
+  glm::dmat4 matrix(1.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 unit(0.0);
+    unit[axis] = 1.0;
+    matrix[axis] = glm::dvec4(to.EnuFromEcef(from.EcefFromEnu(Vector<Enu>{unit})).xyz, 0.0);
+  }
+  matrix[3] = glm::dvec4(to.EnuFromEcef(from.EcefFromEnu(Point<Enu>{})).xyz, 1.0);
+  return matrix;
+}
+
+double DistanceBetween(const LocalFrame& a, const LocalFrame& b) {
+  return glm::length(a.EnuFromGeodetic(b.origin()).xyz);
+}
+
+bool AreOne(const LocalFrame& a, const LocalFrame& b) {
+  return a.origin().latitude_rad == b.origin().latitude_rad &&
+         a.origin().longitude_rad == b.origin().longitude_rad;
+}
+
+}  // namespace
+
+class ShadeFollower::Maker {
+ public:
+  std::shared_ptr<const Made> operator()(const Request& request) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!IsKept(request)) Keep(request);
+    ShadeMap map =
+        heights_ ? ShadeMapOf(*heights_, request.to_sun, request.sun_radius_rad, request.size.cells)
+                 : ShadeMap{};
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    return std::make_shared<const Made>(
+        Made{request.frame, request.to_sun, std::move(map), took.count()});
+  }
+
+ private:
+  [[nodiscard]] bool IsKept(const Request& request) const {
+    return kept_ && kept_->ground == request.ground && kept_->size == request.size &&
+           AreOne(kept_->frame, request.frame);
+  }
+  void Keep(const Request& request) {
+    kept_ = request;
+    heights_.reset();
+    if (!request.ground) return;
+    const ShadeSize& size = request.size;
+    const auto grid = (*request.ground)(request.frame.origin(), size.half_width_m, size.samples);
+    if (grid)
+      heights_ = HeightsAround(*grid, request.frame, size.half_width_m,
+                               size.nodes_a_sample * size.samples);
+  }
+
+  std::optional<Request> kept_;
+  std::optional<HeightRaster> heights_;
+};
+
+ShadeFollower::ShadeFollower(const Ellipsoid& ellipsoid) : ellipsoid_(ellipsoid), maker_(Maker()) {}
+
+void ShadeFollower::SetGround(GroundSampler sampler) {
+  ground_ = sampler ? std::make_shared<const GroundSampler>(std::move(sampler)) : nullptr;
+}
+
+void ShadeFollower::SetSize(const ShadeSize& size) { size_ = size; }
+
+ShadeFollower::Request ShadeFollower::RequestFor(const GeodeticPosition& eye,
+                                                 const SunPosition& sun) const {
+  const LocalFrame here(ellipsoid_, eye);
+  LocalFrame frame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0});
+  // Heights are kept as long as the eye is near the middle of them.
+  if (asked_ && DistanceBetween(asked_->frame, frame) < kPlaceStep * size_.half_width_m)
+    frame = asked_->frame;
+  const Vector<Ecef> to_sun =
+      here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
+  return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_sun).xyz),
+          sun.angular_radius_rad};
+}
+
+bool ShadeFollower::Suits(const Request& asked, const Request& wanted) const {
+  return asked.ground == wanted.ground && asked.size == wanted.size &&
+         AreOne(asked.frame, wanted.frame) &&
+         glm::length(asked.to_sun - wanted.to_sun) < kSunStep * wanted.sun_radius_rad;
+}
+
+void ShadeFollower::Ask(const GeodeticPosition& eye, const SunPosition& sun) {
+  const Request wanted = RequestFor(eye, sun);
+  if (asked_ && Suits(*asked_, wanted)) return;
+  asked_ = wanted;
+  maker_.Ask(wanted);
+}
+
+void ShadeFollower::TakeFinished() {
+  std::optional<std::shared_ptr<const Made>> made = maker_.Take();
+  if (!made) return;
+  coming_ = std::move(*made);
+  texture_.TakeOver({coming_, &coming_->map});
+}
+
+void ShadeFollower::Upload(int lines, int unit) {
+  if (!coming_) return;
+  if (texture_.Upload(lines, unit)) used_ = std::exchange(coming_, nullptr);
+}
+
+void ShadeFollower::Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
+  // A sun that outruns the maps must not keep them from ever being shown.
+  if (!maker_.Busy() && !coming_) Ask(eye, sun);
+  if (!coming_) TakeFinished();
+  Upload(kLinesOfAFrame, unit);
+}
+
+void ShadeFollower::Settle(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
+  Ask(eye, sun);
+  maker_.Wait();
+  TakeFinished();
+  Upload(std::numeric_limits<int>::max(), unit);
+}
+
+bool ShadeFollower::IsOf(const GeodeticPosition& eye, const SunPosition& sun) const {
+  const double near = std::cos(3.0 * kRadiansPerDegree);
+  if (!used_) return false;
+  const LocalFrame here(ellipsoid_, eye);
+  const Vector<Ecef> to_sun =
+      here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
+  return glm::dot(glm::normalize(used_->frame.EnuFromEcef(to_sun).xyz), used_->to_sun) > near;
+}
+
+glm::dmat4 ShadeFollower::MapFromEye(const GeodeticPosition& eye) const {
+  ALPENGLOW_ENSURE(texture_.Shades(), ==, true);
+  return BetweenFrames(used_->frame, LocalFrame(ellipsoid_, eye));
+}
+
+}  // namespace alpenglow::viewer
