@@ -23,8 +23,8 @@ LAYERS = ("atmosphere", "lut", "renderer", "viewer")
 ALL_LAYERS = (*LAYERS, "tests")  # nothing includes what the tests have
 # Written by the build, or without contents of a folder: these stand under all folders of their layer.
 LOWEST = ("embedded_text.h", "version.h", "layer.h")
-TOP_LEVEL = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "atmosphere", "build", "lut",
-             "out", "quickstart.sh", "renderer", "tests", "viewer"}
+TOP_LEVEL = {"CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md", "LICENSE",
+             "README.md", "atmosphere", "build", "lut", "out", "quickstart.sh", "renderer", "tests", "viewer"}
 SPEECH = ("fmt::print", "std::cerr", "std::cout <<", "printf(")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
 NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
