@@ -45,7 +45,7 @@ GeodeticPosition PlaceOfNormal(const glm::dvec3& normal, double height_m) {
           height_m};
 }
 
-/// Cubic between two values with slopes at both.
+/// Returns the cubic between two values with given slopes at both ends.
 template <typename Value>
 Value Hermite(const Value& a, const Value& slope_a, const Value& b, const Value& slope_b,
               double step, double share) {
@@ -54,17 +54,17 @@ Value Hermite(const Value& a, const Value& slope_a, const Value& b, const Value&
          step * share * rest * (rest * slope_a - share * slope_b);
 }
 
-/// Slope at a point between two steps: of the parabola through the three points.
+/// Returns the slope at a point between two steps: that of the parabola through the three points.
 template <typename Value>
 Value SlopeOfParabola(double step_before, const Value& before, double step_after,
                       const Value& after) {
   return (step_after * before + step_before * after) / (step_before + step_after);
 }
 
-/// The same of places, limited: at most kMost times the lesser speed, less where the way turns by
-/// more than a right angle, and 0 where it turns back. A cubic whose slopes are at most 3 times
-/// that of its chord does not overshoot (Fritsch and Carlson 1980, SIAM J. Numer. Anal. 17, 238);
-/// less keeps it nearer to the chord at a corner.
+/// Returns the parabola's slope for places, with its length limited: at most kMost times the lower
+/// speed, less where the path turns by more than a right angle, and 0 where it turns back. A cubic
+/// whose slopes are at most 3 times that of its chord does not overshoot (Fritsch and Carlson 1980,
+/// SIAM J. Numer. Anal. 17, 238); a lower limit keeps it closer to the chord at a corner.
 glm::dvec3 LimitedSlope(double step_before, const glm::dvec3& before, double step_after,
                         const glm::dvec3& after) {
   constexpr double kMost = 2.0;
@@ -77,7 +77,7 @@ glm::dvec3 LimitedSlope(double step_before, const glm::dvec3& before, double ste
   return slope * std::min(1.0, most / std::max(glm::length(slope), least));
 }
 
-/// Slope that overshoots nowhere: Fritsch and Butland's harmonic mean, 0 at an extreme.
+/// Returns a slope without overshoot: Fritsch and Butland's harmonic mean, 0 at an extreme.
 double SlopeWithoutOvershoot(double step_before, double before, double step_after, double after) {
   if (!(before * after > 0.0)) return 0.0;
   const double w_before = step_before + 2.0 * step_after;
@@ -85,7 +85,7 @@ double SlopeWithoutOvershoot(double step_before, double before, double step_afte
   return (w_before + w_after) / (w_before / before + w_after / after);
 }
 
-/// Slopes at all points: those of the first and last step at the ends and beside gaps.
+/// Returns slopes at all points. At the ends and beside gaps, they are those of the adjacent step.
 template <typename Value, typename Between>
 std::vector<Value> SlopesOf(const std::vector<CameraPathPoint>& points,
                             const std::vector<Value>& values, const Between& between) {
@@ -105,7 +105,7 @@ std::vector<Value> SlopesOf(const std::vector<CameraPathPoint>& points,
   return slopes;
 }
 
-/// Angles that go on from each other the shorter way.
+/// Unwraps angles, so that each follows the previous one by the shorter way.
 std::vector<double> Unwound(std::vector<double> angles) {
   for (std::size_t i = 1; i < angles.size(); ++i) {
     angles[i] = angles[i - 1] + std::remainder(angles[i] - angles[i - 1], 2.0 * kPi);
@@ -170,7 +170,7 @@ Value CameraPath::Between(const std::vector<Value>& values, const std::vector<Va
 
 CameraPose CameraPath::PoseAt(double time_s) const {
   const Span span = SpanAt(time_s);
-  // A point of the path is what it was said to be, to the bit.
+  // At a point of the path, return its pose exactly, without rounding.
   if (span.share == 0.0) return points_[span.left].pose;
   const auto scalar = [&](std::size_t k) { return Between(scalars_[k], scalar_slopes_[k], span); };
   CameraPose pose;

@@ -26,8 +26,8 @@ Iris::Iris(int blades, double rotation_rad)
       rotation_rad_(rotation_rad),
       area_(blades == 0 ? kPi : 0.5 * blades * std::sin(2.0 * kPi / blades)) {}
 
-// A disk in polar coordinates; a polygon as triangles around the middle, of which the first number
-// picks one and a place along its outer side.
+// A disk is sampled in polar coordinates. A polygon is sampled as triangles around the centre: the
+// first number selects a triangle and a position along its outer side.
 glm::dvec2 Iris::Point(std::array<double, 2> unit) const {
   const double r = std::sqrt(unit[1]);
   if (blades_ == 0) return r * OnCircle(2.0 * kPi * unit[0]);
@@ -66,8 +66,8 @@ double RadiusOf(PixelFilter::Kind kind) {
   throw InternalError("unknown kind of filter");
 }
 
-constexpr int kKnots = 513;       // of the inverse of the distribution, straight in between
-constexpr int kFilterSteps = 16;  // of the trapezoidal rule between two points of the distribution
+constexpr int kKnots = 513;       // of the inverse distribution, linear in between
+constexpr int kFilterSteps = 16;  // of the midpoint rule between two points of the distribution
 
 }  // namespace
 
@@ -92,7 +92,7 @@ double PixelFilter::Shape(double x) const {
 }
 
 PixelFilter::PixelFilter(Kind kind) : kind_(kind), radius_(RadiusOf(kind)), integral_(1.0) {
-  // The distribution on the positive side, tabulated over x, read backwards.
+  // Tabulate the distribution over positive x, then invert it.
   std::vector<double> below{0.0};
   const double step = radius_ / (kKnots - 1);
   for (int i = 1; i < kKnots; ++i) {
@@ -157,8 +157,8 @@ std::uint32_t Mirrored(std::uint32_t bits) {
   return (bits << 16U) | (bits >> 16U);
 }
 
-/// Each bit is changed as the bits below it say. The factors, all even so that nothing goes from
-/// high bits to low ones, are those of Laine and Karras (2011), section 3.1.
+/// Flips each bit by a hash of the lower bits. The factors are those of Laine and Karras (2011),
+/// section 3.1; all are even, so that no information passes from high bits to low ones.
 std::uint32_t ScrambledUpwards(std::uint32_t bits, std::uint32_t seed) {
   bits += seed;
   for (const std::uint32_t factor : {0x6C50B47CU, 0xB82F1E52U, 0xC7AFE638U, 0x8D22F6E6U}) {
@@ -167,15 +167,16 @@ std::uint32_t ScrambledUpwards(std::uint32_t bits, std::uint32_t seed) {
   return bits;
 }
 
-/// Nested uniform scrambling: each bit is changed as the bits above it say.
+/// Applies nested uniform scrambling: flips each bit by a hash of the higher bits.
 std::uint32_t Scrambled(std::uint32_t bits, std::uint32_t seed) {
   return Mirrored(ScrambledUpwards(Mirrored(bits), seed));
 }
 
-/// Dimension 1 of Sobol's sequence, mirrored (dimension 0, mirrored, is the index itself). Its
-/// direction numbers are the rows of Pascal's triangle modulo 2, in which C(j, i) is odd where the
-/// bits of i are among those of j (Lucas): bit i is the sum of the bits j of the index that contain
-/// i, one bit of the five of i and j at a time.
+/// Returns dimension 1 of Sobol's sequence, bit-reversed (dimension 0, bit-reversed, is the index
+/// itself). Its direction numbers are the rows of Pascal's triangle modulo 2, in which C(j, i) is
+/// odd if the bits of i are a subset of those of j (Lucas). Bit i is therefore the sum of all bits
+/// j of the index whose j contains the bits of i; each line handles one of the five bits of i and
+/// j.
 std::uint32_t MirroredSobolSecond(std::uint32_t index) {
   index ^= (index >> 1U) & 0x55555555U;
   index ^= (index >> 2U) & 0x33333333U;
@@ -184,7 +185,7 @@ std::uint32_t MirroredSobolSecond(std::uint32_t index) {
   return index ^ (index >> 16U);
 }
 
-/// Bits of x on even places: half of Morton's code.
+/// Moves the bits of x to even positions: half of a Morton code.
 std::uint32_t SpreadBits(std::uint32_t x) {
   x = (x | (x << 4U)) & 0x0F0FU;
   x = (x | (x << 2U)) & 0x3333U;
@@ -314,13 +315,14 @@ std::optional<CameraRays::Blur> CameraRays::BlurAt(const glm::dvec3& offset,
   const double outer = blur + soft_radius;
   const double t = glm::length(apart) / (outer * edge);
   if (t >= 1.0) return std::nullopt;
-  // Half of the height is where the lens has its edge, at a blur much wider than the softness.
+  // The profile has half of its height at the geometric edge of the blur when the blur is much
+  // wider than the softening.
   const double n = 1.0 + 0.614 * blur / soft_radius;
-  // Of the plane one metre ahead, as solid angle.
+  // Convert an area in the plane one metre ahead to solid angle.
   const double area = lens_->iris.area() * outer * outer * ahead * ahead * ahead;
   const double mean = 1.0 - 2.0 / (n + 1.0) + 1.0 / (2.0 * n + 1.0);
   const double falloff = 1.0 - std::pow(t, 2.0 * n);
-  const double reach = lens_->radius_m / outer;  // of the lens, per unit of the blur
+  const double reach = lens_->radius_m / outer;  // lens radius per unit of blur
   const glm::dvec2 on_lens = reach * apart;
   return Blur{on_lens.x * right_ + on_lens.y * up_, falloff * falloff / (area * mean)};
 }

@@ -15,9 +15,9 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Of the chord that the camera looks along.
+/// Duration of the chord that the camera looks along.
 constexpr double kChord_s = 4.0;
-/// On either side of a moment, where speed and bank are smoothed.
+/// Half-width in time of the smoothing of speed and bank.
 constexpr double kSmooth_s = 4.0;
 
 bool HasTimes(const Track& track) {
@@ -25,7 +25,7 @@ bool HasTimes(const Track& track) {
                      [](const TrackPoint& point) { return point.utc.has_value(); });
 }
 
-/// The points with their times.
+/// Returns the points with their times.
 std::vector<CameraPathPoint> Knots(const Track& track, const TrackStyle& style) {
   const bool timed = HasTimes(track);
   std::vector<CameraPathPoint> knots;
@@ -52,7 +52,8 @@ std::vector<CameraPathPoint> Knots(const Track& track, const TrackStyle& style) 
   return knots;
 }
 
-/// Heights over the sea, of points at even times: over the ground, as smooth as 5 of them.
+/// Sets the heights above the sea of points at equal time steps, from heights over the ground
+/// smoothed over 5 points.
 void LiftOverGround(const Track& track, const TrackStyle& style, const GroundHeight& ground,
                     std::vector<CameraPathPoint>& points) {
   constexpr std::size_t kReach = 2;
@@ -68,23 +69,24 @@ void LiftOverGround(const Track& track, const TrackStyle& style, const GroundHei
     const std::size_t last = std::min(i + kReach, points.size() - 1);
     double sum_m = 0.0;
     for (std::size_t k = first; k <= last; ++k) sum_m += wanted_m[k];
-    // Never nearer to the ground than half of what is wanted.
+    // Keep at least half of the wanted height above the ground.
     points[i].pose.place.height_m =
         std::max(sum_m / static_cast<double>(last - first + 1), 0.5 * (ground_m[i] + wanted_m[i]));
   }
 }
 
-/// From one place to another, in the frame of their middle.
+/// Returns the vector between two places, in the frame at their middle.
 glm::dvec3 Chord(const GeodeticPosition& from, const GeodeticPosition& to,
                  const GeodeticPosition& middle) {
   const LocalFrame frame(kWgs84, middle);
   return frame.EnuFromGeodetic(to).xyz - frame.EnuFromGeodetic(from).xyz;
 }
 
-/// Looks along the chords. What stands looks on as before, and as it will go before it goes.
+/// Orients the camera along the chords. While it stands, it keeps its last direction; before it
+/// first moves, it has the direction of its first movement.
 void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
   constexpr double kStands_m = 1.0;
-  std::optional<std::size_t> first;  // that goes
+  std::optional<std::size_t> first;  // index of the first moving point
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double t = points[i].time_s;
     CameraPose& pose = points[i].pose;
@@ -105,7 +107,8 @@ void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
     points[i].pose.heading_rad = points[*first].pose.heading_rad;
 }
 
-/// How many points on either side of each are within kSmooth_s, as many before as after it.
+/// Returns for each point the number of points within kSmooth_s on either side, equal before and
+/// after.
 std::vector<int> ReachOf(const std::vector<CameraPathPoint>& points) {
   const auto last = static_cast<int>(points.size()) - 1;
   const double step_s = (points.back().time_s - points.front().time_s) / last;
@@ -115,7 +118,8 @@ std::vector<int> ReachOf(const std::vector<CameraPathPoint>& points) {
   return reach;
 }
 
-/// Sums of `values` around each, by the weights of the steps from it; they are normalised.
+/// Returns weighted means of `values` around each point. `weight` depends on the step from the
+/// point; weights are normalised.
 template <typename Weight>
 std::vector<double> Smoothed(const std::vector<double>& values, const std::vector<int>& reach,
                              const Weight& weight) {
@@ -132,18 +136,20 @@ std::vector<double> Smoothed(const std::vector<double>& values, const std::vecto
   return smooth;
 }
 
-/// Of the least-squares parabola through 2 m + 1 even points, at its middle (Savitzky and Golay
-/// 1964, Anal. Chem. 36, 1627): even acceleration passes unchanged.
+/// Returns the weight of the least-squares parabola through 2 m + 1 equally spaced points,
+/// evaluated at its middle (Savitzky and Golay 1964, Anal. Chem. 36, 1627). Constant acceleration
+/// passes unchanged.
 double WeightOfParabola(int m, int j) { return 3.0 * m * (m + 1.0) - 1.0 - 5.0 * j * j; }
 
-/// A Hann window: weights that go to 0 at its ends.
+/// Returns the weight of a Hann window, which falls to 0 at its ends.
 double WeightOfHann(int m, int j) { return 1.0 + std::cos(kPi * j / (m + 1.0)); }
 
 struct LongStep {
   double from_s, to_s;
 };
 
-/// Steps in which the receiver wrote nothing for longer than the speed is smoothed over.
+/// Returns the steps in which the receiver recorded nothing for longer than the smoothing of the
+/// speed.
 std::vector<LongStep> LongStepsOf(const CameraPath& way) {
   std::vector<LongStep> steps;
   for (std::size_t k = 1; k < way.points().size(); ++k) {
@@ -153,14 +159,15 @@ std::vector<LongStep> LongStepsOf(const CameraPath& way) {
   return steps;
 }
 
-/// How far the speed is smoothed around each point: not into long steps of a track with times,
-/// whose points are kept to. A track without times has an even speed as it is.
+/// Returns the smoothing width of the speed around each point. For a track with times, smoothing
+/// does not reach into long steps, so that their end points are kept. A track without times already
+/// has constant speed.
 std::vector<int> ReachOfSpeed(const CameraPath& way, const std::vector<CameraPathPoint>& points) {
   std::vector<int> reach = ReachOf(points);
   if (!way.points().front().utc) return reach;
   const std::vector<LongStep> steps = LongStepsOf(way);
   const double spacing_s = points[1].time_s - points[0].time_s;
-  std::size_t next = 0;  // the first step that is not over
+  std::size_t next = 0;  // the first step that has not ended
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double time_s = points[i].time_s;
     while (next < steps.size() && steps[next].to_s < time_s) ++next;
@@ -172,8 +179,8 @@ std::vector<int> ReachOfSpeed(const CameraPath& way, const std::vector<CameraPat
   return reach;
 }
 
-/// The same way, with a smooth speed: where each point is on it changes, not the way, and by no more
-/// than where it would be kShift_s sooner or later. What stands is not moved.
+/// Smooths the speed along an unchanged curve: each point moves along the curve, by no more than
+/// its position would change kShift_s sooner or later. Points at rest do not move.
 void SmoothSpeed(const CameraPath& way, std::vector<CameraPathPoint>& points) {
   constexpr double kShift_s = 2.0;
   std::vector<double> gone_m{0.0};
@@ -192,7 +199,7 @@ void SmoothSpeed(const CameraPath& way, std::vector<CameraPathPoint>& points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const double least_m = gone_m[i - std::min(i, shift)];
     const double most_m = gone_m[std::min(i + shift, points.size() - 1)];
-    farthest_m = std::max(farthest_m, std::clamp(smooth_m[i], least_m, most_m));  // never back
+    farthest_m = std::max(farthest_m, std::clamp(smooth_m[i], least_m, most_m));  // never backwards
     while (next + 1 < gone_m.size() && gone_m[next] < farthest_m) ++next;
     const double span_m = gone_m[next] - gone_m[next - 1];
     const double share = span_m > 0.0 ? (farthest_m - gone_m[next - 1]) / span_m : 1.0;
@@ -201,7 +208,7 @@ void SmoothSpeed(const CameraPath& way, std::vector<CameraPathPoint>& points) {
   }
 }
 
-/// Banks as wings would in the turns of the headings, and rolls into them.
+/// Sets the roll as an aircraft banks in the turns of the headings, with gradual onset.
 void Bank(std::vector<CameraPathPoint>& points) {
   constexpr double kMost_rad = 35.0 * kRadiansPerDegree;
   std::vector<double> bank_rad(points.size(), 0.0);
@@ -213,7 +220,8 @@ void Bank(std::vector<CameraPathPoint>& points) {
     bank_rad[i] = std::clamp(std::atan(speed * turn / seconds / kStandardGravity_m_per_s2),
                              -kMost_rad, kMost_rad);
   }
-  // Near its ends the path knows only half of its turns: there it banks as a little farther on.
+  // Near its ends only half of a turn is available, so the bank is copied from a little farther
+  // inside.
   const auto reach = static_cast<std::size_t>(
       std::clamp(std::lround(kSmooth_s / (points[1].time_s - points[0].time_s)), 1L,
                  static_cast<long>(points.size()) / 2 - 1));

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A track as the path of a camera that looks along it.
+// This header turns a track into the path of a camera that looks along it.
 //
 //   bank = atan(v psi' / g), to 35 degrees           psi' is the turn of the path per second
 //
-// The camera goes through all points of the track on the smooth curve of CameraPath; between segments
-// of the track it goes straight and with even speed. Receivers are not as steady as wings: it looks
-// where the chord of the curve points, over 4 s; where it is on the curve, and so its speed, is the
-// parabola that fits best 4 s before and after, except near steps of the track of more than 4 s
-// (pauses, and receivers that write seldom); the bank is smoothed over 4 s too.
+// The camera passes through all points of the track on the smooth curve of CameraPath; between
+// segments of the track it moves in a straight line at constant speed. Recorded positions are
+// noisier than real flight, so the motion is smoothed. The camera looks along a chord of the curve
+// that spans 4 s. Its position along the curve, and hence its speed, follows the least-squares
+// parabola over 4 s before and after, except near steps of the track of more than 4 s (pauses, and
+// receivers that record seldom). The bank is smoothed over 4 s too.
 #pragma once
 
 #include "renderer/camera/camera_path.h"
@@ -16,15 +17,16 @@
 namespace alpenglow::renderer {
 
 struct TrackStyle {
-  double speed_m_per_s = 60.0;   // of a track without times
-  double over_ground_m = 100.0;  // of a track without heights
+  double speed_m_per_s = 60.0;   // for a track without times
+  double over_ground_m = 100.0;  // for a track without heights
   double fov_rad = 1.0471975511965976;
 };
 
-/// Its points are one every second at most, 200 at least and 20000 at most. Instants are those of
-/// the track, when all of its points have one and later points later ones; else it is flown with an
-/// even speed. Points that are less than 0.5 m or no time after the one before them are passed
-/// over. Throws InputError when fewer than two are left, or the style's numbers are not positive.
+/// Returns the camera path of a track, with one point per second, but at least 200 and at most
+/// 20000 points. Instants are those of the track if all of its points have one and they increase;
+/// otherwise the track is flown at constant speed. Points less than 0.5 m from the previous point,
+/// or not later than it, are skipped. Throws InputError if fewer than two points remain or the
+/// style's numbers are not positive.
 [[nodiscard]] CameraPath PathAlong(const Track& track, const TrackStyle& style,
                                    const GroundHeight& ground);
 

@@ -44,7 +44,7 @@ class TrackReader {
     throw InputError(fmt::format("{}:{}: {}", file_, line, fault));
   }
 
-  /// Without its namespace: "gx:Track" is "Track".
+  /// Returns the name without its namespace: "gx:Track" becomes "Track".
   [[nodiscard]] static std::string_view NameOf(const XMLElement& element) {
     const std::string_view name = element.Name();
     const std::size_t colon = name.find(':');
@@ -59,7 +59,8 @@ class TrackReader {
     return nullptr;
   }
 
-  /// Elements of a name at any depth, in the order of the file, none inside another.
+  /// Collects the elements of a name at any depth, in the order of the file, without those nested
+  /// in another match.
   static void Collect(const XMLElement& in, std::string_view name,
                       std::vector<const XMLElement*>& found) {
     for (const XMLElement* child = in.FirstChildElement(); child != nullptr;
@@ -88,7 +89,7 @@ class TrackReader {
 
   [[nodiscard]] double Number(std::string_view text, const XMLElement& at,
                               std::string_view what) const {
-    // XML's numbers may have a plus, which from_chars does not read.
+    // Numbers in XML may have a plus sign, which from_chars does not accept.
     if (text.starts_with('+')) text.remove_prefix(1);
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -101,7 +102,7 @@ class TrackReader {
   [[nodiscard]] GeodeticPosition Place(double latitude, double longitude, double height_m,
                                        const XMLElement& at) const {
     try {
-      // Beyond the spheres that a path may reach, as in files of camera paths.
+      // The range is wider than paths may reach, as in camera path files.
       return PlaceFromDegrees(latitude, longitude,
                               RequireInRange(height_m, -12000.0, 1e9, "height"));
     } catch (const InputError& error) {
@@ -117,7 +118,7 @@ class TrackReader {
     }
   }
 
-  /// Nothing where it is empty or nan: what receivers write that have no fix.
+  /// Returns empty for blank text or nan, which receivers without a fix write.
   [[nodiscard]] std::optional<double> NumberIfAny(std::string_view text, const XMLElement& at,
                                                   std::string_view what) const {
     if (text.find_first_not_of(kTrackBlanks) == std::string_view::npos) return std::nullopt;
@@ -219,7 +220,7 @@ class TrackReader {
     return track;
   }
 
-  /// The line's own, or that of an element around it.
+  /// Returns the altitudeMode of the line or of the nearest enclosing element.
   [[nodiscard]] static const XMLElement* AltitudeModeOf(const XMLElement& line) {
     for (const tinyxml2::XMLNode* node = &line; node != nullptr; node = node->Parent()) {
       const XMLElement* element = node->ToElement();
@@ -254,7 +255,8 @@ class TrackReader {
     return "";
   }
 
-  /// The first part of a text up to one of the separators, which is cut off with those after it.
+  /// Removes and returns the text up to the first separator, and removes the separators that
+  /// follow.
   [[nodiscard]] static std::string_view TakePart(std::string_view& text,
                                                  std::string_view separators) {
     const std::size_t end = std::min(text.find_first_of(separators), text.size());
@@ -263,7 +265,7 @@ class TrackReader {
     return part;
   }
 
-  /// "8.5 47.3 410" or "8.5,47.3,410": longitude first. The height may be left out.
+  /// Parses "8.5 47.3 410" or "8.5,47.3,410": longitude first. The height is optional.
   [[nodiscard]] RecordedPoint Coordinate(std::string_view text, std::string_view separators,
                                          const XMLElement& at) const {
     const std::string_view all = text;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Tracks that others recorded or drew: GPX 1.0 and 1.1 (topografix.com), KML 2.2 (OGC 07-147r2).
+// This header reads recorded or drawn tracks from GPX 1.0 and 1.1 (topografix.com) and KML 2.2 (OGC
+// 07-147r2) files.
 //
-// Of a GPX file all segments of its tracks, in the order of their times; without tracks its first
-// route, without routes its waypoints. Of a KML file all gx:Tracks in that order, else its first
-// LineString. Points that lack something, and odd ones: see track_record.h. Heights are over the
-// sea, which is taken for the ellipsoid (within 110 m of it).
+// From a GPX file it reads all segments of its tracks, in the order of their times; without tracks
+// the first route, and without routes the waypoints. From a KML file it reads all gx:Tracks in the
+// order of their times, or else the first LineString. For incomplete and implausible points, see
+// track_record.h. Heights are above sea level, which is assumed to be the ellipsoid (within 110 m
+// of it).
 #pragma once
 
 #include <filesystem>
@@ -19,12 +21,12 @@
 namespace alpenglow::renderer {
 
 struct TrackPoint {
-  GeodeticPosition place;  // its height is 0 where there is none
+  GeodeticPosition place;  // its height is 0 if unknown
   std::optional<UtcInstant> utc = {};
-  int segment = 0;  // nothing is known of the way between points of different segments
+  int segment = 0;  // the path between points of different segments is unknown
 };
 
-/// What the heights of a track count from. On the ground they say nothing (KML's clampToGround, and
+/// Reference surface of a track's heights. kOnGround: heights are ignored (KML's clampToGround, and
 /// points without a height).
 enum class TrackHeights { kSea, kOverGround, kOnGround };
 
@@ -32,15 +34,15 @@ struct Track {
   std::string name;  // empty if it has none
   TrackHeights heights = TrackHeights::kSea;
   std::vector<TrackPoint> points;
-  std::string file = {};  // that it was read from
-  std::string note = {};  // one line about points that are left out or made up; empty: none are
+  std::string file = {};  // the file that was read
+  std::string note = {};  // one line about points that were dropped or completed; may be empty
 };
 
-/// An altitudeMode of KML that a line does not have is that of the MultiTrack or other element
-/// around it. Throws InputError "file:line: ..." for what is no XML, is UTF-16, is neither GPX nor
-/// KML, has no points, a latitude, longitude, height or time that is none (an empty one, and nan,
-/// is missing), or lines of different altitudeModes; InputError without a line for a file that
-/// cannot be read or is over 16 MiB.
+/// Reads a track. A KML line without altitudeMode inherits it from the enclosing MultiTrack or
+/// other element. Throws InputError "file:line: ..." for invalid XML, for UTF-16, for files that
+/// are neither GPX nor KML, for files without points, for an invalid latitude, longitude, height or
+/// time (empty values and nan count as missing), and for lines of different altitudeModes. Throws
+/// InputError without a line number for a file that cannot be read or exceeds 16 MiB.
 [[nodiscard]] Track ReadTrack(const std::filesystem::path& file);
 
 }  // namespace alpenglow::renderer

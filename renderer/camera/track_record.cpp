@@ -12,7 +12,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// A point with its place, and the segment that it is of.
+/// A point with its place, and its segment.
 struct PlacedPoint {
   RecordedPoint recorded;
   int segment = 0;
@@ -35,7 +35,7 @@ bool IsBefore(const UtcInstant& one, const UtcInstant& other) {
   return SecondsBetween(one, other) > 0.0;
 }
 
-/// Whether most of its times are before the one that precedes them.
+/// Returns whether most of its times precede the time before them.
 bool RunsBackwards(const RecordedSegment& segment) {
   const std::vector<UtcInstant> times = TimesOf(segment);
   int steps = 0;
@@ -45,7 +45,7 @@ bool RunsBackwards(const RecordedSegment& segment) {
   return steps < 0 && times.size() > 2;
 }
 
-/// One odd time does not move it, however far off it is.
+/// Returns the median time, which a single wrong time does not shift.
 UtcInstant MedianTime(const RecordedSegment& segment) {
   std::vector<UtcInstant> times = TimesOf(segment);
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
@@ -96,9 +96,10 @@ std::vector<PlacedPoint> PlacedPointsOf(const std::vector<RecordedSegment>& segm
   return points;
 }
 
-/// Indices of the most points whose times grow, in seconds since the first; others have none.
+/// Returns the indices of the longest subsequence with increasing times, in seconds since the
+/// first; points without a time are excluded.
 std::vector<std::size_t> LongestGrowing(const std::vector<std::optional<double>>& times_s) {
-  std::vector<std::size_t> ends;  // by length less one: where the run of it ends soonest
+  std::vector<std::size_t> ends;  // entry k: end of the run of k + 1 points that ends earliest
   std::vector<std::size_t> before(times_s.size());
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     if (!times_s[i]) continue;
@@ -122,7 +123,7 @@ std::vector<std::size_t> LongestGrowing(const std::vector<std::optional<double>>
   return run;
 }
 
-/// Without ends that are of another year than the rest.
+/// Removes end points that lie far in time from the rest, such as those with another year.
 void CutFarEnds(const std::vector<std::optional<double>>& times_s, std::vector<std::size_t>& run) {
   constexpr double kFar_s = 86400.0;
   constexpr double kLengths = 100.0;
@@ -155,7 +156,7 @@ bool IsSamePlace(const RecordedPoint& one, const RecordedPoint& other) {
   return DistanceBetween(*one.place, *other.place) < kSamePlace_m;
 }
 
-/// The points whose times grow, and those without a time.
+/// Returns the points with increasing times, and the points without a time.
 std::vector<PlacedPoint> WithoutOddTimes(const std::vector<PlacedPoint>& points, Counts& counts) {
   const std::vector<std::optional<double>> times_s = SecondsOf(points);
   std::vector<std::size_t> run = LongestGrowing(times_s);
@@ -178,7 +179,7 @@ std::vector<PlacedPoint> WithoutOddTimes(const std::vector<PlacedPoint>& points,
   return kept;
 }
 
-/// Metres along the points from the first.
+/// Returns the distance along the points from the first [m].
 std::vector<double> WayOf(const std::vector<PlacedPoint>& points) {
   std::vector<double> way_m{0.0};
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -188,8 +189,9 @@ std::vector<double> WayOf(const std::vector<PlacedPoint>& points) {
   return way_m;
 }
 
-/// Values of all points from those that some have, over the way: even between them, evenly spaced
-/// where the way stands still; `beyond`(at, neighbour, next) past the first and the last.
+/// Interpolates values from the known ones, linearly along the path, and evenly where the path
+/// stands still. `beyond`(at, neighbour, next) extrapolates past the first and the last known
+/// value.
 template <typename Beyond>
 std::vector<double> Completed(const std::vector<std::optional<double>>& known,
                               const std::vector<double>& way_m, const Beyond& beyond) {
@@ -198,7 +200,7 @@ std::vector<double> Completed(const std::vector<std::optional<double>>& known,
     if (known[i]) at.push_back(i);
   }
   std::vector<double> values;
-  std::size_t right = 0;  // the first that is known from here on
+  std::size_t right = 0;  // the first known index from here on
   for (std::size_t i = 0; i < known.size(); ++i) {
     while (right < at.size() && at[right] < i) ++right;
     if (known[i]) {
