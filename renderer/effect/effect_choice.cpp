@@ -22,7 +22,7 @@ double Norm(const std::array<float, 3>& rgb) {
   return std::sqrt(sum);
 }
 
-// The value that a share of all values does not exceed.
+// Returns the quantile of sorted values: the value that the fraction `share` does not exceed.
 double Quantile(const std::vector<double>& sorted, double share) {
   const double last = static_cast<double>(sorted.size()) - 1.0;
   const double rank = std::ceil(share * static_cast<double>(sorted.size())) - 1.0;
@@ -72,9 +72,9 @@ ChangeEstimate ChangeEstimate::Of(std::vector<double> changes) {
 
 namespace {
 
-constexpr double kPercentileFactor = 4.0;  // the 99th percentile may be so many times the budget
+constexpr double kPercentileFactor = 4.0;  // 99th percentile allowed, in budgets
 
-/// How many pixels of a picture the grid has.
+/// Returns the number of pixels of a picture's pilot grid.
 int PilotSize(int width, int height) {
   constexpr double kLeast = 400.0, kMost = 2000.0, kShare = 1.0 / 512.0;
   const double pixels = static_cast<double>(width) * height;
@@ -90,14 +90,14 @@ bool IsWithin(const ChangeEstimate& change, double max_error) {
          change.at_most.at_99_percent <= kPercentileFactor * max_error;
 }
 
-/// The first pixels of a pilot's picture.
+/// Returns the first pixels of a pilot's picture.
 Image FirstPixels(const Image& image, std::size_t count) {
   Image first(static_cast<int>(count), 1);
   std::copy_n(image.rgb.begin(), count, first.rgb.begin());
   return first;
 }
 
-/// Pictures of the pilot, held against the one with everything.
+/// Compares pilot pictures with the reference, the pilot picture with all wanted effects.
 class Judge {
  public:
   Judge(const EffectPilot& pilot, EffectSet wanted, int repeats)
@@ -108,7 +108,7 @@ class Judge {
 
   struct Verdict {
     ChangeEstimate change;  // the worst of the groups
-    ChangeEstimate whole;   // of the first of them
+    ChangeEstimate whole;   // of the first group
     double picture_s;
   };
 
@@ -151,7 +151,7 @@ class Judge {
   double floor_;
 };
 
-/// Leaves out what fits under the budget, smallest change first.
+/// Leaves out effects within the budget, smallest change first.
 class Chooser {
  public:
   Chooser(const Judge& judge, EffectSet wanted, double max_error)
@@ -160,12 +160,12 @@ class Chooser {
         effects_(wanted),
         verdict_{{}, {}, judge.everything_s()} {}
 
-  /// @param candidates  smallest change first.
+  /// @param candidates  sorted by change, smallest first.
   void LeaveOut(const std::vector<EffectEstimate>& candidates) {
     std::size_t tried = 0;
     EffectSet fewer = effects_;
     double sum = 0.0;
-    for (; tried < candidates.size(); ++tried) {  // changes that cannot add up to the budget
+    for (; tried < candidates.size(); ++tried) {  // while the sum stays within the budget
       sum += candidates[tried].change.at_most.rms;
       if (sum > max_error_) break;
       fewer = fewer.Without(candidates[tried].effect);

@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: MIT
-// How much one picture differs from another of the same scene, as a number that a budget can hold.
+// This header measures the difference between two pictures of a scene, and chooses the effects that
+// a picture needs within a budget of change.
 //
 //   d = |b - a| / max((|a| + |b|) / 2, floor)          of a pixel; |.| over linear R, G and B
 //
-// with floor a sixteenth of the luminance that the exposure meter makes middle grey: what is darker
-// shows less than half a code value of an 8-bit picture for 1 % of it. d is 0 for equal pixels, the
-// relative error where it is small, and 2 where light is in one picture and not in the other.
+// The floor is a sixteenth of the luminance that the exposure meter maps to middle grey: in darker
+// pixels, a change of 1 % is less than half a code value of an 8-bit picture. d is 0 for equal
+// pixels, equals the relative error where that is small, and is 2 where only one picture has light.
 //
-// What it does not see: where in the picture a change is, and that it may be what one looks at;
-// that the two may be exposed differently; that a slow gradient shows an edge which rough ground
-// hides; that the eye forgives errors of hue less than errors of lightness.
+// The measure ignores the position of a change in the picture, and hence its importance to a
+// viewer. It ignores that the two pictures may be exposed differently, that a slow gradient reveals
+// an edge which rough ground masks, and that viewers tolerate errors of hue more than errors of
+// lightness.
 //
-// Only what a scene needs: which effects a picture can do without, within a budget of change.
-//
-// A pilot decides: a few of the picture's own pixels, rendered with every effect on, and again with
-// each one off. Effects whose change (effect_choice.h) is small are left out, smallest first, as
-// long as the pilot without all of them together stays within the budget:
+// The choice is made with a pilot: a few of the picture's own pixels are rendered with all effects,
+// and again without each one. Effects whose change is small are left out, smallest first, as long
+// as the pilot without all of them together stays within the budget:
 //
 //   rms of d at most the budget,    99th percentile of d at most four times the budget,
 //
-// both three standard errors up, of the picture as a whole and again of the lamps in it and of the
-// surroundings of the sun, each counted alone however small.
+// Three standard errors are added to both numbers. They must hold for the picture as a whole and
+// also, separately and however small these are, for its lamps and for the surroundings of the sun.
 //
-// The pilot's pixels are one in each cell of a grid over the picture, at a place in the cell that
-// looks random and is not. So nothing larger than a cell is missed; of smaller things that are
-// neither lamps nor near the sun, only as many as the pilot's pixels happen to meet.
+// The pilot has one pixel in each cell of a grid over the picture, at a pseudo-random but
+// deterministic position in the cell. It therefore misses nothing larger than a cell. Smaller
+// features that are neither lamps nor near the sun are seen only if a pilot pixel happens to hit
+// them.
 //
-// The decision depends on pixels alone. What the effects cost is measured beside,
-// and told. Parts of the air cost nothing to keep, and are kept
-// (EffectText::is_free). Frames of a series decide each for itself: between
-// neighbours that decide differently the picture moves by the budget at most.
+// The choice depends on pixels alone; the cost of effects is measured and reported, but not used.
+// Parts of the air that cost nothing are always kept (EffectText::is_free). Each frame of a series
+// chooses independently, so between neighbouring frames with different choices the picture changes
+// by the budget at most.
 #pragma once
 
 #include <array>
@@ -52,20 +53,20 @@ struct PictureChange {
   double at_99_percent = 0.0;  // 99th percentile of d
 };
 
-/// In [0, 2].
+/// Returns the change d of a pixel, in [0, 2].
 [[nodiscard]] double PixelChange(const std::array<float, 3>& a, const std::array<float, 3>& b,
                                  double floor_cd_per_m2);
 
-/// The floor of a picture [cd/m^2]; the sun's disk is not metered.
+/// Returns the floor of a picture [cd/m^2]; the sun's disk is excluded from metering.
 [[nodiscard]] double ChangeFloor(const Image& reference);
 
-/// Of all pixels. Throws InternalError for pictures of different sizes.
+/// Returns the change over all pixels. Throws InternalError for pictures of different sizes.
 [[nodiscard]] PictureChange ChangeOf(const Image& reference, const Image& other);
 
-/// What a sample of pixels says of the whole picture.
+/// Estimate of the change of the whole picture from a sample of its pixels.
 struct ChangeEstimate {
-  PictureChange seen;     // of the sample
-  PictureChange at_most;  // three standard errors more
+  PictureChange seen;     // in the sample
+  PictureChange at_most;  // plus three standard errors
 
   [[nodiscard]] static ChangeEstimate Of(std::vector<double> changes);
 };
@@ -74,25 +75,26 @@ struct PixelPlace {
   int x, y;
 };
 
-/// Pixels that a picture is judged by: the first group stands for the whole, each other one for
-/// something small.
+/// Pixels of the pilot: the first group represents the whole picture, each other group a small
+/// feature.
 using PilotGroups = std::vector<std::vector<PixelPlace>>;
 
-/// One pixel in each cell of a grid of about `count` square cells.
+/// Returns one pixel in each cell of a grid of about `count` square cells.
 [[nodiscard]] std::vector<PixelPlace> PilotGrid(int width, int height, int count);
 
-/// Pixels within `radius` around a place in the picture or beside it, about `count`, on a spiral.
+/// Returns about `count` pixels on a spiral within `radius` of a centre, which may lie outside the
+/// picture.
 [[nodiscard]] std::vector<PixelPlace> PilotSpiral(int width, int height,
                                                   const std::array<double, 2>& centre,
                                                   double radius, int count);
 
-/// The groups of a picture: a grid, what surrounds the sun, lamps.
+/// Returns the groups of a picture: the grid, the surroundings of the sun, and the lamps.
 /// @param lamps  unit directions from the eye.
 [[nodiscard]] PilotGroups PilotPixels(const CameraRays& camera, int width, int height,
                                       const glm::dvec3& to_sun,
                                       const std::vector<glm::dvec3>& lamps);
 
-/// Time that the program's threads have worked since it was made, together: other programs on the
+/// CPU time of all threads of the program together since construction; other programs on the
 /// machine do not count.
 class Stopwatch {
  public:
@@ -104,13 +106,13 @@ class Stopwatch {
   std::clock_t begin_ = std::clock();
 };
 
-/// The pilot's pixels, group after group, as a picture of one row; and the time that took.
+/// The pilot's pixels, group after group, as a picture of one row, and the rendering time.
 struct PilotPicture {
   Image image;
   double seconds = 0.0;
 };
 
-/// What a picture does not have, and could.
+/// A refinement that the picture does not use, but could.
 struct Refinement {
   std::string name;
   std::function<PilotPicture()> render;
@@ -120,23 +122,23 @@ struct EffectPilot {
   PilotGroups groups;
   std::function<PilotPicture(EffectSet)> render;
   double pixels_of_picture = 0.0;
-  EffectSet present = EffectSet::All();  // others have nothing to do in this scene
-  std::vector<Refinement> refinements;   // estimated where the choice is explained
-  /// Of the picture, before any pixel: shadows of terrain, the plan of lamps [s].
+  EffectSet present = EffectSet::All();  // other effects are inactive in this scene
+  std::vector<Refinement> refinements;   // estimated only if the choice is explained
+  /// Preparation time before any pixel [s]: shadows of terrain, the plan of lamps.
   std::function<double(Effect)> preparation_s = [](Effect) { return 0.0; };
 };
 
-/// An effect of a picture, as the pilot saw it.
+/// Estimate of an effect of a picture from the pilot.
 struct EffectEstimate {
   Effect effect;
   ChangeEstimate change;  // the worst of the groups
-  ChangeEstimate whole;   // of the picture as a whole
-  double cost_s = 0.0;    // of the picture's time, preparation included, all threads together
+  ChangeEstimate whole;   // in the picture as a whole
+  double cost_s = 0.0;    // of the picture, including preparation, summed over threads
   bool kept = true;
-  bool present = true;  // false: nothing to do in this scene
+  bool present = true;  // false: inactive in this scene
 };
 
-/// What more would change.
+/// Estimate of a refinement's change and cost.
 struct RefinementEstimate {
   std::string name;
   ChangeEstimate change;
@@ -145,34 +147,33 @@ struct RefinementEstimate {
 
 struct EffectBudget {
   double max_error = 0.01;  // rms of d, in (0, 1]
-  /// Estimates parts of the air too, which cost nothing and are always kept, and times each
-  /// picture of the pilot three times.
+  /// Also estimates the parts of the air, which cost nothing and are always kept, and times each
+  /// pilot picture three times.
   bool explain = false;
-  bool leave_out = true;  // false: everything is kept, and only estimated
+  bool leave_out = true;  // false: all effects are kept and only estimated
 };
 
 struct EffectChoice {
-  EffectSet effects;  // what to render
+  EffectSet effects;  // effects to render
   double max_error = 0.0;
-  std::vector<EffectEstimate> estimates;  // of what was asked for, in the order of Effect
-  ChangeEstimate together;                // of all that is left out
+  std::vector<EffectEstimate> estimates;  // of the requested effects, in the order of Effect
+  ChangeEstimate together;                // change from leaving out all of `LeftOut()`
   std::vector<RefinementEstimate> refinements;
-  // Time of all threads together: of the picture with
-  // everything, of the picture as chosen, and of choosing.
+  // Times, summed over threads: the picture with all effects, the picture as chosen, and the pilot.
   double all_s = 0.0, chosen_s = 0.0, pilot_s = 0.0;
   std::size_t pilot_pixels = 0;
 
   [[nodiscard]] EffectSet LeftOut() const;
 };
 
-/// @param wanted  what "everything" is.
+/// @param wanted  the effects of the reference picture.
 [[nodiscard]] EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted,
                                          const EffectBudget& budget);
 
-/// A table of a choice, with a line for every effect.
+/// Returns a table of a choice, with one line per effect.
 [[nodiscard]] std::string ExplainText(const EffectChoice& choice);
 
-/// What a file says of the choice: what is left out, and by how much that changes the picture.
+/// Returns the metadata of a choice: the effects left out, and the resulting change of the picture.
 [[nodiscard]] Metadata NotesOn(const EffectChoice& choice);
 
 }  // namespace alpenglow::renderer

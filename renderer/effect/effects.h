@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What a picture is made of, effect by effect, so that each can be left out: to compare, or because
-// a scene does not need it.
+// This header lists the effects of a picture. Each can be left out, for comparison or because a
+// scene does not need it.
 //
-// Effects of the picture are switched on and off freely. Parts of the air (molecules, aerosol,
-// ozone) change the light that scattering at every order brings: leaving one out means another
-// medium, solved anew.
+// Effects of the picture are switched freely. Parts of the air (molecules, aerosol, ozone)
+// contribute to scattering of every order, so leaving one out requires solving another medium.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +15,7 @@
 
 namespace alpenglow::renderer {
 
-/// One line here and one in the table of effects.cpp make a new effect.
+/// A new effect needs one line here and one in the table of effects.cpp.
 enum class Effect : std::size_t {
   kSky,
   kAerial,
@@ -43,23 +42,23 @@ enum class Effect : std::size_t {
 };
 inline constexpr std::size_t kEffects = static_cast<std::size_t>(Effect::kFineSpectrum) + 1;
 
-/// What an effect is called, and what the picture is without it.
+/// Name of an effect, and a description of the picture without it.
 struct EffectText {
   Effect effect;
-  const char* name;      // as --effects takes it
+  const char* name;      // as in --effects
   const char* left_out;  // "the sky is black"
-  bool is_of_air;        // a part of the air: on unless a list names some of them
-  bool is_free;          // leaving it out saves no time: never left out to save some
+  bool is_of_air;        // part of the air: on unless a list names some of them
+  bool is_free;          // leaving it out saves no time, so it is never left out automatically
 };
 
 /// All effects, in the order of Effect.
 [[nodiscard]] std::span<const EffectText> EffectTexts();
 [[nodiscard]] const EffectText& TextOf(Effect effect);
 
-/// A set of effects that are on.
+/// A set of enabled effects.
 class EffectSet {
  public:
-  constexpr EffectSet() = default;  // none
+  constexpr EffectSet() = default;  // empty set
   constexpr EffectSet(std::initializer_list<Effect> effects) {
     for (const Effect effect : effects) bits_ |= Bit(effect);
   }
@@ -80,7 +79,7 @@ class EffectSet {
     less.bits_ &= ~Bit(effect);
     return less;
   }
-  /// What both have.
+  /// Returns the intersection of two sets.
   [[nodiscard]] constexpr EffectSet And(EffectSet other) const {
     EffectSet both;
     both.bits_ = bits_ & other.bits_;
@@ -88,7 +87,7 @@ class EffectSet {
   }
   [[nodiscard]] std::vector<Effect> List() const;
   constexpr bool operator==(const EffectSet&) const = default;
-  /// An order for containers, without meaning.
+  /// Arbitrary order for containers.
   [[nodiscard]] constexpr bool operator<(const EffectSet& other) const {
     return bits_ < other.bits_;
   }
@@ -98,15 +97,16 @@ class EffectSet {
   unsigned bits_ = 0;
 };
 
-/// "sky, aerial, ...": the names of all effects.
+/// Returns the names of all effects: "sky, aerial, ...".
 [[nodiscard]] std::string NamesOfEffects();
 
-/// Reads "all", or names separated by commas: exactly these effects, and of the parts of the air
-/// all unless one is named. "-NAME" takes an effect away; a list that begins so begins with all:
-/// "-shafts", "all,-ozone". Throws InputError for a name that is not known, with the nearest.
+/// Reads "all", or names separated by commas. A list of names enables exactly these effects, and
+/// all parts of the air unless it names one of them. "-NAME" removes an effect; a list that starts
+/// with a removal starts from all effects: "-shafts", "all,-ozone". Throws InputError for an
+/// unknown name, suggesting the nearest one.
 [[nodiscard]] EffectSet EffectsFromText(std::string_view text);
 
-/// "all" or "all,-shafts,-ozone"; read back by EffectsFromText.
+/// Returns "all" or "all,-shafts,-ozone"; EffectsFromText reads it back.
 [[nodiscard]] std::string NameOf(EffectSet effects);
 
 }  // namespace alpenglow::renderer
