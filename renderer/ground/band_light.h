@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sums and products of light in bands, band by band.
+// This header defines sums and products of light in bands, band by band.
 #pragma once
 
 #include <algorithm>
@@ -33,16 +33,16 @@ using BandLight = Bands<float>;
   return product;
 }
 
-/// The same light for the sums of colours.
+/// A view of band light in double precision, for functions that sum colours.
 class InDouble {
  public:
-  explicit InDouble(const BandLight& light) : count_(light.count) {  // NOLINT: value_ is filled
+  explicit InDouble(const BandLight& light) : count_(light.count) {  // NOLINT: value_ is set below
     std::copy_n(light.value.begin(), count_, value_.begin());
   }
   operator std::span<const double>() const { return {value_.data(), count_}; }  // NOLINT: a view
 
  private:
-  std::array<double, kMaxBands> value_;  // the first `count_`; the rest is never read
+  std::array<double, kMaxBands> value_;  // the first `count_` entries; the others are never read
   std::size_t count_;
 };
 

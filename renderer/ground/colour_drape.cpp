@@ -20,7 +20,7 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
-constexpr int kGridNodes = 33;  // of places, a side
+constexpr int kGridNodes = 33;  // of the grid of places, per side
 
 struct CloseImage {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
@@ -54,12 +54,12 @@ ImageDataset OpenImage(const std::filesystem::path& file, bool is_land_cover) {
   return dataset;
 }
 
-// IEC 61966-2-1.
+// sRGB decoding, IEC 61966-2-1.
 double Linear(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/// 16-bit linear values of what a band stores.
+/// Decodes stored values of a band to 16-bit linear values.
 class ImageDecoder {
  public:
   explicit ImageDecoder(GDALDataType type) : type_(type) {
@@ -88,7 +88,7 @@ class ImageDecoder {
   std::vector<std::uint16_t> table_;
 };
 
-// Row by row what a band has, as the type of `row`'s elements.
+// Reads a row of a band, converted to the type of `row`'s elements.
 template <typename Value>
 void ReadRow(const std::filesystem::path& file, GDALRasterBand& band, GDALDataType type, int y,
              std::vector<Value>& row) {
@@ -97,8 +97,8 @@ void ReadRow(const std::filesystem::path& file, GDALRasterBand& band, GDALDataTy
     RefuseFile(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
 }
 
-// The opacity of each pixel, 255 for an opaque one, by the alpha band, the mask or the nodata values of
-// the file. A pixel is transparent where every band has its nodata value.
+// Returns the opacity of each pixel, 255 for an opaque one, from the alpha band, the mask or the
+// nodata values of the file. A pixel is transparent where every band has its nodata value.
 std::vector<std::uint8_t> ReadWeights(const std::filesystem::path& file, GDALDataset& dataset) {
   const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -120,7 +120,7 @@ std::vector<std::uint8_t> ReadWeights(const std::filesystem::path& file, GDALDat
 
 using Pixel = std::array<std::uint16_t, 4>;
 
-// Colours times their weight, and the weight.
+// Returns colours times their weight, and the weight.
 std::vector<Pixel> ReadPixels(const std::filesystem::path& file, GDALDataset& dataset) {
   const int rows = dataset.GetRasterYSize();
   const std::vector<std::uint8_t> weights = ReadWeights(file, dataset);
@@ -168,10 +168,10 @@ std::vector<Pixel> ReadClasses(const std::filesystem::path& file, GDALDataset& d
   return shares;
 }
 
-/// From longitude and latitude to pixels, by the file's own coordinate system.
+/// Maps longitude and latitude to pixels, by the file's own coordinate system.
 class Georeference {
  public:
-  /// Nothing for a file that does not say where it lies.
+  /// Returns empty for a file without a georeference.
   static std::optional<Georeference> Of(const std::filesystem::path& file, GDALDataset& dataset) {
     Georeference reference;
     const OGRSpatialReference* crs = dataset.GetSpatialRef();
@@ -222,7 +222,8 @@ Rectangle RectangleOf(const TriangleMesh& mesh) {
 
 }  // namespace
 
-// Albedos are linear in colours that are not too saturated: three differences around grey.
+// Albedos are linear in colours that are not too saturated, so three differences around grey
+// suffice.
 BandsOfColour::BandsOfColour(std::span<const double> wavelengths_nm) {
   constexpr double kGrey = 0.5, kStep = 0.05;
   const std::vector<double> grey = AlbedoFromLinearSrgb({kGrey, kGrey, kGrey}, wavelengths_nm);
@@ -346,7 +347,7 @@ std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const Place& at)
 std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, double altitude_m,
                                                      double footprint_m) const {
   const glm::dvec3 own = turn_ * point + origin_;
-  // The foot of the point on the sphere.
+  // Project the point radially onto the sphere.
   const double shrink = radius_m_ / (radius_m_ + altitude_m);
   const double gx = std::clamp((own.x * shrink - first_x_m_) / step_x_m_, 0.0,
                                static_cast<double>(kGridNodes - 1));

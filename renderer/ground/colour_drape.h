@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A picture laid over the terrain: colours of an orthophoto, or a map of land cover.
+// This header provides a picture draped over the terrain: colours of an orthophoto, or a map of
+// land cover.
 //
-// Read by GDAL: GeoTIFF and PNG, 8 or 16 bits (sRGB-encoded) or floating point (linear), three
-// bands or more (the first three are red, green, blue), or one (grey). With a coordinate system it
-// lies where it says; without, it covers the terrain from rim to rim, its upper edge in the north.
-// A map of land cover is one band of 8 bits, of the classes of land_cover.h. Pixels may be left out
-// by an alpha band, a mask or a nodata value: there the ground shows its own cover. Averages over
-// 2 x 2, 4 x 4, ... pixels serve distant ground.
+// GDAL reads the picture: GeoTIFF and PNG with 8 or 16 bits (sRGB-encoded) or floating point
+// (linear), with one band (grey), or with three or more (the first three are red, green, blue).
+// With a coordinate system, the picture is placed by it; without one, it covers the whole extent of
+// the terrain, with its upper edge in the north. A map of land cover has one band of 8 bits with
+// the classes of land_cover.h. An alpha band, a mask or a nodata value can leave pixels out: the
+// ground there shows its own cover. Averages over 2 x 2, 4 x 4, ... pixels serve distant ground.
 #pragma once
 
 #include <array>
@@ -25,15 +26,15 @@
 
 namespace alpenglow::renderer {
 
-/// Spectral albedo from a colour of a picture, quick: AlbedoFromLinearSrgb, but for colours too
-/// saturated for it, which are clamped band by band.
+/// Fast conversion of a picture's colour to a spectral albedo: AlbedoFromLinearSrgb, except for
+/// colours too saturated for it, which are clamped band by band.
 class BandsOfColour {
  public:
   explicit BandsOfColour(std::span<const double> wavelengths_nm);
 
   /// @param rgb  linear sRGB.
   [[nodiscard]] BandLight Albedo(const std::array<double, 3>& rgb) const;
-  /// What a channel adds to the albedo.
+  /// Returns the albedo that one unit of a channel contributes.
   [[nodiscard]] const BandLight& OfPrimary(std::size_t channel) const {
     return of_primary_[channel];
   }
@@ -42,37 +43,38 @@ class BandsOfColour {
   std::array<BandLight, 3> of_primary_;
 };
 
-/// Colours or land cover on the terrain. Immutable; safe to ask from many threads.
+/// Colours or land cover on the terrain. Immutable; safe to use from many threads.
 class ColourDrape {
  public:
-  /// The picture that a scene names, over its ground; null if it names
-  /// none. Throws InputError naming the file and the fault for what
-  /// cannot be read, has over 2^26 pixels or no terrain under it.
+  /// Returns the picture that a scene names, placed over its ground; null if it names none. Throws
+  /// InputError naming the file and the fault if the picture cannot be read, has over 2^26 pixels
+  /// or has no terrain under it.
   [[nodiscard]] static std::shared_ptr<const ColourDrape> Of(const Scene& scene,
                                                              const SceneGround& ground);
 
-  /// The same colours for points of another frame.
+  /// Returns the same drape for points given in another frame.
   [[nodiscard]] std::shared_ptr<const ColourDrape> In(const LocalFrame& frame) const;
 
-  /// Shares of land cover, where else are colours.
+  /// Returns whether the drape holds shares of land cover rather than colours.
   [[nodiscard]] bool IsLandCover() const { return is_land_cover_; }
 
-  /// About the width of a pixel [m].
+  /// Approximate width of a pixel [m].
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
 
-  /// Linear sRGB, or shares of land cover as CoverOfClass has them, averaged over about a footprint;
-  /// nothing outside the picture and where less than half of it is there.
+  /// Returns linear sRGB, or shares of land cover as CoverOfClass defines them, averaged over about
+  /// a footprint. Empty outside the picture, and where less than half of the footprint has valid
+  /// pixels.
   /// @param point  in the ground's frame, at that altitude.
   [[nodiscard]] std::optional<std::array<double, 3>> At(const glm::dvec3& point, double altitude_m,
                                                         double footprint_m) const;
 
  private:
-  /// Linear sRGB times how much of a pixel is there, and that weight, in 16 bits.
+  /// Linear sRGB times the weight of a pixel (its valid fraction), and the weight, in 16 bits.
   struct Level {
     int columns = 0, rows = 0;
     std::vector<std::array<std::uint16_t, 4>> pixels;
   };
-  /// Where a place lies in the picture [pixels from its upper left corner].
+  /// Position in the picture [pixels from its upper left corner].
   struct Place {
     double x, y;
   };
@@ -80,11 +82,11 @@ class ColourDrape {
   ColourDrape(const std::filesystem::path& file, bool is_land_cover, const SceneGround& ground);
   [[nodiscard]] std::array<double, 4> Bilinear(std::size_t level, const Place& at) const;
 
-  std::shared_ptr<const std::vector<Level>> levels_;  // each half as fine as the one before
-  LocalFrame frame_;                                  // of the ground that it was laid over
-  glm::dmat3 turn_{1.0};                              // into that frame
+  std::shared_ptr<const std::vector<Level>> levels_;  // each at half the resolution of the last
+  LocalFrame frame_;                                  // frame of the ground under the picture
+  glm::dmat3 turn_{1.0};                              // rotation into that frame
   glm::dvec3 origin_{0.0};
-  // Places at the nodes of a grid over the frame's plane.
+  // Positions in the picture at the nodes of a grid over the frame's plane.
   double first_x_m_ = 0.0, first_y_m_ = 0.0, step_x_m_ = 1.0, step_y_m_ = 1.0;
   std::vector<Place> places_;
   double radius_m_ = 0.0;

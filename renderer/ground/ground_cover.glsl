@@ -1,10 +1,11 @@
-// What mountain ground is made of, and relief finer than the mesh (surface.h). Lengths in metres:
-// details of the ground are as fine as that.
+// Materials of mountain ground, and relief finer than the mesh (surface.h). Lengths are in metres,
+// to suit the fine details of the ground.
 
-// Families of noise: two make the lines between materials waver, one is relief, one the grain of
-// crowns and rocks, one the waves of water. Each is a sum of octaves, half as long from one to the
-// next and lower by the factor of its fall. Relief ends at waves of 7 m and grain at 1.5 m, parts of a
-// crown: no model of terrain is finer, and invented detail looks like felt from a man's height.
+// Families of noise: two make the lines between materials ragged, one is relief, one the grain of
+// crowns and rocks, one the waves of water. Each is a sum of octaves; each octave has half the
+// wavelength of the one before, and its amplitude is divided by the family's fall. Relief ends at
+// waves of 7 m and grain at 1.5 m, parts of a crown: no terrain model is finer, and invented detail
+// looks like felt from eye level.
 SHARED_CONSTANT int kBroadWave_m = 900;  // of the longest octave
 SHARED_CONSTANT int kBroadOctaves = 5;
 SHARED_CONSTANT int kBroadFall = 2;
@@ -18,54 +19,55 @@ SHARED_CONSTANT int kReliefOctaves = 6;
 SHARED_CONSTANT int kReliefFall = 2;
 SHARED_CONSTANT Bits kReliefSeed = 47u;
 SHARED_CONSTANT int kReliefHeight_m = 14;
-SHARED_CONSTANT int kGrainWave_m = 12;  // of crowns
+SHARED_CONSTANT int kGrainWave_m = 12;  // size of crowns
 SHARED_CONSTANT int kGrainOctaves = 4;
 SHARED_CONSTANT int kGrainFall = 1;
 SHARED_CONSTANT Bits kGrainSeed = 83u;
 
-SHARED_CONSTANT int kWaveWave_m = 128;  // of a gale
+SHARED_CONSTANT int kWaveWave_m = 128;  // waves of a gale
 SHARED_CONSTANT int kWaveOctaves = 14;
 SHARED_CONSTANT int kWaveFall = 2;
 SHARED_CONSTANT Bits kWaveSeed = 131u;
 
-// What is kept of an octave where one ray of the picture is `footprint` wide: octaves shorter than
-// two footprints fade out, so that distant ground does not glitter.
+// Fraction of an octave that is kept if a camera ray is `footprint` wide: octaves shorter than two
+// footprints fade out, so that distant ground does not alias.
 SHARED Number OctaveShare(Length wavelength, Length footprint) {
   return min(max(wavelength / (Number(2.0) * footprint) - Number(1.0), Number(0.0)), Number(1.0));
 }
 
-// A ray of a width covers this much of water that it meets at a cosine with the normal: the geometric mean
-// of its width and depth there.
+// Footprint on water of a ray of a width that meets it at a cosine with the normal: the geometric
+// mean of the footprint's width and depth.
 SHARED Length SeenFootprint(Length across, Number cosine) {
   return across / sqrt(max(cosine, Number(0.04)));
 }
 
-// Extent of the land that such a ray averages: the depth of its width on the ground, and the ground
-// that plants and stones of 0.7 m hide behind them from a slanting ray. Without the second a flat
-// pattern would be smeared into streaks where it is seen from the side.
+// Footprint on land of such a ray: the depth of its width on the ground, plus the ground that
+// plants and stones of 0.7 m hide behind them from a slanting ray. Without the second term, a flat
+// pattern would be smeared into streaks at grazing angles.
 SHARED Length LandFootprint(Length across, Number cosine) {
   Number mu = min(max(cosine, Number(0.1)), Number(1.0));
   return (across + Length(0.7) * sqrt(Number(1.0) - mu * mu)) / mu;
 }
 
-// 0 up to `low`, 1 from `high` on, smooth between.
+// Smooth step: 0 up to `low`, 1 from `high` on.
 SHARED Number SmoothRise(Number low, Number high, Number x) {
   Number t = min(max((x - low) / (high - low), Number(0.0)), Number(1.0));
   return t * t * (Number(3.0) - Number(2.0) * t);
 }
 
-// Altitude as the lines between materials take it.
+// Altitude with noise, used for the lines between materials.
 SHARED Length WaveringAltitude(Length altitude, Number broad, Number fine) {
   return altitude + Length(260.0) * broad + Length(60.0) * fine;
 }
 
-// The altitude is smoother for the snow line: snow fades in by height and not in spots.
+// Altitude with noise for the snow line. It is smoother, so that snow fades in by height and not in
+// spots.
 SHARED Length SnowAltitude(Length altitude, Number broad) {
   return altitude + Length(260.0) * broad;
 }
 
-// Rises of 0 to 1 with the wavering altitude: no trees left; bare of grass; cold enough for snow,
-// which gentle ground keeps 150 m below its line.
+// Smooth steps from 0 to 1 with the noisy altitude: no trees; no grass; cold enough for snow, which
+// gentle ground keeps 150 m below its line.
 SHARED Number TreelessRise(Length altitude, Length tree_line) {
   return SmoothRise(tree_line - Length(250.0), tree_line - Length(50.0), altitude);
 }
@@ -78,9 +80,9 @@ SHARED Number ColdRise(Length altitude, Length snow_line) {
   return SmoothRise(snow_line - Length(150.0), snow_line + Length(250.0), altitude);
 }
 
-// By the slope of the mesh alone, for rock stands where the ground is steep: not too steep for soil,
-// which woods hold up to about 50 degrees; and not so steep, over about 45 degrees, that it sheds its
-// snow.
+// Smooth steps by the slope of the mesh alone. SoilRise: flat enough for soil, which woods hold up
+// to about 50 degrees; steeper ground is rock. SnowHoldRise: flat enough to hold snow, up to about
+// 45 degrees.
 SHARED Number SoilRise(Number normal_up) {
   return SmoothRise(Number(0.59), Number(0.70), normal_up);
 }
@@ -89,23 +91,22 @@ SHARED Number SnowHoldRise(Number normal_up) {
   return SmoothRise(Number(0.60), Number(0.76), normal_up);
 }
 
-// Land that is flat to 4 degrees, a meadow rather than a wood; up to 15 degrees some of it is.
+// Land that is flat to 4 degrees is a meadow rather than a wood; up to 15 degrees some of it is.
 SHARED Number FlatRise(Number normal_up) {
   return SmoothRise(Number(0.965), Number(0.998), normal_up);
 }
 
-// Share of wood in what is green. Groves stand on flat ground and glades open in woods, with edges
-// as ragged as the fine noise.
+// Fraction of wood in vegetation. Groves grow on flat ground and glades open in woods, with edges
+// made ragged by the fine noise.
 SHARED Number ForestShare(Number treeless, Number flat_ground, Number broad, Number fine) {
   Number density =
       Number(1.0) - Number(0.7) * flat_ground + Number(0.5) * broad + Number(0.4) * fine;
   return (Number(1.0) - treeless) * SmoothRise(Number(0.05), Number(0.75), density);
 }
 
-// Land cover of a map: shares of wood, stone and lasting snow; the rest is grass. Two corners that
-// no mixture of these comes near stand for water, all wood and all stone, and for what the map does
-// not know, all stone and all snow.
-// 1 for yes, 0 for no.
+// Land cover of a map: shares of wood, stone and lasting snow; the rest is grass. Two impossible
+// mixtures are codes: all wood and all stone means water, all stone and all snow means unknown.
+// The functions return 1 for yes, 0 for no.
 SHARED Number IsMappedWater(Number wood, Number stone) {
   return select(wood + stone > Number(1.5), Number(1.0), Number(0.0));
 }
@@ -114,14 +115,14 @@ SHARED Number IsMapped(Number stone, Number snow) {
   return select(stone + snow < Number(1.5), Number(1.0), Number(0.0));
 }
 
-// Share of rock and scree in ground without snow: where it is bare, and in half of what is too steep
-// under the tree line, for trees stand in its cracks.
+// Fraction of rock and scree in ground without snow: all of bare ground, and half of the ground
+// below the tree line that is too steep for soil, because trees grow in its cracks.
 SHARED Number RockShare(Number bare, Number soil) {
   return max(bare, (Number(1.0) - soil) * (Number(0.5) + Number(0.5) * bare));
 }
 
-// Lightness of patches and of the grain, as a share of the albedo: crowns and rocks differ from the
-// gaps between them, blades of grass are too fine to be seen.
+// Relative change of the albedo in patches and grain: crowns and rocks differ from the gaps between
+// them, while blades of grass are too fine to be visible.
 SHARED Number GroundTone(Number broad, Number fine, Number grain, Number forest,
                          Number rock_share) {
   Number contrast = Number(0.6) * (forest + rock_share * (Number(1.0) - forest));
@@ -133,38 +134,40 @@ SHARED Number PartlyCovered(Number below, Number cover, Number share) {
   return below + share * (cover - below);
 }
 
-// Which trees stand in a wood: broad-leaved up to a line, for some 1000 m under it in stands with
-// conifers between, conifers above.
+// Fraction of broad-leaved trees in a wood: all up to some 1000 m below a line, mixed stands up to
+// the line, and conifers above.
 SHARED Number BroadleafShare(Length altitude, Length line, Number broad, Number fine) {
   return Number(1.0) - SmoothRise(line - Length(1000.0), line + Length(300.0),
                                   altitude + Length(900.0) * broad + Length(500.0) * fine);
 }
 
-// What is in leaf, or green: below a line that climbs in spring and comes down in autumn.
+// Fraction in leaf, or green: below a line that climbs in spring and descends in autumn.
 SHARED Number LeafShare(Length altitude, Length line) {
   return Number(1.0) - SmoothRise(line - Length(250.0), line + Length(250.0), altitude);
 }
 
-// How far the snow line of a slope lies over that of level ground: 400 m times the share of the
-// normal that faces the sun's side, for snow outlasts weeks of sun on shaded slopes.
+// Height of the snow line of a slope above that of level ground: 400 m times the component of the
+// normal towards the sun's side, because shaded slopes keep snow for weeks longer.
 SHARED Length SunnySide(Number normal_sunward) { return Length(400.0) * normal_sunward; }
 
-// Share of the ground that an eye sees between the crowns of a wood: 0.12 of conifers and 0.2 of
-// broad-leaved trees without leaves, for they have albedos of 0.13 and 0.21 over snow, where grass
-// under it has 0.75 (Betts, Ball 1997, J. Geophys. Res. 102, 28901). Stands are denser and thinner.
+// Fraction of the ground that is visible between the crowns of a wood: 0.12 for conifers and 0.2
+// for broad-leaved trees without leaves. These give albedos of 0.13 and 0.21 over snow, where grass
+// under it has 0.75 (Betts, Ball 1997, J. Geophys. Res. 102, 28901). The density of stands varies.
 SHARED Number CanopyGap(Number leafless, Number broad, Number fine, Number grain) {
   Number gap = Number(0.12) + Number(0.08) * leafless;
   Number thinner = Number(0.5) * broad + Number(0.3) * fine + Number(0.2) * grain;
   return gap * min(max(Number(1.0) + thinner, Number(0.5)), Number(1.5));
 }
 
-// This share of the snow on the ground is seen: trees hide it as layers do, by a power of their share
-// (Monsi, Saeki 1953, Jap. J. Bot. 14, 22), so that a thin wood is nearly as dark as a dense one.
+// Fraction of the snow on the ground that is visible. Trees hide it like layers, by a power of
+// their share (Monsi, Saeki 1953, Jap. J. Bot. 14, 22), so that a thin wood is nearly as dark as a
+// dense one.
 SHARED Number SnowSeen(Number snow_share, Number forest, Number rock_share, Number gap) {
   return snow_share * exp(log(gap) * forest * (Number(1.0) - rock_share));
 }
 
-// Albedo of what grows there, in a band. Between leaf and bare trees are the yellow of autumn.
+// Albedo of vegetation, in a band. Trees pass through autumn yellow between green leaves and bare
+// branches.
 SHARED Number BroadleafAlbedo(Number bare, Number yellow, Number leaves, Number not_bare,
                               Number in_leaf) {
   return PartlyCovered(PartlyCovered(bare, yellow, not_bare), leaves, in_leaf);
@@ -175,38 +178,40 @@ SHARED Number GreenAlbedo(Number meadow, Number conifers, Number broadleaf, Numb
   return PartlyCovered(meadow, PartlyCovered(conifers, broadleaf, broadleaf_share), forest);
 }
 
-// Albedo in a band, from those of the materials. Fresh snow is even, ground is not.
+// Albedo in a band, mixed from those of the materials. Fresh snow is uniform; other ground varies
+// by `tone`.
 SHARED Number CoverAlbedo(Number green, Number rock, Number snow, Number rock_share,
                           Number snow_share, Number tone) {
   Number albedo = PartlyCovered(PartlyCovered(green, rock, rock_share), snow, snow_share);
   return min(albedo * (Number(1.0) + (Number(1.0) - snow_share) * tone), Number(1.0));
 }
 
-// Waves, of the slope variance of Cox and Munk (reflectance.h). The longest that the wind raises, of
-// 0.83 s^2/m of the square of its speed: Pierson, Moskowitz (1964), J. Geophys. Res. 69, 5181, whose
-// spectrum peaks there.
+// Length of the longest waves that the wind raises, from the slope variance of Cox and Munk
+// (reflectance.h): 0.83 s^2/m times the square of the wind speed, where the spectrum of Pierson,
+// Moskowitz (1964), J. Geophys. Res. 69, 5181, has its peak.
 SHARED Length LongestWave(Number variance) {
   Number wind = max(variance - Number(0.003), Number(0.0)) / Number(0.00512);
   return Length(0.83) * wind * wind;
 }
 
-// Slope variance of an octave: as much of each from there to 1 mm, as behind the peak of a saturated
-// sea (Phillips 1958, J. Fluid Mech. 4, 426).
+// Slope variance of an octave: equal for all octaves from the longest wave to 1 mm, as in the
+// saturated range of the spectrum (Phillips 1958, J. Fluid Mech. 4, 426).
 SHARED Number WaveOctaveVariance(Number variance, Length longest) {
   return variance * Number(0.6931471805599453) /
          max(log(max(longest, Length(0.002)) / Length(0.001)), Number(0.6931471805599453));
 }
 
-// Share of an octave that the wind raises.
+// Fraction of an octave that the wind raises.
 SHARED Number WaveRaised(Length wavelength, Length longest) {
   return min(max(Number(2.0) - wavelength / max(longest, Length(1e-6)), Number(0.0)), Number(1.0));
 }
 
-// Share of the slopes that is shown to an eye at a cosine with the vertical: where crests hide what
-// is behind them, waves are left to the statistics of the glitter, which know of hiding.
+// Fraction of the slopes that is drawn for an eye at a cosine with the vertical. At grazing angles,
+// where crests hide the water behind them, the statistical model of the glitter represents the
+// waves, because it includes hiding.
 SHARED Number WaveShown(Number cosine, Number variance) {
   return SmoothRise(Number(0.0), Number(0.7) * sqrt(variance), cosine);
 }
 
-// Slope of one octave of the noise, per cell, is 0.72 rms.
+// Slope of one octave. The gradient noise has a slope of 0.72 rms per cell.
 SHARED Number WaveSlope(Number octave_variance) { return sqrt(octave_variance) / Number(0.72); }

@@ -22,7 +22,7 @@ std::optional<std::array<double, 3>> CoverOfClass(int number) {
       return {{0.5, 0.1, 0.0}};
     case 30:  // grass
       return {{0.0, 0.0, 0.0}};
-    case 40:  // crops, of which some land lies open
+    case 40:  // crops, part of which is open soil
       return {{0.0, 0.15, 0.0}};
     case 50:  // built-up
       return {{0.1, 0.5, 0.0}};
@@ -32,7 +32,7 @@ std::optional<std::array<double, 3>> CoverOfClass(int number) {
       return {{0.0, 0.0, 1.0}};
     case 80:  // water
       return {{1.0, 1.0, 0.0}};
-    case 90:  // wetland of herbs
+    case 90:  // herbaceous wetland
       return {{0.2, 0.0, 0.0}};
     case 100:  // moss and lichen
       return {{0.0, 0.4, 0.0}};
@@ -43,10 +43,10 @@ std::optional<std::array<double, 3>> CoverOfClass(int number) {
 
 namespace {
 
-// Under all ground: there is none of it.
+// An altitude below all ground.
 constexpr double kNowhere_m = -1000.0;
 
-/// Of mountains that are neither at the sea nor far from it.
+/// Lines of mountains at a moderate distance from the sea, by latitude.
 struct ZonalNode {
   double latitude;  // degrees
   MountainClimate climate;
@@ -130,7 +130,8 @@ MountainClimate OfLatitude(double latitude) {
                (latitude - low.latitude) / (above->latitude - low.latitude));
 }
 
-// Over the sphere, in radians; to a rounding, which is small against a massif.
+// Returns the angle between two places on the sphere [rad]. Its rounding error is small against a
+// massif.
 double AngleBetween(const GeodeticPosition& place, const Massif& massif) {
   const double latitude = massif.latitude * kRadiansPerDegree;
   const double apart = place.longitude_rad - massif.longitude * kRadiansPerDegree;
@@ -140,20 +141,20 @@ double AngleBetween(const GeodeticPosition& place, const Massif& massif) {
                  -1.0, 1.0));
 }
 
-// Middles of the months of a northern year. Fresh snow comes down with the cold in autumn, the snow
-// of a winter goes slower than it came: in the Alps it lies above 1700 m in mid-November, 1500 m in
-// mid-April, 2600 m in mid-June.
+// Winter shares at the middles of the months of a northern year. Fresh snow descends quickly with
+// the cold of autumn, and melts more slowly in spring: in the Alps the snow line is at 1700 m in
+// mid-November, 1500 m in mid-April and 2600 m in mid-June.
 constexpr std::array<double, 12> kWinterShare{0.98, 1.0, 0.87, 0.62, 0.40, 0.18,
                                               0.07, 0.0, 0.02, 0.24, 0.56, 0.85};
 
-// How much of a northern year is over.
+// Returns the elapsed fraction of a northern year.
 double YearShare(double latitude_rad, int modified_julian_day) {
   // Day 58849 is 2020-01-01.
   const double years = (modified_julian_day - 58849) / 365.2425 + (latitude_rad < 0.0 ? 0.5 : 0.0);
   return years - std::floor(years);
 }
 
-// Days of the year at 500 m in the Alps, see the header.
+// Days of the year at 500 m in the Alps; see the header.
 constexpr double kLeavesOut = 115.0, kLeavesTurn = 285.0, kLeavesFallen = 308.0;
 constexpr double kGrassGrows = 85.0, kGrassEnds = 330.0;
 
@@ -161,7 +162,7 @@ constexpr double kGrassGrows = 85.0, kGrassEnds = 330.0;
 
 MountainClimate MountainClimateAt(const GeodeticPosition& place) {
   constexpr double kReach = 0.06;   // 380 km
-  constexpr double kOfZone = 0.02;  // what latitude alone weighs against a massif on the spot
+  constexpr double kOfZone = 0.02;  // weight of the zonal mean; a massif on the spot has weight 1
   const MountainClimate zone = OfLatitude(place.latitude_rad / kRadiansPerDegree);
   double weights = kOfZone;
   MountainClimate sum{0.0, 0.0, 0.0};
@@ -181,7 +182,7 @@ MountainClimate MountainClimateAt(const GeodeticPosition& place) {
 
 double WinterShare(double latitude_rad, int modified_julian_day) {
   const double at =
-      12.0 * YearShare(latitude_rad, modified_julian_day) + 11.5;  // 0.5: the middle of January
+      12.0 * YearShare(latitude_rad, modified_julian_day) + 11.5;  // 0.5 is the middle of January
   const auto month = static_cast<std::size_t>(at);
   const double share = at - std::floor(at);
   return kWinterShare[month % 12] * (1.0 - share) + kWinterShare[(month + 1) % 12] * share;
@@ -192,7 +193,7 @@ double GreenLine(double latitude_rad, int modified_julian_day, double from_day, 
   const double day = 365.2425 * YearShare(latitude_rad, modified_julian_day);
   const double of_latitude =
       500.0 - kMetresPerDegree * (std::abs(latitude_rad) / kRadiansPerDegree - 46.5);
-  constexpr double kYear = 365.2425;  // the autumn before this spring, and the spring after
+  constexpr double kYear = 365.2425;  // for the previous autumn and the next spring
   const double days = std::max(
       {std::min(day - from_day, until_day - day), until_day - kYear - day, day - from_day - kYear});
   return of_latitude + kMetresPerDay * days;

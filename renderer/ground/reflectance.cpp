@@ -13,7 +13,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Axes around a normal, the first towards the eye's foot point.
+/// Axes around a normal; the first points towards the eye in the surface.
 struct Axes {
   glm::dvec3 eyewards, across, normal;
 };
@@ -93,7 +93,7 @@ Bands<float> RoughDiffuse::Albedo(const Bands<float>& albedo, double mu) const {
 }
 
 // Giesen (2009), "Phong Normalization Factor derivation": the integral of cos^n of the half vector
-// times the cosine of the light over the hemisphere, eye at the normal.
+// times the cosine of the light over the hemisphere, for an eye at the normal.
 Glossy::Glossy(double roughness, double f0)
     : exponent_(2.0 / std::pow(RequireInRange(roughness, 0.1, 1.0, "roughness"), 4) - 2.0),
       f0_(RequireInRange(f0, 0.0, 1.0, "reflectance at normal incidence")),
@@ -121,8 +121,8 @@ Bands<float> Glossy::BodyAlbedo(const Bands<float>& albedo, double mu) const {
   return sent;
 }
 
-// Half vectors drawn evenly from cos^n: 3 Gauss nodes in u = cos^(n + 1) by 8 azimuths. A solid
-// angle of half vectors is a quarter of that of the lights they mirror, per cosine.
+// Half vectors are distributed by cos^n: 3 Gauss nodes in u = cos^(n + 1) by 8 azimuths. A solid
+// angle of half vectors is a quarter of the solid angle of the mirrored lights, per cosine.
 MirroredRays Glossy::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const {
   const Axes axes = AxesAround(normal, to_eye);
   const GaussRule& rule = GaussLegendre(3);
@@ -145,7 +145,7 @@ MirroredRays Glossy::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye
       mirrored.rays[mirrored.count++] = {
           light,
           SchlickReflectance(cosine, f0_) * normalisation_ * mu_light * solid_angle,
-          {sine, sine}};  // halfway to the mirror's own direction, and as far on the other side
+          {sine, sine}};  // halfway to the mirror direction, and equally far beyond
     }
   }
   return mirrored;
@@ -169,8 +169,8 @@ Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
 
 double Transmitted(double mu) { return shared::WaterTransmitted(mu, Water::kRefractiveIndex); }
 
-/// Slopes across the line of sight: Gauss-Hermite of weight exp(-x^2), normalised to 1 (Abramowitz
-/// and Stegun, table 25.10).
+/// Slopes across the line of sight: Gauss-Hermite nodes of weight exp(-x^2), normalised to 1
+/// (Abramowitz and Stegun, table 25.10).
 struct SlopeNode {
   double x, weight;
 };
@@ -209,7 +209,7 @@ Bands<float> Water::BodyAlbedo(double mu) const {
 
 namespace {
 
-// Of a direction over the horizontal, which stands for those between two sines.
+// Returns the spread of a direction above the horizontal that represents those between two sines.
 Spread SpreadAbout(double sine, double lowest, double highest) {
   const double range = std::max(highest - lowest, 1e-9);
   return {std::max(sine - std::max(lowest, 0.0), 0.0), std::max(highest - sine, 0.0),
@@ -218,8 +218,8 @@ Spread SpreadAbout(double sine, double lowest, double highest) {
 
 }  // namespace
 
-// Faces weigh as much as the eye sees of them: their slope's probability times their projection.
-// Slopes along the line of sight are those of faces that do not turn away.
+// Wave facets are weighted by the probability of their slope times their area projected towards the
+// eye. Slopes along the line of sight are restricted to facets that face the eye.
 MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const {
   constexpr double kSteepest = 3.0;  // in units of the width: one in 10^5 is steeper
   const Axes axes = AxesAround(normal, to_eye);
@@ -228,13 +228,13 @@ MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye)
   const double width = std::sqrt(variance_);
   const double first = std::max(-kSteepest, -mu / std::max(width * sine, 1e-9));
   const GaussRule& rule = GaussLegendre(8);
-  // Sine of the elevation that a face of slope x along the line of sight shows.
+  // Returns the sine of the elevation that a facet of slope x along the line of sight mirrors.
   const auto elevation_of = [&](double x) {
     return std::cos(std::acos(std::min(mu, 1.0)) - 2.0 * std::atan(width * x));
   };
   MirroredRays mirrored;
   double total = 0.0;
-  double passed = 0.0;  // of the rule's weights: a node stands for its share of the slopes
+  double passed = 0.0;  // sum of weights so far; a node represents its share of slopes
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double x = first + (kSteepest - first) * rule.node[i];
     const double seen = (mu + width * x * sine) * std::exp(-x * x) * rule.weight[i];
@@ -268,9 +268,10 @@ double WithoutAbsorption(const ReflectionAngles& at) {
   return shared::SnowWithoutAbsorption(at.mu_light, at.mu_eye, at.cos_between);
 }
 
-/// What both directions of R0 are multiplied by so that snow without absorption sends on exactly
-/// what it receives, from wherever it comes. Found by successive halving of the error in both
-/// directions (Sinkhorn, Knopp 1967, Pacific J. Math. 21, 343); even steps of the root of mu.
+/// Factor of R0 for each of its two directions, such that snow without absorption reflects exactly
+/// the light that it receives, from any direction. It is found iteratively: both directions are
+/// scaled by the square root of the remaining error (Sinkhorn, Knopp 1967, Pacific J. Math. 21,
+/// 343). Nodes are at equal steps of the root of mu.
 class Balance {
  public:
   Balance() {

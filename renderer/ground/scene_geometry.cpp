@@ -15,20 +15,22 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Where air bends a ten-thousandth of what it does at the ground rays are straight.
+// Rays are straight above this number of scale heights, where air bends them by a ten-thousandth of
+// the value at the ground.
 constexpr double kScaleHeightsThatBend = 9.0;
-// The share of a scale height that a step may rise or sink: the midpoint rule is then within 1 % of
+// Greatest change of height in a step, in scale heights: the midpoint rule is then within 1 % of
 // the bending.
 constexpr double kHeightOfStep = 0.08;
-// Deeper down the air that a ray would meet is of no interest.
+// Air deeper than this is not needed: its density is held constant.
 constexpr double kDeepest_m = -2000.0;
 
-/// A ray in its plane: x along its first direction, y across it, upwards, from the eye.
+/// A ray in its vertical plane, relative to the eye: x along its initial direction, y upwards
+/// across it.
 struct InPlane {
   glm::dvec2 at, direction;
 };
 
-/// The ray equation in the plane through the planet's centre.
+/// The ray equation in a plane through the planet's centre.
 class PlaneOfRay {
  public:
   PlaneOfRay(const BendingAir& air, double height_m, double sine)
@@ -44,7 +46,7 @@ class PlaneOfRay {
     const double height_m = std::max(HeightOf(ray.at), kDeepest_m);
     return CurvaturePerMetreAt(air_, height_m) * (up - glm::dot(up, ray.direction) * ray.direction);
   }
-  /// Follows a ray up to a distance along its first direction.
+  /// Follows a ray up to a distance along its initial direction.
   [[nodiscard]] InPlane Followed(InPlane ray, double along_m) const {
     const double may_rise_m = kHeightOfStep * air_.UpperScaleHeight();
     const double least_sine = std::sqrt(may_rise_m / (2.0 * air_.planet_radius_m));
@@ -79,8 +81,8 @@ double SineOfGrazing(const BendingAir& air, double height_m) {
 
 }  // namespace
 
-// Nodes are densest about the ray that grazes the ground, by less than in which the air grows
-// thinner by a share of a scale height at the far end of a ray.
+// Nodes are densest around the ray that grazes the ground, within the angle that half a scale
+// height subtends at the far end of a ray.
 BentFan::BentFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m)
     : air_(air),
       up_(up),
@@ -137,8 +139,8 @@ double BentFan::EndOfChord(double off_rad) const {
   return 2.0 * off_rad / std::max(most_curvature_per_m_, 1e-15);
 }
 
-// A ray is nowhere above its first direction, and that not above the parabola but for terms of the
-// third order.
+// A refracted ray never lies above its initial direction, and this line does not lie above the
+// parabola, up to terms of third order.
 double BentFan::SinksBelow(const FanRay& ray, double height_m) const {
   constexpr double kMargin = 1.05;
   const double a = (1.0 - ray.sine() * ray.sine()) / (2.0 * (air_.planet_radius_m + height_m_));
@@ -148,7 +150,8 @@ double BentFan::SinksBelow(const FanRay& ray, double height_m) const {
   return kMargin * 2.0 * std::max(over_m, 0.0) / (std::sqrt(root) - ray.sine());
 }
 
-// Air that bends gently bends less than the ground does: a ray that rises does so ever more.
+// Gently bending air bends rays less than the ground curves: the sine of a rising ray keeps
+// growing.
 double BentFan::RisesAbove(const FanRay& ray, double height_m) const {
   if (ray.sine() <= 0.0) return std::numeric_limits<double>::infinity();
   return std::max(height_m - height_m_, 0.0) / ray.sine();
@@ -161,7 +164,7 @@ FanRay::FanRay(const BentFan& fan, const glm::dvec3& origin, const glm::dvec3& d
       sine_(std::clamp(glm::dot(direction, fan.up_), -1.0, 1.0)),
       enters_m_(fan.EntersAir(sine_)) {
   const glm::dvec3 across = fan.up_ - sine_ * direction;
-  across_ = across / std::max(glm::length(across), 1e-9);  // nothing bends to or from the zenith
+  across_ = across / std::max(glm::length(across), 1e-9);  // rays to or from the zenith do not bend
   const double row = fan.RowOf(sine_);
   const int below = std::min(static_cast<int>(row), BentFan::kElevations - 2);
   share_ = static_cast<float>(row - below);
@@ -182,7 +185,7 @@ glm::dvec3 FanRay::At(double along_m) const {
   return straight - in_air_m * in_air_m * static_cast<double>(g) * across_;
 }
 
-// |p - c| - R without cancelling.
+// This is |p - c| - R without cancellation.
 double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
   const double across = point.x * point.x + point.y * point.y;
   const double q = across + point.z * (2.0 * radius_m + point.z);
@@ -191,12 +194,14 @@ double AltitudeOverSphere(const glm::dvec3& point, double radius_m) {
 
 namespace {
 
-/// Nothing of the box around the terrain is lower: the farther from the middle, the higher.
+/// Returns the lowest altitude of the box around the terrain, which is at its centre, because
+/// altitude above the sphere grows with the distance from the centre.
 double BottomOf(const SceneGround& ground) {
   return ground.terrain ? ground.terrain->Bounds().first.z : 0.0;
 }
 
-/// Of the box around the terrain: the farther from the middle, the higher over the sphere.
+/// Returns the greatest altitude of the box around the terrain, which is at its corners, because
+/// altitude above the sphere grows with the distance from the centre.
 double TopOf(const SceneGround& ground, double radius_m) {
   if (!ground.terrain) return 0.0;
   const auto [low, high] = ground.terrain->Bounds();
@@ -232,16 +237,16 @@ GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m,
           point.z};
 }
 
-// Whether the bare planet stands between the eye and terrain behind its horizon: the ray goes
-// through it, comes out again before the terrain, and no terrain covers the planet there (a ray
-// through a basin below the sphere is in free air).
+// Returns whether the bare planet stands between the eye and terrain beyond its horizon: the ray
+// enters the planet, leaves it again before the terrain, and no terrain covers the planet there (a
+// ray through a basin below the sphere is in free air).
 bool SceneGeometry::HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& direction,
                                    double distance_m) const {
   const double mu = std::clamp(glm::dot(direction, UpAt(origin)), -1.0, 1.0);
   if (mu >= 0.0) return false;
   const double altitude = AltitudeOf(origin);
   const double deepest_m = -(radius_m() + altitude) * mu;
-  if (distance_m < deepest_m) return false;  // it would have to come out beyond
+  if (distance_m < deepest_m) return false;  // the ray would leave beyond the terrain
   const RayExtent extent =
       ExtentOf({altitude, mu, 1.0, mu}, radius_m(), medium_.atmosphere_height_m);
   if (extent.end != RayEnd::kGround || 2.0 * deepest_m - extent.end_m > distance_m) return false;
@@ -284,13 +289,14 @@ std::optional<SceneGeometry::OnChord> SceneGeometry::MeetOnChord(const FanRay& r
   return OnChord{begin, direction, length_m, *hit};
 }
 
-// Where the ground is solid below its surface, nothing stands on a ray whose chord below it is in
-// the air. So a long chord says up to where that is so, and a short one from there on what is met;
-// of the long one, too, the end lies near enough to the ray.
+// If the ground is solid below its surface, and the chord below a ray is in the air, then the ray
+// does not hit anything either. A long chord therefore gives the distance up to which the ray is
+// free, and short chords from there on give the hit. A hit near the end of the long chord is
+// accepted, because the chord is close enough to the ray there.
 Hit SceneGeometry::TerrainAlong(const FanRay& ray, double off_rad, double pixel_angle_rad,
                                 double expected_m) const {
-  constexpr double kBefore = 1.0 - 1e-4;  // the place that is met
-  constexpr double kBehind = 1.01;        // what is expected
+  constexpr double kBefore = 1.0 - 1e-4;  // step back from the hit
+  constexpr double kBehind = 1.01;        // beyond the expected distance
   const double end_m = EndOf(ray), near_end_m = ray.fan().EndOfChord(off_rad);
   double from_m = NearestTo(ray.At(0.0));
   const auto hit_on = [&](const OnChord& met) {
@@ -347,8 +353,8 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
 
 TerrainSunlight::TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_sun,
                                  double sun_radius_rad) {
-  // At -3 degrees a beam has touched the planet 330 km away, and passes 4 km over ground that is
-  // 100 km nearer to the sun than what it lights.
+  // At -3 degrees a beam has touched the planet 330 km away, and passes 4 km above ground that is
+  // 100 km nearer to the sun than the place it lights.
   constexpr double kLowestSun_rad = -3.0 * kRadiansPerDegree;
   if (!ground.terrain || std::asin(to_sun.z) < kLowestSun_rad) return;
   if (ground.is_one_surface) {

@@ -17,15 +17,16 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr double kReach_m = 20000.0;  // over any mountain, under any trench
+constexpr double kReach_m = 20000.0;  // above any mountain, below any trench
 
-/// The vertical of a place in a frame.
+/// Returns the vertical of a place in a frame.
 glm::dvec3 UpAt(const LocalFrame& frame, const GeodeticPosition& place) {
   const LocalFrame there(frame.ellipsoid(), place);
   return frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{glm::dvec3(0.0, 0.0, 1.0)})).xyz;
 }
 
-/// The first surface under a point that is so far over another.
+/// Returns the first surface below a point raised by `over_m`, with its height relative to the
+/// point.
 std::optional<SurfaceUnder> SeenFrom(const Terrain& terrain, const glm::dvec3& point,
                                      const glm::dvec3& up, double over_m) {
   const auto hit = terrain.Intersect(point + over_m * up, -up);
@@ -41,7 +42,7 @@ std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain, const gl
   if (!from_above) return std::nullopt;
   const double highest_m = kReach_m - from_above->distance_m;
   const auto from_below = terrain.Intersect(point - kReach_m * up, up, 2.0 * kReach_m);
-  // One ray may meet an edge that the other just passes: the surface that one has met exists.
+  // One ray may hit an edge that the other just misses; the surface that was hit exists.
   const double lowest_m = from_below ? from_below->distance_m - kReach_m : highest_m;
   return GroundHeights{std::min(lowest_m, highest_m), highest_m};
 }
@@ -55,7 +56,7 @@ std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain, const Local
 
 std::optional<SurfaceUnder> SurfaceUnderPoint(const Terrain& terrain, const glm::dvec3& point,
                                               const glm::dvec3& up) {
-  constexpr double kRounding_m = 0.02;  // what stands on a surface is not under it
+  constexpr double kRounding_m = 0.02;  // a point on a surface counts as above it
   const auto below = SeenFrom(terrain, point, up, kRounding_m);
   return below ? below : SeenFrom(terrain, point, up, kReach_m);
 }
@@ -72,8 +73,8 @@ namespace {
 
 constexpr double kEarth_m = 6.371e6;
 
-// The distance from which ground of any height may be seen [radians of the earth's curve]. Refraction
-// carries light a tenth farther at most.
+// Returns the distance at which ground of any height may be visible [radians of the earth's curve].
+// Refraction extends it by a tenth at most.
 double Sight(double eye_m) {
   constexpr double kHighestGround_m = 9000.0, kRefraction = 1.1;
   return kRefraction * (HorizonDip(eye_m) + HorizonDip(kHighestGround_m));
@@ -83,14 +84,16 @@ struct Span {
   int first, count;
 };
 
-// Two samples or more of an axis, from half a width before a place to half a width after it.
+// Returns at least two samples of an axis, from half a width before a place to half a width after
+// it.
 Span Within(double middle, double half, int all) {
   const double first = std::clamp(std::floor(middle - half), 0.0, all - 2.0);
   const double last = std::clamp(std::ceil(middle + half), first + 1.0, all - 1.0);
   return {static_cast<int>(first), static_cast<int>(last - first) + 1};
 }
 
-// A circle on the sphere is widest in longitude off its middle's latitude; over a pole it has all.
+// A circle on the sphere has its greatest extent in longitude away from the latitude of its centre;
+// over a pole it includes all longitudes.
 Span ColumnsAround(const ElevationGrid& grid, const GeodeticPosition& place, double distance_rad) {
   const bool is_over_pole = distance_rad + std::abs(place.latitude_rad) >= 0.5 * kPi;
   const double half_rad =
@@ -108,7 +111,7 @@ Span ColumnsAround(const ElevationGrid& grid, const GeodeticPosition& place, dou
   return {column < 0 ? column + grid.columns : column, static_cast<int>(count)};
 }
 
-// Height of the eye over the ellipsoid.
+// Returns the height of the eye above the ellipsoid.
 double EyeHeight(const Scene& scene, const ElevationGrid& grid) {
   const Height& height = scene.camera.height;
   if (!height.above_ground) return height.value_m;
@@ -164,7 +167,8 @@ struct LoadedMesh {
   bool is_whole = false;  // a grid without holes
 };
 
-/// Whether a grid's triangles are all there: none is left out beside a void.
+/// Builds the mesh of a grid, and checks whether all triangles exist: none is left out beside a
+/// void.
 LoadedMesh MeshOf(const ElevationGrid& grid, const LocalFrame& frame, std::string message) {
   LoadedMesh loaded{MeshFromElevation(grid, frame), std::move(message)};
   loaded.is_whole = loaded.mesh->triangles.size() == 2 * static_cast<std::size_t>(grid.rows - 1) *
@@ -172,7 +176,7 @@ LoadedMesh MeshOf(const ElevationGrid& grid, const LocalFrame& frame, std::strin
   return loaded;
 }
 
-// South, north, west and east ends of a grid [degrees].
+// Southern, northern, western and eastern limits of a grid [degrees].
 struct GroundRectangle {
   double south, north, west, east;
 
@@ -183,7 +187,7 @@ struct GroundRectangle {
         east(grid.LongitudeOfColumn(grid.columns - 1) / kRadiansPerDegree) {}
 };
 
-// Whether anything of the model may stand over the horizon of an eye, on a sphere.
+// Returns whether any part of the model may be above the horizon of an eye, on a sphere.
 bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double eye_m) {
   const GroundRectangle model(grid);
   float highest_m = 0.0F;
@@ -194,7 +198,7 @@ bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double 
   const double from_middle = std::remainder(longitude - middle, 360.0);
   const double half = 0.5 * (model.east - model.west);
   const double beside =
-      std::max(std::abs(from_middle) - half, 0.0) * kRadiansPerDegree;  // in longitude
+      std::max(std::abs(from_middle) - half, 0.0) * kRadiansPerDegree;  // difference of longitude
   const double nearest = std::clamp(latitude, model.south, model.north) * kRadiansPerDegree;
   const double cosine = std::sin(place.latitude_rad) * std::sin(nearest) +
                         std::cos(place.latitude_rad) * std::cos(nearest) * std::cos(beside);
@@ -202,7 +206,8 @@ bool IsInSight(const ElevationGrid& grid, const GeodeticPosition& place, double 
          HorizonDip(eye_m) + HorizonDip(static_cast<double>(highest_m));
 }
 
-// A range of degrees in as many digits, 6 at least, as tell its ends from a value outside.
+// A value and a range in degrees, with as many digits, at least 6, as distinguish the limits from a
+// value outside.
 struct RangeText {
   std::string value, low, high;
 };
@@ -217,8 +222,10 @@ RangeText TextOfRange(double value, double low, double high) {
   return text;
 }
 
-// An eye that stands on the ground stands on the model's; one that flies sees some of it.
-// @param extent  of the whole model; seen: what has been read of it.
+// Throws InputError if an eye relative to the ground is outside the model, or if a free eye is
+// outside it and sees none of it.
+// @param extent  of the whole model.
+// @param seen  the part of the model that has been read.
 void RequireEyeOver(const ElevationGrid& extent, const ElevationGrid& seen, const Scene& scene) {
   const GeodeticPosition& place = scene.place;
   if (extent.Covers(place.latitude_rad, place.longitude_rad)) return;
@@ -272,7 +279,7 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
   return {};
 }
 
-// At the foot of the eye; nothing on the bare ellipsoid.
+// Returns the heights of the ground below the eye; empty on the bare ellipsoid.
 std::optional<GroundHeights> GroundAtFoot(const std::optional<Terrain>& terrain) {
   if (!terrain) return std::nullopt;
   return GroundHeightsAlong(*terrain, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
@@ -300,7 +307,7 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
     throw InputError(fmt::format("camera.height_m is {:.1f}; the ground there is at {:.1f} m", eye,
                                  ground.lowest_m));
   }
-  Prepare(progress, "air");  // what follows
+  Prepare(progress, "air");  // name of the next step
   const bool from_file = scene.terrain.kind == TerrainSource::Kind::kMesh;
   const bool is_one_surface = !from_file || !terrain || IsOneSurface(*terrain);
   if (!is_one_surface) {
@@ -339,7 +346,7 @@ void RequireOverGround(const SceneGround& ground, const GeodeticPosition& place)
   }
 }
 
-/// Throws InputError where the place is too far from the scene's.
+/// Throws InputError if the place is too far from the scene's place.
 CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
   const LocalFrame there(ground.frame.ellipsoid(), place);
   const auto in_frame = [&](const glm::dvec3& axis) {
@@ -374,7 +381,7 @@ CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
 
 double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place) {
   if (!ground.terrain) return 0.0;
-  StandOver(ground, place);  // throws where the place is too far away
+  StandOver(ground, place);  // throws if the place is too far away
   const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
   return there ? there->highest_m : 0.0;
 }

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The heights of the ground at a place. A mesh may have roofs, bridges and overhangs, so that the
-// ground has several heights at one place: what is put on the ground stands on the highest, and
-// only what is below the lowest is inside the ground.
+// This header prepares the ground of a scene: it reads the visible part of an elevation model,
+// builds the terrain in the frame of the eye, finds heights of the ground, and places cameras.
 //
-// An elevation model as far as it may be seen: of models of the whole earth only what lies around
-// the camera is read.
-//
-// The ground of a scene: terrain ready for rays, in the frame of the eye.
-//
-// Where the camera of a picture stands in the frame of the scene.
+// A mesh may have roofs, bridges and overhangs, so the ground can have several heights at one
+// place. Objects placed on the ground stand on the highest surface, and only points below the
+// lowest surface are inside the ground.
 #pragma once
 
 #include <optional>
@@ -31,86 +27,90 @@ struct GroundHeights {
   double lowest_m, highest_m;
 };
 
-/// Over a point, along a vertical.
+/// Returns the heights above a point, along a vertical.
 /// @param up  unit.
-/// @return nothing where no surface lies within 20 km of the point.
+/// @return empty if no surface lies within 20 km of the point.
 [[nodiscard]] std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain,
                                                               const glm::dvec3& point,
                                                               const glm::dvec3& up);
-/// Over the ellipsoid, whatever the height of the place.
+/// Returns the heights above the ellipsoid, whatever the height of the place.
 /// @param frame  of the terrain's coordinates.
-/// @return nothing where no surface lies within 20 km of the ellipsoid.
+/// @return empty if no surface lies within 20 km of the ellipsoid.
 [[nodiscard]] std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain,
                                                            const LocalFrame& frame,
                                                            const GeodeticPosition& place);
 
-/// The surface that something at a height is over.
+/// The surface below a point, and its height.
 struct SurfaceUnder {
   TerrainHit hit;
   double height_m;
 };
 
-/// The highest surface that is not above a point; where all are above it, the highest of them.
-/// @param up  unit. The height is over the point.
-/// @return nothing where no surface lies below the point or within 20 km above it.
+/// Returns the highest surface that is not above a point; if all are above it, the highest of them.
+/// The height is relative to the point.
+/// @param up  unit.
+/// @return empty if no surface lies below the point or within 20 km above it.
 [[nodiscard]] std::optional<SurfaceUnder> SurfaceUnderPoint(const Terrain& terrain,
                                                             const glm::dvec3& point,
                                                             const glm::dvec3& up);
-/// Height over the ellipsoid of the surface that an eye at a place is over.
+/// Returns the height above the ellipsoid of the surface below an eye at a place.
 [[nodiscard]] std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
                                                    const GeodeticPosition& place);
 
-/// The angle of the horizon below the horizontal, which is also its distance on the earth's curve
-/// [radians], on a sphere without air.
+/// Returns the dip of the horizon below the horizontal, which is also its distance along the
+/// earth's curve [radians], on a sphere without air.
 [[nodiscard]] double HorizonDip(double height_m);
 
-/// The samples of a grid within a distance [radians of the earth's curve] of a place, at least
-/// 2 x 2; of a place outside of it those nearest to it.
+/// Returns the window of grid samples within a distance [radians of the earth's curve] of a place,
+/// at least 2 x 2; for a place outside the grid, the nearest samples.
 [[nodiscard]] GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place,
                                       double distance_rad);
 
 struct ModelInSight {
   ElevationModel model;
   ElevationGrid extent;  // of the whole model, without heights
-  std::string message;   // what is told about what was read; empty: nothing
+  std::string message;   // message about what was read; empty: none
 };
 
-/// The elevation model of a scene. One of more than 2^25 samples that CanBeCut is read as far as
-/// ground of any height may be seen from the camera. Throws InputError as ReadElevation does, and
-/// where there is no valid sample in sight.
+/// Reads the elevation model of a scene. A model of more than 2^25 samples for which CanBeCut holds
+/// is read only as far as ground of any height may be visible from the camera. Throws InputError as
+/// ReadElevation does, and if there is no valid sample within this distance.
 [[nodiscard]] ModelInSight ReadModelInSight(const Scene& scene);
 
 struct SceneGround {
-  LocalFrame frame;                // ENU at the foot of the eye on the ellipsoid
-  std::optional<Terrain> terrain;  // nothing: the ellipsoid alone
-  double eye_height_m;             // over the ellipsoid
-  std::string message;             // what loading has to tell, empty if nothing
+  LocalFrame frame;                // ENU at the eye's foot point on the ellipsoid
+  std::optional<Terrain> terrain;  // empty: the ellipsoid alone
+  double eye_height_m;             // above the ellipsoid
+  std::string message;             // message of the loading; empty if there is none
   bool is_one_surface;             // no overhangs: see IsOneSurface
-  /// The eye is over one surface of an elevation model that has no holes: below it all is ground.
+  /// The eye is above a single surface of an elevation model without holes: all below it is ground.
   bool is_solid = false;
 };
 
-/// The ellipsoid that the scene's planet has: WGS84, or a sphere of the medium's radius.
+/// Returns the ellipsoid of the scene's planet: WGS84, or a sphere of the medium's radius.
 [[nodiscard]] Ellipsoid EllipsoidOf(const Medium& medium);
 
-/// Loads or generates the terrain and stands the eye on it. Throws InputError for files that cannot
-/// be read, for an eye below the ground (of several surfaces: below the lowest), and for one outside an elevation model that stands on the
-/// ground or is too low to see anything of it.
-/// @param progress  told what is prepared, if not null.
+/// Loads or generates the terrain and places the eye above it. Throws InputError for files that
+/// cannot be read, for an eye below the ground (with several surfaces: below the lowest), and for
+/// an eye outside an elevation model that is placed relative to the ground or is too low to see the
+/// model.
+/// @param progress  receives the names of the steps, if not null.
 [[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);
 
-/// The scene's own eye.
+/// Returns the scene's own eye.
 [[nodiscard]] CameraStand StandOfScene(const SceneGround& ground);
 
-/// An eye at another place: the frame stays that of the scene. Throws InputError where it is below
-/// the ground (of several surfaces: below the lowest), or more than 500 km from the scene's place.
+/// Returns an eye at another place, in the frame of the scene. Throws InputError if the eye is
+/// below the ground (with several surfaces: below the lowest), or more than 500 km from the scene's
+/// place.
 [[nodiscard]] CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place);
 
-/// Height over the ellipsoid [m] of a scene's ground under a place: the highest of it, and 0 where
-/// there is none. Throws InputError more than 500 km from the scene's place.
+/// Returns the height of a scene's ground above the ellipsoid [m] at a place: that of the highest
+/// surface, or 0 if there is none. Throws InputError more than 500 km from the scene's place.
 [[nodiscard]] double GroundHeightUnder(const SceneGround& ground, const GeodeticPosition& place);
 
-/// The scene's camera, or one with its lens that takes these poses one after the other.
+/// Returns a camera with the lens of `camera` that takes these poses one after the other; without
+/// poses, the scene's camera.
 [[nodiscard]] MovingCamera CameraOn(const SceneGround& ground, const Camera& camera,
                                     std::span<const CameraPose> poses, int width, int height);
 

@@ -28,7 +28,7 @@ Skyline::Skyline(const glm::dvec3& up, const Arc& arc, double step_rad, const Se
       first_rad_(arc.first_rad),
       step_rad_(step_rad),
       is_whole_turn_(arc.width_rad >= 2.0 * kPi - step_rad) {
-  constexpr int kNeighbours = 64;  // found one after the other, each from where the last one is
+  constexpr int kNeighbours = 64;  // found in sequence, each starting from the previous elevation
   if (is_whole_turn_) step_rad_ = 2.0 * kPi / std::ceil(2.0 * kPi / step_rad);
   const int count = is_whole_turn_ ? static_cast<int>(std::lround(2.0 * kPi / step_rad_))
                                    : static_cast<int>(std::ceil(arc.width_rad / step_rad_)) + 1;
@@ -81,7 +81,8 @@ bool Skyline::IsBelow(const glm::dvec3& direction, double around_rad) const {
   const double x = glm::dot(direction, east_), y = glm::dot(direction, north_);
   const double across = std::hypot(x, y);
   const auto count = static_cast<int>(elevation_rad_.size());
-  // The azimuths that come as near as that: their sine is at most the angle's over the cosine.
+  // Azimuth range of the circle around the direction: its sine is the sine of the angle over the
+  // cosine of the elevation.
   if (!(std::sin(around_rad) < across)) return false;
   const double half = std::asin(std::sin(around_rad) / across) / step_rad_ + 1.0;
   const double from_first = std::remainder(std::atan2(y, x) - first_rad_ - kPi, 2.0 * kPi) + kPi;

@@ -41,7 +41,7 @@ constexpr std::array<Noise, kGroundNoises> kNoises{{
 
 constexpr double kGoldenAngle = 2.399963229728653;  // no two octaves lean or travel alike
 
-// Waves travel to the east with 50 degrees to either side, 29 rms.
+// Waves travel to the east with a spread of 50 degrees to either side, 29 rms.
 void SetTravelling(NoiseOctave& wave, int octave) {
   constexpr double kNoiseWaves = 4.1;  // rms slope of the noise over its rms height, per square
   constexpr double kSpread_rad = 50.0 * kRadiansPerDegree;
@@ -125,11 +125,10 @@ double WaveSpeed(double wave_number) {
   return std::sqrt(kGravity / wave_number + kTension * wave_number);
 }
 
-// Linear sRGB of broad classes of ground, chosen within the ranges of visible albedo that Oke
-// (1987), Boundary Layer Climates, table 1.1 gives: forest 0.05-0.15, grass 0.1-0.25, rock and soil
-// 0.1-0.3, snow 0.7-0.95. Dry grass and trees without leaves grow lighter towards the red, as litter
-// and bark do and satellites see them: in the blue, green and red about 0.06, 0.10, 0.14 and 0.04,
-// 0.06, 0.08.
+// Linear sRGB of broad classes of ground, chosen within the ranges of visible albedo of Oke (1987),
+// Boundary Layer Climates, table 1.1: forest 0.05-0.15, grass 0.1-0.25, rock and soil 0.1-0.3, snow
+// 0.7-0.95. Dry grass and leafless trees become lighter towards the red, like litter and bark and
+// as satellites observe: in the blue, green and red about 0.06, 0.10, 0.14 and 0.04, 0.06, 0.08.
 MountainSurface::MountainSurface(std::span<const double> wavelengths_nm, const MountainCover& cover,
                                  double wetness)
     : cover_(cover),
@@ -225,7 +224,7 @@ namespace {
 
 using Kind = GroundCover::Kind;
 
-// Elevation models give the sea's level to a rounding.
+// Elevation models store the sea level with a rounding error.
 constexpr double kWaterLine_m = 0.5;
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the ground is made of: albedo by slope and altitude in bands, and relief finer than the
-// mesh.
-//
-// What the ground of a scene is made of, place by place, and how it sends light on.
+// This header provides the materials of a scene's ground: the albedo of mountains by slope and
+// altitude in bands, relief finer than the mesh, waves of water, and the reflection of each place.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +21,13 @@
 
 namespace alpenglow::renderer {
 
-/// A point of the ground as its material sees it.
+/// A point of the ground with the inputs of its material.
 struct GroundPoint {
-  double east_m, north_m;  // anchored to the planet, so that the pattern does not follow the eye
+  double east_m, north_m;  // anchored to the planet, so that the pattern does not move with the eye
   double altitude_m;
-  double across_m;            // width of a ray of the picture: finer detail is left out
+  double across_m;            // width of a camera ray: finer detail is left out
   double cosine = 1.0;        // of the ray and the normal of the mesh
-  double up_m = 0.0;          // as east_m, over the plane of the pattern
+  double up_m = 0.0;          // in the frame of east_m, above the plane of the pattern
   double normal_north = 0.0;  // component of the normal of the mesh
   double sea_s = 0.0;         // time of the waves
 };
@@ -38,33 +36,33 @@ struct GroundPoint {
 enum class GroundNoise { kBroad, kFine, kRelief, kGrain, kWaves };
 inline constexpr std::size_t kGroundNoises = 5;
 
-/// One octave of a family: a lattice of squares in the plane of the pattern, which continues
-/// upwards along a line of its own that leans by 31 degrees. On a cliff an octave is drawn out along
-/// the line's foot, but each along another: on no face are all of them, as they are where a pattern
-/// is projected straight down. An octave of waves leans not; it travels.
+/// One octave of a noise family: a lattice of squares in the plane of the pattern, extruded upwards
+/// along a line that leans by 31 degrees. On a cliff, an octave is stretched along the projection
+/// of its line. Each octave leans in another direction, so no cliff face stretches all of them, as
+/// a pattern projected straight down would be. Octaves of waves do not lean; they travel.
 struct NoiseOctave {
   double wavelength_m;  // side of a square
   std::uint32_t seed;
-  double lean_east, lean_north;    // to the east and north per metre upwards
+  double lean_east, lean_north;    // shift to the east and north per metre upwards
   double drift_east, drift_north;  // m/s
 
-  /// Where a point lies, in squares; that of waves in [-2^31, 2^31), for lattices of 2^32 are the
-  /// same over and over.
+  /// Returns the position of a point, in squares. For waves it is wrapped to [-2^31, 2^31), because
+  /// the noise repeats after 2^32 squares.
   [[nodiscard]] glm::dvec2 PlaceOf(const GroundPoint& point) const;
 };
 
-/// All of a family, longest first.
+/// Returns all octaves of a family, longest first.
 [[nodiscard]] std::span<const NoiseOctave> OctavesOf(GroundNoise family);
 
-/// The time of waves: seconds since the beginning of 2020.
+/// Returns the time of waves: seconds since the beginning of 2020.
 [[nodiscard]] double SeaTime(const UtcInstant& instant);
 
-/// Phase speed of waves of deep water [m/s], omega^2 = g k + (s / rho) k^3 with the surface tension
-/// of water, s / rho = 7.4e-5 m^3/s^2: Lamb (1932), Hydrodynamics, section 267.
+/// Returns the phase speed of waves in deep water [m/s], from omega^2 = g k + (s / rho) k^3 with
+/// the surface tension of water, s / rho = 7.4e-5 m^3/s^2: Lamb (1932), Hydrodynamics, section 267.
 /// @param wave_number  [1/m].
 [[nodiscard]] double WaveSpeed(double wave_number);
 
-/// Water at a point: the slopes of the waves that a footprint resolves, and what is left.
+/// Water at a point: the slopes of resolved waves, and the slope variance of the others.
 struct WavySurface {
   double slope_east = 0.0, slope_north = 0.0;
   double slope_variance;  // of the waves that are not resolved
@@ -75,13 +73,14 @@ struct WavySurface {
 /// @param slope_variance  of all waves.
 [[nodiscard]] WavySurface WavesAt(const GroundPoint& point, double slope_variance);
 
-/// Lambertian albedo of mountain ground: forest and meadow below the tree line, rock and scree
-/// above it and on steep slopes, snow above the snow line where the slope holds it, lower on shaded
-/// slopes than on sunny ones. Broad-leaved woods and grass are green below the lines of the day. Lines
-/// waver by fractal noise from 10 m to 1 km, as on real mountains; crowns and rocks are lighter and
-/// darker spots from 12 m down to 1.5 m, and a meadow is even. Detail that a ray does not resolve
-/// fades to its mean: up to footprints of 100 m the mean albedo changes by at most 3 %. Beyond, it
-/// falls at the tree line, which there no longer wavers, by 10 % and under snow by 25 %.
+/// Lambertian albedo of mountain ground. Forest and meadow grow below the tree line, rock and scree
+/// lie above it and on steep slopes, and snow lies above the snow line where the slope holds it,
+/// lower on shaded slopes than on sunny ones. Broad-leaved woods and grass are green below the
+/// lines of the day. Fractal noise from 10 m to 1 km makes the lines ragged, as on real mountains.
+/// Crowns and rocks add lighter and darker spots from 12 m down to 1.5 m; meadows are uniform.
+/// Detail that a ray does not resolve fades to its mean: up to footprints of 100 m the mean albedo
+/// changes by at most 3 %. Beyond, it falls by 10 % at the tree line, which is no longer ragged
+/// there, and by 25 % under snow.
 class MountainSurface {
  public:
   /// Albedos of pure materials.
@@ -97,13 +96,14 @@ class MountainSurface {
   [[nodiscard]] const Materials& materials() const { return materials_; }
 
   /// @param normal_up  vertical component of the unit normal, 1 on level ground.
-  /// @param mapped  instead of what altitude and slope make of it; the snow of the season lies on it.
+  /// @param mapped  replaces the materials derived from altitude and slope; seasonal snow still
+  ///     covers it.
   [[nodiscard]] Bands<float> Albedo(const GroundPoint& point, double normal_up,
                                     const std::optional<MappedCover>& mapped = std::nullopt) const;
 
-  /// The normal with the relief that a mesh of 30 to 100 m spacing does not have, in waves of 220 to
-  /// 7 m: unit, tilted by about 6.4 degrees rms where the footprint is small, unchanged where it is
-  /// over 110 m.
+  /// Returns the unit normal with the relief that a mesh of 30 to 100 m spacing lacks, in waves of
+  /// 220 to 7 m. The normal is tilted by about 6.4 degrees rms where the footprint is small, and
+  /// unchanged where it is over 110 m.
   [[nodiscard]] static glm::dvec3 DetailedNormal(const GroundPoint& point,
                                                  const glm::dvec3& normal);
 
@@ -114,32 +114,32 @@ class MountainSurface {
 
 class GroundMaterial;
 
-/// The ground at a place: how it sends light on.
+/// The reflection of the ground at a place.
 class GroundPatch {
  public:
-  /// @param albedo  of the diffuse body; not used by water and snow.
+  /// @param albedo  of the diffuse body; not used for water and snow.
   GroundPatch(const GroundMaterial& material, GroundCover::Kind kind, BandLight albedo)
       : material_(material), kind_(kind), albedo_(std::move(albedo)) {}
-  /// Water.
+  /// Creates a patch of water.
   GroundPatch(const GroundMaterial& material, const GroundPoint& at);
 
   [[nodiscard]] bool IsWater() const { return kind_ == GroundCover::Kind::kWater; }
-  /// Of water, with the waves that are resolved there.
+  /// Returns the normal of water, with the resolved waves.
   [[nodiscard]] glm::dvec3 WaterNormal(const glm::dvec3& up) const { return waves_.Normal(up); }
-  /// Whether it mirrors the sky.
+  /// Returns whether the patch mirrors the sky.
   [[nodiscard]] bool IsGlossy() const {
     return IsWater() || kind_ == GroundCover::Kind::kBlinnPhong;
   }
 
-  /// Radiance over irradiance from one direction [1/sr].
+  /// Returns the radiance per irradiance from one direction [1/sr].
   [[nodiscard]] BandLight Brdf(const ReflectionAngles& at) const;
-  /// Of water, the part of it that the surface mirrors.
+  /// Returns the part of a water patch's BRDF that the surface mirrors [1/sr].
   [[nodiscard]] double Glitter(const ReflectionAngles& at) const {
     return Water::Glitter(at, waves_.slope_variance);
   }
-  /// Share of an even sky that is sent to an eye, but for what is mirrored.
+  /// Returns the fraction of a uniform sky that is reflected to an eye, excluding mirrored light.
   [[nodiscard]] BandLight BodyAlbedo(double mu_eye) const;
-  /// Empty for what is not glossy.
+  /// Returns the mirrored rays; empty for patches that are not glossy.
   [[nodiscard]] MirroredRays Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye) const;
 
  private:
@@ -149,42 +149,42 @@ class GroundPatch {
   WavySurface waves_{0.0, 0.0, 0.0};
 };
 
-/// Immutable; safe to ask from many threads.
+/// The material of a scene's ground. Immutable; safe to use from many threads.
 class GroundMaterial {
  public:
-  /// @param drape  colours or land cover over the terrain, or nothing.
+  /// @param drape  colours or land cover over the terrain, or null.
   GroundMaterial(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
                  std::span<const double> wavelengths_nm);
 
-  /// The terrain at a point.
-  /// @param at  the point as its material sees it; normal_up: vertical component of the normal of
-  ///     the mesh.
-  /// @param season  what covers mountains.
+  /// Returns the patch of terrain at a point.
+  /// @param at  the point as input of its material.
+  /// @param normal_up  vertical component of the normal of the mesh.
+  /// @param season  cover of mountains.
   [[nodiscard]] GroundPatch OfTerrain(const GroundPoint& at, const glm::dvec3& point,
                                       double normal_up, const MountainSurface& season) const;
-  /// The planet beyond terrain.
-  /// @param planet_albedo  where the cover is that of mountains: of the season's low land around
-  ///     terrain, the medium's where there is none.
+  /// Returns a patch of the planet outside the terrain.
+  /// @param planet_albedo  used if the cover is that of mountains: the season's low land around
+  ///     terrain, or the medium's albedo without terrain.
   [[nodiscard]] GroundPatch OfPlanet(const GroundPoint& at, const BandLight& planet_albedo) const;
 
-  /// Whether any of it mirrors the sky.
+  /// Returns whether any of the ground mirrors the sky.
   [[nodiscard]] bool HasGloss() const;
 
   [[nodiscard]] const GroundCover& cover() const { return cover_; }
   [[nodiscard]] const ColourDrape* drape() const { return drape_.get(); }
   [[nodiscard]] const BandsOfColour& bands_of_colour() const { return bands_of_colour_; }
-  /// Of the cover's one colour.
+  /// Albedo of the cover's single colour.
   [[nodiscard]] const BandLight& albedo() const { return albedo_; }
   [[nodiscard]] const RoughDiffuse& rough() const { return rough_; }
   [[nodiscard]] const Glossy& glossy() const { return glossy_; }
   [[nodiscard]] const Water& water() const { return water_; }
   [[nodiscard]] const Snow& snow() const { return snow_; }
-  /// The highest ground that is sea; nothing: there is none.
+  /// Returns the greatest altitude of ground that is sea; empty: there is no sea.
   [[nodiscard]] std::optional<double> WaterLine_m() const;
 
  private:
   friend class GroundPatch;
-  /// @param draped  what the drape shows there.
+  /// @param draped  value of the drape at the point.
   [[nodiscard]] BandLight AlbedoAt(const GroundPoint& at, double normal_up,
                                    const MountainSurface& season,
                                    const std::optional<std::array<double, 3>>& draped) const;
