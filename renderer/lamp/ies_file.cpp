@@ -22,7 +22,7 @@ namespace {
 
 using Columns = std::vector<std::pair<double, std::size_t>>;  // angle [degrees], measured plane
 
-// The horizontal angles at which a measured plane of type C also holds.
+// Returns the horizontal angles to which a measured plane of type C applies by symmetry.
 std::vector<double> MirroredIn(const std::vector<double>& all_deg, double angle_deg) {
   const double last = all_deg.back();
   if (all_deg.front() == 90.0) return {angle_deg, 180.0 - angle_deg};
@@ -31,7 +31,7 @@ std::vector<double> MirroredIn(const std::vector<double>& all_deg, double angle_
   return {angle_deg};
 }
 
-// Planes around the whole turn, ascending from 0 to below 360 degrees, each once.
+// Returns planes around the whole turn, ascending from 0 to below 360 degrees, each once.
 Columns WholeTurn(const std::vector<double>& horizontal_deg) {
   Columns columns;
   for (std::size_t i = 0; i < horizontal_deg.size(); ++i) {
@@ -46,8 +46,8 @@ Columns WholeTurn(const std::vector<double>& horizontal_deg) {
   return columns;
 }
 
-// A table begins at 0. Where no plane was measured there, it lies on the line between its
-// neighbours, the first column and the last.
+// Adds a column at 0, where a table must begin. If no plane was measured there, it is interpolated
+// between its neighbours, the first and the last column.
 void BeginAtZero(LampTable& table) {
   const std::size_t verticals = table.gamma_rad.size();
   const std::size_t last = table.intensity.size() - verticals;
@@ -76,10 +76,10 @@ LampTable TypeC(const MeasuredAngles& measured) {
   return table;
 }
 
-/// A place among ascending angles, or none outside of them.
+/// Interpolation position among ascending angles.
 struct AnglePlace {
   std::size_t low = 0;
-  double share = 0.0;  // of the next one
+  double share = 0.0;  // weight of the next angle
   bool is_inside = false;
 };
 
@@ -106,7 +106,8 @@ double IntensityAt(const MeasuredAngles& measured, double vertical_deg, double h
   return (1.0 - h.share) * plane(h.low) + h.share * plane(h.low + 1);
 }
 
-// Towards a direction (d, a, l), see the header. On the axis of the planes their angle is 0.
+// Returns the intensity towards a direction (d, a, l); see the header. On the axis of the planes
+// their angle is 0.
 double IntensityTowards(const MeasuredAngles& measured, const glm::dvec3& direction) {
   const auto degrees = [](double sine, double cosine) {
     constexpr double kOnAxis = 1e-12;
@@ -127,7 +128,7 @@ double SmallestStep(const std::vector<double>& angles) {
   return smallest;
 }
 
-// Steps per quarter of a turn.
+// Returns the number of steps per quarter turn.
 int StepsFor(const MeasuredAngles& measured) {
   constexpr double kFinest_deg = 0.25, kCoarsest_deg = 2.5;
   const double step =
@@ -171,7 +172,7 @@ namespace {
 constexpr std::size_t kMostAngles = 4096;
 constexpr char kEndOfDosFile = '\x1a';  // Ctrl-Z
 
-/// Lines end with a line feed, whatever system wrote them, and a byte-order mark is left out.
+/// Converts line ends of any system to line feeds, and removes a byte-order mark.
 std::string WithLineFeeds(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::string plain;
@@ -185,7 +186,7 @@ std::string WithLineFeeds(std::string_view text) {
   return plain;
 }
 
-/// The line in upper case, without white space.
+/// Returns the line in upper case, without white space.
 std::string Compact(std::string_view line) {
   std::string compact;
   for (const char c : line) {
@@ -195,7 +196,7 @@ std::string Compact(std::string_view line) {
   return compact;
 }
 
-/// The numbers after the TILT line, wherever lines break.
+/// The numbers after the TILT line, independent of line breaks.
 class Numbers {
  public:
   Numbers(std::string_view text, std::size_t line, const std::string& origin)
@@ -239,7 +240,8 @@ class Numbers {
     return angles;
   }
 
-  /// Only white space and the mark that ends files of DOS may follow the last value.
+  /// Throws InputError if anything but white space and the end mark of DOS files follows the last
+  /// value.
   void End(std::size_t candela_values) {
     while (!rest_.empty() && (IsBlank(rest_.front()) || rest_.front() == kEndOfDosFile)) Skip();
     if (rest_.empty()) return;
@@ -274,7 +276,7 @@ class Numbers {
   const std::string& origin_;
 };
 
-/// The content of the lines before the numbers.
+/// Content of the lines before the numbers.
 struct Head {
   bool has_photometric_factor = false;
   bool has_tilt = false;
@@ -318,11 +320,11 @@ LampTilt TiltFrom(Numbers& numbers) {
   return tilt;
 }
 
-/// The numbers that come before the angles.
+/// Numbers that precede the angles.
 struct Sizes {
   std::size_t verticals = 0, horizontals = 0;
   PhotometricType type = PhotometricType::kC;
-  double factor = 1.0;  // of the candela values
+  double factor = 1.0;  // factor on the candela values
 };
 
 Sizes SizesFrom(Numbers& numbers, bool has_photometric_factor) {

@@ -33,7 +33,7 @@ struct LampLight::State {
                                    double pixel_angle_rad, int nodes) const;
   [[nodiscard]] LampTile TileAt(const MovingCamera& camera, const PixelBox& box,
                                 const LampSettings& settings, const RayTrace& trace) const;
-  /// Lamps in the picture there.
+  /// Returns the lamps visible in a tile.
   [[nodiscard]] LampNodes SeenIn(const TileRays& rays) const;
   [[nodiscard]] bool AllLit(const LampNodes& members, const LampRayEnd& ray) const;
 };
@@ -118,7 +118,7 @@ Bands<float> LampLight::InAir(const LampPlan& plan, int x, int y, const LampRayE
   const std::array<std::size_t, 4> at{corner, corner + 1, corner + LampPlan::kLattice,
                                       corner + LampPlan::kLattice + 1};
   const std::array<double, 4> weight{(1.0 - p) * (1.0 - q), p * (1.0 - q), (1.0 - p) * q, p * q};
-  // Rays that end alike: all in the sky, or on a surface that is smooth from point to point.
+  // Interpolate if the rays end alike: all in the sky, or on a surface that is smooth between them.
   constexpr double kAlike = 1.15;
   const bool smooth = std::all_of(at.begin(), at.end(), [&](std::size_t k) {
     const double length = tile.lattice_length_m[k];

@@ -22,8 +22,8 @@ namespace {
 constexpr int kDistances = 16;
 constexpr double kNearest_m = 0.2;
 constexpr double kFarthestGlow_m = 2e4;
-constexpr double kDarkest = 1e-250;  // logarithms are taken of no less
-/// Sines of the lamp's elevation, dense where a lamp stands on the ground far away.
+constexpr double kDarkest = 1e-250;  // lower limit of values in logarithms
+/// Sines of the lamp's elevation, dense near 0, where distant lamps on the ground are.
 constexpr std::array<double, 9> kSines{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
 constexpr int kElevations = static_cast<int>(kSines.size());
 
@@ -31,7 +31,7 @@ double DistanceNumber(int i) {
   return kNearest_m * std::pow(kFarthestGlow_m / kNearest_m, i / (kDistances - 1.0));
 }
 
-/// Moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
+/// Returns the moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
 double LobeOf(int l) {
   switch (l) {
     case 0:
@@ -49,8 +49,8 @@ double LobeOf(int l) {
   }
 }
 
-/// Directions around the lamp's, over half a turn: the light is even about the vertical plane
-/// through the lamp. Weights are solid angles of both halves.
+/// Directions around the direction to the lamp, over half a turn, because the light is symmetric
+/// about the vertical plane through the lamp. Weights are solid angles of both halves.
 struct Around {
   double alpha, turn, weight;
 };
@@ -75,10 +75,10 @@ const std::vector<Around>& Directions() {
   return kDirections;
 }
 
-/// Where a value lies between the ascending points of an axis.
+/// Interpolation position of a value among the ascending points of an axis.
 struct GlowPlace {
   int low;
-  double share;  // of the next point
+  double share;  // weight of the next point
 };
 GlowPlace GlowPlaceOf(double sine) {
   int low = 0;
@@ -88,7 +88,8 @@ GlowPlace GlowPlaceOf(double sine) {
   return {low, std::clamp((sine - from) / (to - from), 0.0, 1.0)};
 }
 
-/// Of a normal about the direction to the lamp; `lift` is across it, in the vertical plane.
+/// Returns the harmonics of a normal about the direction to the lamp. `lift` is perpendicular to
+/// it, in the vertical plane.
 Moments HarmonicsOf(const glm::dvec3& normal, const glm::dvec3& towards, const glm::dvec3& lift) {
   const double mu = std::clamp(glm::dot(normal, towards), -1.0, 1.0);
   const glm::dvec3 aside = normal - mu * towards;
@@ -287,8 +288,8 @@ void LampTree::StandBefore(const LampEye& eye, const LampStage& stage) {
   }
 }
 
-// Lamps share a table when they stand alike: within a tenth of the thinnest layer's scale height,
-// and within a fifth of their height over the ground.
+// Lamps at similar places share a table: altitudes within a tenth of the thinnest layer's scale
+// height, and heights above the ground within a fifth.
 void LampTree::MakeGlows(const LampStage& stage) {
   double thinnest_m = std::numeric_limits<double>::infinity();
   for (const LampLayer& layer : stage.layers())

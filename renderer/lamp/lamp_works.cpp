@@ -14,7 +14,7 @@ namespace {
 
 double Logarithmic(double low, double high, double u) { return low * std::pow(high / low, u); }
 
-/// Molecules and a little haze at 550 nm, as the default air has them at the ground.
+/// Adds molecules and a little haze at 550 nm, as in the default air at the ground.
 void AddClearAir(LampAir& air) {
   LampLayer molecules = air.layers[0];
   molecules.scale_height_m = 8000.0;
@@ -39,7 +39,7 @@ void MakeBeam(int i, Lamp& lamp) {
   lamp.side = glm::normalize(glm::cross(lamp.axis, glm::dvec3(0.3, -0.5, 0.8)));
 }
 
-/// The ray as the lamp sees it: nearest point, and distance there.
+/// The ray relative to the lamp: its nearest point, and the distance there.
 struct Approach {
   double nearest_m, distance_m;
 
@@ -52,7 +52,7 @@ struct Approach {
   [[nodiscard]] double Sinh(double t) const { return (t - nearest_m) / distance_m; }
 };
 
-/// Light scattered per metre of the ray.
+/// Returns the light scattered per metre of the ray.
 double SourceAt(const LampWork& work, const Approach& approach, double t) {
   const glm::dvec3 point = work.segment.origin_m + t * work.segment.direction;
   const double sinh = approach.Sinh(t);
@@ -68,7 +68,7 @@ double SourceAt(const LampWork& work, const Approach& approach, double t) {
          (approach.distance_m * approach.distance_m * squared);
 }
 
-/// A variable of the ray, t = nearest + D s(v), and ds / dv.
+/// Position s on a ray as a function of a variable v, t = nearest + D s(v), and ds / dv.
 struct Mapped {
   double s, slope;
 };
@@ -118,7 +118,7 @@ LampWork LampWorkNumber(int i, const LampWorkKind& kind) {
   const glm::dvec3 forward(std::cos(pitch), 0.0, std::sin(pitch));
   const glm::dvec3 lift(-std::sin(pitch), 0.0, std::cos(pitch));
   const glm::dvec3 off = std::cos(turn) * lift + std::sin(turn) * glm::dvec3(0.0, 1.0, 0.0);
-  // Nothing lies lower than the altitude at which sigma was given.
+  // The altitude at which sigma is given is the lowest of the test case.
   work.segment = {glm::dvec3(0.0), forward, 0.0, length};
   work.lamp.position_m = along * forward + (kind.through ? 0.0 : across) * off;
   if (kind.through) work.lamp.radius_m = 0.1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lamps beside rays, drawn at random, with the judge's answers; and rules of the literature that
-// integrate the same light.
+// This header generates random test cases of lamps beside rays with reference results, and provides
+// rules of the literature that integrate the same light.
 #pragma once
 
 #include "atmosphere/lamp/airlight.h"
@@ -8,13 +8,13 @@
 
 namespace alpenglow::renderer {
 
-/// What is the same for a set of works.
+/// Properties that a set of test cases shares.
 struct LampWorkKind {
   double g = 0.8;                                                   // Henyey-Greenstein
   double scale_height_m = std::numeric_limits<double>::infinity();  // of the fog
-  bool beam = false;                                                // a cone instead of all around
-  bool through = false;    // the ray meets the lamp, a ball of 0.1 m
-  bool clear_air = false;  // molecules and aerosol stand with the fog and over it
+  bool beam = false;                                                // a cone, not isotropic
+  bool through = false;    // the ray passes through the lamp, a ball of 0.1 m
+  bool clear_air = false;  // adds molecules and aerosol to the fog
 };
 
 /// A lamp, a ray and the air around them.
@@ -22,24 +22,25 @@ struct LampWork {
   LampAir air;
   Lamp lamp;
   LampSegment segment;
-  double truth = 0.0;     // by judge::AirlightAlong
-  bool converged = true;  // the judge was
+  double truth = 0.0;     // reference result of judge::AirlightAlong
+  bool converged = true;  // whether the reference converged
 };
 
-/// Number i >= 1: extinction 1e-4 to 0.1 per metre at the lowest point, distance of the lamp from
-/// the ray 0.1 to 100 m, segments of 10 to 1000 m, the lamp beside, before or behind the segment.
+/// Returns test case i >= 1: extinction 1e-4 to 0.1 per metre at the lowest point, distance of the
+/// lamp from the ray 0.1 to 100 m, segments of 10 to 1000 m, and the lamp beside, before or behind
+/// the segment.
 [[nodiscard]] LampWork LampWorkNumber(int i, const LampWorkKind& kind);
 
-/// How a ray is walked through the light of a lamp, one band.
+/// Rule for integrating the light of a lamp along a ray, in one band.
 enum class LampRule {
   kUniform,      // midpoints of equal steps
-  kEquiAngular,  // midpoints of equal angles as the lamp sees them: Kulla and Fajardo (2012),
-                 // Computer Graphics Forum 31, 1519, in strata
+  kEquiAngular,  // midpoints of equal angles seen from the lamp: Kulla and Fajardo (2012),
+                 // Computer Graphics Forum 31, 1519, stratified
   kHalfAngle,    // Gauss-Legendre in tan(theta / 2)
   kAsinh,        // Gauss-Legendre in asinh((t - t_c) / D)
 };
 
-/// By a rule on the whole segment, which must end.
+/// Integrates a test case with a rule over its whole segment, which must be finite.
 [[nodiscard]] double AirlightByRule(LampRule rule, const LampWork& work, int nodes);
 
 }  // namespace alpenglow::renderer

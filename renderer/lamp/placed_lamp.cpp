@@ -23,8 +23,8 @@ Bands<double> InDoubles(const std::vector<double>& values, double scale) {
   return bands;
 }
 
-/// Scale height of the exponential that has the molecules' density at the ground and 4 km up:
-/// within 2 % of it between, where lamps shine.
+/// Returns the scale height of the exponential that matches the molecules' density at the ground
+/// and 4 km up. It is within 2 % of the density between them, where lamps are.
 double MoleculeHeight_m(const Medium& medium) {
   constexpr double kHigh_m = 4000.0;
   return -kHigh_m / std::log(MoleculeDensity(medium, kHigh_m));
@@ -41,7 +41,7 @@ LampLayer Drops(const Fog& fog, double base_m, std::size_t bands) {
   return drops;
 }
 
-/// Molecules, aerosol and fog.
+/// Returns the layers of molecules, aerosol and fog.
 std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& fog,
                                 double fog_base_m) {
   LampLayer molecules;
@@ -53,7 +53,8 @@ std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& 
   aerosol.scale_height_m = medium.mie_scale_height_m;
   aerosol.scattering_per_m = InDoubles(medium.mie_scattering_per_m, 1.0);
   aerosol.extinction_per_m = InDoubles(medium.mie_extinction_per_m, 1.0);
-  // Lamps are near: their light is scattered as at the middle wavelength.
+  // Paths from lamps are short, so their light is scattered with the phase function of the middle
+  // wavelength.
   aerosol.phase = MiePhase(medium, medium.wavelengths_nm.size() / 2);
   std::vector<LampLayer> layers{molecules, aerosol};
   if (fog) layers.push_back(Drops(*fog, fog_base_m, medium.wavelengths_nm.size()));
@@ -125,7 +126,7 @@ Bands<float> LampStage::FogTransmittance(const glm::dvec3& from, const glm::dvec
   std::fill_n(left.value.begin(), left.count, 1.0F);
   if (!has_fog_) return left;
   const LampLayer& fog = layers_.back();
-  // Fog ends where it is 50 scale heights thin; homogeneous fog ends nowhere.
+  // Fog ends where it is 50 scale heights thin; homogeneous fog has no end.
   const double length = std::min(length_m, 1e6);
   const double column =
       fog.ColumnBetween(length, AltitudeOf(from), AltitudeOf(from + length * direction));
@@ -143,7 +144,7 @@ Bands<double> OneBand(const Bands<double>& all, std::size_t band) {
   return one;
 }
 
-/// Mean over all directions, by quadrature around the axis.
+/// Returns the mean over all directions, by quadrature around the axis.
 double MeanOverDirections(const LampProfile& profile) {
   if (profile.kind == LampProfile::Kind::kIsotropic) return 1.0;
   constexpr int kTurns = 36;
@@ -194,7 +195,7 @@ LampProfile ProfileOf(const Light& light, const MeasuredLamps& measured) {
   return profile;
 }
 
-// A lamp is measured straight down; its pitch tilts it from there.
+// A lamp is measured pointing straight down; its pitch tilts it from there.
 double CandelaOf(const Light& light, std::size_t number, const MeasuredLamps& measured) {
   if (light.intensity_cd) return *light.intensity_cd;
   const IesLamp& lamp = measured.at(light.ies->string());
@@ -205,8 +206,8 @@ double CandelaOf(const Light& light, std::size_t number, const MeasuredLamps& me
   }
 }
 
-// Axis by heading and pitch; C of a measured lamp is 0 above the axis where it is level, towards
-// the heading where it points down, and goes from there to the left.
+// Aims a lamp by heading and pitch. The angle C of a measured lamp is 0 above the axis of a
+// horizontal lamp, and towards the heading for one that points down; it increases to the left.
 Lamp Aimed(const Light& light, Lamp lamp) {
   const double heading = light.heading_rad, pitch = light.pitch_rad;
   const glm::dvec3 ahead(std::sin(heading), std::cos(heading), 0.0);
@@ -280,7 +281,7 @@ PlacedLamp Before(const LampEye& eye, const LampStage& stage, PlacedLamp placed)
   const glm::dvec3 to_lamp = placed.lamp.position_m - eye.at;
   const double distance_m = glm::length(to_lamp);
   placed.distance_m = std::max(distance_m, kAtTheEye_m);
-  // A lamp at the eye has no direction; any one will do.
+  // A lamp at the eye has no direction; choose an arbitrary one.
   placed.direction = distance_m > kAtTheEye_m ? to_lamp / distance_m : -placed.lamp.axis;
   placed.air = stage.AirAround(0.5 * (eye.at + placed.lamp.position_m));
   placed.middle_air = placed.air;
@@ -309,7 +310,8 @@ LampAlongRay AlongRay(const PlacedLamp& placed, const glm::dvec3& direction,
   LampAlongRay along{placed.lamp};
   const double angle = std::max(kPixelMean * pixel_angle_rad, kDiskMean * placed.blur);
   along.lamp.radius_m = std::max(placed.lamp.radius_m, angle * placed.distance_m);
-  // From within the lamp a ray goes along with the lamp's light, which has one intensity all along.
+  // Inside the lamp, a ray has the direction of the lamp's light, so the intensity is constant
+  // along it.
   if (placed.HoldsEye()) {
     along.share = RelativeIntensity(placed.lamp, direction);
     along.lamp.profile = {};
@@ -365,7 +367,7 @@ double SeenPerSr(const PlacedLamp& placed, const LampStage& stage, const LampEye
   if (eye.lens) {
     const auto blur = eye.lens->BlurAt(way, ray.through, radius);
     if (!blur) return 0.0;
-    // In focus the light comes from all of the lens, else from one point of it.
+    // A point in focus is seen by the whole lens, a blurred one by a single point of the lens.
     const glm::dvec3 seen_from = placed.blur > radius ? ray.eye + blur->on_lens : ray.origin;
     return stage.Sees(placed.lamp.position_m, seen_from) ? blur->per_sr : 0.0;
   }

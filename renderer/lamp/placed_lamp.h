@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the lamps of a scene stand in: its ground, and its molecules, aerosol and fog as layers of
-// exponential density.
-//
-// A lamp where it stands, and what an eye has of it: the air between, the disk that it sees, the
-// pieces of a ray that the lamp lights.
+// This header places the lamps of a scene: the surroundings of lamps (ground, and air as layers of
+// exponential density), and each lamp as an eye sees it, with the air between them, its disk, and
+// the pieces of a ray that it lights.
 #pragma once
 
 #include <array>
@@ -23,35 +21,37 @@
 
 namespace alpenglow::renderer {
 
-/// Immutable, safe to share between threads. Refers to the ground.
+/// Ground and air layers that lamps are placed in. Immutable, safe to share between threads. Refers
+/// to the ground.
 class LampStage {
  public:
   LampStage(const Scene& scene, const SceneGround& ground, const Medium& medium);
 
   [[nodiscard]] const SceneGround& ground() const { return *ground_; }
-  /// Fog is the last.
+  /// Layers of molecules, aerosol and fog; fog is the last one.
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return layers_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
 
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;
-  /// The terrain that a point is over, along z (SurfaceUnderPoint).
+  /// Returns the terrain below a point, along z (SurfaceUnderPoint).
   [[nodiscard]] std::optional<SurfaceUnder> TerrainAt(const glm::dvec3& point) const;
-  /// Its height there [m along z], or `otherwise`.
+  /// Returns the height of the terrain there [m along z], or `otherwise` without terrain.
   [[nodiscard]] double TerrainUnder(const glm::dvec3& point, double otherwise) const;
-  /// Over the terrain [m]; a point below it has none.
+  /// Returns the height above the terrain [m]; 0 below it.
   [[nodiscard]] double HeightOverGround(const glm::dvec3& point) const;
-  /// Whether no terrain stands between two points.
+  /// Returns whether no terrain lies between two points.
   [[nodiscard]] bool Sees(const glm::dvec3& from, const glm::dvec3& to) const;
 
-  /// Whether terrain keeps a lamp's light from a surface.
-  /// @param smooth_point  TerrainHit's, which shadow rays begin at; geometric_normal: unit.
+  /// Returns whether terrain shades a surface from a lamp.
+  /// @param smooth_point  TerrainHit::smooth_point, where shadow rays start.
+  /// @param geometric_normal  unit.
   [[nodiscard]] bool Shades(const Lamp& lamp, const glm::dvec3& smooth_point,
                             const glm::dvec3& geometric_normal) const;
 
-  /// The layers over the plane that touches the sphere below a point.
+  /// Returns the layers above the plane that touches the sphere below a point.
   [[nodiscard]] LampAir AirAround(const glm::dvec3& middle) const;
-  /// Of the fog alone.
+  /// Returns the transmittance of the fog alone.
   [[nodiscard]] Bands<float> FogTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
                                               double length_m) const;
 
@@ -63,86 +63,90 @@ class LampStage {
   std::size_t bands_;
 };
 
-/// From where lamps are seen.
+/// Position and lens of the eye that sees lamps.
 struct LampEye {
   glm::dvec3 at{0.0};
-  std::optional<CameraRays> lens;  // of a camera that has one
+  std::optional<CameraRays> lens;  // set if the camera has a lens
 };
 
-/// A lamp where it stands, with the air between it and the eye.
+/// A lamp at its place, with the air between it and the eye.
 struct PlacedLamp {
   Lamp lamp;
   LampAir air;
-  LampAir middle_air;       // of the middle band alone, for estimates
+  LampAir middle_air;       // of the middle band only, for estimates
   Bands<float> intensity;   // W sr^-1 nm^-1 in its brightest direction
   double candela = 0.0;     // in its brightest direction
   double mean_share = 1.0;  // mean intensity over all directions, relative to the brightest
   double above_ground_m = 0.0;
   double distance_m = 0.0;    // from the eye
   glm::dvec3 direction{0.0};  // from the eye, unit
-  double blur = 0.0;          // radius in the picture, as CameraRays::BlurRadius
+  double blur = 0.0;          // radius in the picture, as in CameraRays::BlurRadius
   bool is_hidden = false;     // from the eye, by terrain
   Bands<float> towards_eye;   // intensity, dimmed by the air
 
-  /// Whether the eye is in the luminous sphere.
+  /// Returns whether the eye is inside the luminous sphere.
   [[nodiscard]] bool HoldsEye() const { return distance_m <= lamp.radius_m; }
 };
 
-/// IES files by name: each is read once.
+/// IES files by name; each is read once.
 using MeasuredLamps = std::map<std::string, IesLamp>;
-/// Of the lights of a scene. Throws InputError for what ReadIes refuses.
+/// Reads the IES files of a scene's lights. Throws InputError for files that ReadIes rejects.
 [[nodiscard]] MeasuredLamps MeasuredLampsOf(const std::vector<Light>& lights);
 
-/// A light of a scene, before no eye. Throws InputError naming its `number` (from 0) for one below
-/// the ground and for one that is tilted beyond the angles of its file.
+/// Returns a light of a scene at its place, without an eye. Throws InputError naming its `number`
+/// (from 0) for a light below the ground, and for one that is tilted beyond the angles of its file.
 [[nodiscard]] PlacedLamp PlacedOn(const LampStage& stage, const Light& light, std::size_t number,
                                   const MeasuredLamps& measured);
-/// Spectral intensity of a black body that has so many candela. Throws InputError where the bands
-/// have no luminance of it, as two at 700 and 830 nm have none of one of 1000 K.
+/// Returns the spectral intensity of a black body with a luminous intensity of `candela`. Throws
+/// InputError if it has no luminance in the bands, such as a black body of 1000 K in two bands at
+/// 700 and 830 nm.
 [[nodiscard]] Bands<float> LampIntensity(double temperature_k, double candela,
                                          const std::vector<double>& wavelengths_nm,
                                          const BandColour& colour);
 
-/// All lights of a scene that shine, before no eye. Throws InputError as PlacedOn and
+/// Returns all lights of a scene that emit, without an eye. Throws InputError as PlacedOn and
 /// MeasuredLampsOf do.
 [[nodiscard]] std::vector<PlacedLamp> PlacedLampsOf(const Scene& scene, const LampStage& stage,
                                                     const Medium& medium, const BandColour& colour);
 
-/// The lamp as an eye has it: distance, direction, air between, blur; its light has not arrived.
+/// Computes distance, direction, air and blur for an eye, but not the light that arrives there.
 [[nodiscard]] PlacedLamp Before(const LampEye& eye, const LampStage& stage, PlacedLamp placed);
-/// And with what of its light arrives.
+/// Computes the same as Before, and the light that arrives at the eye.
 [[nodiscard]] PlacedLamp ShiningOn(const LampEye& eye, const LampStage& stage, PlacedLamp placed);
 
-/// A lamp as it lights the air along a ray from the eye, times a share.
+/// A lamp as a light source for the air along a ray from the eye, with a factor on its light.
 struct LampAlongRay {
   Lamp lamp;
   double share = 1.0;
 };
-/// As wide as the air around it sees it in a picture: the mean of 1/D over a square of width w
-/// around it is that of D = w / (4 ln(1 + sqrt 2)), and over a disk of radius R that of R / 2.
+/// Widens a lamp to its size in the picture, as seen by the air around it: the mean of 1/D over a
+/// square of width w around it is that of D = w / (4 ln(1 + sqrt 2)), and over a disk of radius R
+/// that of R / 2.
 [[nodiscard]] LampAlongRay AlongRay(const PlacedLamp& placed, const glm::dvec3& direction,
                                     double pixel_angle_rad);
 
-/// The part of a ray of that length that a lamp lights: beyond, rays to the sky have left it [m].
+/// Returns the length of the part of a ray that a lamp lights [m]. Beyond it, the lamp's light on
+/// rays to the sky is neglected.
 [[nodiscard]] double Reach(const PlacedLamp& placed, double length_m);
 
-/// The lit pieces of a ray from the eye, in distances: points at equal angles as the lamp sees them
-/// are tested, and edges between them bisected.
+/// Returns the lit pieces of a ray from the eye, as distances. Points at equal angles seen from the
+/// lamp are tested, and shadow edges between them are found by bisection.
 [[nodiscard]] std::vector<std::array<double, 2>> PiecesLitBy(const PlacedLamp& placed,
                                                              const LampStage& stage,
                                                              const glm::dvec3& eye,
                                                              const glm::dvec3& direction,
                                                              double length_m);
 
-/// Of a lamp's light as the eye gets it, what a ray of the camera sees of it [1/sr].
+/// Returns the fraction of a lamp's light at the eye that a camera ray sees, per solid angle
+/// [1/sr].
 [[nodiscard]] double SeenPerSr(const PlacedLamp& placed, const LampStage& stage, const LampEye& eye,
                                const CameraRay& ray, double pixel_angle_rad);
-/// Of a lamp that the eye is in: its luminance, I(-d) / (pi R^2) of the direction d of the ray, as
-/// if the eye were in its middle and saw the inside of the luminous sphere. What a lamp from
-/// outside tends to: its disk, I / (pi R^2) bright, fills the sky.
+/// Returns the luminance of a lamp that contains the eye: I(-d) / (pi R^2) for the direction d of
+/// the ray, as if the eye were in the centre and saw the inside of the luminous sphere. This is the
+/// limit of a lamp seen from outside: its disk of luminance I / (pi R^2) fills the sky.
 [[nodiscard]] Bands<float> SeenFromWithin(const PlacedLamp& placed, const CameraRay& ray);
 
-/// intensity * scale * factor, in floats.
+/// Returns intensity * scale * factor, in floats.
 [[nodiscard]] Bands<float> Scaled(const Bands<float>& intensity, const Bands<double>& factor,
                                   double scale);
 

@@ -83,19 +83,20 @@ glm::dvec3 TileRays::Farthest(const glm::dvec3& to_lamp) const {
 
 namespace {
 
-/// A node as a tile sees it [cd/m^2].
+/// Contribution of a node to a tile [cd/m^2].
 struct Share {
   std::uint32_t node;
-  double least;  // anywhere in the tile
-  double most;   // anywhere in the tile
-  double error;  // of taking the node for the lamps below it, anywhere in the tile
+  double least;  // lower bound over the tile
+  double most;   // upper bound over the tile
+  double error;  // of using the node instead of the lamps below it, anywhere in the tile
 
   bool operator<(const Share& other) const {
     return error != other.error ? error < other.error : node < other.node;
   }
 };
 
-/// Nodes that a tile's error allows: cut from the roots down, the dimmest left out.
+/// Returns the nodes that a tile's error allows: cuts the tree from the roots down, and leaves out
+/// the dimmest.
 template <typename Weigh>
 LampNodes Cut(const LampTree& tree, const LampSettings& settings, const Weigh& weigh) {
   std::priority_queue<Share> open;
@@ -132,7 +133,7 @@ LampNodes Cut(const LampTree& tree, const LampSettings& settings, const Weigh& w
   return kept;
 }
 
-/// Lamps below a node: all of few, else one of every branch.
+/// Returns the lamps below a node: all if they are few, else one of every branch.
 LampNodes MembersOf(const LampTree& tree, std::uint32_t number) {
   constexpr std::size_t kBranches = 8;
   const std::vector<LampNode>& nodes = tree.nodes();
@@ -155,8 +156,8 @@ LampNodes MembersOf(const LampTree& tree, std::uint32_t number) {
   return members;
 }
 
-/// Whether terrain hides a node from the air before a tile as it hides the lamps below it: from
-/// points of three rays, at equal angles as the node sees them.
+/// Returns whether terrain hides a node from the air in front of a tile in the same way as the
+/// lamps below it. Tests points of three rays, at equal angles seen from the node.
 bool IsHiddenAsItsLamps(const LampTree& tree, const LampStage& stage, std::uint32_t number,
                         const TileRays& tile, const glm::dvec3& eye) {
   constexpr int kPoints = 6;
@@ -186,7 +187,7 @@ bool IsHiddenAsItsLamps(const LampTree& tree, const LampStage& stage, std::uint3
   return true;
 }
 
-/// What a node's light in the air is to a tile.
+/// Returns the contribution of a node's light in the air to a tile.
 Share WeighInAir(const LampTree& tree, const LampStage& stage, std::uint32_t number,
                  const TileRays& tile, const glm::dvec3& eye, double pixel_angle_rad) {
   constexpr int kScoutNodes = 4;
@@ -211,11 +212,12 @@ Share WeighInAir(const LampTree& tree, const LampStage& stage, std::uint32_t num
   const double spread_along = glm::dot(nearest, node.moments * nearest);
   const double spread_across =
       node.moments[0][0] + node.moments[1][1] + node.moments[2][2] - spread_along;
-  // One of the lamps below may be nearer to the ray than the middle of all, and light in the air
-  // falls with that distance.
+  // One of the lamps below may be closer to the ray than the centre of all, and light in the air
+  // decreases with this distance.
   share.most *= std::max(d / std::max(d - node.radius_m, bright.radius_m), 1.0);
   const double gap = tile.GapTo(ahead);
-  // Second order in the lamps' places: 1/D across the ray, extinction and the ray's end along it.
+  // Second order in the lamps' places: 1/D across the ray, and extinction and the ray's end along
+  // it.
   const double relative = std::max(spread_across, 0.0) / (d * d) +
                           spread_along * (2.0 * node.extinction_per_m * node.extinction_per_m +
                                           1.0 / (d * d + gap * gap));
@@ -226,13 +228,13 @@ Share WeighInAir(const LampTree& tree, const LampStage& stage, std::uint32_t num
 
 /// A place of a surface that lamps may light.
 struct TilePlace {
-  glm::dvec3 point, normal;  // of the shading
+  glm::dvec3 point, normal;  // shading normal
   glm::dvec3 smooth_point, geometric_normal;
 };
 
-/// The places where a tile's rays end.
+/// Returns the places where a tile's rays end.
 std::vector<TilePlace> PlacesOf(const TileRays& tile, const LampStage& stage) {
-  constexpr double kBack_m = 0.5;  // to meet the surface again, which an end has no normal of
+  constexpr double kBack_m = 0.5;  // step back, to hit the surface again and get its normal
   std::vector<TilePlace> places;
   for (const TileRays::End& end : tile.ends) {
     const auto& terrain = stage.ground().terrain;
@@ -249,9 +251,9 @@ std::vector<TilePlace> PlacesOf(const TileRays& tile, const LampStage& stage) {
   return places;
 }
 
-/// What nodes are to the surfaces of a tile, if these reflected everything: at most as if they faced
-/// the node, at least by how they face it and its beam at the places; terrain may hide a lamp from
-/// these, and only its glow is left.
+/// Contributions of nodes to the surfaces of a tile, as if these reflected all light. The upper
+/// bound assumes that they face the node; the lower bound uses their orientation to the node and to
+/// its beam at the sampled places. Where terrain hides a lamp, only its glow remains.
 class SurfaceWeights {
  public:
   SurfaceWeights(const LampTree& tree, const LampStage& stage, const TileRays& tile)
@@ -260,23 +262,24 @@ class SurfaceWeights {
   [[nodiscard]] Share Of(std::uint32_t number);
 
  private:
-  /// Place i is bit i.
+  /// Bit i stands for place i.
   using LitPlaces = std::uint32_t;
   [[nodiscard]] LitPlaces AllPlaces() const { return (LitPlaces{1} << places_.size()) - 1; }
 
-  /// Places from which a node's own place is seen.
+  /// Returns the places from which a node's own place is visible.
   [[nodiscard]] LitPlaces LitBy(std::uint32_t number);
-  /// Whether a node and its lamps light every place, or none. Neither: edges of shades cross the
-  /// tile, at another place for every lamp.
+  /// Says whether a node and its lamps light every place, or none. If neither holds, shadow edges
+  /// cross the tile, at a different position for every lamp.
   struct Shade {
     bool is_lit, is_dark;
   };
   [[nodiscard]] Shade ShadeOf(std::uint32_t number);
-  /// What a node's air brings to the level of the first place [cd/m^2].
+  /// Returns the contribution of the air lit by a node, on level ground at the first place
+  /// [cd/m^2].
   [[nodiscard]] double GlowOf(std::uint32_t number) const;
-  /// Of a node's light, what a surface that lies as the one at any place does gets at least, of
-  /// what one that faces the lamp in its brightest direction gets: at most kMostRelied, since
-  /// between the places ground may turn away.
+  /// Returns a lower bound of the light that a surface oriented like any of the places receives
+  /// from a node, relative to a surface facing the lamp in its brightest direction. It is at most
+  /// kMostRelied, because ground between the places may face away.
   [[nodiscard]] double FacingOf(std::uint32_t number) const;
 
   const LampTree* tree_;
@@ -329,7 +332,7 @@ double SurfaceWeights::FacingOf(std::uint32_t number) const {
 }
 
 Share SurfaceWeights::Of(std::uint32_t number) {
-  constexpr double kWall = 0.5;  // of a glow, what is left on a steep surface
+  constexpr double kWall = 0.5;  // fraction of a glow that remains on a steep surface
   const LampNode& node = tree_->nodes()[number];
   const PlacedLamp& light = node.light;
   const glm::dvec3& surface = tile_->ends[0].point;

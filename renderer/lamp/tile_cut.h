@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Which nodes of the tree of lamps a tile of a picture needs: the tree is cut where the nodes'
-// second moments say that one lamp in the middle is as good as all, and the dimmest are left out.
+// This header chooses the nodes of the lamp tree that a tile of a picture needs. The tree is cut
+// where the nodes' second moments show that one lamp at the centre is accurate enough, and the
+// dimmest nodes are left out.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,18 +18,19 @@ struct PixelBox {
   int x0, y0, x1, y1;
 };
 
-/// The rays of a tile's corners and its middle, and where they end; more by points of the iris and
-/// of time where there are any.
+/// Rays of a tile's corners and its centre, with their ends; further rays sample the iris and the
+/// exposure time if the camera has a lens or moves.
 struct TileRays {
   std::vector<LampRayEnd> rays;
-  double radius_rad = 0.0;  // of the cone around the middle that holds the tile
-  /// Where a ray ends on a surface.
+  double radius_rad = 0.0;  // of the cone around the centre that contains the tile
+  /// End of a ray on a surface.
   struct End {
     glm::dvec3 point, direction;
   };
-  // On surfaces, at most those of the corners and the middle: the middle one first, or any.
+  // Ends on surfaces, at most five, in the order of the rays: the centre's end is first if it
+  // exists.
   std::vector<End> ends;
-  // Of the ends of all rays on surfaces: how far they lie from the first.
+  // Greatest distance of any ray's end on a surface from the first end.
   double surface_spread_m = 0.0;
 
   TileRays(const MovingCamera& moving, const PixelBox& box, const RayTrace& trace);
@@ -36,32 +38,32 @@ struct TileRays {
   [[nodiscard]] const glm::dvec3& middle() const { return rays[0].direction; }
   [[nodiscard]] double longest() const;
   [[nodiscard]] double shortest() const;
-  /// How far the ends of the rays stay from a distance.
+  /// Returns the least distance along the rays between their ends and `distance_m`.
   [[nodiscard]] double GapTo(double distance_m) const;
-  /// The direction of the tile's cone that is nearest to a lamp's.
+  /// Returns the direction of the tile's cone that is nearest to a lamp.
   [[nodiscard]] glm::dvec3 Nearest(const glm::dvec3& to_lamp) const;
-  /// And the one that is farthest from it.
+  /// Returns the direction of the tile's cone that is farthest from a lamp.
   [[nodiscard]] glm::dvec3 Farthest(const glm::dvec3& to_lamp) const;
 
  private:
   void Add(const CameraRay& ray, const RayTrace& trace);
 };
 
-/// Nodes that light the air before a tile: a group of lamps stands as one only where terrain hides
-/// it and its lamps (of large groups, eight) from the same points of the tile's rays.
+/// Returns the nodes that light the air in front of a tile. A group of lamps is one node only if
+/// terrain hides it and its lamps (of large groups, eight) from the same points of the tile's rays.
 [[nodiscard]] LampNodes CutInAir(const LampTree& tree, const LampStage& stage, const TileRays& tile,
                                  const glm::dvec3& eye, double pixel_angle_rad,
                                  const LampSettings& settings);
-/// Nodes that light surfaces in a tile; none without any. Terrain may hide lamps from it, and its
-/// surfaces may turn from them: a lamp counts where its light arrives at the ends of the tile's
-/// rays, others are left out beside it by what it brings to surfaces as they lie there, and a group
-/// of lamps stands as one only where it and its lamps (of large groups, eight) light all of these
-/// ends or none.
+/// Returns the nodes that light surfaces in a tile; empty if it has no surfaces. Terrain may hide
+/// lamps from a tile, and its surfaces may face away from them. A lamp counts if its light arrives
+/// at the ends of the tile's rays; the error of omitting others is measured against the light on
+/// surfaces with the orientation found there. A group of lamps is one node only if it and its lamps
+/// (of large groups, eight) light all of these ends or none.
 [[nodiscard]] LampNodes CutOnSurface(const LampTree& tree, const LampStage& stage,
                                      const TileRays& tile, const LampSettings& settings);
 
-/// Far enough from a tile that light in the air is a parabola between lattice points: across h the
-/// straight line misses 1/D by (h / D)^2 / 4.
+/// Returns whether a node is so far from a tile that light in the air is a parabola between lattice
+/// points: over a step h, linear interpolation of 1/D has the error (h / D)^2 / 4.
 [[nodiscard]] bool IsFar(const LampNode& node, const TileRays& tile, double pixel_angle_rad);
 
 }  // namespace alpenglow::renderer
