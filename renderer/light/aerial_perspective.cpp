@@ -16,7 +16,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// (2 n + 1) P_n at the nodes of a Gauss rule on [0, 1].
+/// Table of (2 n + 1) P_n at the nodes of a Gauss rule on [0, 1].
 using LegendreAtNodes = std::array<ShaftNodes, kMostShaftNodes>;  // [n][node]
 
 LegendreAtNodes LegendreOf(int nodes) {
@@ -62,13 +62,13 @@ SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m) {
 
 namespace {
 
-// Beams that graze the planet light the end at its shadow by far less than the other.
+// Beams that graze the planet light the end at its shadow much less than the other end.
 constexpr int kTwilightNodes = 7;
 
-/// A panel as aerial_perspective.h has it.
+/// A panel as described in aerial_perspective.h.
 struct PanelMap {
   double begin_m, end_m;
-  bool up;  // altitude rises along the ray
+  bool up;  // altitude increases along the ray
   double slope;
 
   PanelMap(const DirectPanel& panel, double entry_m)
@@ -83,7 +83,7 @@ struct PanelMap {
     const double t = length_m() * shared::DirectDistance<double>(v, slope);
     return up ? begin_m + t : end_m - t;
   }
-  // By Newton's method from above: the map is convex, so that it comes down to the root.
+  // Newton's method from above: the map is convex, so the iteration decreases towards the root.
   [[nodiscard]] double CoordinateAt(double distance_m) const {
     const double t = (up ? distance_m - begin_m : end_m - distance_m) / length_m();
     double v = std::min(t / slope, 1.0);
@@ -106,7 +106,7 @@ float LargestHazeShare(const AirConstants<float>& air) {
   return largest;
 }
 
-// Sunlight that planet and terrain leave at each lane.
+// Returns the sunlight that planet and terrain let through at each lane.
 LaneLight Shaded(const DirectRay& placed, const SunlitPath& sunlit) {
   LaneLight light;
   VisitPanels(placed, [&](const PanelNodes& nodes) {
@@ -130,7 +130,7 @@ bool Breaks(const DirectRay& placed, const SunlitPath* sunlit) {
   return false;
 }
 
-// Puts the end of the ray into the last lane, which has no node.
+// Stores the end of the ray in the last lane, which has no node.
 void SetEnd(const DirectRay& placed, const ColumnSet<float>& columns, RaySamples<float>& samples) {
   const DirectPanel& panel = placed.panel[placed.panels - 1];
   const float position = panel.direction > 0.0F ? panel.length : 0.0F;
@@ -165,7 +165,7 @@ DirectRay SegmentAir::Place(const ViewRay& ray) const {
 
 int SegmentAir::NodesFor(const DirectPanel& panel, bool shafts) const {
   const float rise = panel.AltitudeAt(panel.length) - panel.altitude;
-  // Logarithm of how much the integrand changes from end to end.
+  // Logarithm of the change of the integrand from end to end.
   const float change =
       panel.dense * panel.length + rise / rayleigh_height_km_ + haze_share_ * rise / mie_height_km_;
   constexpr float kMost = 12.0F;
@@ -182,7 +182,7 @@ int SegmentAir::NodesFor(const DirectRay& placed, bool shafts) const {
 }
 
 ColumnSet<float> SegmentAir::ColumnsAlong(const ViewRay& ray, const DirectRay& placed) const {
-  constexpr float kMostHeights = 6.0F;  // for DirectScattering::ColumnsAlong
+  constexpr float kMostHeights = 6.0F;  // limit for DirectScattering::ColumnsAlong
   float lowest = placed.panel[0].altitude, highest = lowest;
   for (std::size_t i = 0; i < placed.panels; ++i) {
     const DirectPanel& panel = placed.panel[i];
@@ -226,17 +226,17 @@ SampledLight SegmentAir::Sample(const ViewRay& ray, const DirectRay& placed,
 
 namespace {
 
-/// A stretch of the ray where the integrand is smooth and altitude monotone. Distances from the eye
-/// [m]; v runs from 0 at the lower end to 1, by ray_map.glsl.
+/// A stretch of the ray where the integrand is smooth and altitude monotone. Distances are from the
+/// eye [m]; v runs from 0 at the lower end to 1, by ray_map.glsl.
 struct Panel {
   double begin_m, end_m;
-  bool up;  // altitude rises along the ray
+  bool up;  // altitude increases along the ray
   double stretch, scale_m;
   int nodes;
 
   [[nodiscard]] double length_m() const { return end_m - begin_m; }
   [[nodiscard]] double DistanceAt(double v) const { return NodeAt(v).distance_m; }
-  /// With the derivative of the distance by v as its weight.
+  /// Returns a node whose weight is the derivative of the distance with respect to v.
   [[nodiscard]] RayNode NodeAt(double v) const {
     double t = length_m() * v, slope = length_m();
     if (stretch > 0.0) {

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Sunlight at the Gauss nodes of a panel of a ray, where terrain shades parts of it: the factors
-// that aerial_perspective.h describes.
+// This header computes aerial perspective: the light that the air between an eye and a surface
+// scatters towards the eye, and its transmittance, in every band. Terrain may shade parts of the
+// ray.
+//
+// The ray is cut into panels at its perigee and at the planet's shadow. Each panel has N Gauss
+// nodes in a mapped distance v, dense at its lower end: that of ray_map.glsl, or, if the ray ends
+// in the air, that of direct integration (direct_scattering.h). With the Legendre polynomials P_n
+// on [0, 1] and the sunlight S(v), in [0, 1], that terrain lets through, the weight of direct light
+// at node j is the weight of the node times
+//
+//   sum over n < N of (2 n + 1) P_n(v_j) m_n,      m_n = integral of P_n(v) S(v) dv.
+//
+// This integrates S times the polynomial through the nodes. The factor is 1 in full light and
+// exactly 0 in full shade. Any number of light shafts needs no additional node, and no terms of
+// similar size are subtracted. Multiple scattering is evaluated at the same nodes, in the shade
+// too.
 //
 // A panel is any stretch of a ray with a map from v in [0, 1] to the distance from the eye [m]:
 //
@@ -8,29 +22,11 @@
 //   DistanceAt(v)        the map
 //   CoordinateAt(d)      its inverse
 //
-// Samples of rays that end in the air, before a mountain: few Gauss nodes, by direct integration
-// (direct_scattering.h).
-//
-// A panel has 2 to 7 nodes, as many as the haze and the length of the way ask for, or 14. Columns
-// from the eye are differences of columns to space, good to 1e-4 of those, which is enough between
-// sun and eye; the last sample, from which the transmittance of a short way is seen, has them by
-// integration.
-//
-// The air between an eye and what it looks at, where terrain lets the sun in: light scattered
-// towards the eye and transmittance, in every band.
-//
-// The ray is cut into panels at its perigee and at the planet's shadow; in each, N Gauss nodes in
-// the mapped distance v of ray_map.glsl, or, where the ray ends in the air, of direct integration
-// (aerial_perspective.h); both are dense at the lower end. With P_n the Legendre polynomials
-// on [0, 1] and S(v) the sunlight, in [0, 1], that terrain lets through, the weight of direct light
-// at node j is that of the node times
-//
-//   sum over n < N of (2 n + 1) P_n(v_j) m_n,      m_n = integral of P_n(v) S(v) dv:
-//
-// the integral of S times the polynomial that goes through the nodes. It is 1 in full light and
-// exactly 0 in full shade; any number of shafts costs no further node, and nothing is subtracted
-// from anything of its own size. Light scattered more than once is taken from the same nodes, in
-// the shade too.
+// SegmentAir samples rays that end in the air, for example at a mountain, with few Gauss nodes. A
+// panel has 2 to 7 nodes, depending on the haze and the length of the ray, or else 14. Columns from
+// the eye are differences of columns to space. Their error is 1e-4 of the columns to space, which
+// is enough for the paths from sun to eye. The last sample, which gives the transmittance of a
+// short ray, integrates its columns directly.
 #pragma once
 
 #include <algorithm>
@@ -51,10 +47,10 @@ namespace alpenglow::renderer {
 
 inline constexpr int kMostShaftNodes = 16;
 
-/// By node or by degree; the rest is 0.
+/// Values by node or by degree; unused entries are 0.
 using ShaftNodes = std::array<double, kMostShaftNodes>;
 
-/// Calls visit(n, P_n) for n < count at v, Legendre polynomials on [0, 1].
+/// Calls visit(n, P_n) for n < count at v, with Legendre polynomials on [0, 1].
 template <typename Visit>
 void VisitLegendre(int count, double v, const Visit& visit) {
   const double x = 2.0 * v - 1.0;
@@ -68,15 +64,15 @@ void VisitLegendre(int count, double v, const Visit& visit) {
   }
 }
 
-/// Factors of the nodes of a Gauss rule on [0, 1] from the moments of sunlight.
+/// Returns factors of the nodes of a Gauss rule on [0, 1] from the moments of sunlight.
 /// @param nodes  in [1, kMostShaftNodes].
 [[nodiscard]] ShaftNodes FactorsFromMoments(int nodes, const ShaftNodes& moments);
 
-/// The part of a piece between two distances; nothing left of it has no length.
+/// Returns the part of a piece between two distances; it has length 0 if they do not overlap.
 [[nodiscard]] SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m);
 
-/// Adds the moments of a piece of sunlight, which lies within the panel. Eight nodes are exact for
-/// full light, and half shade is smooth.
+/// Adds the moments of a piece of sunlight that lies within the panel. Eight nodes are exact for
+/// full light; penumbrae are smooth enough for them.
 template <typename Panel>
 void AddMoments(const Panel& panel, const SunlitPiece& piece, int nodes, ShaftNodes& moments) {
   static const GaussRule& rule = GaussLegendre(8);
@@ -95,7 +91,7 @@ void AddMoments(const Panel& panel, const SunlitPiece& piece, int nodes, ShaftNo
   }
 }
 
-/// Sunlight at the nodes of a panel, as factors of their weights.
+/// Returns the sunlight at the nodes of a panel, as factors of their weights.
 template <typename Panel>
 [[nodiscard]] ShaftNodes SunlightAtNodes(const Panel& panel, int nodes, const SunlitPath& sunlit) {
   ShaftNodes moments{};
@@ -106,7 +102,7 @@ template <typename Panel>
   return FactorsFromMoments(nodes, moments);
 }
 
-/// Returns whether a piece in full light covers all of a panel.
+/// Returns whether a piece in full light covers a whole panel.
 template <typename Panel>
 [[nodiscard]] bool LightUnbroken(const Panel& panel, const SunlitPath& sunlit) {
   return std::any_of(sunlit.begin(), sunlit.end(), [&](const SunlitPiece& piece) {
@@ -115,22 +111,23 @@ template <typename Panel>
   });
 }
 
-/// Immutable, safe to share between threads. Refers to what it was made from.
+/// Samples of air along rays that end in the air. Immutable, safe to share between threads. Refers
+/// to the arguments of its constructor.
 class SegmentAir {
  public:
   explicit SegmentAir(const AirIntegrator<float>& air);
 
-  /// The panels of a ray, dark ones too. What follows is only for rays whose extent then ends with
-  /// their length, and which have panels.
+  /// Returns the panels of a ray, including dark ones. The other functions require a ray with
+  /// panels whose extent ends at its length.
   [[nodiscard]] DirectRay Place(const ViewRay& ray) const;
 
-  /// Light scattered once.
-  /// @param sunlit  null: unbroken.
+  /// Returns single scattering.
+  /// @param sunlit  null: unbroken sunlight.
   [[nodiscard]] ScatteredOnce<float> Once(const ViewRay& ray, const DirectRay& placed,
                                           const SunlitPath* sunlit, int most_nodes) const;
 
-  /// Returns that with its samples, of which the last has no weight and lies at the end of the ray.
-  /// RaySamples::lit is the sunlight that the panels' polynomials need (aerial_perspective.h).
+  /// Returns single scattering with its samples. The last sample has no weight and lies at the end
+  /// of the ray. RaySamples::lit is the sunlight factor for the panels' polynomials (see above).
   [[nodiscard]] SampledLight Sample(const ViewRay& ray, const DirectRay& placed,
                                     const SunlitPath* sunlit, int most_nodes) const;
 
@@ -139,7 +136,7 @@ class SegmentAir {
   struct Lit {
     DirectRay placed;
     bool unbroken;
-    LaneLight light;  // unless unbroken
+    LaneLight light;  // not set if unbroken
 
     [[nodiscard]] const LaneLight* sunlight() const { return unbroken ? nullptr : &light; }
   };
@@ -151,50 +148,50 @@ class SegmentAir {
 
   const AirIntegrator<float>& air_;
   DirectScattering direct_;
-  float haze_share_;  // of the extinction at altitude 0, largest of any band
+  float haze_share_;  // fraction of the extinction at altitude 0, largest of any band
   float rayleigh_height_km_, mie_height_km_;
 };
 
-/// Air along a ray, per unit solar irradiance.
+/// Light and transmittance of the air along a ray, per unit solar irradiance.
 struct AirAlongRay {
   Bands<float> inscatter;      // [1/sr], all orders
   Bands<float> transmittance;  // [1]
-  /// Q and U of `inscatter` [1/sr], where they are asked for.
+  /// Q and U of `inscatter` [1/sr], if requested.
   std::optional<PolarisedLight> polarised = std::nullopt;
 };
 
-/// Immutable, safe to share between threads. Refers to what it was made from.
+/// Aerial perspective of one medium. Immutable, safe to share between threads. Refers to the
+/// arguments of its constructor.
 ///
 /// Error between mountains up to 100 km apart, in air of optical depth up to 0.3: below 1e-3 (root
-/// mean square; 5e-4 in clear air) and 5e-3 (at worst) of the light scattered once, 3e-7 of
-/// transmittance.
+/// mean square; 5e-4 in clear air) and 5e-3 (at worst) of single scattering, 3e-7 of transmittance.
 class AerialPerspective {
  public:
   AerialPerspective(const AirIntegrator<float>& air, const DiffuseLight& diffuse);
 
-  /// Nodes of a panel. Rays that end in the air (ViewRay::length_m) get as many as their length and
-  /// the haze ask for.
+  /// Nodes per panel. Rays that end in the air (ViewRay::length_m) choose their number by their
+  /// length and the haze.
   struct Nodes {
-    int sky = 12;               // rays that end in space or at the planet's own ground, in [2, 16]
-    bool higher_orders = true;  // light scattered more than once
-    bool polarised = false;     // AirAlongRay::polarised, with the signs of PolarisedLight
-    /// Cosine between the ray and where the sun is seen, about which the aureole lies; null: it is seen
-    /// where its rays light the air from, ViewRay::nu.
+    int sky = 12;               // for rays that end in space or at the planet's ground, in [2, 16]
+    bool higher_orders = true;  // include multiple scattering
+    bool polarised = false;     // compute AirAlongRay::polarised, with the signs of PolarisedLight
+    /// Cosine between the ray and the visible direction of the sun, the centre of the aureole;
+    /// empty: the visible sun is in the direction from which its rays light the air, ViewRay::nu.
     std::optional<double> nu_seen = std::nullopt;
   };
 
-  /// A ray in unbroken sunlight.
+  /// Returns the air along a ray in unbroken sunlight.
   [[nodiscard]] AirAlongRay Along(const ViewRay& ray, const Nodes& nodes) const;
-  /// A ray that terrain lets into the sun on `sunlit`, as distances from the eye [m].
+  /// Returns the air along a ray that is sunlit on `sunlit`, in distances from the eye [m].
   [[nodiscard]] AirAlongRay Along(const ViewRay& ray, const SunlitPath& sunlit,
                                   const Nodes& nodes) const;
 
-  /// Light scattered once, without phase functions. `sunlit` may be null: unbroken.
+  /// Returns single scattering without phase functions. `sunlit` may be null: unbroken.
   [[nodiscard]] ScatteredOnce<float> Once(const ViewRay& ray, const SunlitPath* sunlit,
                                           const Nodes& nodes) const;
 
-  /// Returns that with its samples; the last one has no weight and lies at the end of the ray.
-  /// RaySamples::lit is the sunlight as above.
+  /// Returns single scattering with its samples; the last sample has no weight and lies at the end
+  /// of the ray. RaySamples::lit is the sunlight factor described above.
   [[nodiscard]] SampledLight Sample(const ViewRay& ray, const SunlitPath* sunlit,
                                     const Nodes& nodes) const;
 
@@ -202,7 +199,8 @@ class AerialPerspective {
   /// Samples rays that end in space or at the planet's own ground, or that have no length.
   [[nodiscard]] RaySamples<float> SampleWhole(const ViewRay& ray, const SunlitPath* sunlit,
                                               int nodes) const;
-  /// b of the map of a panel whose lower end, of altitude low_m, lies at a distance from the eye.
+  /// Returns b of the map of a panel whose lower end, at altitude low_m, is at a distance from the
+  /// eye.
   [[nodiscard]] double StretchOf(const ViewRay& ray, double length_m, double at_low_m,
                                  double low_m) const;
   template <typename OfSegment, typename OfWhole>

@@ -16,7 +16,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Half sodium, half LED; the sum has a luminance of 1 cd/m^2.
+/// Returns a spectrum of half sodium, half LED light, with a total luminance of 1 cd/m^2.
 BandLight LampsOfUnitLuminance(const BandColour& colour) {
   constexpr double kSodium_k = 2050.0, kLed_k = 4000.0, kShare = 0.5;
   const std::vector<double>& wavelengths_nm = colour.wavelengths_nm();
@@ -63,7 +63,7 @@ StarLight LightOf(const PointLight& point, const glm::dvec3& direction, const Ba
   return {direction, static_cast<float>(lux / of_spectrum) * spectrum, lux};
 }
 
-/// As the earth turns under the stars.
+/// Returns the direction after the rotation of the earth under the stars.
 glm::dvec3 After(const glm::dvec3& ecef, double seconds) {
   const double turned = -kEarthRotation_rad_per_s * seconds;
   const double c = std::cos(turned), s = std::sin(turned);
@@ -73,7 +73,7 @@ glm::dvec3 After(const glm::dvec3& ecef, double seconds) {
 }  // namespace
 
 OpenShutter OpenFor(double open_s, double pixel_angle_rad) {
-  // An arc of t is t^2 / 8 off its chord.
+  // An arc of angle t deviates by t^2 / 8 from its chord.
   const double step_rad = std::sqrt(8.0 * 0.1 * pixel_angle_rad);
   const double turned_rad = kEarthRotation_rad_per_s * open_s;
   return {open_s, static_cast<int>(std::ceil(turned_rad / step_rad))};
@@ -106,7 +106,7 @@ std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInst
 
 namespace {
 
-/// Light of a spectrum whose luminance is 1 cd/m^2.
+/// Returns light of a spectrum, scaled to a luminance of 1 cd/m^2.
 template <typename Spectrum>
 BandLight OfUnitLuminance(const std::vector<double>& wavelengths_nm, const BandColour& colour,
                           const Spectrum& spectrum) {
@@ -119,8 +119,8 @@ BandLight OfUnitLuminance(const std::vector<double>& wavelengths_nm, const BandC
   return light;
 }
 
-// Of magnitudes U to I at their effective wavelengths, by the irradiance of magnitude 0 there:
-// Bessell, Castelli, Plez (1998), Astron. Astrophys. 333, 231, table A2.
+// Returns the spectrum of magnitudes U to I at their effective wavelengths, from the irradiance of
+// magnitude 0: Bessell, Castelli, Plez (1998), Astron. Astrophys. 333, 231, table A2.
 double AirglowSpectrum(double wavelength_nm) {
   struct Filter {
     double wavelength_nm, of_magnitude_0, magnitude;
@@ -155,7 +155,7 @@ NightLight::NightLight(const NightSky& sky, const AirIntegrator<float>& air,
   zodiacal_ = BandLight(wavelengths_nm.size());
   for (std::size_t band = 0; band < zodiacal_.count; ++band)
     zodiacal_[band] = static_cast<float>(SolarIrradiance(wavelengths_nm[band]));
-  // Equal shares of the hemisphere's projection.
+  // Integrate over equal areas of the hemisphere's projection.
   constexpr int kRings = 8, kSectors = 16;
   BandLight above(zodiacal_.count), left(zodiacal_.count), kept(zodiacal_.count);
   const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0.3, 1.0, 0.1), up));

@@ -13,7 +13,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Integrals of Y_l0 over the lower half of the sphere.
+// Returns the integrals of Y_l0 over the lower half of the sphere.
 Moments OverLowerHalf(int degree) {
   Moments sum{};
   const GaussRule& rule = GaussLegendre(8);
@@ -112,8 +112,8 @@ const Directions& SectorDirections() {
   return directions;
 }
 
-/// Antiderivative of sqrt(1 - s^2) over [-1, 1], linear between even steps of the elevation's
-/// neighbourhood: steps in s, small where it bends.
+/// Antiderivative of sqrt(1 - s^2) over [-1, 1], tabulated at even steps of s and interpolated
+/// linearly; the steps are small enough near the ends, where it bends.
 class HalfDiskArea {
  public:
   HalfDiskArea() {
@@ -138,7 +138,7 @@ const HalfDiskArea& Area() {
   return area;
 }
 
-/// Between nodes of the sine.
+/// Interpolation position between nodes of the sine.
 struct NodeTap {
   std::size_t node;
   float share;
@@ -155,7 +155,7 @@ SurfaceSectors SectorsOf(const glm::dvec3& normal) {
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
     const float along = direction.x[i] * x + direction.y[i] * y;
     sectors.along[i] = along;
-    // Where the surface's plane cuts the azimuth.
+    // The surface's plane intersects the azimuth at this elevation.
     sectors.lowest[i] = -along / std::sqrt(up2 + along * along);
     sectors.highest[i] = 1.0F;
   }
@@ -202,7 +202,7 @@ OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
         std::clamp(first_mu_s_ + static_cast<double>(i % kSuns) * mu_s_step_, -1.0, 1.0));
     std::copy_n(irradiance.value.begin(), bands_, &level_irradiance_[i * stride_]);
   }
-  // Three skies; between them the levels are linear.
+  // Compute three skies; the levels between them are interpolated linearly.
   const double middle_m = 0.5 * (lowest_m_ + highest_m_);
   const std::array<std::vector<float>, 3> table{TableAt(air, diffuse, lowest_m_, to_sun),
                                                 TableAt(air, diffuse, middle_m, to_sun),
@@ -220,7 +220,7 @@ OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
 
 std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                                     double altitude_m, const glm::dvec3& to_sun) const {
-  constexpr std::size_t kParts = 6;  // of a sector
+  constexpr std::size_t kParts = 6;  // per sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
   const SkyView view(air, diffuse, altitude_m, mu_s);
@@ -294,8 +294,8 @@ Bands<float> OpenSky::LevelIrradiance(double altitude_m, double mu_s) const {
   return irradiance;
 }
 
-// The part between two sines is the difference of what lies over them. All sectors' weights first,
-// then four bands at a time: both loops are made for vector instructions.
+// The integral between two sines is the difference of the integrals above them. The weights of all
+// sectors are computed first, then four bands at a time, so that both loops vectorise.
 Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
                                  const Horizons& horizons) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
@@ -309,7 +309,7 @@ Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSe
   const float* table = &integral_[Level(altitude_m) * level_floats()];
   std::array<float, kMaxBands + 4> sum{};
   const auto add = [&](std::size_t azimuth, float place, float scale) {
-    const auto node = static_cast<std::size_t>(place);  // the last has nothing over it
+    const auto node = static_cast<std::size_t>(place);  // the last node has no sky above it
     const float share = place - static_cast<float>(node);
     const float* low = &table[(azimuth * kNodes + node) * 2 * stride_];
     const float* high = low + (node + 1 < kNodes ? 2 * stride_ : 0);
@@ -337,8 +337,8 @@ Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSe
   return irradiance;
 }
 
-// The difference of A between two nodes is the radiance between them; low down that of B, which
-// does not vanish at the horizontal.
+// Radiance between two nodes is the difference of A over that of its weight; at low elevations B is
+// used, which does not vanish at the horizontal.
 void OpenSky::KeepRadiances() {
   constexpr float kStep = (1.0F - HorizonMap::kLowest) / static_cast<float>(kNodes - 1);
   radiance_.assign(kLevels * kHorizonAzimuths * kNodes * stride_, 0.0F);
@@ -354,7 +354,7 @@ void OpenSky::KeepRadiances() {
       for (std::size_t band = 0; band < bands_; ++band)
         into[band] = (from[band] - from[2 * stride_ + band]) / area;
     }
-    // What lies lower than the first part of the sky over the horizontal is seen as that.
+    // Directions below the first step above the horizontal have the radiance of this step.
     const auto first = static_cast<std::size_t>(std::ceil(-HorizonMap::kLowest / kStep));
     float* of_row = &radiance_[row * kNodes * stride_];
     for (std::size_t node = 0; node < first; ++node)

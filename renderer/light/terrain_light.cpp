@@ -16,7 +16,7 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSector = 2.0 * kPi / static_cast<double>(kHorizonAzimuths);
-// Steps of the air's depth: from 1e-4 upwards, 16 a doubling.
+// Steps of the air's optical depth: from 1e-4 upwards, 16 per doubling.
 constexpr double kThinnest = 1e-4;
 constexpr double kStepsPerDoubling = 16.0;
 
@@ -25,8 +25,8 @@ std::uint8_t AirStep(double depth) {
   return static_cast<std::uint8_t>(std::lround(std::min(step, 255.0)));
 }
 
-/// Extinction [1/m] in the band by whose optical depth the air between slopes is kept: the first
-/// that the air dims at all. 0 in air that dims none.
+/// Returns the extinction [1/m] in the band in which the optical depth of air between slopes is
+/// stored: the first band that the air dims at all. It is 0 in air without extinction.
 double ReferenceExtinction(const Medium& medium, double altitude_m) {
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     const double rayleigh = medium.rayleigh_scattering_per_m[band];
@@ -95,7 +95,7 @@ void SlopeViews::Walk(std::size_t node, std::size_t azimuth, const Medium& mediu
   const auto up = static_cast<float>(from.normal.z);
   const auto along = static_cast<float>(from.normal.x * x + from.normal.y * y);
   const double plane = -static_cast<double>(along) / static_cast<double>(up);
-  double highest = plane;  // tangents: of the node's own plane, then of what stands highest
+  double highest = plane;  // tangent of the node's own plane, then of the highest ground so far
   const auto sine_of = [](double tangent) {
     return static_cast<float>(tangent / std::sqrt(1.0 + tangent * tangent));
   };
@@ -265,9 +265,9 @@ BandLight SlopeLight::Radiance(const glm::dvec3& point, const BetweenAzimuths& a
   const auto along = static_cast<float>(azimuth.along);
   add(azimuth.before, 1.0F - along);
   add(azimuth.after, along);
-  // A level surface has the weight h^2 / 2 of ground up to the sine h; a node that leans the other
-  // way has less, but not a tenth of it. What is lower than 0.005, 3 m over a cell of the coarse
-  // grid, that grid does not know: there it sees unevenness of a sea.
+  // A level surface has the weight h^2 / 2 of ground up to the sine h. A node that leans away has
+  // less, but not less than a tenth of it. Ground below the sine 0.005, 3 m over a cell of the
+  // coarse grid, is not resolved by the grid, which may see the unevenness of a sea there.
   constexpr double kLeastShare = 0.1, kUnknown = 0.005;
   const double known = std::max(horizon, 0.0) + kUnknown;
   const auto least = static_cast<float>(kLeastShare * 0.5 * known * known);
@@ -279,7 +279,7 @@ namespace {
 
 constexpr std::size_t kMostHorizonNodes = std::size_t{1} << 18;
 
-// East, north, up at a place; the frame's axes leaning with the vertical.
+// Returns a direction as east, north, up at a place; the frame's axes are tilted with the vertical.
 glm::dvec3 AtPlace(const glm::dvec3& direction, const glm::dvec3& up) {
   const double z = glm::dot(direction, up);
   return {direction.x - z * up.x, direction.y - z * up.y, z};
@@ -342,9 +342,9 @@ BandLight TerrainLight::SkyRadiance(const SlopePoint& at, const glm::dvec3& dire
 
 namespace {
 
-// The share of all directions that one stands for which lies below a horizon.
+// Returns the fraction of a direction's spread that lies below a horizon.
 double GroundShare(double sine, const Spread& spread, double horizon) {
-  constexpr double kSharpest = 0.011;  // a step of OpenSky: neither sky nor horizons are finer
+  constexpr double kSharpest = 0.011;  // a step of OpenSky; neither sky nor horizons are finer
   const double range = std::max(spread.below + spread.above, kSharpest);
   const double lowest = sine + 0.5 * (spread.above - spread.below - range);
   const double within = std::clamp((horizon - lowest) / range, 0.0, 1.0);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Light that slopes send to each other.
+// This header provides indirect light on terrain: from the part of the sky above the horizons, and
+// from other slopes.
 //
-// Where the horizon of a place stands over the plane of its surface it sees other ground.
-// SlopeViews walks from the nodes of a coarse grid outwards along kHorizonAzimuths directions, in
-// steps that grow, and keeps for each direction a few nodes that stand for the ground in view:
-// strips between one elevation and the next higher one weigh as much as the light that they bring,
-// and the kept nodes lie at even shares of that weight. SlopeLight asks once, for one position of
-// the sun, what all nodes send on, and sums it up for every node and direction; the air in between
-// dims it and adds its own light, taken to be that of the sky over the horizon there. A point of
-// the picture weighs the directions by its own normal and horizon. Light goes from slope to slope
-// as often as it is asked to; once is most of it.
-//
-// Light of the sky, and of other slopes, on terrain that hides a part of the sky.
+// A place whose horizon is above the plane of its surface sees other ground. SlopeViews walks
+// outwards from the nodes of a coarse grid along kHorizonAzimuths directions, in growing steps, and
+// keeps for each direction a few nodes that represent the ground in view. A strip between one
+// elevation and the next higher one is weighted by the light that it would bring, and the kept
+// nodes are at equal fractions of the total weight. For one position of the sun, SlopeLight
+// evaluates once the outgoing light of all nodes, and sums it for every node and direction. The air
+// in between dims this light and adds its own, which is assumed to be that of the sky above the
+// horizon there. A point of the picture weights the directions by its own normal and horizon. Light
+// may be propagated between slopes several times; the first time contributes most of it.
 #pragma once
 
 #include <array>
@@ -40,23 +39,24 @@ struct SlopePlace {
   glm::dvec3 normal;  // unit, of the plane through the neighbours
 };
 
-/// What the nodes of a coarse grid see of each other. Immutable.
+/// Visibility between the nodes of a coarse grid. Immutable.
 class SlopeViews {
  public:
   static constexpr std::size_t kMostNodes = std::size_t{1} << 15;
-  static constexpr std::size_t kStrips = 3;  // kept a direction
+  static constexpr std::size_t kStrips = 3;  // kept per direction
 
   /// @param heights  at most 2^24 nodes.
   SlopeViews(HeightRaster heights, const Medium& medium);
 
   [[nodiscard]] const HeightRaster& heights() const { return heights_; }
   [[nodiscard]] const std::vector<SlopePlace>& places() const { return places_; }
-  /// Light that a direction brings when all ground there has radiance 1, per radian of azimuth.
+  /// Returns the light from a direction when all ground there has radiance 1, per radian of
+  /// azimuth.
   [[nodiscard]] float Weight(std::size_t node, std::size_t azimuth) const {
     return weight_[node * kHorizonAzimuths + azimuth];
   }
 
-  /// A node in view, and the step of kAirDepth that the air before it has.
+  /// A visible node, and the optical depth of the air in front of it as a step of AirDepth.
   struct Seen {
     std::uint32_t node;
     std::uint8_t air;
@@ -65,7 +65,7 @@ class SlopeViews {
     const std::uint32_t packed = seen_[(node * kHorizonAzimuths + azimuth) * kStrips + strip];
     return {packed & 0xFFFFFFU, static_cast<std::uint8_t>(packed >> 24)};
   }
-  /// Optical depth of a step, in the first band that the air dims.
+  /// Returns the optical depth of a step, in the first band that the air dims.
   [[nodiscard]] static double AirDepth(std::uint8_t step);
 
  private:
@@ -75,34 +75,33 @@ class SlopeViews {
   std::vector<SlopePlace> places_;
   std::vector<float> weight_;
   std::vector<std::uint32_t> seen_;
-  float summit_m_;  // the highest of the heights
+  float summit_m_;  // greatest height
 };
 
-/// For one position of the sun. Immutable; safe to ask from many threads.
+/// Light between slopes for one position of the sun. Immutable; safe to use from many threads.
 class SlopeLight {
  public:
-  /// What a place sends on of the light that comes from sun and sky, as radiance per unit solar
+  /// Returns the light from sun and sky that a place reflects, as radiance per unit solar
   /// irradiance [1/sr], the same in all directions.
   using Outgoing = std::function<BandLight(const SlopePlace& place)>;
 
-  /// The same for any number of threads.
+  /// The result does not depend on the number of threads.
   /// @param mu_s  zenith cosine of the sun at the frame's origin.
   SlopeLight(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
              const OpenSky& sky, double mu_s);
 
-  /// Irradiance [1] that other ground brings, below the horizons.
+  /// Returns the irradiance [1] from other ground, below the horizons.
   [[nodiscard]] BandLight Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
                                      const Horizons& horizons) const;
-  /// Radiance [1/sr] of the ground that is seen in a horizontal direction.
+  /// Returns the radiance [1/sr] of the ground that is visible in a horizontal direction.
   /// @param horizon  the sine of its elevation there.
-  /// @param beyond  radiance of what is seen instead where the coarse grid has next to nothing of
-  ///     that ground.
+  /// @param beyond  radiance that replaces ground which is almost absent from the coarse grid.
   [[nodiscard]] BandLight Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
                                    double horizon, const BandLight& beyond) const;
 
   [[nodiscard]] const SlopeViews& views() const { return views_; }
-  /// SlopeViews::Weight times radiance: [node][azimuth][band], the number of bands rounded up to a
-  /// multiple of 4.
+  /// SlopeViews::Weight times radiance: [node][azimuth][band], with the number of bands rounded up
+  /// to a multiple of 4.
   [[nodiscard]] std::span<const float> light() const { return light_; }
 
  private:
@@ -115,14 +114,14 @@ class SlopeLight {
   std::vector<float> light_;  // weight times radiance: [node][azimuth][band]
 };
 
-/// What terrain hides from its places, whatever shines. Immutable.
+/// Horizons and mutual visibility of terrain, independent of light. Immutable.
 class TerrainHorizons {
  public:
   TerrainHorizons(const TriangleMesh& mesh, const Medium& medium);
 
   [[nodiscard]] const HorizonMap& map() const { return map_; }
   [[nodiscard]] const SlopeViews& views() const { return views_; }
-  /// Of the ground; altitudes are those over the frame's plane.
+  /// Extent of the ground; altitudes are above the frame's plane.
   [[nodiscard]] const OpenSky::Extent& extent() const { return extent_; }
 
  private:
@@ -133,14 +132,14 @@ class TerrainHorizons {
   OpenSky::Extent extent_;
 };
 
-/// The horizons of a scene, made when first asked for: not every picture needs them.
+/// The horizons of a scene, computed on first use, because not every picture needs them.
 class HorizonsOnDemand {
  public:
-  /// Refers to both.
+  /// Refers to both arguments.
   HorizonsOnDemand(const SceneGround& ground, const Medium& medium)
       : ground_(ground), medium_(medium) {}
 
-  /// Null for no terrain and for ground that is not one surface.
+  /// Returns null without terrain and for ground that is not one surface.
   [[nodiscard]] std::shared_ptr<const TerrainHorizons> Get() const;
 
  private:
@@ -150,7 +149,7 @@ class HorizonsOnDemand {
   mutable std::shared_ptr<const TerrainHorizons> made_;
 };
 
-/// A place on terrain and how a surface lies there.
+/// A place on terrain and the orientation of its surface.
 struct SlopePoint {
   glm::dvec3 point;
   glm::dvec3 normal;  // unit, in the frame
@@ -159,15 +158,15 @@ struct SlopePoint {
   double mu_s;  // zenith cosine there of the sun that lights the air
 };
 
-/// For one position of the sun. Immutable; safe to ask from many threads.
+/// Indirect light on terrain for one position of the sun. Immutable; safe to use from many threads.
 ///
-/// Error of Irradiance against rays that meet sky, air and slopes, the slopes lit by sun and sky,
+/// Error of Irradiance against rays that hit sky, air and slopes, with slopes lit by sun and sky,
 /// over rough mountains with the sun at 30 degrees: root mean square below 4 % with an albedo of
-/// 0.15 (without horizons, from the moments of the light: more than three times that), below 9 %
-/// with 0.8; the mean is off by less than half of that.
+/// 0.15 (without horizons, from the moments of the light: more than three times as much), below 9 %
+/// with 0.8. The error of the mean is less than half of that.
 class TerrainLight {
  public:
-  /// Light of the sky alone.
+  /// Creates the light of the sky alone.
   /// @param horizons  null: a plain.
   TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const AirIntegrator<float>& air,
                const DiffuseLight& diffuse, const glm::dvec3& to_sun);
@@ -177,25 +176,26 @@ class TerrainLight {
   /// Null before AddSlopes.
   [[nodiscard]] const SlopeLight* slopes() const { return slopes_ ? &*slopes_ : nullptr; }
 
-  /// Adds what slopes send to each other. Needs horizons.
+  /// Adds the light between slopes. Needs horizons.
   void AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing, double mu_s);
 
-  /// Per unit solar irradiance [1].
+  /// Irradiance per unit solar irradiance [1].
   struct OnSlope {
     BandLight sky, slopes;
   };
-  /// Needs horizons.
+  /// Returns the irradiance from sky and slopes, separately. Needs horizons.
   [[nodiscard]] OnSlope On(const SlopePoint& at) const;
-  /// Of sky and slopes, per unit solar irradiance [1]. Needs horizons.
+  /// Returns the irradiance from sky and slopes, per unit solar irradiance [1]. Needs horizons.
   [[nodiscard]] BandLight Irradiance(const SlopePoint& at) const {
     const OnSlope on = On(at);
     return on.sky + on.slopes;
   }
 
-  /// Radiance [1/sr] of the sky in a direction, whatever stands before it.
+  /// Returns the radiance [1/sr] of the sky in a direction, without occlusion.
   [[nodiscard]] BandLight SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const;
-  /// Radiance [1/sr] in a direction: of the sky, and of the ground there as far as the directions
-  /// that it stands for lie below the horizon. Needs horizons.
+  /// Returns the radiance [1/sr] in a direction. Ground contributes according to the fraction of
+  /// the direction's spread that is below the horizon, the sky contributes the rest. Needs
+  /// horizons.
   [[nodiscard]] BandLight Radiance(const SlopePoint& at, const glm::dvec3& direction,
                                    const Spread& spread = {}) const;
 
